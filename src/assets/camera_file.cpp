@@ -18,16 +18,15 @@
 namespace weft::assets {
 namespace {
 
-/// Between keys the way is cut at least this finely [s]: a turn of 90 degrees in a second is off by 0.0001 of the
-/// distance looked at.
-constexpr double kLongestPiece = 0.02;
+/// Maximum time between samples of the motion [s]: 90 degrees in a second are then off by 0.0001 of the distance.
+constexpr double kMaxSampleInterval = 0.02;
 
-/// No shot is longer than this [s]; what claims to be is damaged.
-constexpr double kLongestShot = 3600;
+/// Longer shots are treated as damaged [s].
+constexpr double kMaxShotLength = 3600;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// What a channel has at a time: first and last hold before and after.
+/// Value of a channel at a time; the first and the last value hold outside.
 template <class Key, class Between>
 auto value_at(std::span<const Key> keys, double ticks, const Between& between) {
   const auto next = std::ranges::find_if(keys, [&](const Key& key) { return key.mTime > ticks; });
@@ -41,7 +40,7 @@ aiVector3D vector_at(const aiVectorKey* keys, unsigned count, double ticks) {
   return value_at(std::span(keys, count), ticks,
                   [](const aiVector3D& a, const aiVector3D& b, ai_real s) { return a + (b - a) * s; });
 }
-aiQuaternion turn_at(const aiQuatKey* keys, unsigned count, double ticks) {
+aiQuaternion rotation_at(const aiQuatKey* keys, unsigned count, double ticks) {
   return value_at(std::span(keys, count), ticks, [](const aiQuaternion& a, const aiQuaternion& b, ai_real s) {
     aiQuaternion between;
     aiQuaternion::Interpolate(between, a, b, s);
@@ -69,7 +68,7 @@ aiMatrix4x4 local_at(const aiNode& node, const aiAnimation* animation, double ti
   node.mTransformation.Decompose(scale, turn, position);
   if (channel->mNumPositionKeys > 0) position = vector_at(channel->mPositionKeys, channel->mNumPositionKeys, ticks);
   if (channel->mNumScalingKeys > 0) scale = vector_at(channel->mScalingKeys, channel->mNumScalingKeys, ticks);
-  if (channel->mNumRotationKeys > 0) turn = turn_at(channel->mRotationKeys, channel->mNumRotationKeys, ticks);
+  if (channel->mNumRotationKeys > 0) turn = rotation_at(channel->mRotationKeys, channel->mNumRotationKeys, ticks);
   return {scale, turn, position};
 }
 
@@ -80,7 +79,7 @@ aiMatrix4x4 world_at(const aiNode& node, const aiAnimation* animation, double ti
   return world;
 }
 
-/// All times of keys on the way from the camera to the root, and some between.
+/// All key times on the path from the camera to the root, refined in between.
 std::vector<double> times_of(const aiNode& node, const aiAnimation& animation) {
   const double rate = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 1;
   std::set<double> keys;
@@ -94,13 +93,13 @@ std::vector<double> times_of(const aiNode& node, const aiAnimation& animation) {
       add(channel->mScalingKeys, channel->mNumScalingKeys);
     }
   if (keys.empty()) return {0};
-  if (!(*keys.begin() >= 0 && *keys.rbegin() < kLongestShot))
-    throw std::runtime_error(fmt::format("expected keys between 0 and {} s, got {:g} to {:g} s", kLongestShot,
+  if (!(*keys.begin() >= 0 && *keys.rbegin() < kMaxShotLength))
+    throw std::runtime_error(fmt::format("expected keys between 0 and {} s, got {:g} to {:g} s", kMaxShotLength,
                                          *keys.begin(), *keys.rbegin()));
   std::vector<double> times;
   for (const double key : keys) {
     const double before = times.empty() ? key : times.back();
-    const int pieces = static_cast<int>(std::ceil((key - before) / kLongestPiece));
+    const int pieces = static_cast<int>(std::ceil((key - before) / kMaxSampleInterval));
     for (int i = 1; i < pieces; ++i) times.push_back(before + (key - before) * i / pieces);
     times.push_back(key);
   }
@@ -120,7 +119,7 @@ void add_view(LoadedCamera& camera, const aiCamera& from, const aiMatrix4x4& wor
   camera.times.push_back(time);
   camera.positions.push_back(position);
   camera.forward.push_back(forward);
-  // Of a camera that is not tilted the side is level.
+  // The side vector of an untilted camera is horizontal.
   camera.roll = std::max(camera.roll, kDegrees * std::asin(std::min(1.0, std::abs(forward.cross(up).y()))));
 }
 
@@ -146,7 +145,7 @@ LoadedCamera read_camera(const std::filesystem::path& file, const std::string& o
   for (const aiAnimation* each : std::span(scene.mAnimations, scene.mNumAnimations))
     if (animation == nullptr && moves(*each, *node)) animation = each;
   LoadedCamera camera;
-  // The vertical angle, which assimp 5.2 multiplies by the ratio of the sides where the file has one.
+  // The vertical angle: assimp 5.2 multiplies it by the aspect ratio if the file has one.
   camera.field_of_view = kDegrees * from.mHorizontalFOV / (from.mAspect > 0 ? from.mAspect : 1);
   const double rate = animation != nullptr && animation->mTicksPerSecond > 0 ? animation->mTicksPerSecond : 1;
   for (const double time : animation != nullptr ? times_of(*node, *animation) : std::vector<double>{0})

@@ -38,7 +38,7 @@ void serialize(Archive& archive, character::Coloring& coloring) {
   serialize_plain(archive, coloring.uv);
 }
 
-/// Writing and reading are the same list of parts, so that they cannot differ.
+/// Writing and reading use the same list of members, so that they cannot differ.
 template <class Archive>
 void serialize(Archive& archive, ReadCharacter& read) {
   character::Character& character = read.character;

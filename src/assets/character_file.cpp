@@ -14,7 +14,7 @@
 namespace weft::assets {
 namespace {
 
-/// Assimp's readers turn their formats to y up.
+/// Up axis (y) to which assimp's readers rotate their formats.
 constexpr int kUsualUp = 1;
 
 ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh, const MeshChoice& choice) {
@@ -23,9 +23,9 @@ ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh, const
   return to_character(import(importer, file, 0), with_mesh ? file : std::filesystem::path(), choice);
 }
 
-/// BVH does not say whether the translations of a joint are its place or come on top of its offset; programs write
-/// both, assimp takes them for places. Bones keep their lengths: if the translations of most joints below the root are
-/// nearer to nothing than to the offset, they come on top.
+/// BVH does not define whether the translations of a joint are positions or are added to its offset; programs write
+/// both, assimp assumes positions. Bones keep their lengths: if the translations of most joints below the root are
+/// nearer to zero than to the offset, this function adds the offsets.
 void add_bvh_offsets(character::Character& character) {
   int on_top = 0, places = 0;
   for (const character::Clip& clip : character.clips)
@@ -43,7 +43,7 @@ void add_bvh_offsets(character::Character& character) {
       for (Vec3& x : channel.position.values) x += character.nodes[channel.node].local.translation();
 }
 
-/// Warnings of a file get its name; it is turned to the scene's axes and scaled to metres.
+/// Adds the file name to warnings, rotates to the scene's axes and scales to metres.
 LoadedCharacter finish(const Source& source, ReadCharacter read, const FileAxes& axes) {
   LoadedCharacter loaded{std::move(read.character), {}, axes.scale.value_or(read.metres_per_unit.value_or(1))};
   for (const std::string& warning : read.warnings) loaded.warnings.push_back(source.describe(warning));
@@ -76,7 +76,7 @@ bool is_bvh(const std::filesystem::path& file) {
 
 Mat3 turn_up(int up, scene::UpAxis scene_up) {
   const int to = scene_up == scene::UpAxis::z ? 2 : 1;
-  // The axes in their cyclic order from the one that points up; a turn by a third goes one on.
+  // Maps each axis to the next in cyclic order, counted from the up axis; a third of a turn advances by one axis.
   Mat3 turn = Mat3::Zero();
   if (up == 1 && to == 2) return (turn << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();
   if (up == 2 && to == 1) return (turn << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished();

@@ -1,4 +1,4 @@
-// Skinned, animated characters and motions from files, through assimp.
+// Reads skinned, animated characters and motions from files, through assimp.
 #pragma once
 
 #include <filesystem>
@@ -12,35 +12,35 @@
 
 namespace weft::assets {
 
-/// How lengths and axes of a file are meant.
+/// Interpretation of the lengths and axes of a file.
 struct FileAxes {
-  std::optional<double> scale;  ///< metres per unit of the file; absent: what the file says, else 1
+  std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, else 1
   scene::FileUp up = scene::FileUp::as_file;
   scene::UpAxis scene_up = scene::UpAxis::z;
 };
 
 struct LoadedCharacter {
   character::Character character;     ///< in metres and the axes of the scene
-  std::vector<std::string> warnings;  ///< with `where`, file and part
-  double scale = 1;                   ///< metres per unit of the file that were taken
+  std::vector<std::string> warnings;  ///< each with `where`, file and part
+  double scale = 1;                   ///< metres per unit of the file that was applied
 };
 
-/// Reads hierarchy, skin, morph targets and clips of glTF, FBX, Collada, X, B3D, BVH and what else assimp knows, in a
-/// process of its own. A skeleton without a mesh gets one of sticks. `where` names what refers to the file. Throws
+/// Reads hierarchy, skin, morph targets and clips of glTF, FBX, Collada, X, B3D, BVH and other formats of assimp, in a
+/// child process. A skeleton without a mesh gets a mesh of sticks. `where` names the scene entry. Throws
 /// Error(asset_unreadable) with `where`, file and part.
 LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
                                const MeshChoice& choice = {});
 
-/// The same of a file that is only there for its skeleton and clips, at least one; its mesh is left out.
+/// Reads only skeleton and clips (at least one), without the mesh.
 LoadedCharacter load_motion(const std::filesystem::path& file, const FileAxes& axes, const std::string& where);
 
-/// Whether a file is a BVH file by its name, in any case.
+/// Whether the extension of a file is that of BVH, in any case.
 bool is_bvh(const std::filesystem::path& file);
 
-/// Turns and scales a character: every length by `scale`, every direction by `axes`, which sends axes to axes.
+/// Scales every length of a character by `scale` and rotates every direction by `axes`, a signed permutation.
 void transform(character::Character& character, double scale, const Mat3& axes);
 
-/// The rotation that turns an up axis (0 x, 1 y, 2 z) to that of the scene.
+/// The rotation from an up axis (0 x, 1 y, 2 z) to that of the scene.
 Mat3 turn_up(int up, scene::UpAxis scene_up);
 
 }  // namespace weft::assets

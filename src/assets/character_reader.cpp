@@ -23,13 +23,13 @@ namespace {
 
 using character::Affine;
 
-/// Vertices of all parts with all their copies, before joining: many times what cloth can collide with in use.
+/// Maximum number of vertices of all parts with all copies, before merging: far more than collision can handle.
 constexpr std::size_t kMaxVertices = 4'000'000;
 
-/// Skin that the rest pose of the nodes moves farther from where it was bound is warned about [m].
-constexpr double kOffBind = 0.05;
+/// Skin that the rest pose of the nodes moves farther from its bind position causes a warning [m].
+constexpr double kMaxBindError = 0.05;
 
-/// Sums of weights that are off by more than rounding and the few bits that some formats store.
+/// Maximum error of the sum of weights without a warning: rounding, and the few bits that some formats store.
 constexpr double kWeightSlack = 0.02;
 
 Affine to_affine(const aiMatrix4x4& m) {
@@ -43,14 +43,14 @@ bool invertible(const Affine& map) {
   return std::abs(map.linear().determinant()) > 1e-9 * size * size * size;
 }
 
-/// A node and the place of its parent in the list that it is in.
+/// A node, and the index of its parent in the same list.
 using NodeWithParent = std::pair<const aiNode*, Index>;
 
-/// All nodes, parents first. Assimp 5.2 lists the bones of Half-Life models as children of one node and names their
-/// parents in mParent alone; so that is what counts, unless nodes are lost then.
+/// All nodes, parents first. Assimp 5.2 lists the bones of Half-Life models as children of one node and stores their
+/// parents only in mParent; mParent is therefore used, unless nodes would be lost.
 std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
   using Children = std::unordered_map<const aiNode*, std::vector<const aiNode*>>;
-  // The walk keeps its own stack: files can nest nodes deeper than ours is.
+  // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
   const auto walk = [&](const auto& children_of) {
     std::vector<NodeWithParent> nodes;
     std::vector<NodeWithParent> stack{{&root, -1}};
@@ -144,7 +144,7 @@ class CharacterReader {
     const bool faces = std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
                                    [](const aiFace& face) { return face.mNumIndices >= 3; });
     if (!faces) return;
-    // Skinned meshes are where their bones are, whichever node shows them.
+    // A skinned mesh is placed by its bones and read once, whichever nodes show it.
     if (mesh.mNumBones > 0 && !skinned_.insert(&mesh).second) return;
     const std::size_t base = soup_.positions.size();
     if (base + mesh.mNumVertices > kMaxVertices)
@@ -167,11 +167,11 @@ class CharacterReader {
     read_morphs(mesh, node, base, placing);
   }
 
-  /// The weights of each vertex of a mesh. Of a skinned mesh `placing` becomes the map from the mesh to where its most
-  /// important bone holds it at rest, and the bones' offsets start from there, so that all meshes share one space.
+  /// The weights of each vertex of a mesh. For a skinned mesh, `placing` becomes the map from the mesh to the rest
+  /// position given by its most important bone. The bones' offsets then start from there: all meshes share one space.
   std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& placing) {
     std::vector<Weights> weights(mesh.mNumVertices);
-    std::vector<std::pair<Index, Affine>> bones;  // node and offset, of those that hold something
+    std::vector<std::pair<Index, Affine>> bones;  // node and offset of bones with weights
     double most = 0;
     for (const aiBone* bone : std::span(mesh.mBones, mesh.mNumBones)) {
       double total = 0;
@@ -199,7 +199,7 @@ class CharacterReader {
     const Affine back = invertible(placing) ? placing.inverse() : Affine::Identity();
     if (!invertible(placing)) placing = Affine::Identity();
     for (const auto& [bone_node, offset] : bones) character_.bones.push_back({bone_node, offset * back});
-    hold_the_rest(mesh, node, placing, weights);
+    normalise_weights(mesh, node, placing, weights);
     return weights;
   }
 
@@ -215,9 +215,8 @@ class CharacterReader {
     return weight.mWeight;
   }
 
-  /// Warns where the rest pose of the nodes does not hold the skin as it was bound, as after pivots that the reader of
-  /// assimp does not follow. FBX binds a mesh where its node is; other formats say only how its bones are to each
-  /// other.
+  /// Warns if the rest pose of the nodes does not reproduce the bound skin, as with pivots that assimp's reader
+  /// ignores. FBX binds a mesh at its node; other formats define only the bones relative to each other.
   void check_bind(const aiMesh& mesh, const Affine& placing, const std::vector<Weights>& weights, Index node) {
     if (mesh.mNumBones == 0) return;
     const std::optional<double> metres = metres_per_unit(scene_);
@@ -234,7 +233,7 @@ class CharacterReader {
       const double distance = metres.value_or(1) * (held - bound * x).norm();
       if (distance > farthest) farthest = distance, worst = v;
     }
-    if (farthest <= kOffBind) return;
+    if (farthest <= kMaxBindError) return;
     Index holder = 0;
     double most = 0;
     for (const character::Influence& influence : weights[worst])
@@ -245,9 +244,9 @@ class CharacterReader {
                     mesh.mName.C_Str(), farthest, character_.nodes[holder].name));
   }
 
-  /// Makes weights add up to 1. Vertices without any go with the node of the mesh.
-  void hold_the_rest(const aiMesh& mesh, Index node, const Affine& placing, std::vector<Weights>& weights) {
-    std::size_t loose = 0;
+  /// Normalises weights to a sum of 1. Vertices without weights are bound to the node of the mesh.
+  void normalise_weights(const aiMesh& mesh, Index node, const Affine& placing, std::vector<Weights>& weights) {
+    std::size_t unweighted = 0;
     double furthest = 1;
     std::size_t furthest_vertex = 0;
     Index own = -1;
@@ -255,7 +254,7 @@ class CharacterReader {
       double sum = 0;
       for (const character::Influence& influence : weights[v]) sum += influence.weight;
       if (sum <= 0) {
-        ++loose;
+        ++unweighted;
         if (own < 0) {
           own = static_cast<Index>(character_.bones.size());
           character_.bones.push_back({node, placing.inverse()});
@@ -274,9 +273,10 @@ class CharacterReader {
           fmt::format("mesh \"{}\": weights of a vertex should add up to 1; they were scaled, those "
                       "of vertex {} from {:g}",
                       mesh.mName.C_Str(), furthest_vertex, furthest));
-    if (loose > 0 && mesh.mNumBones > 0)
+    if (unweighted > 0 && mesh.mNumBones > 0)
       read_.warnings.push_back(fmt::format("mesh \"{}\": {} of {} vertices have no bone; they go with node \"{}\"",
-                                           mesh.mName.C_Str(), loose, weights.size(), character_.nodes[node].name));
+                                           mesh.mName.C_Str(), unweighted, weights.size(),
+                                           character_.nodes[node].name));
   }
 
   void read_faces(const aiMesh& mesh, std::size_t base, bool mirrored) {
@@ -290,7 +290,7 @@ class CharacterReader {
                                                mesh.mName.C_Str(), mesh.mNumVertices, v));
         corners.push_back(static_cast<Index>(base + v));
       }
-      // A mirroring transform turns faces inside out; reverse them to keep their outside.
+      // A mirroring transform reverses faces; reverse them again to keep their outside.
       if (mirrored) std::reverse(corners.begin(), corners.end());
       append_face(soup_, corners);
     }
@@ -322,8 +322,8 @@ class CharacterReader {
     if (name != of_node) targets_.morphs.emplace(name, group);
   }
 
-  /// Copies of a vertex with the same place, weights and displacements become one, so that the surface is joined where
-  /// seams of texture or normals cut it; those that no face names are dropped.
+  /// Merges copies of a vertex with the same position, weights and displacements, so that seams of textures or normals
+  /// do not cut the surface. Drops vertices without faces.
   void join_vertices() {
     std::unordered_map<std::string, Index> known;
     std::vector<Index> renamed(soup_.positions.size(), -1);
@@ -358,20 +358,20 @@ class CharacterReader {
     soup_.positions = std::move(positions);
   }
 
-  /// Everything that decides where a vertex goes, as bytes.
+  /// All data that determine the motion of a vertex, as bytes.
   void write_key(std::size_t v, std::string& key) const {
-    const auto put = [&](double number) {
-      number += 0.0;  // 0 and -0 are one
+    const auto append_number = [&](double number) {
+      number += 0.0;  // 0 and -0 are equal
       key.append(reinterpret_cast<const char*>(&number), sizeof number);
     };
     key.clear();
-    for (const double x : soup_.positions[v]) put(x);
+    for (const double x : soup_.positions[v]) append_number(x);
     for (const character::Influence& influence : weights_[v]) {
-      put(influence.bone);
-      put(influence.weight);
+      append_number(influence.bone);
+      append_number(influence.weight);
     }
     for (const Morph& morph : morphs_)
-      for (const double x : morph.at(v)) put(x);
+      for (const double x : morph.at(v)) append_number(x);
   }
 
   void make_faces() {
@@ -391,7 +391,7 @@ class CharacterReader {
     return uv.allFinite() ? uv : Vec2(Vec2::Zero());
   }
 
-  /// Faces before joining, which makes the same triangles of them, tell their materials and texture coordinates.
+  /// Takes materials and texture coordinates from the faces before merging; merging yields the same triangles.
   void color_faces(const Soup& unjoined) {
     if (file_.empty() || scene_.mNumMaterials == 0 || std::ranges::find(materials_, -1) != materials_.end()) return;
     character::Coloring& coloring = character_.coloring;
@@ -404,13 +404,13 @@ class CharacterReader {
     if (coloring.uv.size() != character_.mesh.topology.triangles.size()) coloring = {};
   }
 
-  /// A clip without a name is called by its number, from 1.
+  /// Names clips without a name by their number, from 1.
   void name_clips() {
     for (std::size_t c = 0; c < character_.clips.size(); ++c)
       if (character_.clips[c].name.empty()) character_.clips[c].name = std::to_string(c + 1);
   }
 
-  /// FBX says what it measures in; the readers of other formats turn them to y up, and metres where they know.
+  /// FBX states its unit; the readers of other formats convert to y up, and to metres if they know the unit.
   void read_units() {
     read_.metres_per_unit = metres_per_unit(scene_);
     std::int32_t up = 0;
@@ -422,7 +422,7 @@ class CharacterReader {
   struct Morph {
     std::string name;
     double weight = 0;
-    std::size_t first = 0;  // vertex of the soup
+    std::size_t first = 0;  // first vertex in the soup
     std::vector<Vec3> displacements;
 
     Vec3 at(std::size_t v) const {
@@ -436,11 +436,11 @@ class CharacterReader {
   ReadCharacter read_;
   character::Character& character_ = read_.character;
   std::vector<const aiNode*> nodes_;
-  std::vector<Affine> globals_;  // at rest, of the nodes
+  std::vector<Affine> globals_;  // of the nodes, at rest
   Soup soup_;
-  std::vector<Weights> weights_;  // of the vertices of the soup
-  std::vector<Index> materials_;  // likewise; -1 where the file has none
-  std::vector<Vec2> uv_;          // likewise
+  std::vector<Weights> weights_;  // per vertex of the soup
+  std::vector<Index> materials_;  // per vertex of the soup; -1 if the file has none
+  std::vector<Vec2> uv_;          // per vertex of the soup
   std::vector<Morph> morphs_;
   std::set<const aiMesh*> skinned_;  // that have been read
   ClipTargets targets_;

@@ -1,4 +1,4 @@
-// From assimp's scene to a character.
+// Converts assimp's scene to a character.
 #pragma once
 
 #include <assimp/scene.h>
@@ -13,29 +13,29 @@
 
 namespace weft::assets {
 
-/// A character in the unit and axes of its file, and what the file says about them.
+/// A character in the unit and axes of its file, and what the file states about them.
 struct ReadCharacter {
   character::Character character;
   std::optional<double> metres_per_unit;
-  std::optional<int> up;              ///< axis that points up: 0 x, 1 y, 2 z
-  std::vector<std::string> warnings;  ///< what was mended or left out, by the names of the parts
+  std::optional<int> up;              ///< up axis: 0 x, 1 y, 2 z
+  std::vector<std::string> warnings;  ///< repaired or skipped parts, by name
 };
 
-/// Which meshes of a file a character has, by their names or those of their nodes.
+/// Selects meshes of a file for a character, by their names or those of their nodes.
 struct MeshChoice {
   std::vector<std::string> only;       ///< empty: all
-  std::vector<std::string> without;    ///< not these
-  std::vector<std::string> elsewhere;  ///< nor these, which may be missing: cloths have them
+  std::vector<std::string> without;    ///< meshes to leave out
+  std::vector<std::string> elsewhere;  ///< meshes used by cloths; left out as well, but may be missing
 };
 
-/// Takes over nodes, meshes with their weights and morph targets, and animations. Bones of all meshes are merged into
-/// one list; a mesh without bones becomes one that a bone at its own node holds, once for each node that shows it.
-/// Throws std::runtime_error naming the part that cannot be used: indices out of range, numbers that are not finite,
-/// bones that no node belongs to, key times that run backwards, names of the choice that nothing has. Pictures are
-/// looked for beside `file`; none where that is empty.
+/// Converts nodes, meshes with their weights and morph targets, and animations. Merges the bones of all meshes into one
+/// list; a mesh without bones is bound to a bone at its own node, once for each node that shows it. Pictures are
+/// searched beside `file`; none are read if `file` is empty. Throws std::runtime_error naming the unusable part:
+/// indices out of range, non-finite numbers, bones without a node, key times that run backwards, unknown names in
+/// `choice`.
 ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice = {});
 
-/// The same as plain bytes, for the way between two processes of the same program, and back.
+/// Serialises a character for transfer between two processes of the same program, and back.
 std::string to_bytes(ReadCharacter& read);
 ReadCharacter character_from_bytes(std::string_view bytes);
 

@@ -11,13 +11,13 @@
 namespace weft::assets {
 namespace {
 
-/// Files that do not say how long a tick is mean this one, as assimp's documentation has it [1/s].
+/// Tick rate of files that do not state one, as in assimp's documentation [1/s].
 constexpr double kDefaultTicksPerSecond = 25;
 
-/// No clip is longer than a day; what claims to be is damaged [s].
-constexpr double kLongestClip = 86400;
+/// Longer clips are treated as damaged [s].
+constexpr double kMaxClipLength = 86400;
 
-/// Keys past the end by less than this share of the clip are rounding.
+/// Keys past the end by less than this fraction of the clip are rounding errors.
 constexpr double kEndSlack = 1e-4;
 
 Vec3 to_value(const aiVector3D& v) {
@@ -26,10 +26,10 @@ Vec3 to_value(const aiVector3D& v) {
 Quat to_value(const aiQuaternion& q) {
   return {q.w, q.x, q.y, q.z};
 }
-bool usable(const Vec3& v) {
+bool is_usable(const Vec3& v) {
   return v.allFinite();
 }
-bool usable(const Quat& q) {
+bool is_usable(const Quat& q) {
   return q.coeffs().allFinite() && q.norm() > 1e-6;
 }
 Vec3 tidy(const Vec3& v) {
@@ -44,7 +44,7 @@ struct ClipReader {
   std::string name;
   double ticks_per_second = kDefaultTicksPerSecond;
   double last_key = 0;         // [s]
-  std::string last_channel{};  // that has it
+  std::string last_channel{};  // channel of that key
 
   [[noreturn]] void fail(const std::string& channel, const std::string& why) const {
     throw std::runtime_error(fmt::format("clip \"{}\", channel \"{}\": {}", name, channel, why));
@@ -52,7 +52,7 @@ struct ClipReader {
 
   double to_seconds(double ticks, const std::string& channel) {
     const double t = ticks / ticks_per_second;
-    if (!(std::abs(t) < kLongestClip))
+    if (!(std::abs(t) < kMaxClipLength))
       fail(channel,
            fmt::format("expected key times within a day, got {:g} ticks of {:g} a second", ticks, ticks_per_second));
     if (t > last_key) {
@@ -62,7 +62,7 @@ struct ClipReader {
     return t;
   }
 
-  /// Appends a key. Of several at the same time the last counts.
+  /// Appends a key. Of several keys at the same time, the last counts.
   template <class Value>
   void append(character::Curve<Value>& curve, double t, const Value& value, const std::string& channel) const {
     if (!curve.times.empty() && t < curve.times.back())
@@ -81,7 +81,7 @@ struct ClipReader {
     for (const Key& key : keys) {
       const Value value = to_value(key.mValue);
       const double t = to_seconds(key.mTime, channel);
-      if (!usable(value)) fail(channel, fmt::format("expected finite numbers, got others in the key at {:g} s", t));
+      if (!is_usable(value)) fail(channel, fmt::format("expected finite numbers, got others in the key at {:g} s", t));
       append(curve, t, tidy(value), channel);
     }
     return curve;
@@ -94,7 +94,7 @@ struct ClipReader {
             to_curve<Vec3>(std::span(from.mScalingKeys, from.mNumScalingKeys), channel)};
   }
 
-  /// A key names the targets that it gives weights to.
+  /// Reads morph weights; each key lists the targets that it gives weights to.
   void read_morphs(const aiMeshMorphAnim& from, const ClipTargets::Morphs& targets, character::Clip& clip) {
     const std::string channel = from.mName.C_Str();
     std::vector<character::MorphChannel> channels(static_cast<std::size_t>(targets.count));
@@ -115,10 +115,10 @@ struct ClipReader {
   }
 };
 
-/// Assimp splits some nodes of FBX into a line of helpers, named after them, above them. Where a channel has the whole
-/// transform of such a node nevertheless, its helpers add nothing to it while the clip plays.
-void silence_helpers(const aiNodeAnim& from, const ClipTargets& targets, std::set<Index>& moved,
-                     character::Clip& clip) {
+/// Assimp splits some FBX nodes into a chain of parent helpers named after them. If a channel nevertheless has the
+/// whole transform of such a node, its helpers get identity channels in the clip.
+void add_identity_channels(const aiNodeAnim& from, const ClipTargets& targets, std::set<Index>& moved,
+                           character::Clip& clip) {
   if (from.mNumPositionKeys == 0 || from.mNumRotationKeys == 0) return;
   const std::string start = std::string(from.mNodeName.C_Str()) + "_$AssimpFbx$_";
   for (auto helper = targets.nodes.lower_bound(start);
@@ -128,7 +128,7 @@ void silence_helpers(const aiNodeAnim& from, const ClipTargets& targets, std::se
           {helper->second, {{0}, {Vec3::Zero()}}, {{0}, {Quat::Identity()}}, {{0}, {Vec3::Ones()}}});
 }
 
-/// assimp adds "*0" and the like to names of meshes that several parts share.
+/// assimp appends "*0" and the like to names of meshes that several parts share.
 std::string plain_name(const std::string& name) {
   return name.substr(0, name.find('*'));
 }
@@ -142,12 +142,12 @@ character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets
   if (std::isfinite(animation.mTicksPerSecond) && animation.mTicksPerSecond > 0)
     reader.ticks_per_second = animation.mTicksPerSecond;
 
-  std::vector<std::string> lost;
+  std::vector<std::string> unknown_nodes;
   std::set<Index> moved;
   for (const aiNodeAnim* channel : std::span(animation.mChannels, animation.mNumChannels)) {
     const auto node = targets.nodes.find(channel->mNodeName.C_Str());
     if (node == targets.nodes.end()) {
-      lost.push_back(channel->mNodeName.C_Str());
+      unknown_nodes.push_back(channel->mNodeName.C_Str());
     } else if (moved.insert(node->second).second) {
       clip.channels.push_back(reader.to_channel(*channel, node->second));
     } else {
@@ -156,19 +156,19 @@ character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets
     }
   }
   for (const aiNodeAnim* channel : std::span(animation.mChannels, animation.mNumChannels))
-    silence_helpers(*channel, targets, moved, clip);
+    add_identity_channels(*channel, targets, moved, clip);
   for (const aiMeshMorphAnim* channel : std::span(animation.mMorphMeshChannels, animation.mNumMorphMeshChannels)) {
     const auto [begin, end] = targets.morphs.equal_range(plain_name(channel->mName.C_Str()));
-    if (begin == end) lost.push_back(channel->mName.C_Str());
+    if (begin == end) unknown_nodes.push_back(channel->mName.C_Str());
     for (auto found = begin; found != end; ++found) reader.read_morphs(*channel, found->second, clip);
   }
-  if (!lost.empty())
+  if (!unknown_nodes.empty())
     warnings.push_back(fmt::format("clip \"{}\": {} channel{} left out, which name no part of the file: \"{}\"{}",
-                                   clip.name, lost.size(), lost.size() == 1 ? "" : "s", lost.front(),
-                                   lost.size() == 1 ? "" : ", ..."));
+                                   clip.name, unknown_nodes.size(), unknown_nodes.size() == 1 ? "" : "s",
+                                   unknown_nodes.front(), unknown_nodes.size() == 1 ? "" : ", ..."));
 
   clip.duration = std::isfinite(animation.mDuration) ? std::max(0.0, animation.mDuration / reader.ticks_per_second) : 0;
-  if (!(clip.duration < kLongestClip))
+  if (!(clip.duration < kMaxClipLength))
     throw std::runtime_error(
         fmt::format("clip \"{}\": expected a clip shorter than a day, got {:g} s", clip.name, clip.duration));
   if (reader.last_key > clip.duration) {

@@ -1,4 +1,4 @@
-// Animations as assimp gives them, checked and in seconds.
+// Converts animations of assimp to clips in seconds, with checks.
 #pragma once
 
 #include <assimp/scene.h>
@@ -11,19 +11,18 @@
 
 namespace weft::assets {
 
-/// Where the parts that channels name are to be found.
+/// Objects that channels refer to by name.
 struct ClipTargets {
   std::map<std::string, Index> nodes;
-  /// Morph targets of the meshes by the name of the mesh and of the nodes that show it: first target of each, and how
-  /// many it has.
+  /// Morph targets by the names of their mesh and of the nodes that show it: first target and count.
   struct Morphs {
     Index first = 0, count = 0;
   };
   std::multimap<std::string, Morphs> morphs;
 };
 
-/// Channels that name nothing are left out, keys past the end lengthen the clip; both are warned about. Throws
-/// std::runtime_error naming clip and channel for times that run backwards and numbers that are not finite.
+/// Skips channels of unknown objects and extends the clip to keys past its end, with a warning for both. Throws
+/// std::runtime_error naming clip and channel for times that run backwards and non-finite numbers.
 character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets, std::vector<std::string>& warnings);
 
 }  // namespace weft::assets

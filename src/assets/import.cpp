@@ -22,7 +22,8 @@
 namespace weft::assets {
 namespace {
 
-/// Opens regular files only, also those that a file names: materials, buffers. A pipe or a device may never end.
+/// Opens only regular files, including those that a file refers to (materials, buffers): pipes and devices may never
+/// end.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* file) const override {
@@ -34,9 +35,9 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   }
 };
 
-/// Assimp 5.2 takes a line feed at the start of binary PLY data, a byte of some number, for a part of the header's end
-/// and loses it. Such a file with one more line feed, which is lost instead; nothing for all other files.
-std::optional<std::string> shielded_ply(const std::filesystem::path& file) {
+/// Assimp 5.2 mistakes a line feed at the start of binary PLY data, a byte of a number, for the end of the header and
+/// drops it. Returns such a file with an additional line feed, which is dropped instead; nothing for all other files.
+std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 1 << 16;
   constexpr std::string_view kBinary = "\nformat binary_", kEnd = "\nend_header\n";
   std::string bytes = read_start(file, kHeaderBytes);
@@ -48,17 +49,17 @@ std::optional<std::string> shielded_ply(const std::filesystem::path& file) {
   return bytes;
 }
 
-/// The bytes of a binary glTF file that has another ending, such as .vrm: assimp takes it for OBJ.
+/// The bytes of a binary glTF file with another extension, such as .vrm, which assimp would read as OBJ; else nothing.
 std::optional<std::string> renamed_gltf(const std::filesystem::path& file) {
   constexpr std::string_view kStart = "glTF";
   if (read_start(file, kStart.size()) != kStart || file.extension() == ".glb") return std::nullopt;
   return read_bytes(file);
 }
 
-/// The beginning of the JSON text of a glTF file; empty for all other files.
+/// The start of the JSON text of a glTF file; empty for all other files.
 std::string gltf_text(const std::filesystem::path& file) {
   constexpr std::size_t kBeginning = 16 << 20;
-  // Of a binary file: "glTF", version, length; then the length of the JSON text, "JSON", the text.
+  // Binary layout: "glTF", version, length; then the length of the JSON text, "JSON", the text.
   constexpr std::size_t kLengthAt = 12, kTextAt = 20;
   std::string bytes = read_start(file, kBeginning);
   if (bytes.starts_with("glTF") && bytes.size() > kTextAt) {
@@ -69,8 +70,8 @@ std::string gltf_text(const std::filesystem::path& file) {
   return file.extension() == ".gltf" ? bytes : std::string();
 }
 
-/// The compression that a glTF file cannot be read without; assimp 5.2 as packaged knows none, and takes what it finds
-/// in its place for vertices. Empty for all other files.
+/// The compression that a glTF file requires; empty for all other files. The packaged assimp 5.2 supports none and
+/// reads the compressed data as vertices.
 std::string_view compression_of(std::string_view gltf) {
   const std::size_t begin = gltf.find("\"extensionsRequired\"");
   if (begin == std::string_view::npos) return {};
@@ -80,7 +81,7 @@ std::string_view compression_of(std::string_view gltf) {
   return {};
 }
 
-/// Throws std::runtime_error for what assimp cannot read.
+/// Throws std::runtime_error for files that assimp cannot read.
 void check_gltf(const std::filesystem::path& file) {
   const std::string text = gltf_text(file);
   if (const std::string_view compression = compression_of(text); !compression.empty())
@@ -95,9 +96,9 @@ void check_gltf(const std::filesystem::path& file) {
 
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps) {
   check_gltf(file);
-  importer.SetIOHandler(new RegularFiles);  // which the importer owns
+  importer.SetIOHandler(new RegularFiles);  // owned by the importer
   const aiScene* scene = nullptr;
-  if (const auto ply = shielded_ply(file))
+  if (const auto ply = ply_with_spare_line_feed(file))
     scene = importer.ReadFileFromMemory(ply->data(), ply->size(), steps, "ply");
   else if (const auto gltf = renamed_gltf(file))
     scene = importer.ReadFileFromMemory(gltf->data(), gltf->size(), steps, "glb");
@@ -105,7 +106,7 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
     scene = importer.ReadFile(file.string(), steps);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string_view error = importer.GetErrorString();
-    if (error.find("bad_alloc") != std::string_view::npos) throw std::bad_alloc();  // which assimp has caught
+    if (error.find("bad_alloc") != std::string_view::npos) throw std::bad_alloc();  // caught inside assimp
     throw std::runtime_error(std::string(error));
   }
   return *scene;

@@ -1,4 +1,4 @@
-// Assimp's way into a file, and around what goes wrong there in version 5.2.
+// Calls assimp and works around defects of its version 5.2.
 #pragma once
 
 #include <filesystem>
@@ -11,15 +11,15 @@ class Importer;
 
 namespace weft::assets {
 
-/// What the importer finds in a file, and holds. Throws std::runtime_error with assimp's words. Damaged files can crash
-/// it or keep it busy for ever: to be called through run_isolated.
+/// Imports a file; `importer` owns the result. Throws std::runtime_error with assimp's message. Damaged files can crash
+/// assimp or block it for ever: call it through run_isolated.
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps);
 
-/// What FBX says that it measures in [m]; the readers of other formats turn them to metres where they know.
+/// The unit that an FBX file states [m]. Readers of other formats convert to metres themselves if they know the unit.
 std::optional<double> metres_per_unit(const aiScene& scene);
 
-/// Which axis points up (0 x, 1 y, 2 z) as the file says (FBX) or its format has it: glTF, and Collada after its reader
-/// has turned it. None of formats that do not say.
+/// The up axis (0 x, 1 y, 2 z) that the file (FBX) or its format states: glTF, and Collada after rotation by its
+/// reader. Empty for other formats.
 std::optional<int> up_axis(const Assimp::Importer& importer, const aiScene& scene);
 
 }  // namespace weft::assets

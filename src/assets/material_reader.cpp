@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using character::Material;
 
-/// The one that gives a surface its colour: physically based where there is one.
+/// The type of texture that colours a surface: the physically based one if it exists.
 std::optional<aiTextureType> picture_type(const aiMaterial& material) {
   for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
     if (material.GetTextureCount(type) > 0) return type;
@@ -46,7 +46,7 @@ bool is_picture(std::string_view bytes) {
   return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff") || image::is_targa(bytes);
 }
 
-/// Folders beside a file in which programs put its pictures, in the order of their names.
+/// Folders near a file in which programs store its pictures, in the order of their names.
 std::vector<fs::path> picture_folders(const fs::path& file) {
   const std::string stem = file.stem().string();
   std::vector<fs::path> folders;
@@ -65,8 +65,8 @@ std::vector<fs::path> picture_folders(const fs::path& file) {
   return folders;
 }
 
-/// FBX and Collada name files of the machine on which they were made: as it is named, then the same name beside the
-/// file and in the folders that programs put pictures in.
+/// Finds a picture file. FBX and Collada store paths of the machine that wrote them: tries the path as given, then its
+/// file name beside the file and in the usual picture folders.
 std::optional<fs::path> find_file(const std::string& named, const fs::path& file) {
   std::string plain = named.starts_with("file://") ? named.substr(7) : named;
   std::ranges::replace(plain, '\\', '/');
@@ -80,14 +80,14 @@ std::optional<fs::path> find_file(const std::string& named, const fs::path& file
   return std::nullopt;
 }
 
-/// Where FBX says that there is a picture and neither which nor what it shows, assimp names the folder.
+/// If FBX declares a picture without name or content, assimp gives the name of the folder.
 bool is_nameless(const std::string& named) {
   return named.empty() || named == "." || named == "./" || named == ".\\";
 }
 
 constexpr const char* kNameless = "neither named nor held by the file";
 
-/// Bytes of a picture; empty, with the reason, where it cannot be had.
+/// Bytes of a picture; empty, with `reason`, if it cannot be read.
 std::string read_picture(const aiScene& scene, const aiString& named, const fs::path& file, std::string& reason) {
   std::string bytes;
   if (const aiTexture* inside = scene.GetEmbeddedTexture(named.C_Str())) {
@@ -126,33 +126,33 @@ Vec3 base_color(const aiMaterial& material) {
   return rgb.allFinite() ? Vec3(rgb.cwiseMax(0).cwiseMin(1)) : Vec3(Vec3::Constant(0.6));
 }
 
-/// Whether transparent parts are holes: what the file says, else whether it names a picture for opacity.
+/// Whether transparent parts are holes: as the file states, else whether it has an opacity picture.
 bool is_cutout(const aiMaterial& material) {
   aiString mode;
   if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS) return std::string_view(mode.C_Str()) != "OPAQUE";
   return material.GetTextureCount(aiTextureType_OPACITY) > 0;
 }
 
-/// Pictures that cannot be had for one reason.
+/// Pictures that were skipped for the same reason.
 struct LeftOut {
   std::string reason;
-  std::vector<std::string> materials, pictures;  // of which pictures may be nameless
+  std::vector<std::string> materials, pictures;  // pictures may be nameless
 };
 
-/// The first three, quoted, and how many more there are.
-std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kNamed = 3;
+/// The first three, quoted, and the number of others.
+std::string quote_some(const std::vector<std::string>& names) {
+  constexpr std::size_t kMaxQuotedNames = 3;
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kNamed); ++i)
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxQuotedNames); ++i)
     text += fmt::format("{}\"{}\"", i > 0 ? ", " : "", names[i]);
-  return names.size() > kNamed ? fmt::format("{} and {} more", text, names.size() - kNamed) : text;
+  return names.size() > kMaxQuotedNames ? fmt::format("{} and {} more", text, names.size() - kMaxQuotedNames) : text;
 }
 
-std::string told(const LeftOut& left_out) {
+std::string describe_left_out(const LeftOut& left_out) {
   const auto& [reason, materials, pictures] = left_out;
   const bool several = materials.size() > 1;
-  return fmt::format("material{0} {1}: picture{0}{2} {3} left out: {4}", several ? "s" : "", some_of(materials),
-                     reason == kNameless ? "" : " " + some_of(pictures), several ? "are" : "is", reason);
+  return fmt::format("material{0} {1}: picture{0}{2} {3} left out: {4}", several ? "s" : "", quote_some(materials),
+                     reason == kNameless ? "" : " " + quote_some(pictures), several ? "are" : "is", reason);
 }
 
 }  // namespace
@@ -188,11 +188,11 @@ std::vector<Material> read_materials(const aiScene& scene, const fs::path& file,
       same->materials.push_back(material.name);
       same->pictures.emplace_back(named.C_Str());
     } else if (*type == aiTextureType_DIFFUSE) {
-      // Files often leave a dark or black colour behind a picture that stands for it.
+      // Files often keep a dark or black colour along with a picture that replaces it.
       material.color = Vec3::Ones();
     }
   }
-  for (const LeftOut& each : left_out) warnings.push_back(told(each));
+  for (const LeftOut& each : left_out) warnings.push_back(describe_left_out(each));
   return materials;
 }
 

@@ -1,4 +1,4 @@
-// Materials of assimp's scenes.
+// Reads materials of assimp's scenes.
 #pragma once
 
 #include <assimp/scene.h>
@@ -11,12 +11,12 @@
 
 namespace weft::assets {
 
-/// Base colour and picture of each material: pictures inside of the file, or files that it names, which are looked for
-/// below its folder. What cannot be had is left out with a warning.
+/// Base colour and picture of each material. Pictures are embedded, or files searched below the folder of `file`.
+/// Unusable pictures are skipped with a warning.
 std::vector<character::Material> read_materials(const aiScene& scene, const std::filesystem::path& file,
                                                 std::vector<std::string>& warnings);
 
-/// Which of a mesh's sets of texture coordinates the picture of its material goes by.
+/// The set of texture coordinates that the picture of a material uses.
 unsigned uv_channel(const aiMaterial& material);
 
 }  // namespace weft::assets

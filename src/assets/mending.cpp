@@ -18,16 +18,15 @@
 namespace weft::assets {
 namespace {
 
-/// Pieces that come off at a cut and have less of the area are left out: trimmings that are stitched on [1].
-constexpr double kSmallPiece = 0.02;
-/// Others end so far before the edge at which they come off, as a share of the way to the middle of their triangles
-/// [1].
-constexpr double kBefore = 0.2;
-/// Edges are collapsed up to so many times the least height that triangles are to have [1].
-constexpr double kShort = 8;
-/// Triangles end up higher than they must be by this factor, since UVs differ from the mesh [1].
-constexpr double kAbove = 1.1;
-constexpr int kRounds = 8;
+/// Detached pieces with a smaller fraction of the area are left out: stitched-on trimmings [1].
+constexpr double kMaxSmallPieceArea = 0.02;
+/// Other detached pieces end at this distance before the edge, as a fraction of the distance to their middles [1].
+constexpr double kCutGap = 0.2;
+/// Maximum length of a collapsed edge, as a multiple of the minimum height of triangles [1].
+constexpr double kMaxCollapseRatio = 8;
+/// Factor on the required height of triangles, since UVs differ from the mesh [1].
+constexpr double kHeightMargin = 1.1;
+constexpr int kMaxCollapseRounds = 8;
 
 using mesh::Triangle;
 
@@ -54,7 +53,7 @@ void keep_triangles(LoadedMesh& loaded, const std::vector<std::uint8_t>& kept) {
   if (!loaded.uv.empty()) loaded.uv.resize(to);
 }
 
-/// Leaves the vertices that triangles name, in their order; `from`: of each vertex of now the one that it is a copy of.
+/// Keeps the vertices that triangles use, in that order. `from`: for each current vertex, the vertex that it copies.
 void keep_vertices(LoadedMesh& loaded, const std::vector<Index>& from) {
   std::vector<Index> renamed(loaded.mesh.positions.size(), -1), kept;
   for (Triangle& t : loaded.mesh.topology.triangles)
@@ -87,18 +86,18 @@ std::size_t drop_doubles(LoadedMesh& loaded) {
   return static_cast<std::size_t>(std::ranges::count(kept, 0));
 }
 
-/// Two triangles that are joined at an edge.
+/// Two triangles joined at an edge.
 struct Joint {
-  Index low, high;  // its ends
+  Index low, high;  // ends of the edge
   std::size_t t, u;
 
-  bool faces_alike(const std::vector<Triangle>& triangles) const {
+  bool faces_same_way(const std::vector<Triangle>& triangles) const {
     const auto forward = [&](const Triangle& in) { return in[(corner_of(in, low) + 1) % 3] == high; };
     return forward(triangles[t]) != forward(triangles[u]);
   }
 };
 
-/// The pairs that lie flattest at each edge, each triangle in one.
+/// The flattest pairs of triangles at each edge; each triangle is in one pair per edge.
 std::vector<Joint> joints_of(const LoadedMesh& loaded) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const std::vector<Vec3>& x = loaded.mesh.positions;
@@ -131,32 +130,32 @@ std::vector<Joint> joints_of(const LoadedMesh& loaded) {
   return joints;
 }
 
-/// Turns the triangles of what hangs together to face as most of its area does.
-std::size_t face_alike(LoadedMesh& loaded, const std::vector<Joint>& joints) {
+/// Orients the triangles of each connected piece as most of its area faces. Returns the number of flipped triangles.
+std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   std::vector<std::vector<std::pair<std::size_t, bool>>> next(triangles.size());  // and whether it faces alike
   for (const Joint& joint : joints) {
-    const bool alike = joint.faces_alike(triangles);
-    next[joint.t].emplace_back(joint.u, alike);
-    next[joint.u].emplace_back(joint.t, alike);
+    const bool same_way = joint.faces_same_way(triangles);
+    next[joint.t].emplace_back(joint.u, same_way);
+    next[joint.u].emplace_back(joint.t, same_way);
   }
   std::size_t turned = 0;
-  std::vector<int> sense(triangles.size(), 0);
+  std::vector<int> orientation(triangles.size(), 0);
   for (std::size_t first = 0; first < triangles.size(); ++first) {
-    if (sense[first] != 0) continue;
+    if (orientation[first] != 0) continue;
     std::vector<std::size_t> piece{first};
-    sense[first] = 1;
+    orientation[first] = 1;
     double balance = 0;
     for (std::size_t i = 0; i < piece.size(); ++i) {
-      balance += sense[piece[i]] * area(loaded, piece[i]);
-      for (const auto& [other, alike] : next[piece[i]])
-        if (sense[other] == 0) {
-          sense[other] = alike ? sense[piece[i]] : -sense[piece[i]];
+      balance += orientation[piece[i]] * area(loaded, piece[i]);
+      for (const auto& [other, same_way] : next[piece[i]])
+        if (orientation[other] == 0) {
+          orientation[other] = same_way ? orientation[piece[i]] : -orientation[piece[i]];
           piece.push_back(other);
         }
     }
     for (const std::size_t t : piece) {
-      if (sense[t] * balance >= 0) continue;
+      if (orientation[t] * balance >= 0) continue;
       std::swap(triangles[t][1], triangles[t][2]);
       if (!loaded.uv.empty()) std::swap(loaded.uv[t][1], loaded.uv[t][2]);
       ++turned;
@@ -165,7 +164,7 @@ std::size_t face_alike(LoadedMesh& loaded, const std::vector<Joint>& joints) {
   return turned;
 }
 
-/// Gives what is not joined vertices of its own at the edges that are not those of two triangles, and moves these away.
+/// Detaches unjoined triangles: gives them their own vertices at edges that are not manifold, and moves these away.
 void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, Mended& mended) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
@@ -186,9 +185,9 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, Mended& mended) {
       corners.join(first[at(v)], corner(t, v));
     }
   for (const Joint& joint : joints)
-    if (joint.faces_alike(triangles))
+    if (joint.faces_same_way(triangles))
       for (const Index v : {joint.low, joint.high}) corners.join(corner(joint.t, v), corner(joint.u, v));
-  // Each set of corners is a vertex, and what hangs together by them a piece.
+  // Each set of joined corners becomes a vertex; vertices connected by triangles form a piece.
   std::vector<Index> from(3 * triangles.size());
   std::vector<Vec3> positions(from.size());
   std::vector<Triangle> cut_triangles(triangles.size());
@@ -205,47 +204,47 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, Mended& mended) {
     areas[piece_of[at(cut_triangles[t][0])]] += area(loaded, t);
     whole += area(loaded, t);
   }
-  // Of the copies of a vertex that of the largest piece stays, of one piece that with the most corners.
-  std::map<Index, std::pair<double, Index>> stays;
-  std::vector<int> named(from.size(), 0);
+  // Of the copies of a vertex, that of the largest piece stays in place; within one piece, that with the most corners.
+  std::map<Index, std::pair<double, Index>> kept_copies;
+  std::vector<int> use_count(from.size(), 0);
   for (const Triangle& t : cut_triangles)
-    for (const Index v : t) ++named[at(v)];
-  std::set<Index> trimmings;
+    for (const Index v : t) ++use_count[at(v)];
+  std::set<Index> small_pieces;
   for (const Triangle& t : cut_triangles)
     for (const Index v : t) {
       if (at_cut[at(from[at(v)])] == 0) continue;
       const double size = areas[piece_of[at(v)]];
-      auto& [largest, copy] = stays.try_emplace(from[at(v)], -1, -1).first->second;
-      if (const double key = size + 1e-9 * whole * named[at(v)]; key > largest) largest = key, copy = v;
-      if (size < kSmallPiece * whole) trimmings.insert(piece_of[at(v)]);
+      auto& [largest, copy] = kept_copies.try_emplace(from[at(v)], -1, -1).first->second;
+      if (const double key = size + 1e-9 * whole * use_count[at(v)]; key > largest) largest = key, copy = v;
+      if (size < kMaxSmallPieceArea * whole) small_pieces.insert(piece_of[at(v)]);
     }
   std::vector<std::uint8_t> kept;
   std::vector<Vec3> toward(from.size(), Vec3::Zero());
   for (const Triangle& t : cut_triangles) {
-    kept.push_back(trimmings.contains(piece_of[at(t[0])]) ? 0 : 1);
+    kept.push_back(small_pieces.contains(piece_of[at(t[0])]) ? 0 : 1);
     const Vec3 middle = (positions[at(t[0])] + positions[at(t[1])] + positions[at(t[2])]) / 3;
-    for (const Index v : t) toward[at(v)] += (middle - positions[at(v)]) / named[at(v)];
+    for (const Index v : t) toward[at(v)] += (middle - positions[at(v)]) / use_count[at(v)];
   }
-  for (const auto& [vertex, largest] : stays)
+  for (const auto& [vertex, largest] : kept_copies)
     for (std::size_t v = 0; v < from.size(); ++v)
-      if (named[v] > 0 && from[v] == vertex && static_cast<Index>(v) != largest.second)
-        positions[v] += kBefore * toward[v];
-  for (const Index piece : trimmings) mended.left_out += areas[piece] / whole;
-  mended.pieces = trimmings.size();
+      if (use_count[v] > 0 && from[v] == vertex && static_cast<Index>(v) != largest.second)
+        positions[v] += kCutGap * toward[v];
+  for (const Index piece : small_pieces) mended.left_out += areas[piece] / whole;
+  mended.pieces = small_pieces.size();
   triangles = std::move(cut_triangles);
   loaded.mesh.positions = std::move(positions);
   keep_triangles(loaded, kept);
   keep_vertices(loaded, from);
 }
 
-/// Leaves out what still is a third triangle at an edge: it hangs together with both others around a corner.
-void drop_thirds(LoadedMesh& loaded, Mended& mended) {
+/// Removes remaining third triangles at edges, which are connected to both others around a corner.
+void drop_third_triangles(LoadedMesh& loaded, Mended& mended) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   double whole = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) whole += area(loaded, t);
   std::map<std::array<Index, 2>, std::vector<std::size_t>> joined;
   for (const Joint& joint : joints_of(loaded))
-    if (auto& pair = joined[{joint.low, joint.high}]; pair.empty() && joint.faces_alike(triangles))
+    if (auto& pair = joined[{joint.low, joint.high}]; pair.empty() && joint.faces_same_way(triangles))
       pair = {joint.t, joint.u};
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
   std::set<std::array<Index, 2>> wrong(report.non_manifold.begin(), report.non_manifold.end());
@@ -262,10 +261,10 @@ void drop_thirds(LoadedMesh& loaded, Mended& mended) {
   keep_triangles(loaded, kept);
 }
 
-/// Collapses short edges of flat triangles one by one.
-class Collapsing {
+/// Collapses short edges of flat triangles one by one, and flips others.
+class EdgeCollapser {
  public:
-  Collapsing(LoadedMesh& loaded, double flattest)
+  EdgeCollapser(LoadedMesh& loaded, double flattest)
       : loaded_(loaded), triangles_(loaded.mesh.topology.triangles), around_(loaded.mesh.positions.size()) {
     double longest = 0;
     for (std::size_t t = 0; t < triangles_.size(); ++t)
@@ -273,7 +272,7 @@ class Collapsing {
         around_[at(triangles_[t][k])].push_back(t);
         longest = std::max(longest, length(t, k));
       }
-    least_ = flattest * longest;
+    min_height_ = flattest * longest;
     for (const auto& [a, b] : mesh::inspect(triangles_, around_.size()).border) on_border_.insert({a, b});
   }
 
@@ -287,9 +286,9 @@ class Collapsing {
         if (length(t, k) < length(t, shortest)) shortest = k;
         longest = std::max(longest, length(t, k));
       }
-      if (kept[t] == 0 || 2 * area(loaded_, t) >= least_ * longest) continue;
+      if (kept[t] == 0 || 2 * area(loaded_, t) >= min_height_ * longest) continue;
       const Index a = triangles_[t][shortest], b = triangles_[t][(shortest + 1) % 3];
-      const bool is_short = length(t, shortest) <= kShort * least_;
+      const bool is_short = length(t, shortest) <= kMaxCollapseRatio * min_height_;
       if ((is_short && (collapse(a, b, kept) || collapse(b, a, kept))) || flip(t)) ++collapsed;
     }
     if (collapsed == 0) return 0;
@@ -305,7 +304,7 @@ class Collapsing {
     return (loaded_.mesh.positions[at(triangles_[t][(k + 1) % 3])] - loaded_.mesh.positions[at(triangles_[t][k])])
         .norm();
   }
-  bool borders(Index v) const {
+  bool is_on_border(Index v) const {
     return std::ranges::any_of(around_[at(v)], [&](std::size_t t) {
       return std::ranges::any_of(triangles_[t], [&](Index w) { return on_border_.contains(std::minmax(v, w)); });
     });
@@ -317,20 +316,20 @@ class Collapsing {
     return all;
   }
 
-  /// Vertex b goes to a, with the triangles between them; false where that would change the border, join what is
-  /// apart, or leave a triangle without its UVs.
+  /// Merges vertex b into a and removes the triangles between them. Returns false if this would change the border, join
+  /// separate parts, or leave a triangle without its UVs.
   bool collapse(Index a, Index b, std::vector<std::uint8_t>& kept) {
     const bool border_edge = on_border_.contains(std::minmax(a, b));
-    if (borders(b) && !border_edge) return false;
+    if (is_on_border(b) && !border_edge) return false;
     std::vector<std::size_t> between, moved;
     for (const std::size_t t : around_[at(b)])
       (std::ranges::find(triangles_[t], a) != triangles_[t].end() ? between : moved).push_back(t);
     const std::set<Index> of_a = neighbours(a), of_b = neighbours(b);
     const auto common = std::ranges::count_if(of_a, [&](Index v) { return of_b.contains(v); });
     if (between.size() != (border_edge ? 1U : 2U) || static_cast<std::size_t>(common) != between.size()) return false;
-    std::vector<Vec2> uv;  // of the corners that go
+    std::vector<Vec2> uv;  // of the corners at b
     for (const std::size_t t : moved) {
-      if (flips(t, b, a)) return false;
+      if (would_flip(t, b, a)) return false;
       if (loaded_.uv.empty()) continue;
       const Vec2& here = loaded_.uv[t][corner_of(triangles_[t], b)];
       const auto same = std::ranges::find_if(
@@ -355,8 +354,7 @@ class Collapsing {
     return true;
   }
 
-  /// Puts the longest edge of a flat triangle from its other corner to that of the triangle beyond, where UVs go on
-  /// across it and both become higher.
+  /// Flips the longest edge of a flat triangle, if the UVs are continuous across it and both triangles become higher.
   bool flip(std::size_t t) {
     std::size_t k = 0;
     for (std::size_t i = 1; i < 3; ++i)
@@ -395,8 +393,8 @@ class Collapsing {
     return ab.cross(bc).norm() / std::max({ab.norm(), bc.norm(), ca.norm()});
   }
 
-  /// Whether a triangle would face elsewhere, or be as flat as what is collapsed, with vertex b at a.
-  bool flips(std::size_t t, Index b, Index a) const {
+  /// Whether a triangle would reverse its orientation or lose its area if vertex b moved to a.
+  bool would_flip(std::size_t t, Index b, Index a) const {
     const std::vector<Vec3>& x = loaded_.mesh.positions;
     Triangle after = triangles_[t];
     after[corner_of(after, b)] = a;
@@ -409,24 +407,24 @@ class Collapsing {
 
   LoadedMesh& loaded_;
   std::vector<Triangle>& triangles_;
-  std::vector<std::vector<std::size_t>> around_;  // triangles of each vertex
+  std::vector<std::vector<std::size_t>> around_;  // triangles around each vertex
   std::set<std::pair<Index, Index>> on_border_;
-  double least_ = 0;  // height [m]
+  double min_height_ = 0;  // minimum height [m]
 };
 
 }  // namespace
 
 std::string Mended::describe() const {
   std::string text;
-  const auto say = [&](std::size_t count, const std::string& what) {
+  const auto append = [&](std::size_t count, const std::string& what) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
   };
-  say(doubled, "triangles on others left out");
-  say(turned, "triangles turned to face as those around them");
-  say(cut, "edges of more than two triangles, or that face both ways, cut open");
+  append(doubled, "triangles on others left out");
+  append(turned, "triangles turned to face as those around them");
+  append(cut, "edges of more than two triangles, or that face both ways, cut open");
   if (pieces > 0)
     text += fmt::format(" and {} small pieces there left out, {:.2g} % of the area", pieces, 100 * left_out);
-  say(collapsed, "edges of flat triangles collapsed or turned");
+  append(collapsed, "edges of flat triangles collapsed or turned");
   return text;
 }
 
@@ -435,16 +433,16 @@ Mended mend_sheet(LoadedMesh& loaded, double flattest) {
   if (!mesh::inspect(loaded.mesh.topology.triangles, loaded.mesh.positions.size()).manifold()) {
     mended.doubled = drop_doubles(loaded);
     const std::vector<Joint> joints = joints_of(loaded);
-    mended.turned = face_alike(loaded, joints);
+    mended.turned = orient_pieces(loaded, joints);
     cut(loaded, joints, mended);
-    drop_thirds(loaded, mended);
+    drop_third_triangles(loaded, mended);
     std::vector<Index> from(loaded.mesh.positions.size());
     std::iota(from.begin(), from.end(), 0);
     keep_vertices(loaded, from);
   }
-  // What is collapsed or turned may leave other flat triangles.
-  for (int round = 0; round < kRounds; ++round) {
-    const std::size_t collapsed = Collapsing(loaded, kAbove * flattest).run();
+  // Collapsing and flipping may leave other flat triangles.
+  for (int round = 0; round < kMaxCollapseRounds; ++round) {
+    const std::size_t collapsed = EdgeCollapser(loaded, kHeightMargin * flattest).run();
     mended.collapsed += collapsed;
     if (collapsed == 0) break;
   }

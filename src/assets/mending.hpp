@@ -1,4 +1,4 @@
-// Surfaces of other programs made into sheets of cloth: triangles that face the same way, edges of at most two of them.
+// Repairs surfaces for use as sheets of cloth: consistent orientation, and at most two triangles per edge.
 #pragma once
 
 #include <cstddef>
@@ -8,25 +8,25 @@
 
 namespace weft::assets {
 
-/// What mend_sheet() did.
+/// Report of mend_sheet().
 struct Mended {
-  std::size_t doubled = 0;    ///< triangles on others with the same corners, taken out
-  std::size_t turned = 0;     ///< turned to face as most around them
-  std::size_t cut = 0;        ///< edges at which a third triangle, or one that cannot face likewise, was cut off
-  std::size_t pieces = 0;     ///< that came off with them and were left out, being small
-  double left_out = 0;        ///< their share of the area
-  std::size_t collapsed = 0;  ///< edges that were collapsed or turned, of triangles too flat for the longest
+  std::size_t doubled = 0;    ///< removed triangles with the same corners as others
+  std::size_t turned = 0;     ///< triangles flipped to match those around them
+  std::size_t cut = 0;        ///< edges at which a third triangle, or one that cannot be oriented, was detached
+  std::size_t pieces = 0;     ///< detached pieces that were left out because they are small
+  double left_out = 0;        ///< their fraction of the area
+  std::size_t collapsed = 0;  ///< edges of needle triangles that were collapsed or flipped
 
   bool any() const { return doubled + turned + cut + collapsed > 0; }
   /// "12 triangles turned to face as those around them, 3 edges of more than two triangles cut open".
   std::string describe() const;
 };
 
-/// Makes the surface a sheet. Of triangles with the same corners one stays, as where surfaces are drawn from both
-/// sides. What hangs together faces as most of its area does. Where more than two triangles share an edge the two that
-/// lie flattest stay joined; what comes off as a small piece is left out, and other pieces end a little before the
-/// edge. Edges of triangles that are flatter than a share `flattest` of the longest edge are collapsed if they are
-/// short, and turned else, where that keeps the sheet and its UVs. UVs, colours and groups go along.
+/// Repairs the surface. Of triangles with the same corners, as in surfaces modelled with two sides, one is kept. Each
+/// connected piece faces as most of its area does. If more than two triangles share an edge, the two that lie flattest
+/// stay joined; a detached small piece is left out, other detached pieces end slightly before the edge. Triangles
+/// flatter than `flattest`, relative to the longest edge of the mesh, lose an edge by collapsing (if it is short) or
+/// flipping, if this keeps the sheet and its UVs. UVs, colours and groups are updated.
 Mended mend_sheet(LoadedMesh& loaded, double flattest);
 
 }  // namespace weft::assets

@@ -20,7 +20,7 @@
 namespace weft::assets {
 namespace {
 
-/// For each vertex the first one at exactly the same place.
+/// For each vertex, the first one at exactly the same position.
 std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   const auto key = [&](Index i) {
     const Vec3& x = positions[i];
@@ -30,7 +30,7 @@ std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::pair(key(a), a) < std::pair(key(b), b); });
   std::vector<Index> first(positions.size());
-  Index start = -1;  // of the run of equal positions
+  Index start = -1;  // first vertex of the current run of equal positions
   for (const Index i : order) {
     if (start < 0 || key(i) != key(start)) start = i;
     first[i] = start;
@@ -38,9 +38,8 @@ std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   return first;
 }
 
-/// Joins vertices at exactly the same place (0 and -0 are one) and drops those that no face names. Vertices come in the
-/// order in which faces first name them. Counts copies joined to others. Returns for each vertex which it is then, or
-/// −1.
+/// Merges vertices at exactly the same position (0 and -0 are equal) and drops unused ones. Vertices are ordered by
+/// their first use in faces. `joined` counts merged copies. Returns the new index of each vertex, or −1.
 std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   const std::vector<Index> first = first_at_same_place(soup.positions);
   std::vector<Index> renamed(first.size(), -1);
@@ -63,8 +62,8 @@ std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   return renamed;
 }
 
-/// What the file says of vertices beside their places; `renamed`: which of the result each is.
-void take_vertices(const Soup& soup, const std::vector<Index>& renamed, LoadedMesh& result) {
+/// Copies colours and groups of vertices; `renamed`: new index of each vertex.
+void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, LoadedMesh& result) {
   const std::size_t count = result.mesh.positions.size();
   for (std::size_t v = 0; v < renamed.size(); ++v) {
     if (renamed[v] < 0 || !soup.colors[v].allFinite()) continue;
@@ -82,8 +81,8 @@ void take_vertices(const Soup& soup, const std::vector<Index>& renamed, LoadedMe
   }
 }
 
-/// UVs of the triangles that make_topology() makes, also after vertices have been joined: equal places give the same.
-std::vector<std::array<Vec2, 3>> corners_of(const Soup& soup) {
+/// UVs of the triangles of make_topology(). Merging of vertices does not change these triangles.
+std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   std::vector<std::array<Vec2, 3>> corners;
   if (std::ranges::none_of(soup.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;
   std::size_t removed = 0;
@@ -92,39 +91,39 @@ std::vector<std::array<Vec2, 3>> corners_of(const Soup& soup) {
   return corners;
 }
 
-/// A vertex of a border, and how near others are to it that are taken for the same [m].
+/// A border vertex, and the distance within which others are welded to it [m].
 struct BorderVertex {
   Index vertex;
-  double reach;
+  double weld_distance;
 };
 
-std::vector<BorderVertex> border_of(const mesh::Mesh& mesh, double share) {
+std::vector<BorderVertex> border_of(const mesh::Mesh& mesh, double ratio) {
   std::vector<double> shortest(mesh.positions.size(), std::numeric_limits<double>::infinity());
   for (const auto& [a, b] : mesh::inspect(mesh.topology.triangles, mesh.positions.size()).border)
     for (const Index v : {a, b})
       shortest[at(v)] = std::min(shortest[at(v)], (mesh.positions[at(a)] - mesh.positions[at(b)]).norm());
   std::vector<BorderVertex> border;
   for (std::size_t v = 0; v < shortest.size(); ++v)
-    if (std::isfinite(shortest[v])) border.push_back({static_cast<Index>(v), share * shortest[v]});
+    if (std::isfinite(shortest[v])) border.push_back({static_cast<Index>(v), ratio * shortest[v]});
   return border;
 }
 
 }  // namespace
 
-Welded weld_borders(LoadedMesh& loaded, double share) {
+Welded weld_borders(LoadedMesh& loaded, double ratio) {
   const std::vector<Vec3>& x = loaded.mesh.positions;
-  std::vector<BorderVertex> border = border_of(loaded.mesh, share);
-  // Along x, so that only neighbours in this order are compared.
+  std::vector<BorderVertex> border = border_of(loaded.mesh, ratio);
+  // Sort along x, so that only neighbours in this order are compared.
   std::ranges::stable_sort(border, {}, [&](const BorderVertex& b) { return x[at(b.vertex)].x(); });
   DisjointSets sets(x.size());
   Welded welded;
   for (std::size_t i = 0; i < border.size(); ++i)
     for (std::size_t j = i + 1; j < border.size(); ++j) {
-      const Vec3 apart = x[at(border[j].vertex)] - x[at(border[i].vertex)];
-      if (apart.x() > border[i].reach) break;
-      if (apart.norm() > std::min(border[i].reach, border[j].reach)) continue;
+      const Vec3 offset = x[at(border[j].vertex)] - x[at(border[i].vertex)];
+      if (offset.x() > border[i].weld_distance) break;
+      if (offset.norm() > std::min(border[i].weld_distance, border[j].weld_distance)) continue;
       sets.join(border[i].vertex, border[j].vertex);
-      welded.widest = std::max(welded.widest, apart.norm());
+      welded.widest = std::max(welded.widest, offset.norm());
     }
   std::vector<Index> renamed(x.size());
   LoadedMesh result = loaded;
@@ -175,14 +174,14 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   if (up != scene::FileUp::as_file) turn = turn_up(static_cast<int>(up) - 1, axes.scene_up);
   for (Vec3& x : soup.positions) {
     x = axes.scale * (turn * x);
-    // Squares of lengths and their products must stay finite too.
+    // Products of squared lengths must stay finite too.
     if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
       source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(),
                               x.z()));
   }
 
   LoadedMesh result;
-  result.uv = corners_of(soup);
+  result.uv = uv_of_corners(soup);
   const std::vector<Index> renamed = join_vertices(soup, result.joined_vertices);
   result.mesh.topology = make_topology(soup, result.removed_triangles);
   if (result.mesh.topology.triangles.empty()) source.fail("expected faces with an area, got none");
@@ -191,7 +190,7 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   for (const mesh::Triangle& t : result.mesh.topology.triangles)
     for (const Index v : t) used[at(v)] = 1;
   result.lost_vertices = static_cast<std::size_t>(std::ranges::count(used, 0));
-  take_vertices(soup, renamed, result);
+  copy_vertex_data(soup, renamed, result);
   return result;
 }
 

@@ -1,4 +1,4 @@
-// Static meshes from files, through assimp.
+// Reads static meshes from files, through assimp.
 #pragma once
 
 #include <array>
@@ -14,47 +14,47 @@
 
 namespace weft::assets {
 
-/// A mesh and what was done to it.
+/// A mesh, and the clean-up that was applied.
 struct LoadedMesh {
-  mesh::Mesh mesh;  ///< metres; no uv. Quads stay quads if the file holds nothing else
-  /// Of the corners of each triangle, as the file has it, v upward: islands of one vertex differ. NaN where a part of
-  /// the file has none; empty where all have none.
+  mesh::Mesh mesh;  ///< in metres, without uv. Quads are kept if the file contains nothing else
+  /// Texture coordinates of the corners of each triangle, v upward; they may differ between islands at one vertex. NaN
+  /// for parts without them; empty if no part has any.
   std::vector<std::array<Vec2, 3>> uv;
-  std::vector<Vec3> colors;  ///< per vertex, each channel from 0 to 1; empty where no part of the file has any
-  /// Weight from 0 to 1 of each vertex in the groups of the file, or its bones. Of vertices that became one these and
-  /// the channels of colours are the largest.
+  std::vector<Vec3> colors;  ///< per vertex, each channel from 0 to 1; empty if no part of the file has any
+  /// Weight (0 to 1) of each vertex in each vertex group or bone of the file. Merged vertices keep the largest weight
+  /// and the largest value of each colour channel.
   std::map<std::string, std::vector<double>> groups;
-  std::size_t removed_triangles = 0;  ///< without area: a corner named twice, or all corners on a line
-  std::size_t lost_vertices = 0;      ///< that only such triangles have
-  std::size_t joined_vertices = 0;    ///< copies at the same place, as made by seams of texture or normals
+  std::size_t removed_triangles = 0;  ///< without area: a repeated corner, or all corners on a line
+  std::size_t lost_vertices = 0;      ///< used only by removed triangles
+  std::size_t joined_vertices = 0;    ///< copies at the same position, as created by seams of textures or normals
 };
 
-/// How lengths and axes of a mesh file are meant. It is turned where the file says which axis points up (glTF, FBX,
-/// Collada), or the scene does; other files have the axes of the scene.
+/// Interpretation of the lengths and axes of a mesh file. The mesh is rotated upright if the file (glTF, FBX, Collada)
+/// or the scene states the up axis; other files use the axes of the scene.
 struct MeshAxes {
   double scale = 1;  ///< factor on all lengths
   scene::FileUp up = scene::FileUp::as_file;
   scene::UpAxis scene_up = scene::UpAxis::z;
-  scene::FileUp unsaid = scene::FileUp::as_file;  ///< of files that do not say it; as_file: that of the scene
+  scene::FileUp unsaid = scene::FileUp::as_file;  ///< up axis of files that do not state it; as_file: that of the scene
 };
 
-/// Reads every surface of the file, or those named `object` (OBJ, PLY, STL, glTF and what else assimp knows), all
-/// meshes merged with the transforms of their nodes, in the bind pose where the file is animated. Positions are in
-/// metres where the file says its unit (FBX, Collada). Points and lines are ignored; equal
-/// positions become one vertex, so that a closed body is watertight. `where` names what refers to the file, such as
-/// "scenes/a.toml:12:8: obstacle.chair". Throws Error(asset_unreadable) with `where`, the file and assimp's own words.
+/// Reads all surfaces of a file, or those named `object` (OBJ, PLY, STL, glTF and other formats of assimp), merged with
+/// the transforms of their nodes, in the bind pose if the file is animated. Positions are in metres if the file states
+/// its unit (FBX, Collada). Ignores points and lines. Merges equal positions, so that a closed body is watertight.
+/// `where` names the scene entry, such as "scenes/a.toml:12:8: obstacle.chair". Throws Error(asset_unreadable) with
+/// `where`, the file and assimp's own message.
 LoadedMesh load_mesh(const std::filesystem::path& file, const MeshAxes& axes, const std::string& where,
                      const std::string& object = {});
 
-/// What weld_borders() did.
+/// Report of weld_borders().
 struct Welded {
-  std::size_t vertices = 0;  ///< that became one with others
-  double widest = 0;         ///< distance between two of them [m]
+  std::size_t vertices = 0;  ///< number of merged vertices
+  double widest = 0;         ///< largest distance between merged vertices [m]
 };
 
-/// Joins vertices of borders that nearly meet, as the sides of seams do in files that keep their panels apart: those
-/// nearer to each other than a `share` of the shortest edge of the border at either, in their middle. Where that would
-/// leave an edge of three triangles, or of two that face both ways, nothing is done.
-Welded weld_borders(LoadedMesh& loaded, double share);
+/// Welds nearly coincident border vertices, as in files that keep panels separate at seams: those nearer to each other
+/// than `ratio` times the shortest border edge at either vertex, at their mean. Does nothing where this would create an
+/// edge of three triangles, or of two that face opposite ways.
+Welded weld_borders(LoadedMesh& loaded, double ratio);
 
 }  // namespace weft::assets

@@ -15,10 +15,10 @@
 namespace weft::assets {
 namespace {
 
-/// Positions of all files together: many times what cloth can collide with in use [bytes].
+/// Maximum size of the positions of all files [bytes]: far more than is practical.
 constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 
-/// The vertex numbers of the faces of an OBJ file. Assimp gives every corner a vertex of its own, which says nothing.
+/// The vertex indices of the faces of an OBJ file, since assimp splits all corners. Empty for other files.
 std::string face_numbers(const std::filesystem::path& file) {
   std::string numbers;
   if (file.extension() != ".obj" && file.extension() != ".OBJ") return numbers;
@@ -47,11 +47,11 @@ void check_same_faces(const Source& source, const std::filesystem::path& first_f
     source.fail("expected faces over the same vertices as in the first file of the sequence, got others");
 }
 
-/// Splits groups of vertices that are together so far where a file has them at different places.
+/// Splits groups of coincident vertices if a file has them at different positions.
 void split_groups(const std::vector<Vec3>& positions, std::vector<Index>& groups) {
   std::map<std::pair<Index, std::array<double, 3>>, Index> known;
   for (std::size_t v = 0; v < groups.size(); ++v) {
-    const Vec3 x = positions[v] + Vec3::Zero();  // 0 and -0 are one
+    const Vec3 x = positions[v] + Vec3::Zero();  // 0 and -0 are equal
     groups[v] = known.emplace(std::pair(groups[v], std::array{x.x(), x.y(), x.z()}), static_cast<Index>(known.size()))
                     .first->second;
   }
@@ -95,7 +95,7 @@ LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const
     loaded.positions.push_back(std::move(soup.positions));
   }
 
-  // Groups become vertices, in the order in which faces first name them.
+  // Groups become vertices, in the order of their first use in faces.
   std::vector<Index> renamed(groups.size(), -1);
   std::vector<std::size_t> kept;
   const auto rename = [&](Index& v) {

@@ -1,4 +1,4 @@
-// Key frames as mesh files.
+// Reads key frames from mesh files.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +13,11 @@ namespace weft::assets {
 
 struct LoadedSequence {
   mesh::Mesh mesh;                           ///< of the first file
-  std::vector<std::vector<Vec3>> positions;  ///< of each file, in metres and the axes of the scene
+  std::vector<std::vector<Vec3>> positions;  ///< per file, in metres and the axes of the scene
 };
 
-/// Reads files that hold the same faces over vertices in the same order. Vertices at the same place in all of them
-/// become one. Throws Error(asset_unreadable) with `where` and the file that differs from the first or cannot be used.
+/// Reads files with the same faces and the same order of vertices. Vertices that coincide in all of them are merged.
+/// Throws Error(asset_unreadable) with `where` and the file that differs from the first or cannot be used.
 LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const FileAxes& axes,
                              const std::string& where);
 

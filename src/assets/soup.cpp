@@ -25,16 +25,16 @@ namespace {
 
 using Transform = Eigen::Matrix4d;
 
-/// Faces flatter than this (area by longest side squared) count as having no area: their normal is rounding noise of
-/// the single precision that assimp reads with.
-constexpr double kFlatFace = 1e-7;
+/// Faces flatter than this (area / longest side squared) count as having no area: their normal is rounding noise of
+/// assimp's single precision.
+constexpr double kMinFaceArea = 1e-7;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool has_area(const mesh::Triangle& t, const std::vector<Vec3>& x) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return x[t[k]]; };
   const double longest_sq = std::max({(corner(1) - corner(0)).squaredNorm(), (corner(2) - corner(1)).squaredNorm(),
                                       (corner(0) - corner(2)).squaredNorm()});
-  return mesh::area_vector(t, x).norm() > kFlatFace * longest_sq;
+  return mesh::area_vector(t, x).norm() > kMinFaceArea * longest_sq;
 }
 
 Transform to_eigen(const aiMatrix4x4& m) {
@@ -44,7 +44,7 @@ Transform to_eigen(const aiMatrix4x4& m) {
   return result;
 }
 
-/// Bones of meshes are groups of vertices; those of one name are one.
+/// Appends the bones of a mesh as vertex groups; groups of the same name are merged.
 void append_groups(Soup& soup, const aiMesh& part, std::size_t base) {
   for (const aiBone* bone : std::span(part.mBones, part.mNumBones)) {
     const auto known = std::ranges::find(soup.group_names, bone->mName.C_Str());
@@ -56,7 +56,7 @@ void append_groups(Soup& soup, const aiMesh& part, std::size_t base) {
   }
 }
 
-/// Appends one mesh under a node's transform.
+/// Appends one mesh with the transform of its node.
 void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
   const std::size_t base = soup.positions.size();
   if (base + part.mNumVertices > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
@@ -72,7 +72,7 @@ void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
       soup.colors.back() = {part.mColors[0][v].r, part.mColors[0][v].g, part.mColors[0][v].b};
   }
   append_groups(soup, part, base);
-  // A mirroring transform turns faces inside out; reverse them to keep their outside.
+  // A mirroring transform reverses faces; reverse them again to keep their outside.
   const bool mirrored = to_world.topLeftCorner<3, 3>().determinant() < 0;
   std::vector<Index> corners;
   for (const aiFace& face : std::span(part.mFaces, part.mNumFaces)) {
@@ -94,7 +94,7 @@ using PlacedNode = std::pair<const aiNode*, Transform>;
 
 std::vector<PlacedNode> placed_nodes(const aiNode& root) {
   std::vector<PlacedNode> nodes;
-  // The walk keeps its own stack: files can nest nodes deeper than ours is.
+  // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
   std::vector<PlacedNode> stack{{&root, to_eigen(root.mTransformation)}};
   while (!stack.empty()) {
     const auto [node, to_world] = stack.back();
@@ -109,10 +109,10 @@ std::vector<PlacedNode> placed_nodes(const aiNode& root) {
   return nodes;
 }
 
-/// Where a mesh is: at its node, or, of one with bones, where the bone that holds most of it has it at rest, as
-/// characters are read (character_reader.cpp). glTF shows skinned meshes there, whichever node names them.
-Transform placing_of(const aiMesh& part, const Transform& of_node,
-                     const std::unordered_map<std::string, Transform>& placed) {
+/// Placement of a mesh: its node or, with bones, the rest position given by its most important bone, as for characters
+/// (character_reader.cpp). glTF shows skinned meshes there, whichever node refers to them.
+Transform placement_of(const aiMesh& part, const Transform& of_node,
+                       const std::unordered_map<std::string, Transform>& placed) {
   Transform placing = of_node;
   double most = 0;
   for (const aiBone* bone : std::span(part.mBones, part.mNumBones)) {
@@ -122,8 +122,9 @@ Transform placing_of(const aiMesh& part, const Transform& of_node,
     if (!(total > most) || found == placed.end()) continue;
     const Transform held = found->second * to_eigen(bone->mOffsetMatrix);
     const double size = held.topLeftCorner<3, 3>().norm();
-    constexpr double kLeastVolume = 1e-9;  // of that of a map that keeps shapes: flatter ones place nothing
-    if (!held.allFinite() || !(std::abs(held.topLeftCorner<3, 3>().determinant()) > kLeastVolume * size * size * size))
+    constexpr double kMinVolumeRatio = 1e-9;  // relative to a map that keeps volume; flatter maps are ignored
+    if (!held.allFinite() ||
+        !(std::abs(held.topLeftCorner<3, 3>().determinant()) > kMinVolumeRatio * size * size * size))
       continue;
     most = total, placing = held;
   }
@@ -165,14 +166,14 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   Soup soup;
   std::set<std::string> names;
   const std::vector<PlacedNode> nodes = placed_nodes(*scene->mRootNode);
-  std::unordered_map<std::string, Transform> placed;  // by name: the first of each counts
+  std::unordered_map<std::string, Transform> placed;  // by name; the first of each counts
   for (const auto& [node, to_world] : nodes) placed.emplace(node->mName.C_Str(), to_world);
   for (const auto& [node, to_world] : nodes)
     for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) {
       const aiMesh& part = *scene->mMeshes[m];
       names.insert({node->mName.C_Str(), part.mName.C_Str()});
       if (object.empty() || object == node->mName.C_Str() || object == part.mName.C_Str())
-        append_mesh(soup, part, placing_of(part, to_world, placed));
+        append_mesh(soup, part, placement_of(part, to_world, placed));
     }
   if (!object.empty() && soup.positions.empty()) {
     names.erase("");
@@ -205,7 +206,7 @@ std::string to_bytes(const Soup& soup) {
   put(bytes, soup.uv);
   put(bytes, soup.colors);
   put(bytes, soup.weights);
-  std::vector<char> names;  // each ends with a zero
+  std::vector<char> names;  // each with a terminating zero
   for (const std::string& name : soup.group_names)
     names.insert(names.end(), name.c_str(), name.c_str() + name.size() + 1);
   put(bytes, names);

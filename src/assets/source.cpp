@@ -12,25 +12,24 @@
 namespace weft::assets {
 namespace {
 
-constexpr std::uint64_t kMostAddresses = std::uint64_t{16} << 30;  // that reading may ask for [bytes]
+constexpr std::uint64_t kMaxAddressSpace = std::uint64_t{16} << 30;  // address space limit for reading [bytes]
 
-/// A PLY header without end keeps assimp 5.2 busy for ever; refusing it here spares the user the wait for the time
-/// limit.
+/// A PLY header without an end blocks assimp 5.2 for ever; refusing it here avoids the wait for the time limit.
 void check_ply_header(const Source& source) {
-  constexpr std::size_t kHeaderBytes = 1 << 16;  // of which real headers take a hundredth
+  constexpr std::size_t kHeaderBytes = 1 << 16;  // a hundred times the size of real headers
   const std::string start = read_start(source.file, kHeaderBytes);
   const bool ply = start.starts_with("ply") || start.starts_with("PLY");
   if (ply && start.find("\nend_header\n") == std::string::npos && start.find("\nend_header\r") == std::string::npos)
     source.fail("expected a line end_header in the first 64 kB of a PLY file, got none");
 }
 
-/// Processor time that reading may take [s]: many times what assimp needs for its slowest text formats (about 10 MB/s),
-/// so that only files which keep it busy for ever are stopped.
+/// CPU time limit for reading [s]: many times what assimp needs for its slowest text formats (about 10 MB/s), so that
+/// only files that block it for ever are stopped.
 unsigned time_limit(std::uintmax_t bytes) {
   return 5 + static_cast<unsigned>(bytes >> 20);
 }
 
-/// What is left of the time of a machine that many share.
+/// Ratio of the wall time limit to the CPU time limit, for machines that many processes share.
 constexpr unsigned kWallFactor = 20;
 
 }  // namespace
@@ -63,7 +62,7 @@ std::string Source::read(const std::function<std::string()>& read) const {
     return run_isolated(read, {.name = "the reader",
                                .cpu_seconds = seconds,
                                .wall_seconds = kWallFactor * seconds,
-                               .addresses = kMostAddresses});
+                               .addresses = kMaxAddressSpace});
   } catch (const std::exception& error) {
     fail(error.what());
   }

@@ -17,32 +17,32 @@ namespace {
 
 using scene::Integrator;
 
-// Fixed steps, times the scene's.
+// Fixed steps, relative to the scene's.
 constexpr double kSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
-// How much finer the steps of the references are than the finest measured: of second order, their error is then below a
-// sixtieth of theirs. With contact it is that of diverging paths rather than that of steps.
-constexpr int kReferenceCut = 8, kReferenceCutWithContact = 2;
-// Tolerances of positions [m], half a decade apart, until steps are shorter than the fixed ones.
+// Ratio of the shortest measured step to the step of the references. Without contact, a second-order reference then has
+// less than a sixtieth of the error. With contact, chaotic divergence dominates the error of steps.
+constexpr int kReferenceStepDivisor = 8, kReferenceStepDivisorWithContact = 2;
+// Values of time.tolerance [m] are half a decade apart, until the steps become shorter than the fixed ones.
 constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
-// newton_tolerance falls by decades from the scene's down to this.
-constexpr double kLeastNewton = 1e-8, kDecade = 0.1;
-// That of the runs with other meshes, in shares of the scene's.
-constexpr double kNewtonOfMeshes = 1e-2;
-// What a tenfold smaller newton_tolerance may change where the step is to decide, in shares of the error.
-constexpr double kDecides = 0.1;
+// newton_tolerance falls by decades from the scene's value down to this minimum.
+constexpr double kMinNewtonTolerance = 1e-8, kDecade = 0.1;
+// newton_tolerance of the runs with other meshes, relative to the scene's.
+constexpr double kMeshNewtonRatio = 1e-2;
+// The step decides if a tenfold smaller newton_tolerance changes the result by at most this fraction of the error.
+constexpr double kMaxSolverChangeRatio = 0.1;
 constexpr double kLinearTolerances[] = {0.3, 0.1, 0.03, 0.01, 0.003};
 constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
-// Starts with contact, each moved by a micrometre more than the one before [m].
-constexpr double kShiftOfStart = 1e-6;
+// With contact, each start is moved by this much more than the one before [m].
+constexpr double kStartShift = 1e-6;
 // Runs shorter than this [s] are timed twice.
 constexpr double kShortRun = 0.3;
-// A run that halves its steps over and over is stopped after so many times the steps it should take, or those of the
-// finest one where these are more. With a tolerance not after more than the reference takes, which is to be finer.
-constexpr int kStepLimit = 3;
+// A run that keeps halving its steps is stopped after this multiple of its expected number of steps, or of that of the
+// finest run if larger. With a tolerance, the limit is at most the number of steps of the reference.
+constexpr int kMaxStepRatio = 3;
 
-// Runs of one setting from one start or several. With contact medians of functionals are compared, else the first
-// trajectories.
+// Runs of one setting from one or several starts. With contact, medians of functionals are compared; otherwise the
+// trajectories of the first start.
 struct Sample {
   bool contact = false;
   std::vector<Trajectory> starts;
@@ -55,7 +55,7 @@ Errors difference(const Sample& a, const Sample& b, const std::vector<std::size_
   return a.contact ? compare(a.middle, b.middle) : compare(a.starts[0], b.starts[0], same);
 }
 
-// Largest error of any start against the middle, without contact against the first start.
+// Largest difference between any start and the median, or without contact the first start.
 Errors spread_of(const Sample& sample) {
   Errors spread{};
   for (const Trajectory& start : sample.starts) {
@@ -66,7 +66,7 @@ Errors spread_of(const Sample& sample) {
   return spread;
 }
 
-// As `measure_accuracy` does it, step by step.
+// State of one call of `measure_accuracy`.
 class Campaign {
  public:
   Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan);
@@ -75,24 +75,26 @@ class Campaign {
  private:
   using SamplePtr = std::shared_ptr<const Sample>;
 
-  scene::Scene with(const Setting& setting) const;
+  scene::Scene scene_with(const Setting& setting) const;
   Setting as_in_scene(Integrator integrator, double step) const {
     return {integrator, step, {}, scene_.solver.newton_tolerance, scene_.solver.linear_tolerance};
   }
-  // Steps no longer than this one that cut a frame evenly, as the simulation takes them.
+  // The longest step not above `step` that divides a frame evenly, as the simulation chooses it.
   double even_step(double step) const {
     return 1 / (scene_.time.fps * std::max(1.0, std::ceil(1 / (scene_.time.fps * step) - 1e-9)));
   }
   int steps_of(double step) const {
     return result_.frames * static_cast<int>(std::lround(1 / (scene_.time.fps * step)));
   }
-  // By how much the error falls at least where the step becomes so many times shorter: with half of the order, as waves
-  // and contact lower it. With all of it a run would seem better known than it is.
+  // Smallest factor by which the error falls if the step becomes `shorter` times as short. It uses half of the order,
+  // as waves and contact lower it; the full order would understate the uncertainty.
   double error_ratio(Integrator integrator, double shorter) const {
     const double order = result_.contact ? 1 : expected_order({.setting = {.integrator = integrator}});
     return std::pow(shorter, 0.5 * order);
   }
-  int reference_cut() const { return result_.contact ? kReferenceCutWithContact : kReferenceCut; }
+  int reference_step_divisor() const {
+    return result_.contact ? kReferenceStepDivisorWithContact : kReferenceStepDivisor;
+  }
   double work_of(const Setting& setting) const;
 
   SamplePtr sample(const Setting& setting) const;
@@ -113,10 +115,10 @@ class Campaign {
   const EachRun& each_;
   const AccuracyPlan& plan_;
   Accuracy result_;
-  std::vector<double> steps_;  // from long to short [s]
+  std::vector<double> steps_;  // descending [s]
   std::vector<Integrator> integrators_;
-  double finest_ = 0, scene_step_ = 0;  // steps [s]
-  Integrator best_, other_;             // that of the reference, and of the one beside it
+  double finest_ = 0, scene_step_ = 0;  // [s]
+  Integrator best_, other_;             // integrators of the two references
   SamplePtr reference_;
   double work_ = 0, work_done_ = 0;  // [steps]
 };
@@ -138,7 +140,7 @@ Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const Accurac
   best_ = result_.contact ? Integrator::bdf2 : Integrator::implicit_midpoint;
   other_ = result_.contact ? Integrator::implicit_euler : Integrator::bdf2;
   integrators_ = plan.integrators.value_or(std::vector<Integrator>(std::begin(kIntegrators), std::end(kIntegrators)));
-  // Frames are cut into equal steps, so that the steps asked for are the steps taken.
+  // Steps that divide a frame evenly are the steps that the simulation takes.
   scene_step_ = even_step(scene.time.step);
   std::set<double, std::greater<>> steps;
   for (const double factor : plan.steps.value_or(std::vector<double>(std::begin(kSteps), std::end(kSteps))))
@@ -149,7 +151,7 @@ Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const Accurac
   result_.of_scene.tolerance = scene.time.tolerance;
 }
 
-scene::Scene Campaign::with(const Setting& setting) const {
+scene::Scene Campaign::scene_with(const Setting& setting) const {
   scene::Scene scene = scene_;
   scene.time.integrator = setting.integrator;
   scene.time.step = setting.step;
@@ -160,8 +162,8 @@ scene::Scene Campaign::with(const Setting& setting) const {
   return scene;
 }
 
-// Steps it is going to take, times how many more particles than the scene's. Steps with a tolerance t go as t^(1/2)
-// with Euler and as t^(1/3) with the others; t = 1e-3 m asks for about the coarsest.
+// Expected number of steps, times the particles relative to the scene's. With a tolerance t, steps scale as t^(1/2) for
+// Euler and t^(1/3) for the others; t = 1e-3 m is assumed to give the longest fixed step.
 double Campaign::work_of(const Setting& setting) const {
   const double root = setting.integrator == Integrator::implicit_euler ? 2 : 3;
   const double step = setting.tolerance
@@ -170,19 +172,19 @@ double Campaign::work_of(const Setting& setting) const {
   return result_.frames / (scene_.time.fps * step) * setting.refinement * setting.refinement;
 }
 
-// Throws where one of its runs does not reach the end.
+// Throws if one of the runs fails.
 Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
   const FollowLimits limits{.steps = setting.tolerance
-                                         ? std::min(kStepLimit, reference_cut()) * steps_of(finest_)
-                                         : kStepLimit * std::max(steps_of(finest_), steps_of(setting.step))};
+                                         ? std::min(kMaxStepRatio, reference_step_divisor()) * steps_of(finest_)
+                                         : kMaxStepRatio * std::max(steps_of(finest_), steps_of(setting.step))};
   auto sample = std::make_shared<Sample>();
   sample->contact = result_.contact;
   std::vector<Functionals> functionals;
-  scene::Scene scene = with(setting);
+  scene::Scene scene = scene_with(setting);
   for (int start = 0; start < result_.starts; ++start) {
     sample->starts.push_back(follow(scene, limits));
     functionals.push_back(sample->starts.back().functionals);
-    for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += kShiftOfStart;
+    for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += kStartShift;
   }
   sample->middle = median(functionals);
   sample->work = sample->starts[0].work;
@@ -193,7 +195,7 @@ Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
   return sample;
 }
 
-// What a setting comes to; nothing where it fails, which the run then says.
+// Measures a setting into `run`. If it fails, returns nullptr and stores the reason in `run`.
 Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std::vector<std::size_t>& same) {
   SamplePtr made;
   try {
@@ -214,7 +216,7 @@ Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std:
   return made;
 }
 
-// A run of a reference; throws where it fails.
+// Runs a setting of a reference; throws if it fails.
 Campaign::SamplePtr Campaign::made(const Setting& setting) {
   Run tried{.setting = setting};
   SamplePtr sample = run(tried, nullptr);
@@ -222,17 +224,16 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
   return sample;
 }
 
-// Makes newton_tolerance of runs with twice the step of a reference tenfold smaller until that changes less than a
-// tenth of what the step of the reference does, or it fails. `coarse` becomes the last of them. Returns the last
-// change.
+// Divides newton_tolerance at twice the step of a reference by ten until that changes less than a tenth of what the
+// step of the reference does, or the run fails. `coarse` becomes the last successful run. Returns the last change.
 Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
   const double order = expected_order({.setting = twice});
   for (Errors change{};;) {
     Run tighter{.setting = twice};
-    tighter.setting.newton_tolerance = std::max(kLeastNewton, kDecade * twice.newton_tolerance);
+    tighter.setting.newton_tolerance = std::max(kMinNewtonTolerance, kDecade * twice.newton_tolerance);
     const SamplePtr sample = run(tighter, coarse);
-    // Not before it was seen what a tenfold smaller one changes.
+    // A failure is accepted only if the effect of a tenfold smaller tolerance is already known.
     if (!sample && at(change, decides) == 0) throw Error(ExitCode::simulation_failed, "{}", tighter.failure);
     if (!sample) return change;
     change = tighter.errors;
@@ -241,12 +242,12 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
     Setting four_times = twice;
     four_times.step *= 2;
     const double step = at(difference(*coarse, *made(four_times)), decides) / std::pow(2, order);
-    const bool exact = at(change, decides) <= std::max(kDecides * step, at(sample->spread, decides));
-    if (exact || twice.newton_tolerance <= kLeastNewton) return change;
+    const bool exact = at(change, decides) <= std::max(kMaxSolverChangeRatio * step, at(sample->spread, decides));
+    if (exact || twice.newton_tolerance <= kMinNewtonTolerance) return change;
   }
 }
 
-// Its tolerance is found at twice its step.
+// newton_tolerance is chosen at twice the step of the reference.
 Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
   try {
     Setting twice = candidate.setting;
@@ -267,19 +268,20 @@ Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
 }
 
 void Campaign::measure_references() {
-  const double step = finest_ / reference_cut();
+  const double step = finest_ / reference_step_divisor();
   Candidate first{as_in_scene(best_, step)}, second{as_in_scene(other_, step)};
   reference_ = measure_candidate(first);
-  SamplePtr beside = measure_candidate(second);
-  if (!reference_ && !beside) throw Error(ExitCode::simulation_failed, "the reference run failed: {}", first.failure);
+  SamplePtr second_sample = measure_candidate(second);
+  if (!reference_ && !second_sample)
+    throw Error(ExitCode::simulation_failed, "the reference run failed: {}", first.failure);
   const Quantity decides = deciding_quantity(result_);
-  if (!reference_ || (beside && at(second.doubt(), decides) < at(first.doubt(), decides))) {
+  if (!reference_ || (second_sample && at(second.doubt(), decides) < at(first.doubt(), decides))) {
     std::swap(first, second);
-    std::swap(reference_, beside);
+    std::swap(reference_, second_sample);
   }
   result_.uncertainty = first.doubt();
-  if (beside) {
-    result_.apart = difference(*reference_, *beside);
+  if (second_sample) {
+    result_.apart = difference(*reference_, *second_sample);
     const Errors explained = second.doubt();
     for (std::size_t q = 0; q < kQuantities; ++q)
       result_.uncertainty[q] = std::max(result_.uncertainty[q], result_.apart[q] - explained[q]);
@@ -291,10 +293,10 @@ void Campaign::measure_references() {
 
 bool Campaign::decides(const Run& run, const Run& tighter) const {
   const Quantity q = deciding_quantity(result_);
-  return run.change <= std::max(kDecides * error_of(tighter, q), result_.doubt(tighter, q));
+  return run.change <= std::max(kMaxSolverChangeRatio * error_of(tighter, q), result_.doubt(tighter, q));
 }
 
-// One step with newton_tolerance from that of the scene down, until the step decides; returns where it does.
+// Lowers newton_tolerance at one step from the scene's until the step decides. Returns that run, or nullptr.
 Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   std::vector<Run> runs;
   std::vector<SamplePtr> samples;
@@ -310,8 +312,8 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
       before.step_decides = decides(before, runs.back());
       if (before.step_decides) break;
     }
-    if (setting.newton_tolerance <= kLeastNewton) break;
-    setting.newton_tolerance = std::max(kLeastNewton, kDecade * setting.newton_tolerance);
+    if (setting.newton_tolerance <= kMinNewtonTolerance) break;
+    setting.newton_tolerance = std::max(kMinNewtonTolerance, kDecade * setting.newton_tolerance);
   }
   const auto tightest = std::find_if(samples.rbegin(), samples.rend(), [](const SamplePtr& s) { return s != nullptr; });
   for (std::size_t k = 0; k < runs.size(); ++k)
@@ -322,7 +324,7 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   return exact;
 }
 
-// All fixed steps. The shortest one checks the reference; the one before it shows how far off it is itself.
+// Measures all fixed steps. The shortest one checks the reference; the one before it gives its own uncertainty.
 void Campaign::measure_steps(Integrator integrator) {
   SamplePtr before, last;
   double step_before = 0, step_last = 0;
@@ -341,7 +343,7 @@ void Campaign::measure_steps(Integrator integrator) {
   result_.cross_checks.push_back(check);
 }
 
-// As planned, or half a decade apart; that of the scene is among them.
+// As planned, or half a decade apart; includes the scene's own tolerance.
 std::vector<double> Campaign::tolerances_of(Integrator integrator) const {
   std::set<double, std::greater<>> tolerances;
   for (int k = 0; !plan_.tolerances && k < (result_.contact ? kTolerancesWithContact : kTolerances); ++k)
@@ -371,7 +373,7 @@ void Campaign::measure_linear() {
   }
 }
 
-// From fine to coarse, each held against the one before; listed from coarse to fine.
+// Runs meshes from fine to coarse, each compared with that of twice the cells; results are listed from coarse to fine.
 void Campaign::measure_meshes() {
   std::map<double, SamplePtr> by_refinement;  // factors are multiples of an eighth, exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
@@ -384,13 +386,13 @@ void Campaign::measure_meshes() {
   for (const double refinement : all) {
     if (!can_refine(scene_, refinement)) continue;
     Run tried{.axis = Axis::mesh, .setting = as_in_scene(result_.reference.setting.integrator, 0.5 * scene_step_)};
-    tried.setting.newton_tolerance = std::max(kLeastNewton, kNewtonOfMeshes * tried.setting.newton_tolerance);
+    tried.setting.newton_tolerance = std::max(kMinNewtonTolerance, kMeshNewtonRatio * tried.setting.newton_tolerance);
     tried.setting.refinement = refinement;
     const auto twice = by_refinement.find(2 * refinement);
     const SamplePtr against = twice == by_refinement.end() ? nullptr : twice->second;
     by_refinement[refinement] =
-        run(tried, against, against ? same_in_twice_as_fine(with(tried.setting)) : std::vector<std::size_t>{});
-    // The finest are there for others alone.
+        run(tried, against, against ? same_in_twice_as_fine(scene_with(tried.setting)) : std::vector<std::size_t>{});
+    // Meshes that serve only as a comparison are not listed.
     const bool extra = plan_.meshes ? !asked.contains(refinement) : refinement == kRefinements[0];
     if (extra && !tried.failed()) continue;
     if (!against && !tried.failed()) tried.failure = "nothing finer to compare with";
@@ -399,12 +401,12 @@ void Campaign::measure_meshes() {
 }
 
 Accuracy Campaign::measure() {
-  // About: three tolerances for each step; references with three runs at twice their step.
+  // Rough estimate: three tolerances for each step, and references with three runs at twice their step.
   constexpr double kRunsOfAStep = 3, kRunsOfAReference = 3;
   for (const double step : steps_)
     work_ += static_cast<double>(integrators_.size()) * kRunsOfAStep * work_of(as_in_scene(best_, step));
   work_ *= 1.5;
-  work_ += 2 * kRunsOfAReference * work_of(as_in_scene(best_, finest_ / reference_cut()));
+  work_ += 2 * kRunsOfAReference * work_of(as_in_scene(best_, finest_ / reference_step_divisor()));
   measure_references();
   for (const Integrator integrator : integrators_) {
     measure_steps(integrator);

@@ -1,4 +1,4 @@
-// What a measurement of error against run time varies.
+// User's choices for a measurement of error against run time.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 namespace weft::bench {
 
-/// Lists that are not given are the program's choice; empty ones leave the axis out.
+/// The program chooses a list that is not given; an empty list omits its axis.
 struct AccuracyPlan {
   std::optional<std::vector<scene::Integrator>> integrators;
-  std::optional<std::vector<double>> steps;       ///< times the scene's time.step
+  std::optional<std::vector<double>> steps;       ///< relative to the scene's time.step
   std::optional<std::vector<double>> tolerances;  ///< time.tolerance [m]
-  std::optional<std::vector<double>> meshes;      ///< cells along each side, times the scene's
-  std::optional<int> starts;                      ///< each moved by a micrometre more; 1, or with contact 3
+  std::optional<std::vector<double>> meshes;      ///< number of cells along each side, relative to the scene
+  std::optional<int> starts;  ///< each start is moved by one micrometre more; default 1, or 3 with contact
 };
-/// Fewest starts of which a median says more than a single run.
+/// Smallest number of starts for which a median is more reliable than a single run.
 inline constexpr int kLeastStartsWithContact = 3;
 
 }  // namespace weft::bench

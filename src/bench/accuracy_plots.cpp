@@ -14,7 +14,7 @@ struct Style {
   const char *name, *color;
 };
 Style style_of(Integrator integrator) {
-  // Told apart in print and with red-green blindness (palette of Okabe and Ito).
+  // Distinguishable in print and with red-green blindness (palette of Okabe and Ito).
   switch (integrator) {
     case Integrator::implicit_euler:
       return {"Euler", "#d55e00"};
@@ -26,7 +26,7 @@ Style style_of(Integrator integrator) {
   return {"", "black"};
 }
 
-// One curve for each integrator that has such runs.
+// Adds one curve for each integrator that has runs.
 template <class Across>
 void add_curves(Panel& panel, Quantity quantity, const char* kind, Marker marker, bool dashed,
                 const std::vector<const Run*>& runs, const Across& across) {
@@ -49,7 +49,7 @@ std::string error_label(Quantity quantity) {
   return fmt::format("error of the {} [{}]", name_of(quantity), unit == "1" ? "share" : unit);
 }
 
-// A curve each for the coarsest step, the scene's and the finest.
+// Adds curves for the coarsest step, the scene's step and the finest.
 void add_tolerances(Panel& panel, const Accuracy& accuracy, Integrator integrator) {
   const auto runs = accuracy.series(Axis::grid, integrator);
   if (runs.empty()) return;

@@ -1,4 +1,4 @@
-// What runs of bench/accuracy are and belong to: series, errors, orders, and what is known of the reference.
+// Properties of runs, series and references of bench/accuracy.
 #include <algorithm>
 #include <cmath>
 

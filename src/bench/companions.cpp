@@ -10,22 +10,21 @@
 namespace weft::bench {
 namespace {
 
-// Displacement of the start that should not matter [m].
-constexpr double kShift = 1e-6;
-// A start moved by a micrometre that comes out as so large a share of what steps and solver leave tells that paths
-// part.
-constexpr double kParts = 0.3;
-// And so does, whatever those leave, one that comes out as a thousand times as much.
-constexpr double kAmplified = 1e3;
-constexpr double kTighter = 0.1;  // newton_tolerance of the companion, in shares of the run's
-// Observed orders are believed between this share of the expected one and all of it: stiff waves and borders lower
-// them, and where nothing is left of them differences are no error that falls with step or spacing.
-constexpr double kLeastOrder = 0.5;
-// Where there is one companion alone: between.
-constexpr double kAssumedOrder = 0.75;
-// Cells along each side from which on a mesh tells of an order.
-constexpr int kFewCells = 4;
-// Bending and stretch are of second order in the spacing.
+// Displacement of the start that should not affect the result [m].
+constexpr double kStartDisplacement = 1e-6;
+// The motion is chaotic if this displacement grows to more than this fraction of the step and solver errors.
+constexpr double kChaosRatio = 0.3;
+// It is also chaotic if the displacement grows more than a thousandfold, however large those errors are.
+constexpr double kMaxAmplification = 1e3;
+constexpr double kCompanionToleranceRatio = 0.1;  // newton_tolerance of the companion, relative to the run's
+// Observed orders are limited to the range from this fraction of the expected order to all of it. Stiff waves and
+// borders lower the order; below the range, differences do not fall reliably with step or spacing.
+constexpr double kMinOrderRatio = 0.5;
+// Fraction of the expected order that is assumed if there is only one companion.
+constexpr double kAssumedOrderRatio = 0.75;
+// Minimum number of cells along each side for which a coarse mesh shows an order.
+constexpr int kMinCellsForOrder = 4;
+// Bending and stretch converge with second order in the spacing.
 constexpr double kMeshOrder = 2;
 
 double order_of(scene::Integrator integrator) {
@@ -36,14 +35,14 @@ double steps_a_frame(const scene::Time& time) {
   return std::max(1.0, std::ceil(1 / (time.fps * time.step) - 1e-9));
 }
 
-// What a companion changes: it has steps or spacings `ratio` times those of the run.
+// Difference between the run and a companion whose step or spacing is `ratio` times that of the run.
 struct Change {
   double ratio;
   Errors errors;
 };
 
-// The order p at which errors C h^p explain two changes, C h^p |r^p - 1| each, the first of longer steps or spacings:
-// their quotient grows with p. The nearest between `least` and `most`.
+// Order p in [least, most] for which an error C h^p explains two changes C h^p |r^p - 1|. `quotient` is the change of
+// the coarser companion over that of the finer one; it grows with p.
 double observed_order(double coarse_ratio, double fine_ratio, double quotient, double least, double most) {
   constexpr int kHalvings = 30;
   const auto expected = [&](double p) {
@@ -56,21 +55,20 @@ double observed_order(double coarse_ratio, double fine_ratio, double quotient, d
   return 0.5 * (least + most);
 }
 
-// The error of a run of this order that differs so from a companion, and if there is one from another that is coarser
-// than both.
+// Error of a run of this order from the change to one companion, and if given from that to a coarser one.
 Errors richardson(double order, const Change& change, const std::optional<Change>& coarser) {
   Errors errors{};
   for (std::size_t q = 0; q < kQuantities; ++q) {
-    double p = kAssumedOrder * order;
+    double p = kAssumedOrderRatio * order;
     if (coarser && change.errors[q] > 0)
-      p = observed_order(coarser->ratio, change.ratio, coarser->errors[q] / change.errors[q], kLeastOrder * order,
+      p = observed_order(coarser->ratio, change.ratio, coarser->errors[q] / change.errors[q], kMinOrderRatio * order,
                          order);
     errors[q] = change.errors[q] / std::abs(std::pow(change.ratio, p) - 1);
   }
   return errors;
 }
 
-// Simulates companions of one run.
+// Simulates the companions of one run.
 class Companions {
  public:
   Companions(const scene::Scene& scene, Trajectory run, const CompanionOptions& options)
@@ -82,11 +80,11 @@ class Companions {
   Trajectory follow(const scene::Scene& scene);
   Errors difference(const scene::Scene& scene);
   ErrorPart part(ErrorSource source, const std::function<Errors()>& measure);
-  Errors of_steps();
-  Errors of_solver();
-  Errors of_mesh();
-  Errors of_start();
-  Change of_step(double ratio);
+  Errors measure_step_error();
+  Errors measure_solver_error();
+  Errors measure_mesh_error();
+  Errors measure_start_error();
+  Change change_with_step(double ratio);
 
   scene::Scene scene_;
   Trajectory run_;  // in `scene_`
@@ -101,7 +99,7 @@ Trajectory Companions::follow(const scene::Scene& scene) {
   return trajectory;
 }
 
-// Of a companion with the same particles.
+// Difference to a companion with the same particles.
 Errors Companions::difference(const scene::Scene& scene) {
   return compare(follow(scene), run_);
 }
@@ -117,11 +115,11 @@ ErrorPart Companions::part(ErrorSource source, const std::function<Errors()>& me
   return part;
 }
 
-// With steps as near to `ratio` times those of the run as frames can be cut.
-Change Companions::of_step(double ratio) {
+// Uses the step nearest to `ratio` times that of the run that divides a frame evenly.
+Change Companions::change_with_step(double ratio) {
   scene::Scene companion = scene_;
   if (scene_.time.tolerance) {
-    // Steps go as t^(1 / (p + 1)).
+    // Steps scale as t^(1 / (p + 1)).
     *companion.time.tolerance *= std::pow(ratio, order_of(scene_.time.integrator) + 1);
     return {ratio, difference(companion)};
   }
@@ -130,37 +128,37 @@ Change Companions::of_step(double ratio) {
   return {steps / taken, difference(companion)};
 }
 
-Errors Companions::of_steps() {
+Errors Companions::measure_step_error() {
   const double order = order_of(scene_.time.integrator);
-  const Change half = of_step(0.5);
-  // One step a frame cannot become longer.
+  const Change half = change_with_step(0.5);
+  // A step as long as a frame cannot be doubled.
   if (!scene_.time.tolerance && steps_a_frame(scene_.time) < 2) return richardson(order, half, std::nullopt);
   std::optional<Change> twice;
   const ErrorPart longer = part(ErrorSource::steps, [&] {
-    twice = of_step(2);
+    twice = change_with_step(2);
     return twice->errors;
   });
-  const double least = kLeastOrder * order, near = at(half.errors, Quantity::position);
+  const double least = kMinOrderRatio * order, near = at(half.errors, Quantity::position);
   result_.steps_irregular =
       !twice || at(twice->errors, Quantity::position) * std::abs(std::pow(half.ratio, least) - 1) <
                     near * std::abs(std::pow(twice->ratio, least) - 1);
   return richardson(order, half, twice);
 }
 
-// What the solver leaves is taken as proportional to the tolerance.
-Errors Companions::of_solver() {
+// Assumes that the error of the solver is proportional to the tolerance.
+Errors Companions::measure_solver_error() {
   scene::Scene companion = scene_;
-  companion.solver.newton_tolerance *= kTighter;
+  companion.solver.newton_tolerance *= kCompanionToleranceRatio;
   Trajectory solved = follow(companion);
   Errors errors = compare(solved, run_);
-  for (double& error : errors) error /= 1 - kTighter;
-  // From here on all companions are solved so, lest what the solver leaves is taken for an error of steps and meshes.
+  for (double& error : errors) error /= 1 - kCompanionToleranceRatio;
+  // From here on, all companions use this tolerance, so that solver errors do not count as errors of steps and meshes.
   scene_ = std::move(companion);
   run_ = std::move(solved);
   return errors;
 }
 
-Errors Companions::of_mesh() {
+Errors Companions::measure_mesh_error() {
   if (!can_refine(scene_, 0.5)) throw Error(ExitCode::usage, "the cells cannot be halved");
   const auto coarse = [&](double refinement) {
     scene::Scene companion = scene_;
@@ -172,7 +170,7 @@ Errors Companions::of_mesh() {
   const std::vector<std::size_t> same = same_in_twice_as_fine(half);
   const Change change{2, compare(halved, run_, same)};
   const bool few = std::any_of(scene_.cloths.begin(), scene_.cloths.end(), [](const scene::Cloth& cloth) {
-    return std::min(cloth.particles_weft, cloth.particles_warp) - 1 < 4 * kFewCells;
+    return std::min(cloth.particles_weft, cloth.particles_warp) - 1 < 4 * kMinCellsForOrder;
   });
   if (few || !can_refine(scene_, 0.25)) return richardson(kMeshOrder, change, std::nullopt);
   const scene::Scene quarter = coarse(0.25);
@@ -181,20 +179,21 @@ Errors Companions::of_mesh() {
   return richardson(kMeshOrder, change, Change{4, compare(follow(quarter), run_, same_again)});
 }
 
-Errors Companions::of_start() {
+Errors Companions::measure_start_error() {
   scene::Scene companion = scene_;
-  for (scene::Cloth& cloth : companion.cloths) cloth.start_noise += kShift;
+  for (scene::Cloth& cloth : companion.cloths) cloth.start_noise += kStartDisplacement;
   return difference(companion);
 }
 
 ErrorEstimate Companions::estimate() {
-  ErrorPart mesh{ErrorSource::mesh}, start = part(ErrorSource::start, [&] { return of_start(); }),
-                                     solver = part(ErrorSource::solver, [&] { return of_solver(); }),
-                                     steps = part(ErrorSource::steps, [&] { return of_steps(); });
-  if (options_.mesh) mesh = part(ErrorSource::mesh, [&] { return of_mesh(); });
+  ErrorPart mesh{ErrorSource::mesh}, start = part(ErrorSource::start, [&] { return measure_start_error(); }),
+                                     solver = part(ErrorSource::solver, [&] { return measure_solver_error(); }),
+                                     steps = part(ErrorSource::steps, [&] { return measure_step_error(); });
+  if (options_.mesh) mesh = part(ErrorSource::mesh, [&] { return measure_mesh_error(); });
   const double left = std::hypot(at(steps.errors, Quantity::position), at(solver.errors, Quantity::position)),
                moved = at(start.errors, Quantity::position);
-  result_.start_matters = !start.missing.empty() || moved > std::clamp(kParts * left, 10 * kShift, kAmplified * kShift);
+  result_.start_matters = !start.missing.empty() || moved > std::clamp(kChaosRatio * left, 10 * kStartDisplacement,
+                                                                       kMaxAmplification * kStartDisplacement);
   result_.parts = {std::move(steps), std::move(solver), std::move(start)};
   if (options_.mesh) result_.parts.push_back(std::move(mesh));
   for (const ErrorPart& each : result_.parts)

@@ -1,4 +1,4 @@
-// What a run is off by, told by companions: the same scene simulated otherwise.
+// Error estimate of a run from companions: the same scene, simulated with other settings.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace weft::bench {
 
-/// By whose doing a run is off.
+/// The cause of an error.
 enum class ErrorSource { steps, solver, mesh, start };
 inline constexpr std::size_t kErrorSources = 4;
 std::string_view name_of(ErrorSource source);
@@ -19,36 +19,37 @@ std::string_view name_of(ErrorSource source);
 struct ErrorPart {
   ErrorSource source;
   Errors errors{};
-  std::string missing = {};  ///< why it is not known; empty where it is
+  std::string missing = {};  ///< why the error is not known; empty if it is
 };
 
 struct ErrorEstimate {
-  /// A micrometre at the start comes out as more than a third of what steps and solver leave, or as a millimetre.
+  /// A start moved by a micrometre moves the run by more than 0.3 of the step and solver errors (but at least 10 µm),
+  /// or by more than a millimetre, or this companion fails.
   bool start_matters = false;
-  /// Twice the step changes the run by too little beside what half of it does, or fails: errors do not fall as the
-  /// method says.
+  /// Doubling the step fails, or changes the run too little compared with halving it: the error does not follow the
+  /// order of the method.
   bool steps_irregular = false;
   std::vector<ErrorPart> parts;
-  Errors all{};      ///< root of the sum of the squares of the parts
-  double cpu_s = 0;  ///< of the companions
+  Errors all{};      ///< root of the sum of squares of the parts
+  double cpu_s = 0;  ///< CPU time of all companions
 
-  /// Whether paths part: then the run is off by at least what is told.
+  /// Whether the motion is chaotic, so that the estimate is only a lower bound.
   bool doubtful() const { return start_matters || steps_irregular; }
-  /// The part that is largest in the position.
+  /// The part with the largest error in position.
   const ErrorPart& largest() const;
 };
 
 struct CompanionOptions {
-  bool mesh = false;                   ///< whether coarser meshes are tried too
-  std::function<bool()> proceed = {};  ///< asked before each frame of a companion
+  bool mesh = false;                   ///< whether coarser meshes are simulated too
+  std::function<bool()> proceed = {};  ///< called before each frame of a companion; false interrupts
 };
 
-/// How far a run of the scene is from the motion that endlessly short, exactly solved steps would give, and with
-/// options.mesh endlessly small cells. Companions: a start moved by a micrometre; a tenth of solver.newton_tolerance;
-/// solved like that, half and twice the step (time.tolerance accordingly), half and a quarter of the cells. Differences
-/// are extrapolated after Richardson with the order that is observed, at most that of the method. As many frames are
-/// compared as `run` has. A companion that fails is a part that is missing. Throws Error(interrupted) where
-/// options.proceed says no.
+/// Estimates the distance of a run from the limit of infinitely short, exactly solved steps, and with options.mesh of
+/// infinitely small cells. Companions: a start moved by a micrometre; a tenth of solver.newton_tolerance; and, with
+/// that tolerance, half and twice the step (time.tolerance accordingly), and half and a quarter of the cells. The
+/// differences are extrapolated by Richardson's method with the observed order, limited to that of the method. Only the
+/// frames in `run` are compared. If a companion fails, its part is marked as missing. Throws Error(interrupted) if
+/// options.proceed returns false.
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options = {});
 
 }  // namespace weft::bench

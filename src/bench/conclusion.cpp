@@ -1,4 +1,4 @@
-// What follows from the runs of bench/accuracy, in words.
+// Conclusions from the runs of bench/accuracy, as sentences.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,51 +13,51 @@ namespace {
 
 using scene::Integrator;
 
-// Share of the cloth's size by which it may be off, for the setting that is recommended.
-constexpr double kWanted = 0.01;
-// CPU times, and errors, that are no more than so many times as large count as equal.
-constexpr double kKeep = 1.1;
-// Accuracies asked for [m].
+// Target error of the recommended setting, relative to the cloth's size.
+constexpr double kTargetErrorRatio = 0.01;
+// CPU times or errors within this ratio count as equal.
+constexpr double kEqualRatio = 1.1;
+// Target errors in the conclusion [m].
 constexpr double kTargets[] = {1e-2, 1e-3, 1e-4};
-// Largest share of a target that the reference itself may be uncertain by.
-constexpr double kKnown = 0.3;
-// Below this nothing has moved [m].
+// The reference's uncertainty must not exceed this fraction of a target.
+constexpr double kMaxUncertaintyRatio = 0.3;
+// Errors below this count as no motion [m].
 constexpr double kNegligibleMotion = 1e-12;
-// Runs of a series, from the finest on, through which the cost of a digit is drawn.
-constexpr std::size_t kLast = 4;
+// The cost of a digit is fitted to this many of the finest runs of a series.
+constexpr std::size_t kMaxFittedRuns = 4;
 
-bool in_the_race(const Run& run) {
+bool is_candidate(const Run& run) {
   return !run.failed() && (run.axis == Axis::grid || run.axis == Axis::tolerance);
 }
 
-// Solved more exactly in the same way.
-bool finer(const Run& a, const Run& b) {
+// Whether `a` is solved more exactly than `b` along the same axis.
+bool is_finer(const Run& a, const Run& b) {
   if (a.axis != b.axis || a.setting.integrator != b.setting.integrator) return false;
   if (a.axis == Axis::tolerance) return a.setting.tolerance < b.setting.tolerance;
   return a.setting.step <= b.setting.step && a.setting.newton_tolerance <= b.setting.newton_tolerance &&
          (a.setting.step < b.setting.step || a.setting.newton_tolerance < b.setting.newton_tolerance);
 }
 
-// At most, with all that is not known of it.
+// Error plus uncertainty.
 double bound_of(const Accuracy& accuracy, const Run& run, Quantity quantity) {
   return error_of(run, quantity) + accuracy.doubt(run, quantity);
 }
 
-// Whether the run is known to reach the target, and not by luck: whatever is solved more exactly reaches it too.
-bool is_good(const Accuracy& accuracy, const Run& run, Quantity quantity, double target) {
+// Whether the run certainly reaches the target, and all runs that are solved more exactly along the same axis do too.
+bool certainly_reaches(const Accuracy& accuracy, const Run& run, Quantity quantity, double target) {
   const auto reaches = [&](const Run& r) { return bound_of(accuracy, r, quantity) <= target; };
-  return in_the_race(run) && reaches(run) && std::ranges::all_of(accuracy.runs, [&](const Run& other) {
-           return other.failed() || !finer(other, run) || reaches(other);
+  return is_candidate(run) && reaches(run) && std::ranges::all_of(accuracy.runs, [&](const Run& other) {
+           return other.failed() || !is_finer(other, run) || reaches(other);
          });
 }
 
-// In four digits, rounded up: with a step rounded down a frame would take one step more.
+// Rounds up to four digits: with a step rounded down, a frame would need one more step.
 double shown_step(double step) {
   const double scale = std::pow(10, 3 - std::floor(std::log10(step)));
   return std::ceil(step * scale - 1e-6) / scale;
 }
 
-// As the scene file spells it.
+// In the syntax of scene files.
 std::string keys_text(const Setting& s) {
   return fmt::format("`time.integrator = \"{}\"`, `{}`, `solver.newton_tolerance = {:.3g}`", name_of(s.integrator),
                      s.tolerance ? fmt::format("time.tolerance = {:.3g}", *s.tolerance)
@@ -90,20 +90,20 @@ std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
   const double uncertainty = at(accuracy.uncertainty, quantity);
   std::string text;
   for (double target : kTargets) {
-    const std::string choice = uncertainty > kKnown * target ? "the reference is not known so exactly"
-                                                             : cheapest_text(accuracy, quantity, target);
+    const std::string choice = uncertainty > kMaxUncertaintyRatio * target ? "the reference is not known so exactly"
+                                                                           : cheapest_text(accuracy, quantity, target);
     text += fmt::format("{}{} m: {}", text.empty() ? "" : "; ", target, choice);
   }
-  // What a run can be told to be right to at all: with contact, what micrometres at the start decide.
-  if (uncertainty > kKnown * kTargets[2]) {
-    const double known = uncertainty / kKnown;
+  // The smallest error that can be verified; with contact it is limited by the effect of micrometres at the start.
+  if (uncertainty > kMaxUncertaintyRatio * kTargets[2]) {
+    const double known = uncertainty / kMaxUncertaintyRatio;
     text +=
         fmt::format("; {:.1e} m, about as exact as can be told: {}", known, cheapest_text(accuracy, quantity, known));
   }
   return fmt::format("Cheapest for an error of the {} of {}.", name_of(quantity), text);
 }
 
-/// CPU time against error, both as decimal logarithms, as a straight line by least squares.
+/// Least-squares line through log10(CPU time) over log10(error).
 class Line {
  public:
   void add(const Run& run, Quantity quantity) {
@@ -111,7 +111,7 @@ class Line {
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     ++n_, x_ += x, y_ += y, xx_ += x * x, xy_ += x * y;
   }
-  // Factor in CPU time for a tenth of the error: "3.6 times", or "unknown" where the line does not tell.
+  // CPU time factor for a tenth of the error, for example "3.6 times", or "unknown" if the fit is not conclusive.
   std::string cost_of_a_digit() const {
     const double spread = n_ * xx_ - x_ * x_, slope = (n_ * xy_ - x_ * y_) / spread;
     if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "unknown";
@@ -122,11 +122,11 @@ class Line {
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
 };
 
-// Of the finest runs of a series that are resolved.
+// Fitted to the finest resolved runs of a series.
 std::string digit_of_series(const Accuracy& accuracy, const std::vector<const Run*>& series, Quantity quantity) {
   Line line;
   std::size_t used = 0;
-  for (auto run = series.rbegin(); run != series.rend() && used < kLast; ++run) {
+  for (auto run = series.rbegin(); run != series.rend() && used < kMaxFittedRuns; ++run) {
     if ((*run)->failed() || !accuracy.resolved(**run, quantity)) continue;
     line.add(**run, quantity);
     ++used;
@@ -153,14 +153,14 @@ std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
       line.cost_of_a_digit(), each);
 }
 
-// At the scene's step with its integrator: what the step leaves, the solver, the mesh.
+// Errors due to step, solver and mesh, at the scene's step and integrator.
 std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
   std::map<std::string, double> left;
   for (const Run& run : accuracy.runs) {
     if (run.failed()) continue;
     if (run.axis == Axis::mesh && run.setting.refinement == 1) left["the mesh"] = error_of(run, quantity);
     if (accuracy.of_scene.tolerance) {
-      if (&run == accuracy.as_it_stands()) left["the step"] = error_of(run, quantity);  // and the solver
+      if (&run == accuracy.as_it_stands()) left["the step"] = error_of(run, quantity);  // includes the solver's error
       continue;
     }
     if (run.axis != Axis::grid || run.setting.integrator != accuracy.of_scene.integrator ||
@@ -197,14 +197,15 @@ bool is_still(const Accuracy& accuracy) {
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target) {
   const Run* best = nullptr;
   for (const Run& run : accuracy.runs)
-    if ((best == nullptr || run.work.cpu_s < best->work.cpu_s) && is_good(accuracy, run, quantity, target)) best = &run;
+    if ((best == nullptr || run.work.cpu_s < best->work.cpu_s) && certainly_reaches(accuracy, run, quantity, target))
+      best = &run;
   return best;
 }
 
 std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
   std::vector<const Run*> by_time, front;
   for (const Run& run : accuracy.runs)
-    if (in_the_race(run)) by_time.push_back(&run);
+    if (is_candidate(run)) by_time.push_back(&run);
   std::stable_sort(by_time.begin(), by_time.end(),
                    [](const Run* a, const Run* b) { return a->work.cpu_s < b->work.cpu_s; });
   double least = std::numeric_limits<double>::infinity();
@@ -218,15 +219,15 @@ std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
 
 namespace {
 
-// Of the settings that reach the target at this cost or hardly more, the most exact one. Another one that leaves the
-// solver as it is counts as exact as that if its error is hardly larger.
+// The most exact setting that reaches the target at a cost of at most kEqualRatio times `cpu_s`. A setting with the
+// scene's own solver tolerance is preferred if its error is at most kEqualRatio times larger.
 const Run* most_exact_at_cost(const Accuracy& accuracy, Quantity quantity, double target, double cpu_s) {
   const Run* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const Run& run : accuracy.runs) {
-    if (run.work.cpu_s > kKeep * cpu_s || !is_good(accuracy, run, quantity, target)) continue;
+    if (run.work.cpu_s > kEqualRatio * cpu_s || !certainly_reaches(accuracy, run, quantity, target)) continue;
     const bool is_same_solver = run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance;
-    const double error = bound_of(accuracy, run, quantity) * (is_same_solver ? 1 : kKeep);
+    const double error = bound_of(accuracy, run, quantity) * (is_same_solver ? 1 : kEqualRatio);
     if (error < least) best = &run, least = error;
   }
   return best;
@@ -237,7 +238,7 @@ const Run* most_exact_at_cost(const Accuracy& accuracy, Quantity quantity, doubl
 std::string recommendation(const Accuracy& accuracy) {
   const Quantity quantity = deciding_quantity(accuracy);
   if (is_still(accuracy)) return "Nothing moves: there is no error to measure.";
-  const double target = kWanted * accuracy.cloth_size;
+  const double target = kTargetErrorRatio * accuracy.cloth_size;
   const std::string wanted = fmt::format("{:.2g} mm (1 % of the cloth's size)", 1e3 * target);
   const Run* best = cheapest(accuracy, quantity, target);
   const Run* stands = accuracy.as_it_stands();
@@ -249,8 +250,8 @@ std::string recommendation(const Accuracy& accuracy) {
                        off_text(accuracy, *exact.back(), quantity), stands_text(accuracy, stands, quantity));
   }
   best = most_exact_at_cost(accuracy, quantity, target, best->work.cpu_s);
-  if (stands != nullptr && stands->work.cpu_s <= kKeep * best->work.cpu_s &&
-      is_good(accuracy, *stands, quantity, target))
+  if (stands != nullptr && stands->work.cpu_s <= kEqualRatio * best->work.cpu_s &&
+      certainly_reaches(accuracy, *stands, quantity, target))
     return fmt::format(
         "Keep the settings of the scene, {}: {}, where {} are wanted. No other takes less than {:.2g} CPU s.",
         keys_text(stands->setting), off_text(accuracy, *stands, quantity), wanted,

@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kSecond = "duration = 1.0\nfps = 25\nstep = 0.01";
 
-/// A square sheet of cotton, 0.5 m wide, that hangs from two corners; `cloth` adds keys to it, `rest` to the scene.
+/// A square sheet of cotton, 0.5 m wide, held at two corners; `cloth` adds keys to the cloth, `rest` to the scene.
 std::string hanging(const std::string& cloth, const std::string& rest = {}) {
   return fmt::format(
       "[time]\n{}\n\n[contact]\nself = false\nobstacles = false\n{}\n"
@@ -16,7 +16,7 @@ std::string hanging(const std::string& cloth, const std::string& rest = {}) {
       kSecond, rest.empty() ? "" : "\n" + rest + "\n", cloth);
 }
 
-/// The same sheet free in the air, without contact.
+/// The same sheet without pins and contact.
 std::string free_sheet(const std::string& cloth) {
   return fmt::format(
       "[time]\n{}\n\n[contact]\nself = false\nobstacles = false\n\n"
@@ -31,7 +31,7 @@ std::string above_floor(const std::string& cloth, const std::string& time) {
       cloth);
 }
 
-/// A sheet that falls on an obstacle, a ball if nothing else is said, and stays there or slides off; `top` adds tables.
+/// A sheet that falls on an obstacle (by default a ball) and rests there or slides off; `top` adds tables.
 std::string falling(const std::string& cloth, const std::string& top = {},
                     const std::string& obstacle = "shape = \"sphere\"\nradius = 0.15\n") {
   return fmt::format(
@@ -39,7 +39,7 @@ std::string falling(const std::string& cloth, const std::string& top = {},
       top.empty() ? "" : "\n" + top, cloth, obstacle);
 }
 
-// What contact may have to cope with.
+// Contact and friction at their extremes.
 template <class Add>
 void add_contact_cases(const Add& add) {
   const std::string sheet = "particles = 21\nposition = [0, 0, 0.17]\n", ball = "shape = \"sphere\"\nradius = 0.15\n";
@@ -114,7 +114,7 @@ std::vector<ExtremeCase> make_cases() {
       free_sheet("\n[[cloth.pin]]\nlow = [1, 1]\ninterpolation = \"linear\"\n"
                  "keys = [ { time = 0.2 }, { time = 0.24, position = [10, 0, 0] } ]\n"),
       25,
-      // ½ m v² of all of the sheet at the speed of the pin, and twice that once more where threads snap back.
+      // Whole sheet at the speed of the pin, ½ m v², and twice that for threads that snap back.
       3 * 0.5 * 0.05 * 250 * 250);
   add("no_stiffness", "no stiffness at all",
       hanging("material = { stretch = 0, shear = 0, bend = 0, stretch_viscosity = 0, shear_viscosity = 0, "

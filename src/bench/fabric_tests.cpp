@@ -16,7 +16,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kGravity = 9.81;  // [m/s²]
 
-// A rectangle of quads, level, with nothing around it: no air, no contact.
+// A level rectangle of quads without air and contact.
 scene::Scene sheet_alone(const Vec2& size, int particles_weft, int particles_warp, const scene::Material& material) {
   scene::Scene scene;
   scene.physics.air_density = 0;
@@ -40,8 +40,8 @@ const std::vector<Vec3>& positions_of(const simulation::Simulation& simulation) 
 namespace cusick {
 namespace {
 
-// A number from -½ to ½ that looks like chance.
-double chance(int ring, int place, int seed) {
+// Pseudo-random number in [-½, ½).
+double pseudo_random(int ring, int place, int seed) {
   const double number = std::sin(12.9898 * place + 78.233 * ring + 5 * seed) * 43758.5453;
   return number - std::floor(number) - 0.5;
 }
@@ -58,8 +58,8 @@ Specimen rings(int free, int seed) {
     first.push_back(static_cast<int>(disc.positions.size()));
     const double radius = k <= inner ? kPlates * k / inner : kPlates + (k - inner) * l;
     for (int i = 0; i < 6 * k; ++i) {
-      const double along = k > inner ? 0.3 * chance(k, i, seed) : 0;
-      const double across = k > inner && k < all ? 0.3 * l * chance(k, i, seed + 1) : 0;
+      const double along = k > inner ? 0.3 * pseudo_random(k, i, seed) : 0;
+      const double across = k > inner && k < all ? 0.3 * l * pseudo_random(k, i, seed + 1) : 0;
       const double angle = 2 * kPi * (i + along) / (6 * k);
       if (k <= inner) disc.held.push_back(disc.positions.size());
       disc.positions.emplace_back((radius + across) * std::cos(angle), (radius + across) * std::sin(angle), 0);
@@ -84,10 +84,10 @@ std::vector<scene::Pin> pins_at(const std::vector<Vec3>& x, const std::vector<st
   for (const Vec3& point : x) low = low.cwiseMin(point), high = high.cwiseMax(point);
   std::vector<scene::Pin> pins;
   for (std::size_t i : held) {
-    const Vec2 share = (x[i] - low).head<2>().cwiseQuotient((high - low).head<2>());
+    const Vec2 fraction = (x[i] - low).head<2>().cwiseQuotient((high - low).head<2>());
     scene::Pin pin;
-    pin.low = share - Vec2::Constant(1e-6);
-    pin.high = share + Vec2::Constant(1e-6);
+    pin.low = fraction - Vec2::Constant(1e-6);
+    pin.high = fraction + Vec2::Constant(1e-6);
     pins.push_back(pin);
   }
   return pins;
@@ -107,7 +107,7 @@ scene::Scene scene_of(const Specimen& specimen, const scene::Material& material,
 }
 
 Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, Solved solved) {
-  // Measured: with a third of the tolerance wool, cotton, jersey and faille drape by 0.0 to 0.3 points otherwise, with
+  // Measured for wool, cotton, jersey and faille: a third of this tolerance changes the drape by 0.0 to 0.3 points,
   // half of the step by 0.4 to 1.0.
   constexpr double kExact = 0.01;
   scene.time = {.duration = 1.5, .fps = 10, .step = 0.01};
@@ -133,7 +133,7 @@ Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, So
 
 namespace {
 
-// How far below level the tip of a strip is seen from its edge when it has hung for 8 s, as tan(angle).
+// Tangent of the angle below the horizontal at which the tip of a strip is seen from the edge after hanging for 8 s.
 double droop(const scene::Material& material, double overhang) {
   constexpr int kCells = 40;
   const double l = overhang / kCells, width = 0.025;
@@ -154,12 +154,12 @@ double droop(const scene::Material& material, double overhang) {
 }  // namespace
 
 Cantilever cantilever(const scene::Material& material) {
-  const double seen = std::tan(41.5 * kPi / 180), weight = material.density * kGravity;
-  // tan(angle) grows about with the cube of the overhang while that is small, slower from there on: steps by its square
-  // come to rest within 1e-3 of the length in a few.
+  const double target_slope = std::tan(41.5 * kPi / 180), weight = material.density * kGravity;
+  // tan(angle) grows with about the cube of small overhangs and slower beyond. An assumed exponent of 2.5 converges to
+  // 1e-3 of the length within a few attempts.
   double overhang = 2 * std::cbrt(material.bend / weight);
   for (int attempt = 0; attempt < 8; ++attempt) {
-    const double change = std::pow(seen / droop(material, overhang), 1 / 2.5);
+    const double change = std::pow(target_slope / droop(material, overhang), 1 / 2.5);
     overhang *= change;
     if (std::abs(change - 1) < 1e-3) break;
   }
@@ -172,7 +172,7 @@ double extension(const scene::Material& material, Direction direction, double lo
   const bool warp = direction == Direction::warp;
   scene::Scene scene = warp ? sheet_alone({kWidth, kLength}, kThreads, 21, material)
                             : sheet_alone({kLength, kWidth}, 21, kThreads, material);
-  // Long steps of implicit Euler take the energy of the swinging load out.
+  // Implicit Euler with long steps damps the swinging of the load.
   scene.time = {.duration = 20, .fps = 2, .step = 0.5};
   scene.solver.newton_tolerance = 1e-3;
   scene.physics.gravity = warp ? Vec3(0, -kGravity, 0) : Vec3(-kGravity, 0, 0);
@@ -180,11 +180,11 @@ double extension(const scene::Material& material, Direction direction, double lo
   scene::Pin top;
   top.low = warp ? Vec2(0, 1) : Vec2(1, 0);
   cloth.pins = {top};
-  // Each thread carries what is as wide as it, those at the sides half of that.
+  // Each thread carries the load of its width; the two at the sides have half of it.
   for (int i = 0; i < kThreads; ++i) {
-    const double share = static_cast<double>(i) / (kThreads - 1), width = i % (kThreads - 1) == 0 ? 0.5 : 1;
+    const double fraction = static_cast<double>(i) / (kThreads - 1), width = i % (kThreads - 1) == 0 ? 0.5 : 1;
     scene::Weight weight;
-    weight.low = weight.high = warp ? Vec2(share, 0) : Vec2(0, share);
+    weight.low = weight.high = warp ? Vec2(fraction, 0) : Vec2(0, fraction);
     weight.mass = width / (kThreads - 1) * load * kWidth / kGravity;
     cloth.weights.push_back(weight);
   }

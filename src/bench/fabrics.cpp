@@ -11,7 +11,7 @@
 namespace weft::bench {
 namespace {
 
-// "12.3", and "~12.3" where it is estimated.
+// "12.3", or "~12.3" if the value is estimated.
 std::string text_of(const scene::Figure& figure, double unit) {
   return fmt::format("{}{:.3g}", figure.estimated ? "~" : "", figure.value * unit);
 }
@@ -44,7 +44,7 @@ Table summary(const std::vector<FabricRun>& runs) {
   return table;
 }
 
-// The diagonal and a tenth to either side.
+// The diagonal, and lines 10 % below and above it.
 void add_diagonal(Panel& panel, double low, double high) {
   for (double factor : {1.0, 0.9, 1.1})
     panel.curves.push_back({factor == 1  ? "equal"

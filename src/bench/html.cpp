@@ -25,7 +25,7 @@ std::string inline_html(const std::string& text) {
                             "<strong>$1</strong>");
 }
 
-// Cells of a row; `\|` is a bar.
+// Splits a table row into cells; `\|` is a literal bar.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells(1);
   for (std::size_t i = 1; i < line.size(); ++i) {
@@ -36,7 +36,7 @@ std::vector<std::string> cells_of(const std::string& line) {
     else
       cells.back() += line[i];
   }
-  cells.pop_back();  // nothing follows the last bar
+  cells.pop_back();  // the last bar ends a cell and starts none
   return cells;
 }
 

@@ -1,4 +1,4 @@
-// A report as one page that any browser opens.
+// A report as one self-contained HTML page.
 #pragma once
 
 #include <functional>
@@ -6,11 +6,11 @@
 
 namespace weft::bench {
 
-/// The text of a plot by its name in the report.
+/// Returns the SVG text of a plot, given its name in the report.
 using FindPlot = std::function<std::string(const std::string& name)>;
 
-/// The Markdown that reports consist of (headings, paragraphs, `code`, **strong**, tables, plots) as HTML. Plots are
-/// part of the page, which needs no other file.
+/// Converts the Markdown subset of the reports (headings, paragraphs, `code`, **strong**, tables, plots) to HTML. Plots
+/// are embedded, so that the page needs no other file.
 std::string html_page(const std::string& title, const std::string& markdown, const FindPlot& find_plot);
 
 }  // namespace weft::bench

@@ -9,12 +9,12 @@
 namespace weft::bench {
 namespace {
 
-// Pixels: a panel, its plot area, a row of names below it.
+// Sizes in pixels: panel, plot area, one row of the legend below it.
 constexpr double kPanelWidth = 430, kLeft = 62, kTop = 34, kPlotWidth = 350, kPlotHeight = 260, kAxisHeight = 44,
                  kNameHeight = 15;
 constexpr std::size_t kPanelsInARow = 3, kNamesInARow = 3;
 
-/// One logarithmic axis: from 10^low to 10^high over so many pixels.
+/// A logarithmic axis from 10^low to 10^high, drawn over `length` pixels from `start`.
 struct PlotAxis {
   double low = 0, high = 1, start = 0, length = 1;
   double at(double value) const { return start + length * (std::log10(value) - low) / (high - low); }
@@ -24,7 +24,7 @@ bool is_drawn(const Vec2& point) {
   return point.x() > 0 && point.y() > 0 && point.allFinite();
 }
 
-// Covers all points of the panel, with some room at the ends.
+// Axis that covers all points of the panel, with a margin at both ends.
 PlotAxis fit(const Panel& panel, int coordinate, double start, double length) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Curve& curve : panel.curves) {
@@ -39,7 +39,7 @@ PlotAxis fit(const Panel& panel, int coordinate, double start, double length) {
   return {low - room, high + room, start, length};
 }
 
-// 0.02, 5, 200; beyond these 10 with an exponent, 2·10 with one.
+// For example 0.02, 5, 200; outside 10^±3 a power of ten, such as 10^4 or 2·10^4.
 std::string tick_name(double part, int decade) {
   const double value = part * std::pow(10.0, decade);
   if (decade >= -3 && decade <= 3) return fmt::format("{:g}", value);
@@ -47,17 +47,17 @@ std::string tick_name(double part, int decade) {
                      decade);
 }
 
-// Which parts of a decade get a line and a name: so many that at least three are named, and none over another.
-std::vector<double> named_parts(double decades) {
+// Multiples of each decade that get a label: enough for at least three labels, without overlap.
+std::vector<double> labelled_multiples(double decades) {
   if (decades < 0.5) return {1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9};
   if (decades < 1) return {1, 2, 3, 4, 5, 7};
   if (decades < 3) return {1, 2, 5};
   return {1};
 }
 
-// Lines at each decade and at 2 and 5 times it; names as there is room.
+// Grid lines at each decade and at 2 and 5 times it; labels where space allows.
 std::string ticks(const PlotAxis& axis, bool vertical) {
-  constexpr double kMostNames = 12;  // decades
+  constexpr double kMaxLabelledDecades = 12;  // decades
   std::string text;
   const auto line = [&](double place, const char* color) {
     text += vertical ? fmt::format("<path d='M{:.1f} {:.1f}h{}' stroke='{}'/>\n", kLeft, place, kPlotWidth, color)
@@ -70,8 +70,8 @@ std::string ticks(const PlotAxis& axis, bool vertical) {
                               kTop + kPlotHeight + 15, words);
   };
   const double decades = axis.high - axis.low;
-  const std::vector<double> named = named_parts(decades);
-  const int every = static_cast<int>(std::ceil(decades / kMostNames));
+  const std::vector<double> named = labelled_multiples(decades);
+  const int every = static_cast<int>(std::ceil(decades / kMaxLabelledDecades));
   for (int decade = static_cast<int>(std::floor(axis.low)); decade <= axis.high; ++decade) {
     const auto inside = [&](double part) {
       const double place = std::log10(part) + decade;

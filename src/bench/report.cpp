@@ -15,7 +15,7 @@ std::string quoted(const std::string& field) {
   return text + "\"";
 }
 
-// A bar would end the field.
+// Escapes bars, which would end a table cell.
 std::string escaped(const std::string& field) {
   std::string text;
   for (char c : field) text += c == '|' ? std::string("\\|") : std::string(1, c == '\n' ? ' ' : c);

@@ -1,4 +1,4 @@
-// Tables and plots of what was measured, as text.
+// Tables and plots of measurements, as text.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 
 namespace weft::bench {
 
-/// Rows of equal length, the first one being the header.
+/// Rows of equal length; the first one is the header.
 using Table = std::vector<std::vector<std::string>>;
 
-/// Comma separated; fields with a comma, quote or line feed in quotes (RFC 4180).
+/// Comma separated values; fields with a comma, quote or line feed are quoted (RFC 4180).
 std::string csv(const Table& table);
 std::string markdown(const Table& table);
 
-/// How often each verdict was given.
+/// Counts how often each verdict occurred.
 class Tally {
  public:
   void add(Verdict verdict) { ++of_[static_cast<std::size_t>(verdict)]; }
-  /// With more energy than there can be and no word of it, or not finite.
+  /// Number of outcomes with unexplained energy and no warning, or with positions that are not finite.
   int wrong() const;
   std::string text() const;
 
@@ -30,7 +30,7 @@ class Tally {
 };
 
 Table map_table(const std::vector<MapCell>& cells);
-/// The map as a picture: a panel for each integrator, stiffness upward, step to the right, colored by verdict.
+/// The stability map as SVG: one panel per integrator, stiffness upward, step to the right, coloured by verdict.
 std::string map_svg(const std::vector<MapCell>& cells);
 
 }  // namespace weft::bench

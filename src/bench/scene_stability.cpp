@@ -14,7 +14,7 @@
 namespace weft::bench {
 namespace {
 
-// A trial that takes more than so many times what the scene itself takes, and some seconds, is given up [CPU s].
+// A trial is aborted if its CPU time exceeds that of the unchanged scene by this ratio plus these seconds.
 constexpr double kSlowRatio = 20, kSlowSeconds = 5;
 
 constexpr std::size_t index_of(Varied axis) {
@@ -47,7 +47,7 @@ void scale_materials(scene::Scene& scene, const Factors& factors) {
   }
 }
 
-// Returns whether the cells can be cut so.
+// Returns false if the cells cannot be divided by this factor.
 bool scale_mesh(scene::Scene& scene, double factor) {
   if (factor == 1) return true;
   const bool all_patterns = std::ranges::all_of(
@@ -58,7 +58,7 @@ bool scale_mesh(scene::Scene& scene, double factor) {
   return true;
 }
 
-// Whether the scene has a value of this axis at all, and this factor changes what is computed.
+// Whether the scene has a value of this parameter at all, and the factor changes the simulation.
 bool changes(const scene::Scene& scene, Varied axis, double factor) {
   scene::Scene varied = scene;
   Factors factors{1, 1, 1, 1, 1, 1};
@@ -80,7 +80,7 @@ bool changes(const scene::Scene& scene, Varied axis, double factor) {
                    &Material::bend_friction, &Material::drag);
     case Varied::friction:
       return !same(&Material::friction) && (scene.contact.self || scene.contact.obstacles);
-    // A frame is never done in steps longer than itself.
+    // Steps are never longer than a frame.
     case Varied::step:
       return scene.time.tolerance || scene.time.step * (factor > 1 ? 0.5 * factor : factor) < 1 / scene.time.fps;
     case Varied::mesh:
@@ -89,7 +89,7 @@ bool changes(const scene::Scene& scene, Varied axis, double factor) {
   return true;
 }
 
-// What counts as broken in a frame.
+// Adds everything that counts as broken in a frame.
 void find_broken(const simulation::FrameReport& report, std::set<std::string>& broken) {
   if (report.min_distance <= 0 && report.frame > 0) broken.insert("surfaces touch or pass through each other");
   if (report.stretch_share > simulation::kOverstretch) broken.insert("cloth is stretched beyond its max_stretch");
@@ -106,8 +106,8 @@ bool is_finite(const simulation::Simulation& simulation) {
   return std::ranges::all_of(simulation.state().positions, [](const Vec3& x) { return x.allFinite(); });
 }
 
-// Runs it until something ends it; what broke is put into the trial.
-void run(const scene::Scene& scene, double most_cpu_s, const std::function<bool()>& stop, Trial& trial) {
+// Runs the scene to its end or until it fails, becomes too slow or `stop` interrupts it; fills `trial`.
+void run(const scene::Scene& scene, double max_cpu_s, const std::function<bool()>& stop, Trial& trial) {
   const double begin = process_cpu_seconds();
   std::set<std::string> broken;
   const auto note = [&](const simulation::FrameReport& report) {
@@ -118,12 +118,12 @@ void run(const scene::Scene& scene, double most_cpu_s, const std::function<bool(
     find_broken(report, broken);
     trial.broken.assign(broken.begin(), broken.end());
   };
-  const auto goes_on = [&] {
+  const auto may_continue = [&] {
     if (stop()) throw Error(ExitCode::interrupted, "interrupted");
-    return process_cpu_seconds() - begin < most_cpu_s;
+    return process_cpu_seconds() - begin < max_cpu_s;
   };
   simulation::Simulation simulation(scene);
-  bool in_time = simulation.run_preroll(goes_on);
+  bool in_time = simulation.run_preroll(may_continue);
   for (int k = 1; k < scene.frame_count() && in_time; ++k) {
     note(simulation.advance());
     ++trial.frames;
@@ -131,13 +131,13 @@ void run(const scene::Scene& scene, double most_cpu_s, const std::function<bool(
       trial.verdict = TrialVerdict::not_finite;
       return;
     }
-    in_time = k + 1 == scene.frame_count() || goes_on();
+    in_time = k + 1 == scene.frame_count() || may_continue();
   }
   if (!in_time) trial.verdict = TrialVerdict::too_slow;
 }
 
-// `known`: what breaks in the scene as it is, and is nothing new.
-Trial try_factors(const scene::Scene& scene, const Factors& factors, double most_cpu_s,
+// `known`: what already breaks in the unchanged scene.
+Trial try_factors(const scene::Scene& scene, const Factors& factors, double max_cpu_s,
                   const std::vector<std::string>& known, const std::function<bool()>& stop) {
   Trial trial{factors};
   scene::Scene varied = scene;
@@ -153,7 +153,7 @@ Trial try_factors(const scene::Scene& scene, const Factors& factors, double most
   }
   const double begin = process_cpu_seconds();
   try {
-    run(varied, most_cpu_s, stop, trial);
+    run(varied, max_cpu_s, stop, trial);
   } catch (const Error& error) {
     if (error.code() == ExitCode::interrupted) throw;
     trial.verdict = error.code() == ExitCode::simulation_failed ? TrialVerdict::refused : TrialVerdict::impossible;
@@ -166,7 +166,7 @@ Trial try_factors(const scene::Scene& scene, const Factors& factors, double most
   return trial;
 }
 
-// Near ones first, and the map after the axes.
+// Factors of single parameters first, then the map.
 std::vector<Factors> plan_trials(const scene::Scene& scene) {
   std::vector<Factors> plan;
   const auto add = [&](const Factors& factors) {
@@ -237,22 +237,22 @@ SceneStability measure_scene_stability(const scene::Scene& scene,
   SceneStability result;
   result.frames = scene.frame_count() - 1;
   const std::vector<Factors> plan = plan_trials(scene);
-  const auto told = [&](const Trial& trial) {
+  const auto report_trial = [&](const Trial& trial) {
     if (each) each(trial, static_cast<double>(result.trials.size() + 1) / static_cast<double>(plan.size() + 1));
   };
-  // A scene that cannot be simulated at all is the user's to mend: its message is thrown on.
+  // If the scene cannot be simulated at all, its error is passed on to the user.
   { const simulation::Simulation whole(scene); }
   result.as_is = try_factors(scene, {1, 1, 1, 1, 1, 1}, std::numeric_limits<double>::infinity(), {}, stop);
-  told(result.as_is);
-  const double most_cpu_s = kSlowRatio * result.as_is.cpu_s + kSlowSeconds;
+  report_trial(result.as_is);
+  const double max_cpu_s = kSlowRatio * result.as_is.cpu_s + kSlowSeconds;
   for (const Factors& factors : plan) {
     try {
-      result.trials.push_back(try_factors(scene, factors, most_cpu_s, result.as_is.broken, stop));
+      result.trials.push_back(try_factors(scene, factors, max_cpu_s, result.as_is.broken, stop));
     } catch (const Error& error) {
       if (error.code() != ExitCode::interrupted) throw;
       break;
     }
-    told(result.trials.back());
+    report_trial(result.trials.back());
   }
   return result;
 }

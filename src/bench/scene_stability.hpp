@@ -1,4 +1,4 @@
-// How far a scene is from where it breaks: its own values varied, one at a time, and stiffness with the step.
+// Stability margins of a scene: each of its values is varied alone, and stiffness together with the step.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace weft::bench {
 
-/// What is varied, by a factor on the scene's own values.
+/// The varied parameter; the scene's own values are multiplied by a factor.
 enum class Varied : std::size_t {
   stiffness,  ///< stretch, shear and bending of all cloths
   step,       ///< time.step, or time.tolerance
-  mass,       ///< density of all cloths, and their weights
+  mass,       ///< density of all cloths, and their attached weights
   friction,   ///< of all cloths, obstacles, characters and pairs
-  damping,    ///< viscosities, friction of bending and air drag of all cloths
+  damping,    ///< viscosities, bending friction and air drag of all cloths
   mesh,       ///< cells along each side
 };
 inline constexpr std::size_t kVariedValues = 6;
@@ -26,12 +26,12 @@ std::string_view name_of(Varied axis);
 using Factors = std::array<double, kVariedValues>;
 
 enum class TrialVerdict {
-  holds,       ///< went through without what counts as broken
-  warned,      ///< went through, and something broke on the way
-  refused,     ///< the simulation ended with a reason
-  not_finite,  ///< a position is no number
-  too_slow,    ///< given up: it takes many times as long as the scene itself
-  impossible,  ///< no such scene: it is not counted
+  holds,       ///< ran to the end, and nothing broke
+  warned,      ///< ran to the end, but something broke on the way
+  refused,     ///< the simulation ended with an error
+  not_finite,  ///< a position is not finite
+  too_slow,    ///< aborted: it takes many times as long as the scene itself
+  impossible,  ///< such a scene cannot be built; not counted
 };
 std::string_view describe(TrialVerdict verdict);
 
@@ -39,47 +39,47 @@ std::string_view describe(TrialVerdict verdict);
 struct Trial {
   Factors factors{1, 1, 1, 1, 1, 1};
   TrialVerdict verdict = TrialVerdict::holds;
-  /// What broke that does not break in the scene as it is; of that scene: all of it.
+  /// What broke here but not in the unchanged scene; for the unchanged scene: everything that broke.
   std::vector<std::string> broken = {};
-  bool mends = false;       ///< whether nothing breaks, not even what breaks in the scene as it is
-  std::string reason = {};  ///< of a refusal
-  double step = 0;          ///< largest of the steps [s]; 0: time.tolerance chooses them
+  bool mends = false;       ///< nothing breaks, not even what breaks in the unchanged scene
+  std::string reason = {};  ///< error message of a refusal
+  double step = 0;          ///< time step [s]; 0 if time.tolerance chooses it
   int frames = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
-  double max_strain = 0;  ///< largest of all frames
+  double max_strain = 0;  ///< largest over all frames
   double cpu_s = 0;
 
   bool breaks() const { return verdict != TrialVerdict::holds && verdict != TrialVerdict::impossible; }
 };
 
 struct SceneStability {
-  int frames = 0;  ///< of the scene, the start not counted
+  int frames = 0;  ///< number of frames after the start
   Trial as_is;
-  std::vector<Trial> trials;  ///< without the scene as it is
+  std::vector<Trial> trials;  ///< all trials except the unchanged scene
 
-  /// The trial with these factors; nullptr where there is none.
+  /// The trial with these factors; nullptr if there is none.
   const Trial* find(const Factors& factors) const;
 };
 
-/// All factors that are tried for one value, ascending, with 1.
+/// All factors tried for one parameter, ascending, including 1.
 const std::vector<double>& factors_of(Varied axis);
-/// Those of stiffness and step in the map of both.
+/// Factors of stiffness and step in the two-dimensional map.
 inline constexpr std::array<double, 5> kMapStiffness{0.01, 0.1, 1, 10, 100};
 inline constexpr std::array<double, 5> kMapSteps{0.25, 0.5, 1, 2, 4};
 
-/// Runs all frames of the scene for each trial: some fifty times. `each` is told of each trial with the share of the
-/// work that is done. Ends early, with what there is, where `stop` says so. Throws what the scene as it is throws, but
-/// for Error(simulation_failed).
+/// Runs all frames of the scene once per trial, some fifty trials. Calls `each` after each trial with the fraction of
+/// the work done. Returns early with the trials so far if `stop` returns true. Throws what the unchanged scene throws,
+/// except Error(simulation_failed).
 SceneStability measure_scene_stability(
     const scene::Scene& scene, const std::function<void(const Trial&, double done)>& each = {},
     const std::function<bool()>& stop = [] { return false; });
 
-/// Up to where values hold on one side of the scene's own.
+/// The range of a parameter, on one side of the scene's own value, in which the scene holds.
 struct Margin {
   Varied axis;
-  double holds = 1;               ///< the factor farthest from 1 before the first that breaks
-  const Trial* breaks = nullptr;  ///< that one; nullptr: none that was tried breaks
+  double holds = 1;               ///< last factor, going away from 1, before the first that breaks
+  const Trial* breaks = nullptr;  ///< the trial at that first factor; nullptr if no trial breaks
 };
-/// Below and above 1, of each axis that could be varied.
+/// One margin below and one above 1 for each parameter that could be varied.
 std::vector<Margin> margins_of(const SceneStability& stability);
 
 }  // namespace weft::bench

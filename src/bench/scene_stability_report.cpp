@@ -52,7 +52,7 @@ std::string value_of(Varied axis, double factor, const SceneStability& stability
   return fmt::format("{:g} ms", 1e3 * stability.as_is.step * factor);
 }
 
-// How far a factor is from 1.
+// Distance of factors from 1, on a logarithmic scale.
 double distance(double factor) {
   return std::abs(std::log(std::max(factor, 0.1)));
 }

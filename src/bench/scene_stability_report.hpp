@@ -1,4 +1,4 @@
-// The report of scene_stability.hpp, as text and as a picture.
+// The report of scene_stability.hpp, as text and as SVG.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace weft::bench {
 
-/// The margin of the scene as it is: one sentence.
+/// One sentence on the margin of the unchanged scene.
 std::string margin_sentence(const SceneStability& stability);
-/// Where each value breaks below and above its own, and what breaks.
+/// For each parameter, the factors below and above 1 at which it breaks, and what breaks.
 Table margin_table(const SceneStability& stability);
 Table trial_table(const SceneStability& stability);
-/// A row for each axis, and the map of stiffness and step, coloured by verdict.
+/// One row per parameter, and the map of stiffness and step, coloured by verdict.
 std::string trial_svg(const std::string& title, const SceneStability& stability);
 std::string scene_stability_markdown(const std::string& title, const SceneStability& stability,
                                      const std::string& picture);

@@ -10,13 +10,13 @@
 namespace weft::bench {
 namespace {
 
-// Lines of the raster. A border that is smooth is then placed within 1e-6 of the shape's width.
+// Number of scan lines. The area inside a smooth border is then exact within 1e-6 of the shape's width.
 constexpr int kLines = 1000;
 
 using Interval = std::pair<double, double>;
 
-// Where the line at height y cuts a triangle.
-Interval cut(const std::array<Vec2, 3>& corners, double y) {
+// Intersection of a triangle with the horizontal line at height y.
+Interval intersect_line(const std::array<Vec2, 3>& corners, double y) {
   Interval interval{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2 &a = corners[k], &b = corners[(k + 1) % 3];
@@ -54,10 +54,10 @@ double shadow_area(std::span<const mesh::Triangle> triangles, std::span<const Ve
   for (const mesh::Triangle& triangle : triangles) {
     const auto corner = [&](std::size_t k) { return flat[static_cast<std::size_t>(triangle[k])]; };
     const std::array<Vec2, 3> corners{corner(0), corner(1), corner(2)};
-    const auto [least, most] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
-    const int last = std::min(kLines - 1, static_cast<int>((most - low) / spacing));
-    for (int line = static_cast<int>((least - low) / spacing); line <= last; ++line) {
-      const Interval interval = cut(corners, low + (line + 0.5) * spacing);
+    const auto [low_y, high_y] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
+    const int last = std::min(kLines - 1, static_cast<int>((high_y - low) / spacing));
+    for (int line = static_cast<int>((low_y - low) / spacing); line <= last; ++line) {
+      const Interval interval = intersect_line(corners, low + (line + 0.5) * spacing);
       if (interval.first < interval.second) lines[static_cast<std::size_t>(line)].push_back(interval);
     }
   }

@@ -1,4 +1,4 @@
-// The shadow of a shape: what the drape of a cloth is measured by.
+// Projected area of a surface, as used by the drape coefficient.
 #pragma once
 
 #include <span>
@@ -7,9 +7,9 @@
 
 namespace weft::bench {
 
-/// Area [m²] that triangles cover, seen along `up`, each place counted once. With it the drape coefficient of a
-/// specimen on a disc is (shadow − disc) / (specimen − disc) (ISO 9073-9). Exact along the lines of a fine raster, by
-/// the midpoint rule across them.
+/// Area [m²] of the union of the triangles, projected along `up`. The drape coefficient of a specimen on a disc is
+/// (shadow − disc) / (specimen − disc) (ISO 9073-9). Integrates along scan lines exactly, and across them by the
+/// midpoint rule.
 double shadow_area(std::span<const mesh::Triangle> triangles, std::span<const Vec3> positions, const Vec3& up);
 
 }  // namespace weft::bench

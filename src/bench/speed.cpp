@@ -14,22 +14,23 @@
 namespace weft::bench {
 namespace {
 
-// What a linear iteration moves at the least, in single precision [bytes]. Of a full block nine numbers and a column,
-// of a multiple of the unit matrix one number and a column. Of a particle its block of the preconditioner (three
-// quads), and quads of vectors: a product reads p and writes q; the step along p reads p and q, and reads and writes x
-// and r; the preconditioner reads r and writes z; the next direction reads z, and reads and writes p.
-constexpr double kQuad = 16;
-constexpr double kFullBlock = 9 * 4 + 4, kIsotropicBlock = 4 + 4, kParticle = 3 * kQuad + (2 + 6 + 2 + 3) * kQuad;
-// A linearisation writes the matrix in double, onto what was computed once for all, and reads it to make the other of
-// it. Positions, velocities and forces move once an evaluation, of which there are three: linearising, along the
-// direction, and for the residual that is left. What elements know of themselves is not counted.
+// Lower bound on the bytes moved by one linear iteration, in single precision. Full block: nine numbers and a column
+// index. Isotropic block: one number and a column index. Particle: its preconditioner block (three padded vectors) and
+// padded vectors: the product reads p and writes q; the step along p reads p and q, and reads and writes x and r; the
+// preconditioner reads r and writes z; the new direction reads z, and reads and writes p.
+constexpr double kPaddedVec3Bytes = 16;
+constexpr double kFullBlock = 9 * 4 + 4, kIsotropicBlock = 4 + 4,
+                 kParticle = 3 * kPaddedVec3Bytes + (2 + 6 + 2 + 3) * kPaddedVec3Bytes;
+// A linearisation adds to precomputed constants, writes the matrix in double precision and reads it for the copy in
+// single precision. Positions, velocities and forces are moved in each of three evaluations: linearisation, line
+// search, final residual. Data of the elements are not counted.
 constexpr double kFullBlockAssembled = 9 * (8 + 8 + 8 + 4), kIsotropicBlockAssembled = 8 + 8 + 8 + 4,
                  kParticleEvaluated = 3 * 3 * 24;
 
-// With which cost grows as particles do, and falls as steps grow: to tell how long runs will take, no more.
+// Typical exponents of cost over particles and step, and gain per thread; used only to predict run times.
 constexpr double kUsualExponent = 1.3, kUsualStepExponent = 0.6, kUsualGainOfAThread = 0.4;
 
-// FNV-1a.
+// FNV-1a hash.
 std::uint64_t hash_of(std::span<const Vec3> points) {
   std::uint64_t hash = 0xcbf29ce484222325;
   const auto* bytes = reinterpret_cast<const unsigned char*>(points.data());
@@ -82,7 +83,7 @@ SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, c
   simulation.run_preroll();
   Drawing draw;
   if (open_drawing) draw = open_drawing();
-  // Shaders are made with the first picture.
+  // The first picture compiles shaders, so it is not measured.
   if (draw) draw(*simulation.snapshot());
   for (int k = 1; k < frames.end; ++k) {
     simulation::FrameReport report;
@@ -131,10 +132,9 @@ double memory_bound_s(const SpeedRun& run) {
 }
 
 double read_bandwidth(double bytes) {
-  constexpr double kLongEnough = 0.05;  // [s]
+  constexpr double kMinTimedSeconds = 0.05;  // [s]
   const std::vector<std::uint64_t> numbers(static_cast<std::size_t>(bytes / sizeof(std::uint64_t)) + 1, 1);
-  // Each thread reads its share again and again, and waits for none of the others: what that takes is no matter of
-  // memory.
+  // Each thread reads its own range repeatedly without waiting for the others, so that synchronisation is not measured.
   const auto threads = static_cast<std::size_t>(thread_count());
   const std::size_t share = (numbers.size() + threads - 1) / threads;
   const auto read = [&](int times) {
@@ -143,14 +143,14 @@ double read_bandwidth(double bytes) {
       for (int k = 0; k < times; ++k) {
         std::uint64_t sum = 0;
         for (std::size_t i = begin; i < end; ++i) sum += numbers[i];
-        asm volatile("" : : "r"(sum) : "memory");  // it is read, and anew each time
+        asm volatile("" : : "r"(sum) : "memory");  // keeps the loop from being optimised away
       }
     });
     return timer.seconds();
   };
   int times = 1;
-  while (read(times) < kLongEnough) times *= 2;
-  // The best of three: what disturbs it makes it slower only.
+  while (read(times) < kMinTimedSeconds) times *= 2;
+  // Disturbances only slow it down, so the best of three counts.
   double best = 0;
   for (int k = 0; k < 3; ++k)
     best = std::max(best, times * static_cast<double>(numbers.size() * sizeof numbers[0]) / read(times));

@@ -11,7 +11,7 @@
 namespace weft::bench {
 namespace {
 
-// Told apart in print and with red-green blindness (palette of Okabe and Ito).
+// Distinguishable in print and with red-green blindness (palette of Okabe and Ito).
 constexpr const char* kColors[kSpeedStages] = {"#d55e00", "#e69f00", "#0072b2", "#009e73", "#999999", "#cc79a7"};
 
 double frames_of(const SpeedRun& run) {
@@ -26,7 +26,7 @@ double wall_ms(const SpeedRun& run, const StageTime& stage) {
 double bound_ms(const SpeedRun& run) {
   return 1e3 * memory_bound_s(run) / frames_of(run);
 }
-/// Of what the bound is for.
+/// Sum of the stages that the memory bound covers.
 StageTime solving(const SpeedRun& run) {
   StageTime sum = run.at(SpeedStage::forces);
   sum += run.at(SpeedStage::preconditioner);
@@ -64,7 +64,7 @@ std::vector<const SpeedRun*> select(const std::vector<SpeedRun>& runs, const Con
   return selected;
 }
 
-// 4,096.
+// With digit grouping, such as 4,096.
 std::string grouped(std::int64_t number) {
   std::string text = std::to_string(number);
   for (auto place = static_cast<std::ptrdiff_t>(text.size()) - 3; place > 0; place -= 3)
@@ -72,7 +72,7 @@ std::string grouped(std::int64_t number) {
   return text;
 }
 
-// Three digits at the least.
+// With at least three significant digits.
 std::string milliseconds(double ms) {
   return ms < 1000 ? fmt::format("{:.3g}", ms) : grouped(std::lround(ms));
 }
@@ -129,7 +129,7 @@ std::string how_far_from_the_bound(const std::vector<const SpeedRun*>& sizes) {
       100 * bound / takes);
 }
 
-// What has grown since the run of the row above, as a power of the particles, in parentheses.
+// Appends the exponent of growth over particles since the row above, in parentheses.
 std::string with_exponent(std::string text, const SpeedRun* before, const SpeedRun& run, double was, double is) {
   if (const auto power = before ? exponent(*before, run, was, is) : std::nullopt)
     text += fmt::format(" ({:.2f})", *power);

@@ -1,4 +1,4 @@
-// What runs take as a table, plots and a conclusion.
+// Tables, plots and a conclusion about the cost of runs.
 #pragma once
 
 #include <optional>
@@ -11,29 +11,30 @@
 namespace weft::bench {
 
 struct SpeedReport {
-  std::string title, machine;  ///< of the scene; the processor
+  std::string title, machine;  ///< `title` names the scene, `machine` the processor
   SpeedFrames frames;
   std::vector<SpeedRun> runs;
 };
 
-/// A row for each run, for other programs; milliseconds are those of a frame, and what is not known is empty.
+/// One row per run, for other programs. Times are milliseconds per frame; an unknown value is an empty field.
 Table speed_table(const std::vector<SpeedRun>& runs);
 
-/// Runs that went well and differ in one thing alone, from small to large: in size, with the least threads and the
-/// step of the scene; in threads, at this size; in steps, from the longest on.
+/// Successful runs that differ in one setting, ascending. over_sizes: with the smallest number of threads and the
+/// scene's step; over_threads: at this size and the scene's step; over_steps: from the longest step.
 std::vector<const SpeedRun*> over_sizes(const std::vector<SpeedRun>& runs);
 std::vector<const SpeedRun*> over_threads(const std::vector<SpeedRun>& runs, double size);
 std::vector<const SpeedRun*> over_steps(const std::vector<SpeedRun>& runs);
 
-/// With what power of the particles a figure grows from one run to another; nothing where it or they do not.
+/// Exponent with which a value grows with the number of particles between two runs; nullopt unless the particles
+/// grow and both values are positive.
 std::optional<double> exponent(const SpeedRun& small, const SpeedRun& large, double of_small, double of_large);
 
-/// Sentences computed from the runs: what a frame takes and how that grows, what threads gain, memory, and how far the
-/// solver is from what memory allows.
+/// Sentences computed from the runs: cost of a frame and its growth, gain by threads, memory, and the ratio of the
+/// memory bound to the solver's time.
 std::string conclusion(const std::vector<SpeedRun>& runs);
 
 std::string speed_svg(const SpeedReport& report);
-/// The plot is expected beside it under this name.
+/// The report. It refers to the plot by this name, as a file beside it.
 std::string speed_markdown(const SpeedReport& report, const std::string& plot);
 
 }  // namespace weft::bench

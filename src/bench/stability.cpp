@@ -11,14 +11,14 @@
 namespace weft::bench {
 namespace {
 
-// Share of the energies in play that may come up because steps are solved to a tolerance; and what is rounding [J].
-constexpr double kSolverShare = 0.1, kEnergyRounding = 1e-9;
+// Fraction of the energies in play that may appear because steps are solved to a tolerance; rounding errors [J].
+constexpr double kSolverEnergyRatio = 0.1, kEnergyRounding = 1e-9;
 
 double mechanical_energy(const simulation::FrameReport& report) {
   return report.kinetic_energy + report.potential_energy + report.elastic_energy;
 }
 
-/// Follows a run from frame to frame.
+/// Tracks finiteness, speed and energy of a run from frame to frame.
 class Watch {
  public:
   Watch(const scene::Scene& scene, const simulation::Simulation& simulation, const EnergyLimit& limit)
@@ -29,7 +29,7 @@ class Watch {
     potential_low_ = potential_high_ = start.potential_energy;
   }
 
-  // False where a number is not finite.
+  // Returns false if a position or the energy is not finite.
   bool see(const simulation::FrameReport& report, const frame::SnapshotPtr& snapshot, Outcome& outcome) {
     for (std::size_t c = 0; c < cloths_; ++c) {
       const auto& x = snapshot->states[c].positions;
@@ -42,12 +42,13 @@ class Watch {
     before_ = snapshot;
     const double energy = mechanical_energy(report);
     if (!std::isfinite(energy)) return false;
-    // What an error may be measured against: the energies that have been there, and the fall so far.
+    // Scale of allowed errors: largest kinetic energy at the start, largest elastic energy, and the range of potential
+    // energy so far.
     largest_energy_ = std::max(largest_energy_, report.elastic_energy);
     potential_low_ = std::min(potential_low_, report.potential_energy);
     potential_high_ = std::max(potential_high_, report.potential_energy);
     const double allowed =
-        limit_.driven + kEnergyRounding + kSolverShare * (largest_energy_ + potential_high_ - potential_low_);
+        limit_.driven + kEnergyRounding + kSolverEnergyRatio * (largest_energy_ + potential_high_ - potential_low_);
     outcome.energy_gain = std::max(outcome.energy_gain, (energy - start_energy_) / allowed);
     return true;
   }
@@ -113,22 +114,22 @@ Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limi
 
 namespace {
 
-// A square sheet that hangs from two corners [m, kg/m²].
+// A square sheet, held at two corners [m, kg/m²].
 constexpr double kWidth = 0.5, kDensity = 0.2;
 constexpr int kParticles = 11;
 
 scene::Scene swing(scene::Integrator integrator, double stiffness, double step) {
   scene::Scene scene;
   scene.name = "swing";
-  // Looked at every 40 ms; at every step where steps are longer.
+  // A frame every 40 ms, or every step if steps are longer.
   scene.time = {.duration = 1000, .fps = 1 / std::max(step, 0.04), .step = step, .integrator = integrator};
   scene.contact.self = scene.contact.obstacles = false;
   scene::Cloth cloth;
   cloth.name = "sheet";
   cloth.size = {kWidth, kWidth};
   cloth.particles_weft = cloth.particles_warp = kParticles;
-  // Of no fabric, so that the map stays when fabrics are measured anew: with softer bending alone, three cells of the
-  // stiffest threads and longest steps are refused.
+  // Fixed values of no named fabric, so that the map does not change with new fabric data. (Measured: with softer
+  // bending, three cells of the stiffest threads and longest steps are refused.)
   scene::Material& material = cloth.material;
   material.density = kDensity;
   material.stretch_weft = material.stretch_warp = stiffness;
@@ -136,7 +137,7 @@ scene::Scene swing(scene::Integrator integrator, double stiffness, double step) 
   material.bend = 5e-5;
   material.bend_viscosity = 5e-6;
   material.bend_friction = 2e-4;
-  material.max_stretch = 0;  // the axis of the map is all that resists
+  material.max_stretch = 0;  // so that only stretch stiffness, the axis of the map, resists
   scene::Pin left, right;
   left.low = left.high = {0, 1};
   right.low = right.high = {1, 1};
@@ -158,9 +159,9 @@ double stiffest_period(double stiffness) {
 
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each) {
   constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2};
-  // Growth shows within swings, of which the sheet does two, or within periods of the stiffest mode.
+  // Instabilities show within two swings, or within many periods of the stiffest mode.
   constexpr double kSwings = 2;
-  constexpr int kDecades = 10, kMostSteps = 25'000;
+  constexpr int kDecades = 10, kMaxMapSteps = 25'000;
   std::vector<MapCell> cells;
   for (const auto integrator :
        {scene::Integrator::implicit_euler, scene::Integrator::implicit_midpoint, scene::Integrator::bdf2}) {
@@ -168,7 +169,7 @@ std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& ea
       for (const double step : kSteps) {
         const double stiffness = std::pow(10.0, decade - 2);
         const scene::Scene scene = swing(integrator, stiffness, step);
-        const double duration = std::min(kSwings * swing_period(), kMostSteps * step);
+        const double duration = std::min(kSwings * swing_period(), kMaxMapSteps * step);
         MapCell cell{integrator, stiffness, step};
         cell.outcome = try_scene(scene, static_cast<int>(std::ceil(duration * scene.time.fps)));
         cell.swings = cell.outcome.frames / scene.time.fps / swing_period();

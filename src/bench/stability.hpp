@@ -1,4 +1,4 @@
-// What the engine does with stiff and extreme scenes: solved, refused by name, or wrong.
+// Behaviour of the engine on stiff and extreme scenes: solved, refused with a reason, or wrong.
 #pragma once
 
 #include <functional>
@@ -10,10 +10,10 @@
 namespace weft::bench {
 
 enum class Verdict {
-  solved,     ///< went through with finite numbers and no energy from nowhere
-  refused,    ///< ended with a named reason; the frames before are kept
-  warned,     ///< finite, with more energy than there can be, and the run said so
-  unbounded,  ///< the same without a word
+  solved,     ///< ran to the end with finite numbers and without unexplained energy
+  refused,    ///< ended with a stated reason; earlier frames are kept
+  warned,     ///< finite, but with more energy than possible; some frame has a warning
+  unbounded,  ///< as `warned`, but without any warning
   not_finite,
 };
 inline constexpr std::size_t kVerdicts = 5;
@@ -21,27 +21,27 @@ std::string_view describe(Verdict verdict);
 
 struct Outcome {
   Verdict verdict = Verdict::solved;
-  std::string reason;  ///< of a refusal
-  int frames = 0;      ///< finished, the start not counted
+  std::string reason;  ///< error message of a refusal
+  int frames = 0;      ///< number of finished frames after the start
   int steps = 0, rejected_steps = 0, newton_iterations = 0;
-  double energy_gain = 0;  ///< largest mechanical energy above that of the start, in shares of what is allowed
-  double max_speed = 0;    ///< largest of a particle, between two frames [m/s]
+  double energy_gain = 0;  ///< largest mechanical energy above that of the start, relative to what is allowed
+  double max_speed = 0;    ///< largest speed of a particle between two frames [m/s]
   double max_strain = 0;   ///< in the last frame
   double cpu_s = 0;
 };
 
-/// Energy that a scene may gain [J]: what its driven pins and bodies can put in. 0: nothing is driven, so none but for
-/// the share that solving to a tolerance costs.
+/// Largest energy that a scene may gain [J], from driven pins and bodies. 0: nothing is driven, so that only the
+/// fraction due to solver tolerances is allowed.
 struct EnergyLimit {
   double driven = 0;
 };
 
-/// Simulates `frames` frames. Never throws for what a scene does.
+/// Simulates `frames` frames. Failures of the simulation are returned as a verdict, never thrown.
 Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limit = {});
 
-/// A scene at the edge of what anyone would ask for.
+/// A scene with extreme parameters.
 struct ExtremeCase {
-  std::string name;  ///< of its file
+  std::string name;  ///< stem of its file name
   std::string what;
   std::string text;  ///< the scene, TOML
   int frames = 0;
@@ -55,18 +55,18 @@ struct MapCell {
   double stiffness;  ///< of stretch [N/m]
   double step;       ///< [s]
   Outcome outcome = {};
-  /// How long it ran, in periods of the swing and of the stiffest mode of the mesh.
+  /// Simulated duration in periods of the swinging sheet and of the stiffest mode of the mesh.
   double swings = 0, stiffest_periods = 0;
 };
 
-/// Of the sheet of the map [s]: as a plate that hangs from its upper edge; of threads that vibrate against each other
-/// from particle to particle.
+/// Periods of the map's sheet [s]: of the sheet swinging as a plate about its upper edge; of neighbouring particles of
+/// a thread that vibrate against each other.
 double swing_period();
 double stiffest_period(double stiffness);
 
-/// A sheet of 11 × 11 held at two corners swings down: eleven powers of ten of stiffness, seven steps from 1e-5 to
-/// 0.2 s, three integrators; two swings each, or 25,000 steps where these are fewer. `each` is told of each cell as it
-/// is done.
+/// A sheet of 11 × 11 particles, held at two corners, swings down: eleven powers of ten of stiffness [N/m], seven steps
+/// from 1e-5 to 0.2 s, three integrators. Each cell runs two swings or 25,000 steps, whichever is shorter. Calls `each`
+/// after each cell.
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each = {});
 
 }  // namespace weft::bench

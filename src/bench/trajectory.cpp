@@ -12,18 +12,18 @@
 namespace weft::bench {
 namespace {
 
-constexpr int kFinestCut = 8;  // cells of a scene are cut into eighths of a cell at the least; exact in binary
+constexpr int kFinestCut = 8;  // refinements are multiples of an eighth; exact in binary
 
 Vec3 up_of(const scene::Scene& scene) {
   return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
 }
 
-// Cut into cells, unlike what comes from a file or a sewing pattern.
+// Whether the cloth is a grid of cells, not a mesh from a file or a sewing pattern.
 bool is_grid(const scene::Cloth& cloth) {
   return cloth.shape != scene::ClothShape::mesh && cloth.shape != scene::ClothShape::pattern;
 }
 
-// Of all cloths, each by itself: shadow, or where `up` is zero the area of the surface [m²].
+// Sum over all cloths of the projected area, or of the surface area if `up` is zero [m²].
 double area_of(const frame::FrameSnapshot& snapshot, std::size_t cloths, const Vec3& up) {
   double area = 0;
   for (std::size_t c = 0; c < cloths; ++c) {
@@ -120,7 +120,7 @@ Trajectory follow(const scene::Scene& scene, const FollowLimits& limits) {
 
 Errors compare(const Functionals& run, const Functionals& reference) {
   Errors errors{};
-  // Where nothing moves there is no energy to take a share of but rounding, and none that differs.
+  // If nothing moves, the energies in play are only rounding errors, and errors are taken as absolute.
   constexpr double kRounding = 1e-12;  // [J]
   const double in_play = reference.energies_in_play > kRounding ? reference.energies_in_play : 1;
   for (std::size_t k = 0; k < run.energy.size(); ++k) {
@@ -213,7 +213,7 @@ std::vector<std::size_t> same_in_twice_as_fine(const scene::Scene& scene) {
     const std::size_t fine_nu = 2 * nu - 1, fine_nv = 2 * nv - 1;
     for (std::size_t j = 0; j < nv; ++j)
       for (std::size_t i = 0; i < nu; ++i) same.push_back(first + 2 * i + fine_nu * 2 * j);
-    // The middles of crossed cells, which come last, lie on the finer grid.
+    // Centres of crossed cells follow the grid points; they lie on grid points of the finer mesh.
     const bool crossed = cloth.shape == scene::ClothShape::crossed_triangles;
     for (std::size_t j = 0; crossed && j + 1 < nv; ++j)
       for (std::size_t i = 0; i + 1 < nu; ++i) same.push_back(first + 2 * i + 1 + fine_nu * (2 * j + 1));

@@ -1,4 +1,4 @@
-// Whole motions of a scene, and how far two of them are apart.
+// Motion of a scene over all frames, and the difference between two motions.
 #pragma once
 
 #include <array>
@@ -13,23 +13,23 @@
 
 namespace weft::bench {
 
-/// What an error is measured in. The first two compare paths, which contact lets part; the others are functionals,
-/// which converge even then.
+/// The quantity in which an error is measured. Position and velocity compare trajectories, which diverge chaotically
+/// with contact. The others are functionals, which converge even then.
 enum class Quantity : std::size_t {
-  position,     ///< root of the mean square over the mass, largest of all frames [m]
+  position,     ///< mass-weighted root mean square, largest over all frames [m]
   velocity,     ///< likewise [m/s]
-  energy,       ///< kinetic, elastic and of height, largest of all frames, in shares of the energies in play
-  drift,        ///< of that energy at the end, likewise
-  centre,       ///< of mass, at the end [m]
-  top,          ///< height of the highest particle, at the end [m]
-  shadow,       ///< area that the cloths cover seen from above, each by itself, at the end, in shares of their area
-  rest_energy,  ///< elastic and of height, at the end, in shares of the energies in play
+  energy,       ///< kinetic, elastic and gravitational, largest over all frames, relative to the energies in play
+  drift,        ///< of that energy in the last frame, likewise
+  centre,       ///< centre of mass in the last frame [m]
+  top,          ///< height of the highest particle in the last frame [m]
+  shadow,       ///< sum of the projected areas of all cloths seen from above in the last frame, relative to their area
+  rest_energy,  ///< elastic and gravitational in the last frame, relative to the energies in play
 };
 inline constexpr std::size_t kQuantities = 8;
 std::string_view name_of(Quantity quantity);
 std::string_view unit_of(Quantity quantity);
 
-/// One error for each quantity.
+/// One error per quantity.
 using Errors = std::array<double, kQuantities>;
 inline double& at(Errors& errors, Quantity quantity) {
   return errors[static_cast<std::size_t>(quantity)];
@@ -38,26 +38,26 @@ inline double at(const Errors& errors, Quantity quantity) {
   return errors[static_cast<std::size_t>(quantity)];
 }
 
-/// What of a motion does not name single particles.
+/// Properties of a motion that do not refer to single particles.
 struct Functionals {
-  std::vector<double> energy;   ///< kinetic, elastic and of height, frame by frame [J]
-  double energies_in_play = 0;  ///< most kinetic and elastic energy, and largest fall [J]
-  double shadow = 0;            ///< in shares of the area at the start
+  std::vector<double> energy;   ///< kinetic, elastic and gravitational, frame by frame [J]
+  double energies_in_play = 0;  ///< largest kinetic + largest elastic + range of potential energy [J]
+  double shadow = 0;            ///< relative to the area at the start
   double top = 0;               ///< [m]
   double rest_energy = 0;       ///< [J]
   Vec3 centre{0, 0, 0};         ///< [m]
 };
 
-/// What a run took.
+/// Cost of a run.
 struct Work {
   double cpu_s = 0;
   int steps = 0, rejected_steps = 0, newton_iterations = 0, linear_iterations = 0;
 };
 
-/// All that is kept of a run, frame by frame, frame 0 not counted.
+/// Record of a run, without frame 0.
 struct Trajectory {
   struct Frame {
-    std::vector<Vec3> x, v;  ///< of all cloths; without v where only pictures of the run are there
+    std::vector<Vec3> x, v;  ///< of all cloths; `v` is empty if only snapshots of the run exist
   };
   std::vector<Frame> frames;
   std::vector<double> masses;
@@ -65,51 +65,52 @@ struct Trajectory {
   Work work;
 };
 
-/// Keeps what a run shows of itself.
+/// Builds a Trajectory while a run proceeds.
 class Recorder {
  public:
-  /// Frame 0 of the scene.
+  /// `start` and `report` are those of frame 0.
   Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const frame::FrameReport& report);
-  /// One of the frames after it, in order; `velocities` of all particles, or none.
+  /// Adds the next frame, in order; `velocities` of all particles, or none.
   void see(const frame::SnapshotPtr& snapshot, const frame::FrameReport& report, std::span<const Vec3> velocities = {});
-  /// What was seen; `masses` of all particles [kg].
+  /// Returns the trajectory; `masses` of all particles [kg].
   Trajectory finish(std::span<const double> masses);
 
  private:
   std::size_t cloths_;
   Vec3 up_;
-  double start_area_, kinetic_, elastic_, low_, high_;  // most, most; of the potential energy
+  // largest kinetic and elastic energy; range of the potential energy
+  double start_area_, kinetic_, elastic_, low_, high_;
   frame::SnapshotPtr last_;
   Trajectory trajectory_;
 };
 
-/// Where a run is to end.
+/// Limits on the length of a run.
 struct FollowLimits {
-  int last_frame = std::numeric_limits<int>::max();  ///< else that of the scene
-  int steps = std::numeric_limits<int>::max();       ///< rejected ones count
-  std::function<bool()> proceed = {};                ///< asked before each frame
+  int last_frame = std::numeric_limits<int>::max();  ///< default: the scene's last frame
+  int steps = std::numeric_limits<int>::max();       ///< maximum number of steps, including rejected ones
+  std::function<bool()> proceed = {};                ///< called before each frame; false interrupts
 };
 
-/// Simulates the frames of the scene. Throws Error(simulation_failed), or Error(interrupted) where `proceed` says no.
+/// Simulates the frames of the scene. Throws Error(simulation_failed), or Error(interrupted) through `proceed`.
 Trajectory follow(const scene::Scene& scene, const FollowLimits& limits = {});
 
-/// Errors of functionals alone; the others are 0.
+/// Errors of the functionals; those of trajectories are 0.
 Errors compare(const Functionals& run, const Functionals& reference);
-/// Errors of a motion against a reference. Particle i of the one is particle same[i] of the other; an empty list: all
-/// are the same. Velocities that one of the two has not are not compared.
+/// Errors of a motion against a reference. Particle i of `run` is compared with particle same[i] of `reference`, or
+/// with particle i if `same` is empty. Velocities are compared only if both have them.
 Errors compare(const Trajectory& run, const Trajectory& reference, const std::vector<std::size_t>& same = {});
 
 /// Longest side of the box around the largest cloth [m].
 double cloth_size(const frame::FrameSnapshot& snapshot);
 
-/// The median of each number.
+/// The median of each value.
 Functionals median(const std::vector<Functionals>& samples);
 
-/// The scene with a mesh that has `refinement` times the cells along each side; whether its cells can be cut so.
+/// can_refine: whether every cloth can have `refinement` times the cells along each side. refine: changes the scene.
 bool can_refine(const scene::Scene& scene, double refinement);
 void refine(scene::Scene& scene, double refinement);
 
-/// Which particles of a scene with twice the cells lie where those of this scene are.
+/// For each particle of the scene, the particle at the same place in the scene with twice the cells along each side.
 std::vector<std::size_t> same_in_twice_as_fine(const scene::Scene& scene);
 
 }  // namespace weft::bench

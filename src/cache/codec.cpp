@@ -19,7 +19,7 @@ namespace {
 template <class Archive>
 constexpr bool kReading = std::is_same_v<Archive, ByteReader>;
 
-// Values that memory may not hold in any state.
+// Bytes may only be turned into values that the type allows.
 template <class Archive, class Value>
 void serialize_byte(Archive& archive, Value& value, Value last) {
   auto byte = static_cast<std::uint8_t>(value);
@@ -33,11 +33,11 @@ void serialize_flag(Archive& archive, bool& flag) {
   serialize_byte(archive, flag, true);
 }
 
-// Products of four lengths are finite in single precision, with which pictures are drawn; what falls for an hour is
-// 6.4e7 m away.
+// Limit on coordinates, in metres: products of four of them are finite in single precision, in which pictures are
+// drawn. For comparison, an object that falls for an hour is 6.4e7 m away.
 constexpr double kFarthest = 1e9;
 
-// Also of all else that a frame holds: angles, shares, intensities.
+// Also applies to all other numbers of a frame: angles, fractions, intensities.
 void check_finite(double number) {
   if (!(std::abs(number) <= kFarthest))
     throw std::runtime_error(fmt::format("a number is not finite, or beyond {:g}", kFarthest));
@@ -69,7 +69,7 @@ void serialize_optional(Archive& archive, std::optional<Value>& value) {
   serialize_finite(archive, *value);
 }
 
-// In planes; the number of entries is known.
+// Serialises entries in planes; their number is known.
 template <class Entry>
 void serialize_planes(ByteWriter& archive, std::vector<Entry>& list) {
   const std::size_t count = list.size(), start = archive.bytes.size();
@@ -114,7 +114,7 @@ void serialize(Archive& archive, frame::Stage& stage) {
   serialize_finite(archive, stage.heat_max);
 }
 
-/// Pictures of all surfaces, each once; paints name them by number.
+/// The textures of all surfaces, each once; paints refer to them by index.
 using Textures = std::vector<std::shared_ptr<const frame::Texture>>;
 
 Textures textures_of(const Surfaces& surfaces) {
@@ -132,21 +132,22 @@ Textures textures_of(const Surfaces& surfaces) {
 
 template <class Archive>
 void serialize(Archive& archive, Textures& textures) {
-  constexpr std::size_t kLeastTexture = 16;  // [bytes]
+  constexpr std::size_t kMinTextureBytes = 16;  // [bytes]
   serialize_each(
       archive, textures,
       [&](std::shared_ptr<const frame::Texture>& pointer) {
         frame::Texture texture = pointer ? *pointer : frame::Texture{};
         serialize_values(archive, texture.width, texture.height);
         serialize_plain(archive, texture.rgba);
-        constexpr int kMost = 1 << 15;  // pixels of a side
-        const bool sized = texture.width > 0 && texture.height > 0 && texture.width < kMost && texture.height < kMost;
+        constexpr int kMaxTextureSide = 1 << 15;  // limit of a side [pixels]
+        const bool sized = texture.width > 0 && texture.height > 0 && texture.width < kMaxTextureSide &&
+                           texture.height < kMaxTextureSide;
         if (!sized || texture.rgba.size() != 4 * static_cast<std::size_t>(texture.width) * texture.height)
           throw std::runtime_error("a picture has not its size");
-        // Paints that are written are known by the picture that they have.
+        // Textures are not copied when writing, as paints are matched to them by pointer.
         if constexpr (kReading<Archive>) pointer = std::make_shared<const frame::Texture>(std::move(texture));
       },
-      kLeastTexture);
+      kMinTextureBytes);
 }
 
 template <class Archive>
@@ -187,7 +188,7 @@ void serialize(Archive& archive, frame::Appearance& look, const Textures& textur
 
 template <class Archive>
 void serialize(Archive& archive, frame::Surface& surface, const Textures& textures) {
-  constexpr std::size_t kLeastPart = 100;  // [bytes]
+  constexpr std::size_t kMinPartBytes = 100;  // [bytes]
   serialize_plain(archive, surface.name);
   serialize_byte(archive, surface.kind, frame::ObjectKind::rope);
   serialize_flag(archive, surface.visible);
@@ -204,7 +205,7 @@ void serialize(Archive& archive, frame::Surface& surface, const Textures& textur
         serialize_plain(archive, part.name);
         serialize(archive, part.appearance, textures);
       },
-      kLeastPart);
+      kMinPartBytes);
   serialize_plain(archive, surface.passed_through);
   serialize_plain(archive, surface.part_of_triangle);
   serialize_plain(archive, surface.paint_uv);
@@ -237,8 +238,8 @@ void serialize(Archive& archive, frame::Light& light) {
   serialize_finite(archive, light.softness);
 }
 
-// Its frame and time are those of the snapshot. All members are named, so that a new one does not compile before it is
-// written too; the format then has another version.
+// Frame and time are taken from the snapshot. All members are named, so that a new one causes a compile error until it
+// is serialised and the format version raised.
 template <class Archive>
 void serialize(Archive& archive, frame::FrameReport& report) {
   auto& [frame, time, simulate, collide, forces, preconditioner, linear, steps, rejected_steps, inexact_steps,
@@ -269,7 +270,7 @@ void serialize(Archive& archive, frame::FrameReport& report) {
       archive, warnings, [&](std::string& text) { serialize_plain(archive, text); }, sizeof(std::size_t));
 }
 
-// What is shared and what a frame has of its own, but for the points of its surfaces.
+// Data of a frame without the positions of its surfaces.
 struct FrameHead {
   double time = 0;
   std::vector<frame::Camera> cameras;
@@ -279,12 +280,12 @@ struct FrameHead {
 
 template <class Archive>
 void serialize(Archive& archive, FrameHead& head) {
-  constexpr std::size_t kLeastCamera = 121, kLeastLight = 129;  // [bytes], without a name
+  constexpr std::size_t kMinCameraBytes = 121, kMinLightBytes = 129;  // [bytes], without a name
   serialize_finite(archive, head.time);
   serialize_each(
-      archive, head.cameras, [&](frame::Camera& camera) { serialize(archive, camera); }, kLeastCamera);
+      archive, head.cameras, [&](frame::Camera& camera) { serialize(archive, camera); }, kMinCameraBytes);
   serialize_each(
-      archive, head.lights, [&](frame::Light& light) { serialize(archive, light); }, kLeastLight);
+      archive, head.lights, [&](frame::Light& light) { serialize(archive, light); }, kMinLightBytes);
   serialize(archive, head.report);
 }
 
@@ -343,7 +344,7 @@ std::string encode_surfaces(const Surfaces& surfaces) {
 }
 
 Surfaces decode_surfaces(std::string_view payload) {
-  constexpr std::size_t kLeastSurface = 200;  // [bytes], without name, faces and uv
+  constexpr std::size_t kMinSurfaceBytes = 200;  // [bytes], without name, faces and uv
   ByteReader reader{payload};
   frame::Stage stage;
   serialize(reader, stage);
@@ -351,7 +352,7 @@ Surfaces decode_surfaces(std::string_view payload) {
   serialize(reader, textures);
   std::vector<frame::Surface> list;
   serialize_each(
-      reader, list, [&](frame::Surface& surface) { serialize(reader, surface, textures); }, kLeastSurface);
+      reader, list, [&](frame::Surface& surface) { serialize(reader, surface, textures); }, kMinSurfaceBytes);
   Surfaces surfaces{std::make_shared<const frame::Stage>(stage), {}, {}};
   for (frame::Surface& surface : list) {
     std::vector<Vec3>& positions = surfaces.positions.emplace_back();
@@ -374,7 +375,7 @@ std::string encode_frame(const frame::FrameSnapshot& snapshot, const frame::Fram
     frame::SurfaceState state = snapshot.states[s];
     const std::vector<Vec3>& start = surfaces.positions.at(s);
     if (state.positions.size() != start.size()) throw std::logic_error("a surface has lost or gained vertices");
-    // Bit for bit: -0 is not 0.
+    // Compares bits, since -0 is not 0.
     bool moved = std::memcmp(state.positions.data(), start.data(), start.size() * sizeof(Vec3)) != 0;
     serialize_flag(writer, moved);
     if (moved) serialize_planes(writer, state.positions);

@@ -19,10 +19,10 @@ static_assert(std::endian::native == std::endian::little && sizeof(std::size_t) 
               "plain values are written as they are in memory");
 
 constexpr std::size_t kCheckedSize = 48, kHeaderSize = 56;
-// The last mantissa bits of positions are noise to any level; 3 and more cost time and gain nothing.
+// The last mantissa bits of positions do not compress at any level; levels 3 and above take longer without gain.
 constexpr int kLevel = 1;
-// No block of Zstandard holds more than 128 KiB or takes fewer than 4 bytes: more is promised only by broken files.
-constexpr std::uint64_t kLargestRatio = 32768;
+// A block of Zstandard holds at most 128 KiB and takes at least 4 bytes; only damaged files claim a higher ratio.
+constexpr std::uint64_t kMaxCompressionRatio = 32768;
 
 struct Header {
   char magic[8] = {};
@@ -97,7 +97,7 @@ Label verify(std::string_view bytes) {
 Content unpack(std::string_view bytes) {
   const Header header = check(bytes);
   const std::string_view stored = bytes.substr(kHeaderSize);
-  if (header.size / kLargestRatio > stored.size() ||
+  if (header.size / kMaxCompressionRatio > stored.size() ||
       ZSTD_getFrameContentSize(stored.data(), stored.size()) != header.size)
     throw std::runtime_error("the size of its content is wrong");
   Content content{header.label, std::string(header.size, '\0')};

@@ -1,10 +1,11 @@
-// The form that all binary files of a frame cache share. Little endian:
+// Container format of all binary files of a frame cache. Little endian:
 //
-//   offset  size  what
-//        0     8  89 57 45 46 54 0D 0A 1A ("\x89WEFT\r\n\x1A": text tools and line-end conversions show at once)
+//   offset  size  content
+//        0     8  89 57 45 46 54 0D 0A 1A ("\x89WEFT\r
+// \x1A": reveals text mode and line-end conversions)
 //        8     4  format version, kFormatVersion
 //       12     4  kind: 1 surfaces, 2 frame, 3 state
-//       16     4  frame k, signed (0 for surfaces; the state of a preroll is below 0)
+//       16     4  frame k, signed (0 for surfaces; negative for the state of a preroll)
 //       20     4  reserved, 0
 //       24     8  scene hash
 //       32     8  size of the payload
@@ -36,10 +37,10 @@ struct Content {
 
 std::string pack(const Label& label, std::string_view payload);
 
-/// All but the payload's own meaning is checked. Throws std::runtime_error, which says what is wrong.
+/// Checks everything except the meaning of the payload. Throws std::runtime_error with the defect.
 Content unpack(std::string_view bytes);
 
-/// The same without unpacking: sizes and checksum. Throws std::runtime_error.
+/// Checks sizes and checksum without decompressing. Throws std::runtime_error.
 Label verify(std::string_view bytes);
 
 }  // namespace weft::cache

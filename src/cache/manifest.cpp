@@ -18,8 +18,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "weft frame cache";
 constexpr std::array kKinds{"cloth", "obstacle", "character", "rope"};
-constexpr int kMostFrames = 100'001;  // of a scene
-constexpr int kMostPrerollFrames = 10'000'000;
+constexpr int kMaxSceneFrames = 100'001;  // of a scene
+constexpr int kMaxPrerollFrames = 10'000'000;
 
 void require(bool good, const char* what) {
   if (!good) throw std::runtime_error(what);
@@ -65,7 +65,7 @@ Manifest parse(const Json& json) {
   require(is_plain_name(manifest.scene), "scene: expected a name");
   manifest.title = json.at("title").get<std::string>();
   manifest.scene_hash = parse_hash(json.at("scene_hash").get<std::string>());
-  // Caches of before know neither.
+  // Older caches have neither.
   if (json.contains("simulation_hash"))
     manifest.simulation_hash = parse_hash(json.at("simulation_hash").get<std::string>());
   if (json.contains("former_hashes"))
@@ -73,8 +73,8 @@ Manifest parse(const Json& json) {
       manifest.former_hashes.push_back(parse_hash(hash.get<std::string>()));
   manifest.fps = json.at("fps").get<double>();
   require(std::isfinite(manifest.fps) && manifest.fps > 0, "fps: expected > 0 frames a second");
-  manifest.frame_count = parse_count(json, "frame_count", 1, kMostFrames);
-  manifest.preroll_frames = parse_count(json, "preroll_frames", 0, kMostPrerollFrames);
+  manifest.frame_count = parse_count(json, "frame_count", 1, kMaxSceneFrames);
+  manifest.preroll_frames = parse_count(json, "preroll_frames", 0, kMaxPrerollFrames);
   manifest.width = parse_count(json, "width", 16, 8192);
   manifest.height = parse_count(json, "height", 16, 8192);
   manifest.camera = json.at("camera").get<std::string>();

@@ -1,4 +1,4 @@
-// What the files of a frame cache are called.
+// Names of the files of a frame cache.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ inline constexpr const char *kManifestFile = "manifest.json", *kSceneFile = "sce
                             *kSurfacesFile = "surfaces.weft", *kStateFile = "state.weft", *kLockFile = "lock",
                             *kOutputsFile = "outputs.txt";  // of the run that fills it
 
-/// What all .weft files begin with, and the manifest.
+/// First bytes of all .weft files, and of the manifest.
 inline constexpr std::string_view kMagic = "\x89WEFT\r\n\x1A",
                                   kManifestStart = "{\n  \"format\": \"weft frame cache\",";
 
@@ -23,7 +23,7 @@ inline std::string frame_file(int frame) {
   return fmt::format("frame_{:05}.weft", frame);
 }
 
-/// The frame whose file is called so.
+/// The frame whose file has this name; nullopt if it is not the file of a frame.
 inline std::optional<int> frame_of(std::string_view name) {
   constexpr std::string_view kBefore = "frame_", kAfter = ".weft";
   if (!name.starts_with(kBefore) || !name.ends_with(kAfter)) return std::nullopt;

@@ -1,4 +1,4 @@
-// A frame cache on disk, read by any number of processes at once, also while it is written.
+// Reads a frame cache from disk. Any number of processes may read it at the same time, also while it is written.
 #pragma once
 
 #include <filesystem>
@@ -14,19 +14,18 @@ namespace weft::cache {
 
 /// Bytes of Simulation::save.
 struct SolverState {
-  int frame = 0;  ///< it is that of; below 0 in the preroll
+  int frame = 0;  ///< frame of the state; negative in the preroll
   std::string bytes;
 };
 
-/// Whose looks (colours, cameras, lights) the frames may have: those of the scene, or also those that it had before,
-/// which a --resume has not come to yet.
+/// Frames with which looks (colours, cameras, lights) are accepted: only those of the scene, or also former ones, which
+/// a --resume has not yet replaced.
 enum class Looks { of_scene, any };
 
-/// All functions may be called from several threads, and throw Error(asset_unreadable) with the name of the file and
-/// what is wrong with it.
+/// All functions are thread-safe, and throw Error(asset_unreadable) with the file name and the defect.
 class Reader {
  public:
-  /// Reads what all frames share. A cache that has no frame yet is none that is broken.
+  /// Reads what all frames share. A cache without frames is valid.
   explicit Reader(std::filesystem::path folder, Looks looks = Looks::of_scene);
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -34,7 +33,7 @@ class Reader {
   /// The effective scene as TOML, for people; drawing does not need it.
   std::string scene_text() const;
 
-  /// Frames whose files are there now, ascending; looked up at each call.
+  /// Frames whose files exist now, ascending; looked up at each call.
   std::vector<int> frames() const;
   bool has(int frame) const;
 
@@ -42,10 +41,10 @@ class Reader {
   frame::SnapshotPtr snapshot(int frame) const { return read(frame).snapshot; }
   frame::FrameReport report(int frame) const { return read(frame).report; }
 
-  /// Reads the file of a frame without unpacking it.
+  /// Checks the file of a frame without decompressing it.
   void verify(int frame) const;
 
-  /// Nothing where no state was kept.
+  /// nullopt if no state is stored.
   std::optional<SolverState> state() const;
 
  private:
@@ -56,10 +55,10 @@ class Reader {
   std::filesystem::path folder_;
   Looks looks_;
   Manifest manifest_;
-  std::optional<Surfaces> surfaces_;  // absent before frame 0 is there
+  std::optional<Surfaces> surfaces_;  // absent until frame 0 exists
 };
 
-/// True for a folder with a manifest, whether it can be read or not.
+/// Whether the folder has a manifest, readable or not.
 bool is_cache(const std::filesystem::path& folder);
 
 }  // namespace weft::cache

@@ -29,7 +29,7 @@ bool is_name_of_cache(std::string_view name) {
          name == kLockFile || name == kOutputsFile || frame_of(name);
 }
 
-/// What a file of this name begins with that Weft has written; nullopt for those that say nothing of themselves.
+/// First bytes of a file of this name as Weft writes it; nullopt if they are not fixed.
 std::optional<std::string_view> beginning_of(std::string_view name) {
   if (name == kManifestFile) return kManifestStart;
   if (name == kOutputsFile) return "-";
@@ -37,7 +37,7 @@ std::optional<std::string_view> beginning_of(std::string_view name) {
   return std::nullopt;
 }
 
-/// Zeros stand where the machine went down before the disk had the file.
+/// Accepts leading zeros: the machine may have crashed before the content was on disk.
 bool begins_as_written(const fs::path& file) {
   const auto beginning = beginning_of(file.filename().string());
   if (!beginning) return false;
@@ -45,8 +45,8 @@ bool begins_as_written(const fs::path& file) {
   return start == *beginning || (!start.empty() && start.find_first_not_of('\0') == std::string::npos);
 }
 
-/// Whether Weft has written what has this name in the folder: the file itself says so, or of the scene the files beside
-/// it do. Nothing is lost with an empty file.
+/// Whether Weft has written the file of this name. The first bytes show it, or for the scene those of the files beside
+/// it. Empty files count as well, as nothing is lost with them.
 bool is_ours(const fs::path& folder, const std::string& name) {
   const std::string_view kept = final_name_of(name);
   if (!kept.empty()) return is_name_of_cache(kept);
@@ -104,7 +104,7 @@ Lock::Lock(fs::path folder) : folder_(std::move(folder)) {
                     "{}: another process is at work on it; wait for its end, or give another name", folder_.string());
       throw Error(ExitCode::output_failed, "{}: cannot be locked: {}", file.string(), std::strerror(error));
     }
-    // The one who had it may have taken the folder away in between.
+    // The previous owner may have removed the folder in the meantime.
   } while (!same_file(descriptor_, file));
 }
 
@@ -118,7 +118,7 @@ bool Lock::empty() const {
 }
 
 void Lock::clear() const {
-  // First those that only the manifest tells from other files, last those that could be taken for a cache with it.
+  // The scene first, as only the manifest identifies it; then the manifest, without which the rest is no cache.
   for (const char* name : {kSceneFile, kManifestFile})
     if (is_ours(folder_, name)) ::unlink((folder_ / name).c_str());
   for (const std::string& name : names_in(folder_))
@@ -150,7 +150,7 @@ void Writer::add(const frame::FrameSnapshot& snapshot, const frame::FrameReport&
   }
   const std::string content =
       pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_));
-  // Nobody of ours makes one meanwhile: the folder is locked.
+  // No other process of Weft can create it meanwhile, since the folder is locked.
   if (own_frames_.insert(snapshot.frame).second) keep_if_made_meanwhile(folder_ / frame_file(snapshot.frame));
   write(frame_file(snapshot.frame), content);
   bytes_added_ += content.size();
@@ -161,7 +161,7 @@ void Writer::save_state(int frame, std::string_view bytes) {
 }
 
 void Writer::write(const std::string& name, const std::string& content) {
-  // Readers find out by the checksum where the machine died before the disk had it all.
+  // If the machine crashes before the data are on disk, readers notice it by the checksum.
   write_file(folder_ / name, content, Flush::no);
 }
 

@@ -1,4 +1,4 @@
-// Fills a frame cache. Every file appears under its name only when it is whole.
+// Writes a frame cache. Each file gets its name only when it is complete.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +13,11 @@
 
 namespace weft::cache {
 
-/// The right to write to a folder, which one process has at a time and loses with its life.
+/// Exclusive right to write to a folder; only one process has it at a time, and it ends with that process.
 class Lock {
  public:
-  /// Makes the folder if it is missing. Throws Error(output_failed) if another process has the right, if the folder
-  /// cannot be written, or if it holds files that are none of a cache.
+  /// Creates the folder if it is missing. Throws Error(output_failed) if another process holds the lock, if the folder
+  /// cannot be written, or if it contains files that do not belong to a cache.
   explicit Lock(std::filesystem::path folder);
   ~Lock();
   Lock(const Lock&) = delete;
@@ -25,11 +25,11 @@ class Lock {
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Takes all files of a cache away, the manifest before frames, so that what is left can never be taken for a cache.
+  /// Removes all files of a cache, the manifest before the frames, so that the remains never look like a cache.
   void clear() const;
-  /// The same, and the folder.
+  /// Removes all files of a cache and the folder.
   void remove() const;
-  /// Files of the cache that are there, without that of the lock.
+  /// Whether the folder contains no files of the cache other than those of the lock and the list of outputs.
   bool empty() const;
 
  private:
@@ -40,17 +40,17 @@ class Lock {
 /// All functions throw Error(output_failed).
 class Writer {
  public:
-  /// Writes the manifest and the scene. The folder is empty, or a cache of the same scene to go on with.
+  /// Writes the manifest and the scene. The folder must be empty, or a cache of the same scene that is continued.
   Writer(const Lock& lock, Manifest manifest, std::string_view scene_text);
 
-  /// Frame 0 comes first, unless the folder has it already. A frame that was there at the beginning is replaced; one
-  /// that somebody else has made since then is kept, with Error(output_failed).
+  /// Frame 0 must come first, unless the folder already has it. Replaces a frame that existed when the writer was
+  /// created; keeps one that another program has created since, and throws Error(output_failed).
   void add(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report);
 
-  /// The state of `frame`, in place of an earlier one. All frames up to it have been added.
+  /// Replaces the stored state by that of `frame`. All frames up to it must have been added.
   void save_state(int frame, std::string_view bytes);
 
-  /// Size of all frames that were added, and of what they share.
+  /// Size of all added frames and of the data that they share.
   std::uintmax_t bytes_added() const { return bytes_added_; }
 
  private:
@@ -59,7 +59,7 @@ class Writer {
   std::filesystem::path folder_;
   Manifest manifest_;
   std::optional<Surfaces> surfaces_;
-  std::set<int> own_frames_;  // whose files may be replaced
+  std::set<int> own_frames_;  // frames whose files may be replaced
   std::uintmax_t bytes_added_ = 0;
 };
 

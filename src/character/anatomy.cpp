@@ -12,31 +12,31 @@
 namespace weft::character {
 namespace {
 
-/// Directions from shorter lengths than this, relative to others, are noise.
-constexpr double kNothing = 1e-9;
+/// Vectors shorter than this, relative to others, have no reliable direction.
+constexpr double kNegligibleLength = 1e-9;
 
-/// How much of the postures, in the mean, must show how a joint is turned; a guess makes up for what they lack. Hinges
-/// show by the square of the sine of their angle, so that elbows which bend by 13° are no longer guessed.
-constexpr double kEnough = 0.05;
+/// Minimum mean weight of the postures that determine the axes of a joint; a guess fills the remainder. The weight of a
+/// hinge is the squared sine of its angle, so elbows bent by 13° need no guess.
+constexpr double kMinDeterminedWeight = 0.05;
 
-/// A trunk that stands leans by less (people who walk: 2 to 5°, who stoop: above 15°); its single bones lean by less.
-constexpr double kStanding = 5 * kDegree, kStandingBone = 20 * kDegree;
+/// Scale of the lean of a standing trunk (people walk at 2 to 5°, stoop above 15°), and of its single bones.
+constexpr double kStandingLean = 5 * kDegree, kStandingBoneLean = 20 * kDegree;
 
 Vec3 unit(const Vec3& v) {
   const double length = v.norm();
-  return length > kNothing ? Vec3(v / length) : Vec3(Vec3::Zero());
+  return length > kNegligibleLength ? Vec3(v / length) : Vec3(Vec3::Zero());
 }
 
 double angle(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// 1 for no angle, falling off beyond `width`.
-double within(double angle, double width) {
+/// 1 for angle 0, falling to 0 beyond `width`.
+double falloff(double angle, double width) {
   return std::exp(-(angle / width) * (angle / width));
 }
 
-/// The first node at or below `node` whose name has the word, in lower case, in it; -1 if there is none.
+/// The first node at or below `node` whose lower-case name contains the word; -1 if there is none.
 Index find_below(const Character& character, Index node, std::string_view word) {
   std::vector<char> below(character.nodes.size(), 0);
   below[node] = 1;
@@ -51,26 +51,27 @@ Index find_below(const Character& character, Index node, std::string_view word) 
   return -1;
 }
 
-/// Finds the axes of a body in those of the joints; see find_anatomy.
+/// Finds the axes of the body parts relative to those of the joints; see find_anatomy.
 class AnatomyFinder {
  public:
   AnatomyFinder(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const Flat> flat, const Vec3& up)
       : skeleton_(skeleton), postures_(postures), flat_(flat), up_(up) {
     own_.fill(Quat::Identity());
-    // Where nothing tells left from right both skeletons have the same axes of the world.
+    // If left and right cannot be told apart, both skeletons use the same world axis.
     level_ = up.unitOrthogonal();
   }
 
   std::array<Quat, kJointCount> find() {
     for (const Joint joint : {Joint::hips, Joint::spine, Joint::chest, Joint::neck, Joint::head})
-      if (skeleton_.has(joint)) find_trunk(joint);
+      if (skeleton_.has(joint)) find_trunk_axes(joint);
     for (const bool right : {false, true}) {
       const Joint chest = trunk_joint();
-      if (const Joint shoulder = on_side(Joint::left_shoulder, right); skeleton_.has(shoulder)) take(shoulder, chest);
-      find_limb(on_side(Joint::left_upper_arm, right), on_side(Joint::left_lower_arm, right), chest, right);
-      find_hand(on_side(Joint::left_hand, right), on_side(Joint::left_lower_arm, right), right);
-      find_limb(on_side(Joint::left_upper_leg, right), on_side(Joint::left_lower_leg, right), Joint::hips, right);
-      find_foot(right);
+      if (const Joint shoulder = on_side(Joint::left_shoulder, right); skeleton_.has(shoulder))
+        copy_axes(shoulder, chest);
+      find_limb_axes(on_side(Joint::left_upper_arm, right), on_side(Joint::left_lower_arm, right), chest, right);
+      find_hand_axes(on_side(Joint::left_hand, right), on_side(Joint::left_lower_arm, right), right);
+      find_limb_axes(on_side(Joint::left_upper_leg, right), on_side(Joint::left_lower_leg, right), Joint::hips, right);
+      find_foot_axes(right);
     }
     return own_;
   }
@@ -80,7 +81,7 @@ class AnatomyFinder {
     return posture.rotations[place_of(joint)] * (own_[place_of(joint)] * of);
   }
 
-  /// The sum over all postures of a direction in the world, in the axes of the joint.
+  /// Sum over all postures of a world direction, in the axes of the joint.
   template <class Direction>
   Vec3 sum(Joint joint, const Direction& direction) const {
     Vec3 sum = Vec3::Zero();
@@ -89,15 +90,16 @@ class AnatomyFinder {
     return sum;
   }
 
-  /// The sum of what each posture shows and, as far as that is not enough, of a guess. `weight`: of what it shows.
+  /// Sum of the directions that the postures determine; a guess makes up for missing weight. `weight`: of one posture.
   template <class Weight, class Shown, class Guess>
   Vec3 sum(Joint joint, const Weight& weight, const Shown& shown, const Guess& guess) const {
-    double shows = 0;
-    for (std::size_t k = 0; k < postures_.size(); ++k) shows += weight(postures_[k], k);
-    const double lacks = std::max(0.0, kEnough - shows / static_cast<double>(postures_.size()));
+    double weight_sum = 0;
+    for (std::size_t k = 0; k < postures_.size(); ++k) weight_sum += weight(postures_[k], k);
+    const double missing_weight =
+        std::max(0.0, kMinDeterminedWeight - weight_sum / static_cast<double>(postures_.size()));
     return sum(joint, [&](const Posture& p, std::size_t k) {
       Vec3 sum = weight(p, k) * shown(p, k);
-      if (lacks > 0) sum += lacks * guess(p, k);
+      if (missing_weight > 0) sum += missing_weight * guess(p, k);
       return sum;
     });
   }
@@ -113,38 +115,38 @@ class AnatomyFinder {
 
   Vec3 along(const Posture& posture, Joint joint) const { return unit(skeleton_.bone(posture, joint)); }
 
-  /// The chest, or what a skeleton without one has.
+  /// The chest, or the joint that replaces it in a skeleton without one.
   Joint trunk_joint() const {
     for (const Joint joint : {Joint::chest, Joint::spine})
       if (skeleton_.has(joint)) return joint;
     return Joint::hips;
   }
 
-  /// Gives a joint the axes of another, in the mean.
-  void take(Joint joint, Joint from) {
+  /// Copies the mean axes of another joint.
+  void copy_axes(Joint joint, Joint from) {
     own_[place_of(joint)] =
         axes_along(sum(joint, axis_of(from, Vec3::UnitZ())), sum(joint, axis_of(from, Vec3::UnitX())));
   }
 
-  /// Gives a joint axes along its bone; to one without a bone those of its parent.
-  void take_bone(Joint joint, Joint parent, const Vec3& across) {
+  /// Aligns the axes of a joint with its bone; a joint without a bone gets those of its parent.
+  void align_with_bone(Joint joint, Joint parent, const Vec3& across) {
     const Vec3 z = sum(joint, [&](const Posture& p, std::size_t) { return along(p, joint); });
-    if (unit(z).isZero()) return take(joint, parent);
+    if (unit(z).isZero()) return copy_axes(joint, parent);
     own_[place_of(joint)] = axes_along(z, across);
   }
 
-  void find_trunk(Joint joint) {
+  void find_trunk_axes(Joint joint) {
     const auto bone = [&](const Posture& p, std::size_t) {
       const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
       if (joint == Joint::head) return unit(p.places[place_of(joint)] - p.places[place_of(below)]);
-      // Controls of rigs may lie above what they move.
+      // Control nodes of rigs may lie above the joint that they move.
       const Vec3 up_the_bone = along(p, joint), up_the_trunk = unit(skeleton_.trunk(p));
       return up_the_bone.dot(up_the_trunk) < 0 ? up_the_trunk : up_the_bone;
     };
     const auto standing = [&](const Posture& p, std::size_t k) {
       const Vec3 along = bone(p, k);
-      return within(angle(skeleton_.trunk(p), up_), kStanding) *
-             (along.isZero() ? 1 : within(angle(along, up_), kStandingBone));
+      return falloff(angle(skeleton_.trunk(p), up_), kStandingLean) *
+             (along.isZero() ? 1 : falloff(angle(along, up_), kStandingBoneLean));
     };
     const Vec3 z = sum(joint, standing, upright(), bone);
     const Vec3 x = sum(joint, [&](const Posture& p, std::size_t) {
@@ -153,17 +155,17 @@ class AnatomyFinder {
       if (joint == Joint::hips && !hips.isZero()) return Vec3(hips);
       return shoulders.isZero() || joint == Joint::spine ? Vec3(hips + shoulders) : shoulders;
     });
-    // The hip joints belong to the hips, so that they say best how these are turned.
+    // The hip joints belong to the hips and therefore define their rotation best.
     const Vec3 line = unit(x), beside = z - z.dot(line) * line;
     own_[place_of(joint)] = axes_along(joint == Joint::hips && beside.norm() > 0.1 * z.norm() ? beside : z, x);
   }
 
-  /// Upper and lower arm or leg.
-  void find_limb(Joint upper, Joint lower, Joint trunk, bool right) {
+  /// Axes of upper and lower arm or leg.
+  void find_limb_axes(Joint upper, Joint lower, Joint trunk, bool right) {
     if (!skeleton_.has(upper)) return;
     const bool arm = place_of(upper) < place_of(on_side(Joint::left_upper_leg, right));
-    // The guess: arms stretched out sideways bend forward, legs straight down backward, and turn from there to where
-    // they are on the shortest way.
+    // Guess: arms stretched out sideways bend forward, legs that hang straight down bend backward. From there they
+    // rotate to their direction along the shortest arc.
     const auto guess = [&](const Posture& p, std::size_t) {
       const Vec3 left = axis(p, trunk, Vec3::UnitX()), back = axis(p, trunk, Vec3::UnitY());
       const Vec3 from = arm ? Vec3(right ? -left : left) : Vec3(-axis(p, trunk, Vec3::UnitZ()));
@@ -174,24 +176,24 @@ class AnatomyFinder {
     const auto bent = [&](const Posture& p, std::size_t) {
       return skeleton_.has(lower) ? along(p, upper).cross(along(p, lower)).squaredNorm() : 0;
     };
-    take_bone(upper, trunk, sum(upper, bent, bend, guess));
+    align_with_bone(upper, trunk, sum(upper, bent, bend, guess));
     if (!skeleton_.has(lower)) return;
     const auto hinge = [&](const Posture& p, std::size_t) {
       return Vec3(shortest_rotation(along(p, upper), along(p, lower)) * axis(p, upper, Vec3::UnitX()));
     };
-    take_bone(lower, upper, sum(lower, bent, bend, hinge));
+    align_with_bone(lower, upper, sum(lower, bent, bend, hinge));
   }
 
-  void find_hand(Joint hand, Joint lower_arm, bool right) {
+  void find_hand_axes(Joint hand, Joint lower_arm, bool right) {
     if (!skeleton_.has(hand)) return;
-    if (!skeleton_.has(lower_arm)) return take(hand, trunk_joint());
-    take_bone(hand, lower_arm, sum(hand, [&](const Posture& p, std::size_t) {
-                const Vec3 palm = p.knuckles[right].cross(skeleton_.bone(p, hand));
-                return palm.isZero() ? axis(p, lower_arm, Vec3::UnitX()) : unit(palm);
-              }));
+    if (!skeleton_.has(lower_arm)) return copy_axes(hand, trunk_joint());
+    align_with_bone(hand, lower_arm, sum(hand, [&](const Posture& p, std::size_t) {
+                      const Vec3 palm = p.knuckles[right].cross(skeleton_.bone(p, hand));
+                      return palm.isZero() ? axis(p, lower_arm, Vec3::UnitX()) : unit(palm);
+                    }));
   }
 
-  void find_foot(bool right) {
+  void find_foot_axes(bool right) {
     const Joint shin = on_side(Joint::left_lower_leg, right), foot = on_side(Joint::left_foot, right),
                 toes = on_side(Joint::left_toes, right);
     if (!skeleton_.has(foot) || !skeleton_.has(shin)) return;
@@ -200,7 +202,7 @@ class AnatomyFinder {
       return skeleton_.has(toes) ? along(p, foot)
                                  : Vec3(axis(p, shin, Vec3::UnitZ()).cross(axis(p, shin, Vec3::UnitX())));
     };
-    // The guess: at a right angle to the shin, with straight toes.
+    // Guess: at a right angle to the shin, with straight toes.
     own_[place_of(foot)] =
         axes_along(sum(foot, flat, upright(), axis_of(shin, -Vec3::UnitZ())), sum(foot, flat, forward, forward));
     if (!skeleton_.has(toes)) return;
@@ -219,9 +221,9 @@ class AnatomyFinder {
 }  // namespace
 
 Quat axes_along(const Vec3& z, const Vec3& x) {
-  const Vec3 first = z.norm() > kNothing ? Vec3(z.normalized()) : Vec3(Vec3::UnitZ());
+  const Vec3 first = z.norm() > kNegligibleLength ? Vec3(z.normalized()) : Vec3(Vec3::UnitZ());
   Vec3 second = x - x.dot(first) * first;
-  if (!(second.norm() > kNothing * std::max(1.0, x.norm()))) second = first.unitOrthogonal();
+  if (!(second.norm() > kNegligibleLength * std::max(1.0, x.norm()))) second = first.unitOrthogonal();
   second.normalize();
   Mat3 axes;
   axes << second, first.cross(second), first;
@@ -271,7 +273,7 @@ Posture Skeleton::at(const Pose& pose) const {
 
 Vec3 Skeleton::bone(const Posture& posture, Joint joint) const {
   const std::size_t from = place_of(joint);
-  std::size_t last = from;  // of its limb
+  std::size_t last = from;  // last joint of its limb
   if (joint <= Joint::head) {
     last = place_of(Joint::head);
   } else {

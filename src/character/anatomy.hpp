@@ -1,4 +1,4 @@
-// Skeletons by the parts that their joints have in a body, whatever axes the joints themselves have.
+// Axes of body parts, independent of the axes that the joints of a skeleton have.
 #pragma once
 
 #include <array>
@@ -11,18 +11,19 @@
 
 namespace weft::character {
 
-/// A skeleton and its node for each of joint_names(); -1 where it has none.
+/// A skeleton, with its node for each of joint_names(); -1 if it has none.
 struct Rig {
   const Character& character;
   std::span<const Index> joints;
 };
 
-/// Where the joints of a skeleton are at a moment, in the world. What is said of joints that it has not means nothing.
+/// Positions and rotations of the joints of a skeleton in one pose, in the world. Missing joints have meaningless
+/// values.
 struct Posture {
   std::array<Vec3, kJointCount> places;
   std::array<Quat, kJointCount> rotations;
-  std::array<Vec3, kJointCount> ends;  ///< mean place of the nodes right below a joint; its own where there are none
-  std::array<Vec3, 2> knuckles;        ///< from the index to the little finger, left and right; zero without them
+  std::array<Vec3, kJointCount> ends;  ///< mean position of the child nodes of a joint; the joint itself if it has none
+  std::array<Vec3, 2> knuckles;        ///< vector from the index to the little finger, left and right; zero if unknown
 };
 
 class Skeleton {
@@ -32,44 +33,45 @@ class Skeleton {
   bool has(Joint joint) const { return rig_.joints[place_of(joint)] >= 0; }
   Posture at(const Pose& pose) const;
 
-  /// From a joint to the next that it has: along limbs outward, along the trunk upward, at their ends to what hangs
-  /// there; zero if that is nothing.
+  /// Vector from a joint to the next existing one: outward along limbs, upward along the trunk. At the end of a limb,
+  /// vector to the mean of the child nodes; zero if there are none.
   Vec3 bone(const Posture& posture, Joint joint) const;
-  /// From the right side of the body to the left; zero where a skeleton has neither legs nor arms in pairs.
+  /// Vector from the right side of the body to the left; zero if the skeleton has neither a pair of legs nor of arms.
   Vec3 across_hips(const Posture& posture) const;
   Vec3 across_shoulders(const Posture& posture) const;
-  /// Between the hip joints; that of the hips without legs.
+  /// Midpoint between the hip joints; the position of the hips if there are no legs.
   Vec3 middle_of_hips(const Posture& posture) const;
-  /// From between the hip joints to between the shoulders, or as far up as the trunk goes.
+  /// Vector from between the hip joints to between the shoulders, or to the uppermost joint of the trunk.
   Vec3 trunk(const Posture& posture) const;
-  /// Mean length of the legs from hip to ankle; 0 if there are none.
+  /// Mean length of the legs from hip to ankle; 0 without complete legs.
   double leg_length(const Posture& posture) const;
-  /// Mean length of the arms from shoulder to wrist; 0 if one is not whole.
+  /// Mean length of the arms from shoulder to wrist; 0 if an arm is incomplete.
   double arm_length(const Posture& posture) const;
 
  private:
   Vec3 across(const Posture& posture, Joint left) const;
 
   const Rig rig_;
-  std::array<std::vector<Index>, kJointCount> children_;  // nodes right below a joint
-  std::array<std::array<Index, 2>, 2> fingers_{};         // nodes of index and little finger, left and right; or -1
+  std::array<std::vector<Index>, kJointCount> children_;  // child nodes of each joint
+  std::array<std::array<Index, 2>, 2> fingers_{};  // nodes of index and little finger, left and right; -1: unknown
 };
 
-/// How flat the left and the right foot stand on the floor in a posture, 0 or 1.
+/// Weight 0 to 1 with which the left and the right foot stand flat on the floor in a posture.
 using Flat = std::array<double, 2>;
 
-/// For each joint the rotation from its axes in a body to its own axes. In a body,
-/// - hips, spine, chest, neck and head have x to their left and z up when they stand upright; shoulders the chest's;
-/// - arms and legs have z along the bone and x along the axis about which elbow and knee bend; hands likewise, x out of
-///   the left palm and into the back of the right hand;
-/// - feet and toes have z up when they are flat on the floor, and x toward the toes.
-/// Found from places alone, as means over all postures in which they show: the trunk when it stands, hinges as far as
-/// they are bent, feet where they are flat; so neither the pose in which a file begins nor that of its zero angles
-/// matters. What never shows is guessed from neighbouring joints. `flat`: as many as postures. `up`: unit vector.
+/// Finds, for each joint, the rotation from the axes of its body part to the joint's own axes. Axes of body parts:
+/// - Hips, spine, chest, neck and head: x to their left, z up when the body stands upright. Shoulders: as the chest.
+/// - Arms and legs: z along the bone, x along the hinge axis of elbow or knee. Hands likewise, with x out of the left
+///   palm and into the back of the right hand.
+/// - Feet and toes: z up when they are flat on the floor, x toward the toes.
+/// The axes follow from positions alone, as means over all postures that determine them: the trunk where it stands
+/// upright, hinges weighted by their bend, feet where they are flat. Neither the first pose of a file nor its pose at
+/// zero angles matters. Axes that no posture determines are guessed from neighbouring joints. `flat`: one entry per
+/// posture. `up`: unit vector.
 std::array<Quat, kJointCount> find_anatomy(const Skeleton& skeleton, std::span<const Posture> postures,
                                            std::span<const Flat> flat, const Vec3& up);
 
-/// The rotation whose z axis is that of the first direction and whose x axis comes closest to the second.
+/// The rotation whose z axis has the first direction and whose x axis is as close as possible to the second.
 Quat axes_along(const Vec3& z, const Vec3& x);
 
 }  // namespace weft::character

@@ -1,4 +1,4 @@
-// A body of bones and skin, and the motions that it knows. From a file or made by us, it is the same.
+// A body of bones and skin, and its motions. Characters from files and the built-in mannequin share this type.
 #pragma once
 
 #include <array>
@@ -13,40 +13,39 @@ namespace weft::character {
 
 using Affine = Eigen::Affine3d;
 
-/// One node of the hierarchy. Joints are nodes; so is whatever else has a place in a file.
+/// One node of the hierarchy. Joints are nodes, as is any other object of a file that has a transform.
 struct Node {
   std::string name;
-  Index parent = -1;                  ///< comes before its children; -1 for a root
+  Index parent = -1;                  ///< precedes its children; -1 for a root
   Affine local = Affine::Identity();  ///< node to parent, at rest
 };
 
-/// What moves vertices: at any pose a vertex is where global(node) · offset takes it.
+/// Moves vertices: in any pose the bone takes a vertex to global(node) · offset · vertex.
 struct Bone {
   Index node = 0;
-  Affine offset = Affine::Identity();  ///< mesh to node, in the pose in which the skin was bound
+  Affine offset = Affine::Identity();  ///< mesh to node, in the pose in which the skin is bound
 };
 
 struct Influence {
   Index bone = 0;
-  double weight = 0;  ///< those of one vertex add up to 1
+  double weight = 0;  ///< weights of one vertex sum to 1
 };
 
-/// A displaced copy of the mesh that is blended in by a weight.
+/// A displaced copy of the mesh that is blended in with a weight.
 struct MorphTarget {
   std::string name;
   std::vector<Vec3> displacements;  ///< per vertex of the mesh as bound [m]
   double weight = 0;                ///< at rest
 };
 
-/// A value at times [s] that strictly increase; linear between them (rotations along the shortest way), constant
-/// outside.
+/// A value at strictly increasing times [s]: linear in between (rotations along the shortest arc), constant outside.
 template <typename Value>
 struct Curve {
   std::vector<double> times;
   std::vector<Value> values;
 };
 
-/// How one node moves against its parent. An empty curve: as at rest.
+/// Motion of one node relative to its parent. An empty curve means the value at rest.
 struct Channel {
   Index node = 0;
   Curve<Vec3> position;
@@ -66,36 +65,36 @@ struct Clip {
   std::vector<MorphChannel> morphs;
 };
 
-/// How a material of a file looks.
+/// Appearance of a material of a file.
 struct Material {
   enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< once: nothing beyond the edge
   std::string name;
-  Vec3 color{0.8, 0.8, 0.8};         ///< linear; what a picture is multiplied by
-  std::string picture;               ///< bytes of a PNG, JPEG or TGA file; empty: none
-  int width = 0, height = 0;         ///< of `pixels`
+  Vec3 color{0.8, 0.8, 0.8};         ///< linear; multiplies the picture
+  std::string picture;               ///< content of a PNG, JPEG or TGA file; empty: none
+  int width = 0, height = 0;         ///< size of `pixels`
   std::vector<std::uint8_t> pixels;  ///< a picture without a file: R G B A, sRGB, rows from the top; empty: none
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-  bool cutout = false;  ///< what is transparent in the picture is a hole
+  bool cutout = false;  ///< transparent parts of the picture are holes
 };
 
-/// Materials and pictures on the triangles of a mesh.
+/// Materials and pictures of the triangles of a mesh.
 struct Coloring {
   std::vector<Material> materials;
-  std::vector<Index> material_of_triangle;  ///< per triangle; empty where the file has no colours
+  std::vector<Index> material_of_triangle;  ///< per triangle; empty if the file has no colours
   std::vector<std::array<Vec2, 3>> uv;      ///< per triangle: (u, v) of its corners, from the lower left of the picture
-  bool over_look = false;  ///< pictures lie over the colour that the scene gives, where they are opaque
+  bool over_look = false;                   ///< pictures cover the colour that the scene gives, where they are opaque
 };
 
-/// Lengths in metres, axes of the scene's up axis.
+/// Lengths in metres; up axis as in the scene.
 struct Character {
   std::vector<Node> nodes;
   std::vector<Bone> bones;
-  mesh::Mesh mesh;                     ///< as bound; copies of a vertex that always move together are one vertex
-  std::vector<Index> first_influence;  ///< per vertex, and the number of all at the end
+  mesh::Mesh mesh;                     ///< as bound; copies of a vertex that always move together are merged
+  std::vector<Index> first_influence;  ///< first index into `influences` per vertex, then the total count
   std::vector<Influence> influences;
   std::vector<MorphTarget> morphs;
   std::vector<std::string> materials;     ///< names in the file
-  std::vector<Index> material_of_vertex;  ///< per vertex; empty where there are none
+  std::vector<Index> material_of_vertex;  ///< per vertex; empty if there are no materials
   Coloring coloring;
   std::vector<Clip> clips;
 };

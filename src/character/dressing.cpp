@@ -11,11 +11,11 @@
 namespace weft::character {
 namespace {
 
-/// Share of the way to the skin at which a body begins to grow.
-constexpr double kThin = 0.1;
+/// Fraction of the distance from bone to skin at which a body begins to grow.
+constexpr double kInitialGrowth = 0.1;
 
-/// The bone of an end, such as a head or a finger, goes on so much farther than to the middle of what it holds.
-constexpr double kEnd = 1.3;
+/// Length of a terminal bone, such as that of a head or a finger, relative to the distance to the mean of its vertices.
+constexpr double kTerminalBoneRatio = 1.3;
 
 using Segment = std::array<Vec3, 2>;
 
@@ -26,8 +26,8 @@ Vec3 nearest_on(const Segment& segment, const Vec3& x) {
   return segment[0] + std::clamp((x - segment[0]).dot(along) / length_sq, 0.0, 1.0) * along;
 }
 
-/// A place on several bones that goes over from one to the other without a jump.
-Vec3 place_on(const std::vector<Segment>& segments, const Vec3& x) {
+/// A point on several bones that moves continuously from one to another.
+Vec3 blended_point_on(const std::vector<Segment>& segments, const Vec3& x) {
   Vec3 sum = Vec3::Zero();
   double weights = 0;
   for (const Segment& segment : segments) {
@@ -41,8 +41,9 @@ Vec3 place_on(const std::vector<Segment>& segments, const Vec3& x) {
   return sum / weights;
 }
 
-/// Mean place of what each bone holds, by its weights; that of its node where it holds nothing.
-std::vector<Vec3> middles(const Character& character, const std::vector<Vec3>& places, const std::vector<Vec3>& skin) {
+/// Weighted mean position of the vertices of each bone; the position of its node if it has none.
+std::vector<Vec3> mean_positions(const Character& character, const std::vector<Vec3>& places,
+                                 const std::vector<Vec3>& skin) {
   std::vector<Vec3> middle(character.bones.size(), Vec3::Zero());
   std::vector<double> weights(middle.size(), 0);
   for (std::size_t v = 0; v < skin.size(); ++v)
@@ -56,7 +57,7 @@ std::vector<Vec3> middles(const Character& character, const std::vector<Vec3>& p
   return middle;
 }
 
-/// Of each bone its lines: from its node to the next nodes below it that are bones, or through what it holds.
+/// Line segments of each bone: to the next bones below it, or else through the mean of its vertices.
 std::vector<std::vector<Segment>> segments_of(const Character& character, const std::vector<Vec3>& places,
                                               const std::vector<Vec3>& skin) {
   std::vector<Index> bone_of_node(character.nodes.size(), -1);
@@ -69,44 +70,45 @@ std::vector<std::vector<Segment>> segments_of(const Character& character, const 
     while (above >= 0 && bone_of_node[above] < 0) above = character.nodes[above].parent;
     if (above >= 0 && places[n] != places[above]) segments[bone_of_node[above]].push_back({places[above], places[n]});
   }
-  const std::vector<Vec3> middle = middles(character, places, skin);
+  const std::vector<Vec3> middle = mean_positions(character, places, skin);
   for (std::size_t b = 0; b < segments.size(); ++b)
     if (const Vec3& at = places[character.bones[b].node]; segments[b].empty())
-      segments[b].push_back({at, at + kEnd * (middle[b] - at)});
+      segments[b].push_back({at, at + kTerminalBoneRatio * (middle[b] - at)});
   return segments;
 }
 
-/// Which bones are on one chain, so that neither is beside the other.
-class Chains {
+/// Stores which pairs of bones lie on one chain.
+class BoneChains {
  public:
-  explicit Chains(const Character& character) : count_(character.bones.size()), joined_(count_ * count_, 0) {
+  explicit BoneChains(const Character& character) : count_(character.bones.size()), on_one_chain_(count_ * count_, 0) {
     for (std::size_t b = 0; b < count_; ++b)
       for (std::size_t c = 0; c < count_; ++c)
-        if (below(character, character.bones[b].node, character.bones[c].node))
-          joined_[b * count_ + c] = joined_[c * count_ + b] = 1;
+        if (is_below(character, character.bones[b].node, character.bones[c].node))
+          on_one_chain_[b * count_ + c] = on_one_chain_[c * count_ + b] = 1;
   }
 
-  /// How much more of a vertex the chain of a bone holds than what is beside it, such as the other leg: from 0 to 1.
-  double lead(std::span<const Influence> influences, Index bone) const {
-    double lead = 0;
+  /// Weight of a vertex on the chain of a bone minus that on other branches (such as the other leg), in 0 to 1.
+  double branch_weight(std::span<const Influence> influences, Index bone) const {
+    double branch_weight = 0;
     for (const Influence& i : influences)
-      lead +=
-          joined_[static_cast<std::size_t>(bone) * count_ + static_cast<std::size_t>(i.bone)] ? i.weight : -i.weight;
-    return std::clamp(lead, 0.0, 1.0);
+      branch_weight += on_one_chain_[static_cast<std::size_t>(bone) * count_ + static_cast<std::size_t>(i.bone)]
+                           ? i.weight
+                           : -i.weight;
+    return std::clamp(branch_weight, 0.0, 1.0);
   }
 
  private:
-  static bool below(const Character& character, Index node, Index above) {
+  static bool is_below(const Character& character, Index node, Index above) {
     while (node >= 0 && node != above) node = character.nodes[node].parent;
     return node == above;
   }
 
   std::size_t count_;
-  std::vector<std::uint8_t> joined_;
+  std::vector<std::uint8_t> on_one_chain_;
 };
 
-/// Turns a node, and all below it, about its own place so that `from` comes to point along `to` in the world.
-void turn(const Character& character, Pose& pose, Index node, const Vec3& from, const Vec3& to) {
+/// Rotates a node and all below it about its own position, so that `from` points along `to` in the world.
+void point_node(const Character& character, Pose& pose, Index node, const Vec3& from, const Vec3& to) {
   const std::vector<Affine> globals = global_transforms(character, pose);
   const Vec3 place = globals[node].translation();
   const Affine turned =
@@ -131,7 +133,7 @@ Pose raise_arms(const Rig& rig, const Pose& pose, double degrees, const Vec3& up
       const Joint part = on_side(joint, right);
       if (!skeleton.has(part)) continue;
       const Vec3 bone = skeleton.bone(skeleton.at(raised), part);
-      if (bone.norm() > 0) turn(rig.character, raised, rig.joints[place_of(part)], bone, to);
+      if (bone.norm() > 0) point_node(rig.character, raised, rig.joints[place_of(part)], bone, to);
     }
   }
   return raised;
@@ -142,22 +144,23 @@ std::vector<Vec3> places_on_bones(const Character& character, const Pose& pose) 
   skin(character, pose, skinned);
   for (const Affine& global : global_transforms(character, pose)) places.emplace_back(global.translation());
   const std::vector<std::vector<Segment>> segments = segments_of(character, places, skinned);
-  const Chains chains(character);
+  const BoneChains chains(character);
   std::vector<Vec3> inside(skinned.size(), Vec3::Zero());
   for (std::size_t v = 0; v < inside.size(); ++v) {
     const std::span influences(character.influences.begin() + character.first_influence[v],
                                character.influences.begin() + character.first_influence[v + 1]);
     for (const Influence& influence : influences) {
       const Vec3& joint = places[character.bones[influence.bone].node];
-      const double along = chains.lead(influences, influence.bone);
-      inside[v] += influence.weight * (joint + along * (place_on(segments[influence.bone], skinned[v]) - joint));
+      const double along = chains.branch_weight(influences, influence.bone);
+      inside[v] +=
+          influence.weight * (joint + along * (blended_point_on(segments[influence.bone], skinned[v]) - joint));
     }
   }
   return inside;
 }
 
 double grown(double t, double duration) {
-  return kThin + (1 - kThin) * ease(t / duration);
+  return kInitialGrowth + (1 - kInitialGrowth) * ease(t / duration);
 }
 
 }  // namespace weft::character

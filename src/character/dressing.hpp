@@ -1,4 +1,4 @@
-// How a body stands to be put into clothes that were not made for it: its arms as those of the clothes, and thin.
+// Prepares a body for clothes that were not made for it: poses its arms and makes it thin at the start.
 #pragma once
 
 #include <vector>
@@ -8,17 +8,17 @@
 
 namespace weft::character {
 
-/// A pose with straight arms in the plane across the body. `degrees`: of both arms from hanging down, 90 straight out
-/// to the sides. A rig without arms, or without a left and a right, keeps the pose. `up`: unit vector.
+/// A pose with straight arms in the frontal plane of the body. `degrees`: angle of both arms from hanging; 90 is
+/// straight out to the sides. A rig without a pair of arms keeps the pose. `up`: unit vector.
 Pose raise_arms(const Rig& rig, const Pose& pose, double degrees, const Vec3& up);
 
-/// Of each vertex the place inside of the body from which it grows: where it is nearest on the bones that hold it, in
-/// the means by their weights and, where bones part, by the inverse fourth powers of its distances. What two limbs hold
-/// alike, as between the legs, grows from where they part.
+/// Start position inside the body from which each vertex grows: the nearest points on the bones that influence it,
+/// averaged by the influence weights and, where bones branch, by the inverse fourth power of the distance. Vertices
+/// that two limbs influence equally, as between the legs, grow from the branching point.
 std::vector<Vec3> places_on_bones(const Character& character, const Pose& pose);
 
-/// Share of the way from its bones to its skin that a body has grown a time `t` [s] after it began, of `duration` [s]:
-/// from a tenth, which leaves room in a sleeve, to 1, without a jerk at either end.
+/// Fraction of the distance from bone to skin that a body has reached at time `t` [s] after the start of growth, which
+/// takes `duration` [s]: rises smoothly from 0.1, which leaves clearance in a sleeve, to 1.
 double grown(double t, double duration);
 
 }  // namespace weft::character

@@ -1,4 +1,4 @@
-// What is painted on the mannequin, so that it reads as a person: hair, brows, lids and lips, fingers, shoes.
+// Colours painted on the mannequin so that it looks like a person: hair, brows, lids, lips, fingers and shoes.
 #pragma once
 
 #include "character/character.hpp"
@@ -6,8 +6,8 @@
 
 namespace weft::character {
 
-/// On the mesh of a mannequin at rest, z up. Pictures are laid on by looking along an axis, so that their outlines are
-/// as sharp on coarse triangles as on fine ones, and what cloth meets stays as it is.
+/// Colours for the mesh of a mannequin at rest, z up. Pictures are projected along an axis, so that their outlines are
+/// equally sharp on coarse and fine triangles. The geometry that cloth touches does not change.
 Coloring figure_of(const mesh::Mesh& mesh, const MannequinBuild& build);
 
 }  // namespace weft::character

@@ -1,4 +1,4 @@
-// Feet that stand: where a motion has its feet on the floor, and the legs that keep them there.
+// Foot contacts of a motion, and the leg poses that keep them.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace weft::character {
 
-/// Keys from `first` to `last` in which the ball of a foot stays where it is.
+/// Key range, `first` to `last`, in which the ball of a foot stays in place.
 struct Contact {
   std::size_t first = 0, last = 0;
 };
@@ -18,40 +18,40 @@ struct Contact {
 struct Footsteps {
   std::array<std::vector<Contact>, 2> contacts;  ///< of the left and the right foot, in order
   std::vector<Flat> flat;                        ///< per posture
-  double ankle_height = 0;                       ///< of feet that are flat on the floor [m]
+  double ankle_height = 0;                       ///< height of the ankles of flat feet [m]
 };
 
-/// Finds the steps of a motion from how slow and how low the toes are, or the ankles of feet without. `times`: of the
-/// postures, increasing [s]. `up`: unit vector. Without feet or steps there are no contacts, and the lowest ankle is
-/// taken to stand.
+/// Finds the contacts of a motion from the speed and the height of the toes, or of the ankles of feet without toes.
+/// `times`: of the postures, increasing [s]. `up`: unit vector. Without feet or steps there are no contacts, and
+/// ankle_height is that of the lowest ankle.
 Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
                          const Vec3& up);
 
-/// A leg at a key; to reach() also an arm, with shoulder, elbow, wrist and hinge.
+/// A leg at one key. reach() also accepts an arm, with shoulder, elbow, wrist and hinge.
 struct Leg {
   Vec3 hip, knee, ankle;
-  Vec3 ball, heel;  ///< of the sole, below the toe joint and below the ankle
-  Vec3 hinge;       ///< unit vector about which the shin turns backward
+  Vec3 ball, heel;  ///< points of the sole, below the toe joint and below the ankle
+  Vec3 hinge;       ///< unit vector of the axis about which the shin bends backward
 };
 
 /// Legs of the left and the right side.
 using Legs = std::array<Leg, 2>;
 
-/// What makes feet stand, at one key.
+/// Corrections that make feet stand, at one key.
 struct Stance {
   double rise = 0;                                          ///< of the hips [m]
-  std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< of the feet, against where they were [m]
+  std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< of the feet, relative to the motion [m]
   std::array<bool, 2> in_contact{};
 };
 
-/// Keeps the ball of each foot at its mean place over a contact, the sole on the floor there and nowhere below it;
-/// between contacts feet come back to the motion within 0.15 s. Hips come down where a leg would not reach, and up
-/// where a knee would fold too far. `floor`: height of the sole at rest [m].
+/// Keeps the ball of each foot at its mean position during a contact, with the sole on the floor, and never below the
+/// floor otherwise. Between contacts feet return to the motion within 0.15 s. Hips move down if a leg would not reach,
+/// and up if a knee would bend too far. `floor`: height of the sole at rest [m].
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up);
 
-/// Turns of upper and lower leg in the world that bring the ankle to a place, or as near as the leg reaches, with the
-/// knee in the plane that it was in.
+/// World rotations of upper and lower leg that bring the ankle to a position, or as near as it reaches, with the knee
+/// in its plane.
 struct LegTurns {
   Quat upper, lower;
 };

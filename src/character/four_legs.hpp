@@ -1,4 +1,4 @@
-// Motions of animals with four legs, whose forelegs are taken for arms.
+// Detects motions of four-legged animals, whose forelegs are mistaken for arms.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace weft::character {
 
-/// What to say of a motion that goes on all fours, for half of its time or more; none of others. `up`: unit vector.
-std::optional<std::string> doubt_of_two_legs(const Skeleton& skeleton, std::span<const Posture> postures,
-                                             const Vec3& up);
+/// Warning text for a motion that is on all fours for at least half of its time; empty for others. `up`: unit vector.
+std::optional<std::string> warn_if_on_all_fours(const Skeleton& skeleton, std::span<const Posture> postures,
+                                                const Vec3& up);
 
 }  // namespace weft::character

@@ -11,39 +11,40 @@
 namespace weft::character {
 namespace {
 
-constexpr double kHipSwing = 1.6;       ///< share of the recorded turn of the pelvis: longer legs, and a catwalk
-constexpr double kShoulderSwing = 1.5;  ///< likewise of the chest, which turns against the pelvis
+constexpr double kHipSwing = 1.6;       ///< factor on the recorded pelvis yaw: longer legs, and a catwalk
+constexpr double kShoulderSwing = 1.5;  ///< factor on the chest yaw, which is opposite to that of the pelvis
 constexpr double kChestNod = 0.8, kHeadNod = -0.4,
-                 kHeadRoll = -0.4;  ///< shares of the pelvis' pitch and the chest's roll
-constexpr double kForward = 0.12;   ///< turn of a shoulder by that of its arm
-// Elbows of arms that hang are bent, and forearms hang more steeply than upper arms, which the chest keeps off; by
-// less than arms that are held out for wide skirts are [degrees].
-constexpr double kElbowAtRest = 14, kElbowShare = 0.75, kSteeper = 0.75, kMostSteeper = 4.5;
-constexpr double kBesideHips = 8;  ///< from their skin to the middle of a hand that hangs [cm, for a height of 175]
+                 kHeadRoll = -0.4;           ///< factors on the pelvis pitch and the chest roll
+constexpr double kShoulderTurnRatio = 0.12;  ///< rotation of a shoulder / rotation of its arm
+// Hanging arms have bent elbows, and forearms hang more steeply than upper arms, which the chest holds off; less so if
+// the arms are held out for wide skirts [degrees].
+constexpr double kElbowAtRest = 14, kElbowRatio = 0.75, kForearmTurnRatio = 0.75, kMaxForearmTurn = 4.5;
+constexpr double kHandClearance =
+    8;  ///< from the skin of the hips to a hanging hand's middle [cm, for a height of 175]
 // In a turn the head leads, then the chest, then the hips (Patla, Adkin & Ballard, "Online steering: coordination and
-// control of body center of mass, head and body reorientation", 1999) [s].
+// control of body center of mass, head and body reorientation", 1999). Lead times [s].
 constexpr double kChestLead = 0.12, kHeadLead = 0.28;
 
-Quat turned(double angle, const Vec3& axis) {
+Quat axis_rotation(double angle, const Vec3& axis) {
   return Quat(Eigen::AngleAxisd(angle, axis));
 }
 
-/// The body in even walking at a moment, as the curves have it; sizes against those of the recording.
+/// Phase and relative size of the walking motion at one key.
 struct Sway {
   double phase = 0;
-  double size = 0;  ///< 0 standing, 1 walking as fast as recorded
+  double size = 0;  ///< 0: standing, 1: walking as fast as recorded
 };
 
-/// A walk key by key, put together of feet, track and curves.
+/// Builds a walk, key by key, from feet, track and curves.
 class Walker {
  public:
-  /// Of the plan, the first `keys` keys.
+  /// Uses the first `keys` keys of the plan.
   Walker(const Physique& body, const StepPlan& plan, double arms_out, int keys)
       : body_(body), plan_(plan), arms_out_(arms_out), keys_(keys) {
-    // Steps look beyond both ends.
-    const int spare = 2 * plan.period();
+    // Steps need keys beyond both ends.
+    const int margin = 2 * plan.period();
     forearm_turn_ = turn_of_forearms();
-    track_ = lay_track(body, plan, -spare, keys + spare);
+    track_ = lay_track(body, plan, -margin, keys + margin);
     for (int key = track_.first; key <= track_.last(); ++key) hips_.push_back({hip_offset(key, 0), hip_offset(key, 1)});
   }
 
@@ -62,25 +63,26 @@ class Walker {
   Sway sway(int key) const {
     const double recorded_step = walking::kSpeed * walking::kPeriod / 2 * body_.leg() / walking::kLegLength;
     const double step = plan_.speed * plan_.key_time * plan_.step_keys;
-    const double even = std::min(track_.speed[track_.index(key)], 1.0);
-    return {track_.phase[track_.index(key)], even * std::min(step / recorded_step, 1.3)};
+    const double relative_speed = std::min(track_.speed[track_.index(key)], 1.0);
+    return {track_.phase[track_.index(key)], relative_speed * std::min(step / recorded_step, 1.3)};
   }
 
-  /// Where the body turns to, `ahead` seconds later.
+  /// Heading of the body, `ahead` seconds later.
   Quat heading(int key, double ahead = 0) const {
-    return turned(track_.yaw_at(key + static_cast<int>(std::round(ahead / plan_.key_time))), Vec3::UnitZ());
+    return axis_rotation(track_.yaw_at(key + static_cast<int>(std::round(ahead / plan_.key_time))), Vec3::UnitZ());
   }
 
-  /// Yaw to the left, roll with the left side up, pitch forward [degrees].
-  static Quat leaning(double yaw, double roll, double pitch) {
-    return turned(yaw * kDegree, Vec3::UnitZ()) * turned(-roll * kDegree, Vec3::UnitY()) *
-           turned(pitch * kDegree, Vec3::UnitX());
+  /// Rotation by yaw to the left, roll with the left side up, and pitch forward [degrees].
+  static Quat tilt_rotation(double yaw, double roll, double pitch) {
+    return axis_rotation(yaw * kDegree, Vec3::UnitZ()) * axis_rotation(-roll * kDegree, Vec3::UnitY()) *
+           axis_rotation(pitch * kDegree, Vec3::UnitX());
   }
 
   Quat pelvis_rotation(int k) const {
     const auto [phase, size] = sway(k);
-    return heading(k) * leaning(size * kHipSwing * walking::pelvis_yaw.at(phase), size * walking::pelvis_roll.at(phase),
-                                size * (walking::pelvis_pitch.at(phase) - walking::pelvis_pitch.mean));
+    return heading(k) * tilt_rotation(size * kHipSwing * walking::pelvis_yaw.at(phase),
+                                      size * walking::pelvis_roll.at(phase),
+                                      size * (walking::pelvis_pitch.at(phase) - walking::pelvis_pitch.mean));
   }
 
   Vec3 hip_offset(int k, int side) const {
@@ -88,18 +90,18 @@ class Walker {
     return pelvis_rotation(k) * (body_.joints[place_of(hip)] - body_.joints[place_of(Joint::hips)]);
   }
 
-  /// Rotations of all joints against the world.
+  /// World rotations of all joints.
   std::array<Quat, kJointCount> rotations(const Feet& feet, int k, const Vec3& pelvis) const {
     std::array<Quat, kJointCount> global;
     const auto [phase, size] = sway(k);
     const Quat hips = pelvis_rotation(k);
     const double nod = size * (walking::pelvis_pitch.at(phase) - walking::pelvis_pitch.mean);
     const double roll = size * walking::chest_roll.at(phase);
-    const Quat chest =
-        heading(k, kChestLead) * leaning(size * kShoulderSwing * walking::chest_yaw.at(phase), roll, kChestNod * nod);
-    // The head turns less than the chest and against its nods, so that the eyes stay on what they look at.
+    const Quat chest = heading(k, kChestLead) *
+                       tilt_rotation(size * kShoulderSwing * walking::chest_yaw.at(phase), roll, kChestNod * nod);
+    // The head turns less than the chest and against its pitch, so that the gaze stays steady.
     const Quat head =
-        heading(k, kHeadLead) * leaning(size * walking::head_yaw.at(phase), kHeadRoll * roll, kHeadNod * nod);
+        heading(k, kHeadLead) * tilt_rotation(size * walking::head_yaw.at(phase), kHeadRoll * roll, kHeadNod * nod);
     global[place_of(Joint::hips)] = hips;
     global[place_of(Joint::spine)] = hips.slerp(0.5, chest);
     global[place_of(Joint::chest)] = chest;
@@ -116,39 +118,39 @@ class Walker {
     return static_cast<Joint>(place_of(left) + static_cast<std::size_t>(side) * kSideJointCount);
   }
 
-  /// Inward, unless wide hips need more room.
+  /// Rotation of the forearms relative to the upper arms: inward, unless wide hips need more clearance [degrees].
   double turn_of_forearms() const {
     const auto at = [this](Joint joint) { return body_.joints[place_of(joint)]; };
     const Vec3 &shoulder = at(Joint::left_upper_arm), &elbow = at(Joint::left_lower_arm), &wrist = at(Joint::left_hand);
     const double cm = body_.height / 175, hand = (wrist - elbow).norm() + 8 * cm;
-    const double wanted = body_.hips_half_width + kBesideHips * cm;
+    const double wanted = body_.hips_half_width + kHandClearance * cm;
     const double aside = wanted - shoulder.x() - (elbow - shoulder).norm() * std::sin(arms_out_ * kDegree);
-    const double least = std::asin(std::clamp(aside / hand, -1.0, 1.0)) / kDegree;
-    return std::max(-std::min(kSteeper * arms_out_, kMostSteeper), least - arms_out_);
+    const double min_turn = std::asin(std::clamp(aside / hand, -1.0, 1.0)) / kDegree;
+    return std::max(-std::min(kForearmTurnRatio * arms_out_, kMaxForearmTurn), min_turn - arms_out_);
   }
 
   void arm(std::array<Quat, kJointCount>& global, int side, double phase, double size, const Quat& chest) const {
     const double sign = side == 0 ? 1 : -1;
     const double forward = size * (walking::arm_forward.at(phase) - 0.5 * walking::arm_forward.mean);
     const double out = arms_out_ + 0.5 * size * (walking::arm_out.at(phase) - walking::arm_out.mean);
-    const double bend = kElbowAtRest + size * kElbowShare * (walking::elbow.at(phase) - kElbowAtRest);
-    // From where the arm hangs at rest, 45° out.
+    const double bend = kElbowAtRest + size * kElbowRatio * (walking::elbow.at(phase) - kElbowAtRest);
+    // From the rest position of the arm, 45° out.
     const auto hanging = [&](double from_vertical) {
-      return chest * turned(-forward * kDegree, Vec3::UnitX()) *
-             turned(sign * (45 - from_vertical) * kDegree, Vec3::UnitY());
+      return chest * axis_rotation(-forward * kDegree, Vec3::UnitX()) *
+             axis_rotation(sign * (45 - from_vertical) * kDegree, Vec3::UnitY());
     };
     const Quat upper = hanging(out);
     const Vec3 along(sign * std::sqrt(0.5), 0, -std::sqrt(0.5));
-    const Quat lower = hanging(out + forearm_turn_) * turned(bend * kDegree, along.cross(-Vec3::UnitY()));
+    const Quat lower = hanging(out + forearm_turn_) * axis_rotation(bend * kDegree, along.cross(-Vec3::UnitY()));
     global[place_of(of_side(Joint::left_shoulder, side))] =
-        chest * turned(-sign * kForward * forward * kDegree, Vec3::UnitZ());
+        chest * axis_rotation(-sign * kShoulderTurnRatio * forward * kDegree, Vec3::UnitZ());
     global[place_of(of_side(Joint::left_upper_arm, side))] = upper;
     global[place_of(of_side(Joint::left_lower_arm, side))] = lower;
     global[place_of(of_side(Joint::left_hand, side))] = lower;
   }
 
-  /// The rotation that takes one pair of directions to another, the first exactly.
-  static Quat carrying(const Vec3& along0, const Vec3& side0, const Vec3& along1, const Vec3& side1) {
+  /// The rotation that takes one pair of directions to another, the first of them exactly.
+  static Quat rotation_between_frames(const Vec3& along0, const Vec3& side0, const Vec3& along1, const Vec3& side1) {
     const auto axes = [](const Vec3& along, const Vec3& side) {
       Mat3 m;
       m.col(0) = along.normalized();
@@ -159,29 +161,31 @@ class Walker {
     return Quat(Mat3(axes(along1, side1) * axes(along0, side0).transpose()));
   }
 
-  /// Two bones reach from the hip to the ankle; the knee bends about an axis between those of pelvis and foot.
+  /// Two-bone inverse kinematics from hip to ankle; the knee axis is halfway between those of pelvis and foot.
   void leg(std::array<Quat, kJointCount>& global, const FootState& foot, int side, const Vec3& hip) const {
     const double sign = side == 0 ? 1 : -1;
     const Vec3 hip0 = body_.joints[place_of(of_side(Joint::left_upper_leg, side))],
                knee0 = body_.joints[place_of(of_side(Joint::left_lower_leg, side))],
                ankle0 = body_.joints[place_of(of_side(Joint::left_foot, side))];
     const double a = (knee0 - hip0).norm(), b = (ankle0 - knee0).norm();
-    const Vec3 reach = foot.ankle - hip;
-    const double d = std::min(reach.norm(), 0.9999 * (a + b));
-    const Quat foot_yaw = turned(foot.yaw, Vec3::UnitZ());
-    const Vec3 along = reach.normalized();
+    const Vec3 to_ankle = foot.ankle - hip;
+    const double d = std::min(to_ankle.norm(), 0.9999 * (a + b));
+    const Quat foot_yaw = axis_rotation(foot.yaw, Vec3::UnitZ());
+    const Vec3 along = to_ankle.normalized();
     Vec3 axis = global[place_of(Joint::hips)].slerp(0.5, foot_yaw) * Vec3::UnitX();
     axis = (axis - axis.dot(along) * along).normalized();
-    // Cosine rule; the knee is in front.
+    // Law of cosines; the knee is in front.
     const double cosine = (a * a + d * d - b * b) / (2 * a * d);
     const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
     const Vec3 thigh = a * (cosine * along + sine * along.cross(axis).normalized());
-    const Vec3 shin = reach - thigh;
-    global[place_of(of_side(Joint::left_upper_leg, side))] = carrying(knee0 - hip0, Vec3::UnitX(), thigh, axis);
-    global[place_of(of_side(Joint::left_lower_leg, side))] = carrying(ankle0 - knee0, Vec3::UnitX(), shin, axis);
-    const Vec3 across = turned(foot.yaw + sign * body_.foot_yaw, Vec3::UnitZ()) * Vec3::UnitX();
-    global[place_of(of_side(Joint::left_foot, side))] = turned(-foot.pitch, across) * foot_yaw;
-    global[place_of(of_side(Joint::left_toes, side))] = turned(-foot.pitch - foot.toes, across) * foot_yaw;
+    const Vec3 shin = to_ankle - thigh;
+    global[place_of(of_side(Joint::left_upper_leg, side))] =
+        rotation_between_frames(knee0 - hip0, Vec3::UnitX(), thigh, axis);
+    global[place_of(of_side(Joint::left_lower_leg, side))] =
+        rotation_between_frames(ankle0 - knee0, Vec3::UnitX(), shin, axis);
+    const Vec3 across = axis_rotation(foot.yaw + sign * body_.foot_yaw, Vec3::UnitZ()) * Vec3::UnitX();
+    global[place_of(of_side(Joint::left_foot, side))] = axis_rotation(-foot.pitch, across) * foot_yaw;
+    global[place_of(of_side(Joint::left_toes, side))] = axis_rotation(-foot.pitch - foot.toes, across) * foot_yaw;
   }
 
   void add_key(Clip& clip, const Feet& feet, int key) const {
@@ -202,7 +206,7 @@ class Walker {
   const Physique& body_;
   const StepPlan& plan_;
   double arms_out_;
-  double forearm_turn_ = 0;  // outward, against the upper arms [degrees]
+  double forearm_turn_ = 0;  // outward, relative to the upper arms [degrees]
   int keys_;
   Track track_;
   HipOffsets hips_;

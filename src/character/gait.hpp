@@ -1,4 +1,4 @@
-// Walking, made from fitted curves: the mannequin's clips.
+// Walk clips for the mannequin, made from fitted curves.
 #pragma once
 
 #include "character/character.hpp"
@@ -7,16 +7,16 @@ namespace weft::character {
 
 /// A walk from standing to standing, along -y from the origin.
 struct Walk {
-  double speed = 1.2;      ///< of even walking [m/s]; 0.6 to 1.6
+  double speed = 1.2;      ///< steady walking speed [m/s]; 0.6 to 1.6
   double distance = 6;     ///< [m]; at least two steps
-  bool turn_back = false;  ///< at the end turn round on a small arc and walk back
-  double stand = 0.5;      ///< before and after [s]
-  double arms_out = 13;    ///< of the upper arms from the vertical [degrees]; room for sleeves and skirts
+  bool turn_back = false;  ///< at the end, turn around on a small arc and walk back
+  double stand = 0.5;      ///< standing time before and after [s]
+  double arms_out = 13;    ///< angle of the upper arms from the vertical [degrees]; clearance for sleeves and skirts
 };
 
-/// Feet stand where they stand (see Feet), the body is balanced above them (see lay_track); the rest follows the curves
-/// of `walking`. `mannequin` is one of make_mannequin, of any build. Sixty keys a second, or nearly: a step takes a
-/// whole number of them.
+/// Makes a walk. Feet keep their footholds (see Feet), the body balances above them (see lay_track), and all else
+/// follows the curves of `walking`. `mannequin`: made by make_mannequin, of any build. About sixty keys per second,
+/// such that a step has a whole number of them.
 Clip make_walk(const Character& mannequin, const Walk& walk);
 
 }  // namespace weft::character

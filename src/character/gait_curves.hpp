@@ -1,11 +1,11 @@
-// How people walk, as harmonics over one stride: fitted to motion capture.
+// Curves of human walking: harmonics over one stride, fitted to motion capture.
 #pragma once
 
 #include <array>
 
 namespace weft::character {
 
-/// A periodic function of the phase: 0 where the left heel strikes, 1 where it does so again.
+/// A periodic function of the phase: 0 at a strike of the left heel, 1 at the next one.
 struct HarmonicCurve {
   double mean = 0;
   std::array<double, 6> cosine{}, sine{};
@@ -15,17 +15,17 @@ struct HarmonicCurve {
 
 /// Fitted to subject 12, trial 1 of the CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu, created with
 /// funding from NSF EIA-0196217; free for use in research and commercial projects worldwide): 4.4 s of straight walking
-/// at 120 Hz, two strides of the left foot and three of the right. A heel strikes where its ankle is farthest before
-/// the hips (Zeni et al., "Two simple methods for determining gait events", 2008); phases are linear between strikes.
-/// Least squares over all frames between the first strike and the last; what belongs to a side was fitted to both, the
-/// right one half a stride later; what turns or sways has odd harmonics only, what nods even ones; a fifth
-/// harmonic of 0.6° of the pelvis' yaw is left out, for it shakes what hangs on the hips. Degrees. Root of the mean
-/// square that is left: 2.5° of foot pitch, 3.4° and 2.9° of arm and elbow, below 1.7° of all other angles.
+/// at 120 Hz, two strides of the left foot and three of the right. A heel strikes where its ankle is farthest in front
+/// of the hips (Zeni et al., "Two simple methods for determining gait events", 2008); the phase is linear between
+/// strikes. Least squares over all frames between the first and the last strike. Curves of one side are fitted to both
+/// sides, with the right side half a stride later. Yaw and roll have odd harmonics only, pitch has even ones. A fifth
+/// harmonic of 0.6° of the pelvis yaw is left out, since it shakes cloth on the hips. Degrees. Root mean square
+/// residual: 2.5° of foot pitch, 3.4° and 2.9° of arm and elbow, below 1.7° of all other angles.
 namespace walking {
 
 constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording [m/s], [s]
 constexpr double kLegLength = 0.788;               ///< hip to ankle [m]
-constexpr double kFlatPitch = -10.8;               ///< foot_pitch of a foot that stands flat
+constexpr double kFlatPitch = -10.8;               ///< value of foot_pitch for a flat foot
 
 constexpr HarmonicCurve pelvis_yaw{0, {-0.52, 0, 0, 0, 0, 0}, {-2.52, 0, -0.16, 0, 0, 0}};            // + to the left
 constexpr HarmonicCurve pelvis_roll{0, {-3.92, 0, -0.66, 0, 0.07, 0}, {1.59, 0, -0.72, 0, 0.09, 0}};  // + left side up
@@ -34,19 +34,19 @@ constexpr HarmonicCurve chest_yaw{0, {3.39, 0, -0.80, 0, 0.03, 0}, {-1.86, 0, -0
 constexpr HarmonicCurve chest_roll{0, {-1.54, 0, 0.35, 0, 0.03, 0}, {-0.14, 0, -0.06, 0, -0.09, 0}};
 constexpr HarmonicCurve head_yaw{0, {1.09, 0, 0.14, 0, 0.04, 0}, {-0.84, 0, -0.23, 0, -0.07, 0}};
 
-// Of the left side. Pitch of the line from the ankle to the ball of the foot, + toes up.
+// Left side. Pitch of the line from the ankle to the ball of the foot, + toes up.
 constexpr HarmonicCurve foot_pitch{
     -22.00, {12.48, 20.97, -0.12, -0.43, 3.08, 0.53}, {25.19, -5.71, -7.76, 2.40, 0.46, -0.92}};
-// Upper arm before the vertical; outward from it; bend of the elbow.
+// Upper arm: angle forward of the vertical, then outward from it; then bend of the elbow.
 constexpr HarmonicCurve arm_forward{
     -5.20, {-7.63, 0.35, -0.26, 0.18, 0.06, 0.09}, {3.37, -0.02, -0.39, -0.03, -0.26, -0.05}};
 constexpr HarmonicCurve arm_out{1.47, {-3.60, 0, 0.02, 0.12, 0.01, -0.02}, {0.91, -0.09, 0.10, 0.05, 0.04, 0.04}};
 constexpr HarmonicCurve elbow{23.61, {-5.76, 4.14, -0.20, -0.05, 0.08, -0.17}, {2.17, -3.43, 0.02, 0.28, 0.23, 0.02}};
 
-/// Flexion of the knee: 5° at contact, 18° in loading response, 5.5° in terminal stance, 39° when the toes leave and
-/// 60° in initial swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13); between them by eye, as
-/// a spline, of which these harmonics are within 0.6°. Not of the recording, whose knees are bent by 20° more in stance
-/// and clipped at 0.
+/// Knee flexion: 5° at contact, 18° in loading response, 5.5° in terminal stance, 39° at toe-off and 60° in initial
+/// swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). In between a spline drawn by eye, to
+/// which these harmonics are within 0.6°. Not the recording, whose knees are bent by 20° more in stance and clipped at
+/// 0.
 constexpr HarmonicCurve knee{22.99, {-3.24, -13.50, -0.53, -0.87, 0.13, -0.21}, {-20.21, 8.12, 3.68, 0.64, 0.49, 0.02}};
 
 }  // namespace walking

@@ -10,19 +10,19 @@
 namespace weft::character {
 namespace {
 
-constexpr double kStandingKnee = 6;   ///< [degrees]; legs that snap straight look stiff, and could not reach
-constexpr double kPitchShare = 0.79;  ///< the recorded walker lifts the toes more than a mannequin should
-constexpr double kRelease = 0.17;     ///< share of a stride before a strike from which the leg behind is led
-constexpr double kLoaded = 0.13;      ///< and after it until which the leg in front takes over
-constexpr double kLate = 0.75;        ///< share of the curve before the toes leave: they are short
-constexpr double kSoftRise = 0.002;   ///< [m] over which a heel begins to rise
-constexpr double kLater = 13;         ///< what is left of the bend of a knee for when the foot is in the air [degrees]
-constexpr double kToesFlat = 22, kToesRound = 16, kToesShare = 0.75;  ///< see toe_pitch [degrees]
-constexpr double kSteepest = 80;                                      ///< pitch of a foot on its toes [degrees]
-constexpr double kLift = 32;     ///< further bend of a knee in a step in place [degrees]
-constexpr double kClear = 0.36;  ///< share of the fall of the toes at their leaving that is taken back in the air
+constexpr double kStandingKnee = 6;        ///< [degrees]; straighter legs look stiff and could not reach
+constexpr double kPitchRatio = 0.79;       ///< factor on the recorded toe lift, which is too large for a mannequin
+constexpr double kReleaseFraction = 0.17;  ///< of a stride before a strike; until then the trailing leg sets the height
+constexpr double kTakeoverFraction = 0.13;  ///< of a stride after a strike; from then the leading leg sets it
+constexpr double kLateKneeRatio = 0.75;     ///< factor on the knee curve before toe-off
+constexpr double kHeelRiseLength = 0.002;   ///< length over which a heel begins to rise [m]
+constexpr double kSwingKneeShift = 13;      ///< knee bend that is moved from before toe-off into the swing [degrees]
+constexpr double kToesFlat = 22, kToesRound = 16, kToePitchRatio = 0.75;  ///< see toe_pitch [degrees]
+constexpr double kMaxToePitch = 80;      ///< maximum pitch of a foot on its toes [degrees]
+constexpr double kInPlaceKneeLift = 32;  ///< additional knee bend in a step in place [degrees]
+constexpr double kToeClearRatio = 0.36;  ///< fraction of the toes' descent at toe-off that is reversed in swing
 
-/// A value with its change and the change of that, per key.
+/// A value with its first and second derivative per key.
 template <class Value>
 struct Jet {
   Value value, rate, bend;
@@ -34,7 +34,7 @@ auto jet_of(const Function& f, int key) {
   return Jet<Value>{here, Value((after - before) / 2), Value(after - 2 * here + before)};
 }
 
-/// The quintic from one jet to another over `span` keys, at the share s of it.
+/// Quintic interpolation between two jets over `span` keys, at the fraction s.
 template <class Value>
 Value quintic(const Jet<Value>& a, const Jet<Value>& b, double span, double s) {
   const double s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
@@ -45,28 +45,29 @@ Value quintic(const Jet<Value>& a, const Jet<Value>& b, double span, double s) {
          g2 * span * span * b.bend;
 }
 
-/// 0, 1 in the middle, 0; twice continuously differentiable.
+/// 0 at both ends, 1 in the middle; twice continuously differentiable.
 double bump(double s) {
   return 64 * s * s * s * (1 - s) * (1 - s) * (1 - s);
 }
 
-/// The same, with its height earlier.
+/// Like bump(), with an earlier maximum.
 double early_bump(double s) {
   return 119.2 * s * s * s * (1 - s) * (1 - s) * (1 - s) * (1 - s);
 }
 
-/// The same, with its height later: it ends with a jolt, so that a foot that is set down does not skim the floor.
+/// Like bump(), with a later maximum. It ends abruptly, so that a foot that is set down does not skim the floor.
 double late_bump(double s) {
   return 28.9 * s * s * s * (1 - s) * (1 - s);
 }
 
-/// By how much a knee bends more in the air than the quintic between the ends of its curve [degrees].
+/// Additional knee bend in swing, relative to the quintic between the ends of its curve [degrees].
 double knee_in_the_air(double s) {
-  constexpr int fine = 1000;  // of a stride
+  constexpr int fine = 1000;  // samples per stride
   const auto curve = [](int at) { return walking::knee.at(static_cast<double>(at) / fine); };
   static const auto off = jet_of(curve, static_cast<int>(kStance * fine));
   static const Jet<double> strike{curve(fine), 0, 0};
-  return walking::knee.at(kStance + s * kSwing) - quintic(off, strike, kSwing * fine, s) + kLater * early_bump(s);
+  return walking::knee.at(kStance + s * kSwing) - quintic(off, strike, kSwing * fine, s) +
+         kSwingKneeShift * early_bump(s);
 }
 
 Vec3 ahead_of(double yaw) {
@@ -92,7 +93,7 @@ Feet::Feet(const Physique& body, const StepPlan& plan, const Track& track, const
   find_heights();
 }
 
-/// 0 for the last plant, which is not left.
+/// Size of the step that leaves a foothold; 0 for the last one.
 double Feet::next_size(int side, std::size_t number) const {
   return number + 1 < plan_.plants[side].size() ? plant(side, number + 1).size : 0;
 }
@@ -102,41 +103,41 @@ Vec3 Feet::hip(int side, int key) const {
   return Vec3(place.x(), place.y(), heights_.empty() ? 0 : pelvis_height(key)) + hips_[track_.index(key)][side];
 }
 
-/// Of a leg that stands [degrees]: the curve after a strike and before the toes leave, as much of it as the steps are
-/// large. The two shares add up to 1 in even walking.
+/// Knee bend of a stance leg [degrees]: the curve after the strike and before toe-off, scaled by the step sizes. Both
+/// weights sum to 1 in even walking.
 double Feet::knee(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double since = plan_.since_strike(here, key), until = plan_.until_off(here, key);
   const double early = std::min(here.size, 1.0) * (1 - smooth_ramp(since, 0.2, 0.35));
-  const double late = kLate * std::min(next_size(side, number), 1.0) * smooth_ramp(kStance - until, 0.2, 0.35);
+  const double late = kLateKneeRatio * std::min(next_size(side, number), 1.0) * smooth_ramp(kStance - until, 0.2, 0.35);
   double bend = kStandingKnee;
   if (early > 0) bend += early * (walking::knee.at(since) - kStandingKnee);
   if (late > 0) bend += late * (walking::knee.at(kStance - until) - kStandingKnee);
   return bend;
 }
 
-/// From hip to ankle [m], by the cosine rule.
-double Feet::reach(double knee) const {
+/// Distance from hip to ankle [m], by the law of cosines.
+double Feet::leg_extent(double knee) const {
   const double a = body_.thigh, b = body_.shin;
   return std::sqrt(a * a + b * b + 2 * a * b * std::cos(knee * kDegree));
 }
 
-/// As recorded, exactly 0 after a while.
+/// Recorded foot pitch after a strike, fading to exactly 0.
 double Feet::strike_pitch(const Plant& plant, int key) const {
   const double since = plan_.since_strike(plant, key);
   if (since > 0.12) return 0;
-  const double recorded = kPitchShare * kDegree * (walking::foot_pitch.at(since) - walking::kFlatPitch);
+  const double recorded = kPitchRatio * kDegree * (walking::foot_pitch.at(since) - walking::kFlatPitch);
   return plant.size * recorded * (1 - smooth_ramp(since, 0.03, 0.12));
 }
 
-/// Of the toes against the floor: flat until the heel is high, then they roll over their tips.
+/// Pitch of the toes relative to the floor: flat until the heel is high, then they roll over their tips.
 double Feet::toe_pitch(double pitch) {
   const double beyond = -pitch - kToesFlat * kDegree, round = kToesRound * kDegree;
   if (beyond <= 0) return 0;
-  return -kToesShare * (beyond < round ? beyond * beyond / (2 * round) : beyond - round / 2);
+  return -kToePitchRatio * (beyond < round ? beyond * beyond / (2 * round) : beyond - round / 2);
 }
 
-/// Rolls over the heel, which goes back as the toes rise, or over the tips of the toes, and bends about the ball.
+/// Ankle of a foot that rolls over the heel (its contact moves back), or over the toe tips and bends at the ball.
 Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
   const auto turned = [](double forward, double up, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -155,16 +156,16 @@ Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
   return Vec3(plant.at.x(), plant.at.y(), 0) + ankle.x() * ahead_of(plant.foot_yaw) + ankle.y() * Vec3::UnitZ();
 }
 
-/// The heel of the leg behind rises until the knee is bent as it should be.
+/// Foot pitch in stance: the heel of the trailing leg rises until the knee has its wanted bend.
 double Feet::standing_pitch(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double share = smooth_ramp(kStance - plan_.until_off(here, key), 0.24, 0.36);
   if (share == 0) return strike_pitch(here, key);
   const Vec3 from = hip(side, key);
-  const double flat = (from - rolling_ankle(here, 0)).norm(), excess = flat - reach(knee(side, number, key));
-  const double wanted = flat - 0.5 * (excess + std::sqrt(excess * excess + kSoftRise * kSoftRise));
-  // The distance to the hip falls with the rise of the heel.
-  double low = -kSteepest * kDegree, high = 0;
+  const double flat = (from - rolling_ankle(here, 0)).norm(), excess = flat - leg_extent(knee(side, number, key));
+  const double wanted = flat - 0.5 * (excess + std::sqrt(excess * excess + kHeelRiseLength * kHeelRiseLength));
+  // The distance to the hip decreases as the heel rises: bisection.
+  double low = -kMaxToePitch * kDegree, high = 0;
   for (int k = 0; k < 50; ++k) {
     const double middle = 0.5 * (low + high);
     ((from - rolling_ankle(here, middle)).norm() < wanted ? low : high) = middle;
@@ -185,7 +186,7 @@ FootState Feet::standing(int side, std::size_t number, int key) const {
 FootState Feet::swinging(int side, std::size_t number, int key) const {
   const Plant &from = plant(side, number), &to = plant(side, number + 1);
   const double span = to.strike - from.off, s = (key - from.off) / span;
-  // Bend of the knee [degrees], direction of the leg forward [rad], way to the left [m], pitch of the foot [rad].
+  // Bend of the knee [degrees], direction of the leg forward [rad], offset to the left [m], pitch of the foot [rad].
   using Values = Eigen::Vector4d;
   const auto values_of = [&](std::size_t which) {
     return [this, side, which](int at) {
@@ -198,22 +199,22 @@ FootState Feet::swinging(int side, std::size_t number, int key) const {
     };
   };
   Jet<Values> strike = jet_of(values_of(number + 1), to.strike);
-  // A heel lands with a jolt: no knee could begin before to bend as fast as it does then.
+  // The heel lands abruptly: the knee cannot reach its bending speed before the strike.
   strike.rate[0] = strike.bend[0] = 0;
   Jet<Values> off = jet_of(values_of(number), from.off);
   off.bend[3] = 0;
   Values now = quintic(off, strike, span, s);
   const double size = std::min(to.size, 1.0);
-  now[0] += size * knee_in_the_air(s) + kLift * (1 - size) * late_bump(s);
+  now[0] += size * knee_in_the_air(s) + kInPlaceKneeLift * (1 - size) * late_bump(s);
   now[2] += (side == 0 ? 1 : -1) * to.aside * bump(s);
-  now[3] -= kClear * off.rate[3] * span * early_bump(s);
-  const double d = reach(now[0]), down = std::sqrt(d * d - now[2] * now[2]), yaw = track_.yaw_at(key);
+  now[3] -= kToeClearRatio * off.rate[3] * span * early_bump(s);
+  const double d = leg_extent(now[0]), down = std::sqrt(d * d - now[2] * now[2]), yaw = track_.yaw_at(key);
   FootState state;
   state.ankle = hip(side, key) + down * std::sin(now[1]) * ahead_of(yaw) + now[2] * beside(yaw) -
                 down * std::cos(now[1]) * Vec3::UnitZ();
   state.yaw = from.yaw + (to.yaw - from.yaw) * smooth_ramp(s, 0, 1);
   state.pitch = now[3];
-  // The toes stretch again early in the air.
+  // The toes straighten early in swing.
   state.toes = std::max(toe_pitch(state.pitch) - state.pitch, 0.0) * (1 - smooth_ramp(s, 0.05, 0.6));
   return state;
 }
@@ -223,30 +224,30 @@ FootState Feet::at(int side, int key) const {
   return key <= plant(side, number).off ? standing(side, number, key) : swinging(side, number, key);
 }
 
-/// Of the pelvis above a leg that stands, by the curve of its knee.
+/// Height of the pelvis above a stance leg whose knee follows its curve.
 double Feet::height_above(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const Vec3 leg = hip(side, key) - rolling_ankle(here, strike_pitch(here, key));
-  const double d = reach(knee(side, number, key));
-  // `leg` is as if the middle of the pelvis were at height 0.
+  const double d = leg_extent(knee(side, number, key));
+  // `leg` is computed with the middle of the pelvis at height 0.
   return std::sqrt(d * d - leg.head<2>().squaredNorm()) - leg.z();
 }
 
-/// While one leg is led by the other the height passes over from leg to leg, through what the knee of the leg in front
-/// wants when it strikes.
+/// Computes pelvis heights. In the transition between two legs the height is interpolated, and passes through the
+/// height that the knee of the leading leg requires at its strike.
 void Feet::find_heights() {
   struct Support {
     int side;
     std::size_t number;
     int strike, begin, end;
   };
-  const int before = static_cast<int>(std::round(kRelease * plan_.period())),
-            after = static_cast<int>(std::round(kLoaded * plan_.period()));
-  std::vector<Support> supports{{1 - plan_.strikes[0].side, 0, -kEver, -kEver, 0}};
+  const int before = static_cast<int>(std::round(kReleaseFraction * plan_.period())),
+            after = static_cast<int>(std::round(kTakeoverFraction * plan_.period()));
+  std::vector<Support> supports{{1 - plan_.strikes[0].side, 0, -kFarKey, -kFarKey, 0}};
   std::array<std::size_t, 2> numbers{0, 0};
   for (const auto& strike : plan_.strikes) {
     supports.back().end = strike.key - before;
-    supports.push_back({strike.side, ++numbers[strike.side], strike.key, strike.key + after, kEver});
+    supports.push_back({strike.side, ++numbers[strike.side], strike.key, strike.key + after, kFarKey});
   }
   std::vector<double> heights;
   std::size_t now = 0;
@@ -266,9 +267,9 @@ void Feet::find_heights() {
       return quintic(jet_of(above(support), support.end), jet_of(above(next), next.begin), span,
                      (at - support.end) / span);
     };
-    const double missed = above(next)(next.strike) - between(next.strike);
+    const double correction = above(next)(next.strike) - between(next.strike);
     heights.push_back(between(key) +
-                      missed * bump((key - support.end) / span) / bump((next.strike - support.end) / span));
+                      correction * bump((key - support.end) / span) / bump((next.strike - support.end) / span));
   }
   heights_ = std::move(heights);
 }

@@ -1,4 +1,4 @@
-// How feet roll and swing, how high the hips are above them, and how far the knees bend.
+// Motion of the feet in stance and swing, height of the hips above them, and bend of the knees.
 #pragma once
 
 #include <array>
@@ -10,27 +10,27 @@ namespace weft::character {
 
 struct FootState {
   Vec3 ankle = Vec3::Zero();
-  double yaw = 0;    ///< of the foot against its rest [rad]
+  double yaw = 0;    ///< of the foot relative to rest [rad]
   double pitch = 0;  ///< [rad], + toes up; 0 flat
-  double toes = 0;   ///< bend of the toes against the foot [rad], + up
+  double toes = 0;   ///< bend of the toes relative to the foot [rad], + up
 };
 
-/// Where the hip joints are, against the middle of the pelvis, key by key from the first of the track on.
+/// Positions of the hip joints relative to the middle of the pelvis, per key from the first key of the track.
 using HipOffsets = std::vector<std::array<Vec3, 2>>;
 
-/// The way of both feet and the height of the pelvis, such that knees bend as people's do.
+/// Paths of both feet and height of the pelvis, such that knees bend as those of people.
 ///
-/// From strike to shortly before the next foot's strike the leg that stands decides how high the pelvis is: its knee
-/// follows the curve. In between the height passes over. The leg that stays behind raises its heel as far as its knee
-/// wants. In the air the knee and the direction of the leg go from what they are when the toes leave to what they are
-/// at the strike, with their velocities and accelerations. A foot that stands rolls without sliding: over the heel,
-/// which is round, stays flat, and bends about the ball, the toes flat.
+/// From its strike until shortly before the strike of the other foot, the stance leg determines the height of the
+/// pelvis: its knee follows the curve. In between, the height is interpolated. The trailing leg raises its heel as far
+/// as its knee curve requires. In swing, knee bend and leg direction are interpolated from toe-off to the strike, with
+/// matching velocities and accelerations. A foot in stance rolls without sliding: over its round heel, then flat, then
+/// bending about the ball with flat toes.
 class Feet {
  public:
-  /// All must outlive it.
+  /// All arguments must outlive the object.
   Feet(const Physique& body, const StepPlan& plan, const Track& track, const HipOffsets& hips);
 
-  /// For keys that are a stride or more from the ends of the track.
+  /// Valid for keys at least one stride from both ends of the track.
   FootState at(int side, int key) const;
   double pelvis_height(int key) const { return heights_[track_.index(key)]; }
 
@@ -39,7 +39,7 @@ class Feet {
   double next_size(int side, std::size_t number) const;
   Vec3 hip(int side, int key) const;
   double knee(int side, std::size_t number, int key) const;
-  double reach(double knee) const;
+  double leg_extent(double knee) const;
   double strike_pitch(const Plant& plant, int key) const;
   double standing_pitch(int side, std::size_t number, int key) const;
   static double toe_pitch(double pitch);

@@ -9,16 +9,15 @@ namespace weft::character {
 namespace {
 
 constexpr double kKeysPerSecond = 60;
-constexpr double kHalfTrack = 0.048;  ///< ankle from the middle line, of the height; the recording has 0.038, which
-                                      ///< would have the thighs touch
-constexpr double kAside = 0.07;       ///< of a foot that turns with the body, outward [m]
-constexpr double kFirst = 0.65, kLast = 0.75;  ///< lengths of the first and the last step, of an even one
-constexpr double kShift = 0.45;                ///< share of a stride to shift the weight before a first step
+constexpr double kHalfTrack = 0.048;     ///< ankle to midline / height; recorded: 0.038, but thighs would touch
+constexpr double kOutwardDetour = 0.07;  ///< outward detour of a foot that turns with the body [m]
+constexpr double kFirstStepRatio = 0.65, kLastStepRatio = 0.75;  ///< first and last step / even step
+constexpr double kWeightShiftFraction = 0.45;  ///< fraction of a stride to shift the weight before the first step
 
-/// What is walked around: the turn leads along a small arc, degrees to the side of the foot that begins. The inner foot
-/// opens, the outer one follows, so that toes do not meet.
-constexpr std::array<double, 4> kTurns{54, 36, 54, 36};
-constexpr double kTurnStep = 0.11;  ///< forward in each step of a turn [m], for a height of 1.75 m
+/// Turn of the body per step on the small arc of a turn, toward the side of the foot that begins [degrees]. The inner
+/// foot opens and the outer one follows, so that toes do not collide.
+constexpr std::array<double, 4> kTurnAngles{54, 36, 54, 36};
+constexpr double kTurnStep = 0.11;  ///< forward distance per step of a turn [m], for a height of 1.75 m
 
 Vec2 forward_of(double yaw) {
   return {std::sin(yaw), -std::cos(yaw)};
@@ -27,13 +26,13 @@ Vec2 left_of(double yaw) {
   return {std::cos(yaw), std::sin(yaw)};
 }
 
-/// How large even steps are against the recorded ones.
+/// Size of even steps relative to the recorded ones.
 double step_size(const Physique& body, const Pace& pace) {
   const double recorded = walking::kSpeed * walking::kPeriod / 2 * body.leg() / walking::kLegLength;
   return std::clamp(pace.step_length / recorded, 0.5, 1.2);
 }
 
-/// One step: how the body goes on from the step before, and the foot beside it.
+/// One step: motion of the body relative to the preceding step; the foot is placed beside it.
 struct Step {
   double forward = 0, left = 0;  ///< [m]
   double turn = 0;               ///< [rad]
@@ -47,11 +46,12 @@ class Planner {
     plan.step_keys = keys_of_step(pace);
     plan.key_time = pace.step_time / plan.step_keys;
     plan.speed = pace.step_length / pace.step_time;
-    next_strike_ = static_cast<int>(std::round(stand / plan.key_time)) + share(kShift) + share(kSwing);
+    next_strike_ = static_cast<int>(std::round(stand / plan.key_time)) + keys_of_fraction(kWeightShiftFraction) +
+                   keys_of_fraction(kSwing);
     for (int side = 0; side < 2; ++side) plan.plants[side].push_back(plant_of(side));
   }
 
-  /// Moves the middle of the body and sets one foot beside it.
+  /// Moves the middle of the body and places one foot beside it.
   void step(int side, const Step& step) {
     yaw_ += step.turn;
     middle_ += step.forward * forward_of(yaw_) + step.left * left_of(yaw_);
@@ -59,8 +59,8 @@ class Planner {
     Plant plant = plant_of(side);
     plant.strike = next_strike_;
     plant.size = step.size;
-    if (step.turn != 0) plant.aside = kAside;
-    plants.back().off = next_strike_ - share(kSwing);
+    if (step.turn != 0) plant.aside = kOutwardDetour;
+    plants.back().off = next_strike_ - keys_of_fraction(kSwing);
     plants.push_back(plant);
     plan.strikes.push_back({next_strike_, side});
     next_strike_ += plan.step_keys;
@@ -69,7 +69,7 @@ class Planner {
   StepPlan plan;
 
  private:
-  int share(double of_stride) const { return static_cast<int>(std::round(of_stride * plan.period())); }
+  int keys_of_fraction(double of_stride) const { return static_cast<int>(std::round(of_stride * plan.period())); }
 
   Plant plant_of(int side) const {
     const double sign = side == 0 ? 1 : -1;
@@ -86,14 +86,15 @@ class Planner {
   int next_strike_ = 0;
 };
 
-/// The steps of a straight way; `left`: how far the way leads aside, over the steps from `from` on, four at most.
-/// Returns the foot that is next.
-int go_ahead(Planner& planner, const Physique& body, const Pace& pace, int steps, int side, double left, int from) {
+/// Adds the steps of a straight path. `left`: total sideways offset, spread over at most four steps from step `from`.
+/// Returns the side of the next foot.
+int add_straight_steps(Planner& planner, const Physique& body, const Pace& pace, int steps, int side, double left,
+                       int from) {
   const int aside = std::min(4, steps);
   for (int k = 0; k < steps; ++k, side = 1 - side) {
     Step step;
     step.size = step_size(body, pace);
-    step.forward = pace.step_length * (k == 0 ? kFirst : k + 1 == steps ? kLast : 1);
+    step.forward = pace.step_length * (k == 0 ? kFirstStepRatio : k + 1 == steps ? kLastStepRatio : 1);
     if (k == 0) step.size *= 0.8;
     if (k >= from && k < from + aside) step.left = left / aside;
     planner.step(side, step);
@@ -101,25 +102,25 @@ int go_ahead(Planner& planner, const Physique& body, const Pace& pace, int steps
   return side;
 }
 
-/// Half a turn on a small arc; returns the foot that is next.
-int turn_round(Planner& planner, const Physique& body, int side) {
+/// Turns by 180° on a small arc; returns the side of the next foot.
+int add_turn_steps(Planner& planner, const Physique& body, int side) {
   const double sign = side == 0 ? 1 : -1, forward = kTurnStep * body.height / 1.75;
-  for (const double turn : kTurns) {
+  for (const double turn : kTurnAngles) {
     planner.step(side, {forward, 0, sign * turn * kDegree, 0.5});
     side = 1 - side;
   }
   return side;
 }
 
-/// How far the arc of a turn to the left leads ahead and to the left, before the turn [m].
-Vec2 arc_of_turn(const Physique& body) {
+/// Displacement ahead and to the left by a turn to the left, in the axes before the turn [m].
+Vec2 turn_displacement(const Physique& body) {
   double yaw = 0;
-  Vec2 way = Vec2::Zero();
-  for (const double turn : kTurns) {
+  Vec2 displacement = Vec2::Zero();
+  for (const double turn : kTurnAngles) {
     yaw += turn * kDegree;
-    way += kTurnStep * body.height / 1.75 * Vec2(std::cos(yaw), std::sin(yaw));
+    displacement += kTurnStep * body.height / 1.75 * Vec2(std::cos(yaw), std::sin(yaw));
   }
-  return way;
+  return displacement;
 }
 
 }  // namespace
@@ -147,7 +148,7 @@ Physique physique_of(const Character& mannequin) {
   body.thigh = (knee - hip).norm();
   body.shin = (ankle - knee).norm();
   body.stance_forward = 1.3 * cm;
-  // Arms are farther out at rest.
+  // Only the trunk: hands at rest are farther out.
   for (const Vec3& p : mannequin.mesh.positions)
     if (p.z() > 75 * cm && p.z() < 98 * cm && p.x() < 35 * cm)
       body.hips_half_width = std::max(body.hips_half_width, p.x());
@@ -155,8 +156,8 @@ Physique physique_of(const Character& mannequin) {
 }
 
 Pace pace_of(double speed, double height) {
-  constexpr double walk_ratio = 0.0062;     // m/(steps/min), of the recording
-  constexpr double recorded_height = 1.70;  // m; from the walker's legs
+  constexpr double walk_ratio = 0.0062;     // m/(steps/min), from the recording
+  constexpr double recorded_height = 1.70;  // m, estimated from the walker's legs
   const double length = std::sqrt(walk_ratio * height / recorded_height * 60 * speed);
   return {length, length / speed};
 }
@@ -174,27 +175,27 @@ std::size_t StepPlan::plant_at(int side, int key) const {
 
 StepPlan plan_walk(const Physique& body, const Walk& walk) {
   Pace pace = pace_of(walk.speed, body.height);
-  // A whole number of steps, of which the first and the last are shorter.
-  constexpr double shorter = 2 - kFirst - kLast;
+  // A whole number of steps; the first and the last are shorter.
+  constexpr double shorter = 2 - kFirstStepRatio - kLastStepRatio;
   const int steps = std::max(2, static_cast<int>(std::round(walk.distance / pace.step_length + shorter)));
   pace.step_length = walk.distance / (steps - shorter);
   pace.step_time = pace.step_length / walk.speed;
   Planner planner(body, pace, walk.stand);
   int side = 1;
   if (walk.turn_back) {
-    // Half of the way that the turn leads aside is gone before it, half after it.
-    const Vec2 arc = arc_of_turn(body);
-    // The first step of the turn still goes ahead.
-    const double ahead = std::cos(kTurns[0] * kDegree) * kTurnStep * body.height / 1.75;
+    // Half of the sideways offset of the turn is walked before it, half after it.
+    const Vec2 arc = turn_displacement(body);
+    // The first step of the turn still leads ahead.
+    const double ahead = std::cos(kTurnAngles[0] * kDegree) * kTurnStep * body.height / 1.75;
     pace.step_length -= ahead / (steps - shorter);
     const double aside = (1 + steps) % 2 == 0 ? -0.5 * arc.y() : 0.5 * arc.y();
-    side = go_ahead(planner, body, pace, steps, side, aside, std::max(0, steps - 4));
-    side = turn_round(planner, body, side);
+    side = add_straight_steps(planner, body, pace, steps, side, aside, std::max(0, steps - 4));
+    side = add_turn_steps(planner, body, side);
     Pace back = pace;
     back.step_length += arc.x() / (steps - shorter);
-    side = go_ahead(planner, body, back, steps, side, -aside, 0);
+    side = add_straight_steps(planner, body, back, steps, side, -aside, 0);
   } else {
-    side = go_ahead(planner, body, pace, steps, side, 0, 0);
+    side = add_straight_steps(planner, body, pace, steps, side, 0, 0);
   }
   planner.step(side, {0, 0, 0, 0.6});
   return std::move(planner.plan);

@@ -1,4 +1,4 @@
-// Where and when the feet of a walk stand. Times are counted in keys, of which a step has a whole even number.
+// Positions and times of the footholds of a walk. Times are counted in keys; a step has a whole, even number of keys.
 #pragma once
 
 #include <array>
@@ -10,74 +10,74 @@
 
 namespace weft::character {
 
-/// What a walk needs to know of a body; a foot at rest has its sole flat on z = 0; lengths in metres.
+/// Measures of a body that a walk depends on [m]. A foot at rest has its sole flat on z = 0.
 struct Physique {
   std::array<Vec3, kJointCount> joints;
   double height = 0;
   double foot_yaw = 0;  ///< of the left foot, outward [rad]
   double ankle_height = 0;
-  double ball_forward = 0, ball_height = 0;  ///< joint of the toes, from the place below the ankle
-  double heel_back = 0, heel_radius = 0;     ///< the heel is round about a point behind the ankle
-  double toe_length = 0, toe_radius = 0;     ///< from the ball to the middle of the round tips
+  double ball_forward = 0, ball_height = 0;  ///< joint of the toes, relative to the point below the ankle
+  double heel_back = 0, heel_radius = 0;     ///< the heel is round, with its centre behind the ankle
+  double toe_length = 0, toe_radius = 0;     ///< from the ball to the centre of the round toe tips
   double thigh = 0, shin = 0;
-  double hips_half_width = 0;  ///< of the skin, where hands hang
-  double stance_forward = 0;   ///< of the hips before the ankles, standing
+  double hips_half_width = 0;  ///< of the skin beside hanging hands
+  double stance_forward = 0;   ///< distance of the hips in front of the ankles when standing
 
   double leg() const { return thigh + shin; }
 };
 Physique physique_of(const Character& mannequin);
 
-/// Lengths and times of even steps.
+/// Length and duration of even steps.
 struct Pace {
   double step_length = 0;  ///< [m]
   double step_time = 0;    ///< half a stride [s]
 };
 
-/// For a speed [m/s] and a height of the body [m]. Step length over step rate (the walk ratio) is constant over
-/// speeds from 1.03 m/s: 0.0062 m/(steps/min) in the recording; known for people as about 0.0065 (Sekiya & Nagasaki,
-/// "Reproducibility of the walking patterns of normal young adults", 1998; bound: Murakami & Otaka, "Estimated lower
-/// speed boundary at which the walk ratio constancy is broken", 2017). Length and time follow.
+/// Pace for a speed [m/s] and a body height [m]. The walk ratio (step length / step rate) is constant for speeds from
+/// 1.03 m/s: 0.0062 m/(steps/min) in the recording, about 0.0065 in people (Sekiya & Nagasaki, "Reproducibility of the
+/// walking patterns of normal young adults", 1998; bound: Murakami & Otaka, "Estimated lower speed boundary at which
+/// the walk ratio constancy is broken", 2017). It determines length and duration.
 Pace pace_of(double speed, double height);
 
-/// An even number.
+/// Number of keys of a step; even.
 int keys_of_step(const Pace& pace);
 
-inline constexpr int kEver = 1 << 28;     ///< a key after all others
-inline constexpr double kStance = 0.60;   ///< share of a stride for which a foot stands
-inline constexpr double kSwing = 0.40;    ///< and for which it is in the air
-inline constexpr double kOverlap = 0.10;  ///< and for which both stand after a strike
+inline constexpr int kFarKey = 1 << 28;   ///< a key after all others
+inline constexpr double kStance = 0.60;   ///< stance phase, as a fraction of a stride
+inline constexpr double kSwing = 0.40;    ///< swing phase, likewise
+inline constexpr double kOverlap = 0.10;  ///< double support after a strike, likewise
 
-/// A place where a foot stands for a while.
+/// A foothold: a position where a foot stands for some time.
 struct Plant {
   Vec2 at = Vec2::Zero();  ///< below the ankle while the sole is flat [m]
-  double yaw = 0;          ///< of the body that stands on it, 0 toward -y, + to the left [rad]
+  double yaw = 0;          ///< of the body above it, 0 toward -y, + to the left [rad]
   double foot_yaw = 0;     ///< of the foot itself, whose toes point outward [rad]
-  int strike = -kEver;     ///< when the heel touches; the first one has always stood
-  int off = kEver;         ///< when the toes leave; the last one stands forever
-  double aside = 0;        ///< way outward, halfway, of the step that brought it here: around the other foot [m]
-  double size = 1;         ///< of that step, against an even one of the recording
+  int strike = -kFarKey;   ///< key of the heel strike; the first foothold always existed
+  int off = kFarKey;       ///< key of toe-off; the last foothold is never left
+  double aside = 0;        ///< outward detour, around the other foot, halfway through the step to this foothold [m]
+  double size = 1;         ///< size of that step, relative to an even one of the recording
 };
 
-/// Where and when both feet go.
+/// Footholds of both feet.
 struct StepPlan {
   std::array<std::vector<Plant>, 2> plants;  ///< of the left and the right foot
   struct Strike {
     int key, side;
   };
-  std::vector<Strike> strikes;  ///< in their order
-  double key_time = 0;          ///< [s]
+  std::vector<Strike> strikes;  ///< in chronological order
+  double key_time = 0;          ///< duration of a key [s]
   int step_keys = 0;
-  double speed = 0;  ///< of even walking [m/s]
+  double speed = 0;  ///< steady walking speed [m/s]
 
   int period() const { return 2 * step_keys; }
-  /// The one where this foot stands, or stood last.
+  /// The foothold where this foot stands, or stood last.
   std::size_t plant_at(int side, int key) const;
-  /// Share of a stride since the heel has touched, and until the toes leave; large where that is never.
+  /// Fraction of a stride since the heel strike, and until toe-off; large if there is none.
   double since_strike(const Plant& plant, double key) const { return (key - plant.strike) / period(); }
   double until_off(const Plant& plant, double key) const { return (plant.off - key) / period(); }
 };
 
-/// From standing to standing, with a turn halfway where the walk has one; `pace` as adjusted to the distance.
+/// Plans a walk from standing to standing, with the optional turn halfway. Adjusts the pace to the distance.
 StepPlan plan_walk(const Physique& body, const Walk& walk);
 
 }  // namespace weft::character

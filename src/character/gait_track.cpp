@@ -8,13 +8,13 @@
 namespace weft::character {
 namespace {
 
-constexpr double kGravity = 9.81;       // m/s²
-constexpr double kMassHeight = 0.55;    // centre of mass, of the height
-constexpr double kForesight = 0.7;      // of a stride: what is later does not yet count
-constexpr double kRollBack = -0.01;     // the weight under the heel at first, behind where it is standing [m]
-constexpr double kRollForward = 0.175;  // and at last under the ball, before that [m]
+constexpr double kGravity = 9.81;          // m/s²
+constexpr double kMassHeight = 0.55;       // height of the centre of mass / body height
+constexpr double kForesightStrides = 0.7;  // of a stride: later events have no effect yet
+constexpr double kRollBack = -0.01;        // weight offset at the strike, to below the heel [m]
+constexpr double kRollForward = 0.175;     // weight offset at toe-off, to below the ball [m]
 
-/// Mean over `width` keys around each, an even number; half a share at both ends keeps it centred.
+/// Moving average over `width` keys (even). Half weight at both ends keeps it centred.
 template <class Value>
 std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
   std::vector<Value> means;
@@ -22,27 +22,27 @@ std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
   for (int k = 0; k < n; ++k) {
     Value sum = values[0] * 0;
     for (int d = -width / 2; d <= width / 2; ++d) {
-      const double share = std::abs(d) == width / 2 ? 0.5 : 1;
-      sum += share / width * values[std::clamp(k + d, 0, n - 1)];
+      const double fraction = std::abs(d) == width / 2 ? 0.5 : 1;
+      sum += fraction / width * values[std::clamp(k + d, 0, n - 1)];
     }
     means.push_back(sum);
   }
   return means;
 }
 
-/// The mean with weights exp(-ω |τ|) on either side, which are taken to 0 at `reach` keys: who stands, stands still.
-std::vector<Vec2> balanced(const std::vector<Vec2>& p, double omega, double key_time, int reach) {
-  std::vector<double> weights;  // of d keys to either side
+/// Mean with weights exp(-ω |τ|) on both sides, 0 from `half_width` keys on: a standing body stands still.
+std::vector<Vec2> balance(const std::vector<Vec2>& p, double omega, double key_time, int half_width) {
+  std::vector<double> weights;  // at a distance of d keys
   double sum = 0;
-  for (int d = 0; d < reach; ++d) {
-    weights.push_back(std::exp(-omega * d * key_time) * (1 - smooth_ramp(d, 0.5 * reach, reach)));
+  for (int d = 0; d < half_width; ++d) {
+    weights.push_back(std::exp(-omega * d * key_time) * (1 - smooth_ramp(d, 0.5 * half_width, half_width)));
     sum += d == 0 ? weights[0] : 2 * weights.back();
   }
   std::vector<Vec2> means;
   const int n = static_cast<int>(p.size());
   for (int k = 0; k < n; ++k) {
     Vec2 mean = Vec2::Zero();
-    for (int d = 1 - reach; d < reach; ++d) {
+    for (int d = 1 - half_width; d < half_width; ++d) {
       mean += weights[std::abs(d)] / sum * p[std::clamp(k + d, 0, n - 1)];
     }
     means.push_back(mean);
@@ -50,14 +50,14 @@ std::vector<Vec2> balanced(const std::vector<Vec2>& p, double omega, double key_
   return means;
 }
 
-/// How far a foot bears the weight, 0 to 1: it takes it on while the other one gives it away.
-double load(const StepPlan& plan, const Plant& plant, int key) {
+/// Fraction of the weight on a foot, 0 to 1, before normalisation over both feet.
+double weight_fraction(const StepPlan& plan, const Plant& plant, int key) {
   const double on = std::clamp(plan.since_strike(plant, key) / kOverlap, 0.0, 1.0);
   const double off = std::clamp(plan.until_off(plant, key) / kOverlap, 0.0, 1.0);
   return std::min(on, off);
 }
 
-/// The point of a foot that bears: rolls from the heel to the ball.
+/// Point of the foot that bears the weight: rolls from the heel to the ball.
 Vec2 bearing_point(const Physique& body, const StepPlan& plan, const Plant& plant, double next_size, int key) {
   const double cm = body.height / 175;
   const double back = kRollBack * (1 - smooth_ramp(plan.since_strike(plant, key), 0, 0.3)) * plant.size;
@@ -82,15 +82,15 @@ Track lay_track(const Physique& body, const StepPlan& plan, int first, int last)
     for (int side = 0; side < 2; ++side) {
       const auto& plants = plan.plants[side];
       const std::size_t number = plan.plant_at(side, key);
-      const double share = load(plan, plants[number], key);
+      const double fraction = weight_fraction(plan, plants[number], key);
       const double next_size = number + 1 < plants.size() ? plants[number + 1].size : 0;
-      point += share * bearing_point(body, plan, plants[number], next_size, key);
-      yaw += share * plants[number].yaw;
-      sum += share;
+      point += fraction * bearing_point(body, plan, plants[number], next_size, key);
+      yaw += fraction * plants[number].yaw;
+      sum += fraction;
     }
     track.place.push_back(point / sum);
     track.yaw.push_back(yaw / sum);
-    // Steps before the first and after the last are as long as all others.
+    // Steps before the first and after the last have the same duration as all others.
     const auto& strikes = plan.strikes;
     std::size_t next = 1;
     while (next + 1 < strikes.size() && key >= strikes[next].key) ++next;
@@ -99,7 +99,7 @@ Track lay_track(const Physique& body, const StepPlan& plan, int first, int last)
     phase.push_back(0.5 * (static_cast<double>(next - 1) + between + strikes[0].side));
   }
   const double omega = std::sqrt(kGravity / (kMassHeight * body.height));
-  track.place = balanced(track.place, omega, plan.key_time, static_cast<int>(kForesight * plan.period()));
+  track.place = balance(track.place, omega, plan.key_time, static_cast<int>(kForesightStrides * plan.period()));
   track.yaw = mean_around(mean_around(track.yaw, plan.step_keys), plan.step_keys);
   track.phase = std::move(phase);
   std::vector<double> speed(track.place.size(), 0);

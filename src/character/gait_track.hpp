@@ -1,4 +1,4 @@
-// Where the body is above its feet, without its height: balance.
+// Horizontal motion of the body above its feet: balance.
 #pragma once
 
 #include <vector>
@@ -7,23 +7,23 @@
 
 namespace weft::character {
 
-/// Key by key from `first` on.
+/// Values per key, from key `first`.
 struct Track {
   int first = 0;
-  std::vector<Vec2> place;    ///< of the middle of the hips [m]
-  std::vector<double> yaw;    ///< where the body is going, 0 toward -y, + to the left [rad]
-  std::vector<double> speed;  ///< mean over a step, of that of even walking
-  std::vector<double> phase;  ///< whole where the left heel strikes, and a half more where the right one does
+  std::vector<Vec2> place;    ///< middle of the hips [m]
+  std::vector<double> yaw;    ///< heading of the body, 0 toward -y, + to the left [rad]
+  std::vector<double> speed;  ///< mean over a step, relative to the steady walking speed
+  std::vector<double> phase;  ///< integer at a strike of the left heel, integer + 0.5 at one of the right
 
   std::size_t index(int key) const { return static_cast<std::size_t>(key - first); }
   int last() const { return first + static_cast<int>(place.size()) - 1; }
-  double yaw_at(int key) const;  ///< the nearest beyond the ends
+  double yaw_at(int key) const;  ///< clamped to the ends
 };
 
-/// The body is an inverted pendulum on the feet: x'' = ω² (x - p), where p is the point that bears the weight (Kajita
-/// et al., "The 3D linear inverted pendulum mode", 2001). Its one bounded solution looks as far ahead as back: the mean
-/// of p with weights ω/2 exp(-ω |τ|). So the weight goes to the standing leg before the other one is lifted, the body
-/// leans into the first step and slows down before it stands.
+/// Treats the body as an inverted pendulum on the feet: x'' = ω² (x - p), where p is the point that bears the weight
+/// (Kajita et al., "The 3D linear inverted pendulum mode", 2001). Its only bounded solution is the mean of p over past
+/// and future with weights ω/2 exp(-ω |τ|). Therefore the weight moves to the stance leg before the other foot lifts
+/// off, and the body leans into the first step and slows down before it stops.
 Track lay_track(const Physique& body, const StepPlan& plan, int first, int last);
 
 }  // namespace weft::character

@@ -11,15 +11,15 @@
 namespace weft::character {
 namespace {
 
-/// A part of the body, and its names, in the order in which they are preferred where a rig has several.
-struct Part {
+/// A body part and its names, in order of preference if a rig has several of them.
+struct BodyPart {
   std::string name;
   std::vector<std::string> aliases;
 };
 
 // Mixamo, Rokoko and MotionBuilder; Rigify; Character Creator; Unreal; Unity, VRM and Bandai; SMPL; CMU as BVH and as
 // Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman; our mannequin.
-const std::vector<Part> kMiddle = {
+const std::vector<BodyPart> kMiddle = {
     {"Hips", {"hips", "pelvis", "hip"}},
     {"Spine",
      {"spine", "abdomen", "lowerback", "spine01", "spine001", "waist", "ab", "abdomenlower", "spine1", "torso"}},
@@ -28,7 +28,7 @@ const std::vector<Part> kMiddle = {
     {"Neck", {"neck", "neck01", "neck1", "necktwist01", "lowerneck", "necklower", "spine004"}},
     {"Head", {"head", "spine006"}},
 };
-const std::vector<Part> kSides = {
+const std::vector<BodyPart> kSides = {
     {"Shoulder", {"clavicle", "collar", "shoulder", "thorax"}},
     {"UpperArm", {"upperarm", "arm", "shldr", "shldrbend", "uparm", "upperarm01", "humerus", "shoulder"}},
     {"LowerArm", {"lowerarm", "forearm", "forearmbend", "lowarm", "lowerarm01", "radius", "elbow"}},
@@ -39,16 +39,16 @@ const std::vector<Part> kSides = {
     {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
 };
 
-/// What stands in names of nodes beside side and part: of Biped, Rigify, Source, VRM, Character Creator, Meebits, and
-/// of Mixamo where a program has left out the colon.
-bool says_nothing(const std::string& word) {
+/// Whether a word of a node name is neither side nor part: words of Biped, Rigify, Source, VRM, Character Creator,
+/// Meebits, and of Mixamo if a program left out the colon.
+bool is_filler_word(const std::string& word) {
   static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
                                                   "j", "bip", "biped", "valve", "m",    "bone"};
   return word.starts_with("bip0") || word.starts_with("mixamorig") || std::ranges::find(kWords, word) != kWords.end();
 }
 
-/// The words of a name in lower case: "Bip01 L UpperArm" and "upper_arm.L" have "upper", "arm" and "l". Digits stay
-/// with the word before them. What stands before a colon is the name of a rig.
+/// The words of a name in lower case: "Bip01 L UpperArm" and "upper_arm.L" contain "upper", "arm" and "l". Digits stay
+/// with the preceding word. A name of a rig before a colon is dropped.
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words;
   bool inside = false;
@@ -59,7 +59,7 @@ std::vector<std::string> words_of(const std::string& name) {
       inside = inside && i + 1 < name.size() && std::isdigit(static_cast<unsigned char>(name[i + 1])) != 0;
       continue;
     }
-    // A capital begins a word after a small letter, and before one: "LeftArm", "LHipJoint".
+    // A capital letter begins a word after a small letter, and before one: "LeftArm", "LHipJoint".
     const bool after_small = i > start && std::isupper(static_cast<unsigned char>(name[i - 1])) == 0;
     const bool before_small = i + 1 < name.size() && std::islower(static_cast<unsigned char>(name[i + 1])) != 0;
     if (!inside || (std::isupper(c) != 0 && (after_small || before_small))) words.emplace_back();
@@ -69,7 +69,7 @@ std::vector<std::string> words_of(const std::string& name) {
   return words;
 }
 
-/// "", "Left" or "Right", and the rest of a name in one word.
+/// Side ("", "Left" or "Right") and the remaining words of a name, joined.
 std::pair<std::string, std::string> side_and_part(const std::string& name) {
   std::string side, part;
   for (const std::string& word : words_of(name)) {
@@ -77,133 +77,133 @@ std::pair<std::string, std::string> side_and_part(const std::string& name) {
       side = "Left";
     } else if (word == "r" || word == "right") {
       side = "Right";
-    } else if (!says_nothing(word) || (word == "base" && !part.empty())) {
+    } else if (!is_filler_word(word) || (word == "base" && !part.empty())) {
       part += word;
     }
   }
-  // "lfemur", "righthand": where nothing but the case could part them.
+  // "lfemur", "righthand": side and part without any separator.
   for (const auto& [letters, which] : {std::pair{"left", "Left"}, {"right", "Right"}, {"l", "Left"}, {"r", "Right"}})
     if (side.empty() && part.starts_with(letters)) {
       const std::string rest = part.substr(std::string(letters).size());
-      for (const Part& known : kSides)
+      for (const BodyPart& known : kSides)
         if (std::ranges::find(known.aliases, rest) != known.aliases.end()) return {which, rest};
     }
   return {side, part};
 }
 
-/// A node and its ancestors, from itself upward.
-std::vector<Index> line_of(std::span<const Node> nodes, Index node) {
+/// A node and its ancestors, upward.
+std::vector<Index> ancestors_of(std::span<const Node> nodes, Index node) {
   std::vector<Index> line;
   for (; node >= 0; node = nodes[node].parent) line.push_back(node);
   return line;
 }
 
-/// The lowest node above, or the same as, both; -1 without one.
+/// The lowest node that is an ancestor of both, or one of them; -1 if there is none.
 Index common_ancestor(std::span<const Node> nodes, Index a, Index b) {
   if (a < 0 || b < 0) return -1;
-  const std::vector<Index> line = line_of(nodes, a);
-  for (const Index node : line_of(nodes, b))
+  const std::vector<Index> line = ancestors_of(nodes, a);
+  for (const Index node : ancestors_of(nodes, b))
     if (std::ranges::find(line, node) != line.end()) return node;
   return -1;
 }
 
 bool is_above(std::span<const Node> nodes, Index above, Index node) {
-  const std::vector<Index> line = line_of(nodes, node);
+  const std::vector<Index> line = ancestors_of(nodes, node);
   return above >= 0 && above != node && std::ranges::find(line, above) != line.end();
 }
 
-/// The tree says which nodes are trunk: hips are where legs and spine part, or above, the chest is where the arms part,
-/// and the spine is halfway, the lower one of two.
-void settle_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
+/// Determines the trunk from the tree: the hips are where legs and spine branch, or above; the chest is where the arms
+/// branch; the spine is halfway between, the lower of two candidates.
+void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
   const auto at = [&](Joint joint) -> Index& { return joints[place_of(joint)]; };
   Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
   const Index legs = common_ancestor(nodes, at(Joint::left_upper_leg), at(Joint::right_upper_leg));
-  const Index parting = common_ancestor(nodes, legs, arms);
-  if (parting >= 0 && parting != arms && at(Joint::hips) != parting && !is_above(nodes, at(Joint::hips), parting))
-    at(Joint::hips) = parting;
+  const Index branching = common_ancestor(nodes, legs, arms);
+  if (branching >= 0 && branching != arms && at(Joint::hips) != branching &&
+      !is_above(nodes, at(Joint::hips), branching))
+    at(Joint::hips) = branching;
   if (at(Joint::hips) < 0) at(Joint::hips) = legs;
-  // Arms of Biped hang from its neck.
+  // In Biped, arms are children of the neck.
   if (arms >= 0 && arms == at(Joint::neck)) arms = nodes[arms].parent;
   if (!is_above(nodes, at(Joint::hips), arms)) return;
   at(Joint::chest) = arms;
-  std::vector<Index> between;  // from the chest down, without what turns in the hips
+  std::vector<Index> between;  // from the chest down, without a rotation-only node at the hips
   for (Index n = nodes[arms].parent; n != at(Joint::hips); n = nodes[n].parent)
     if (!nodes[n].local.translation().isZero() || nodes[n].parent != at(Joint::hips)) between.push_back(n);
   at(Joint::spine) = between.empty() ? -1 : between[between.size() / 2];
 }
 
-/// Whether names say all that a body needs to be moved.
-bool is_whole(const std::vector<Index>& joints) {
+/// Whether all limb joints that a moving body needs were found.
+bool has_all_limbs(const std::vector<Index>& joints) {
   return std::ranges::all_of(
       std::array{Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_upper_leg, Joint::left_lower_leg},
       [&](Joint left) { return joints[place_of(left)] >= 0 && joints[place_of(on_side(left, true))] >= 0; });
 }
 
-/// What names of this many nodes begin with may be the name of a rig: of a body and nothing else.
-constexpr std::size_t kRig = 15;
+/// Minimum number of nodes that share an affix for it to be the name of a rig: the size of a minimal skeleton.
+constexpr std::size_t kMinRigNodes = 15;
 
-/// Shorter beginnings without a mark are chance, or the sides of a body.
-constexpr std::size_t kLeastName = 3;
+/// Minimum length of a prefix without a separator; shorter ones are coincidence, or the sides of a body.
+constexpr std::size_t kMinPrefixLength = 3;
 
-/// Beginnings of names up to a mark, which so many nodes share, the longest first.
-std::vector<std::string> shared_beginnings(std::span<const Node> nodes) {
+/// Prefixes that end with a separator and are shared by at least kMinRigNodes nodes, longest first.
+std::vector<std::string> prefixes_with_separator(std::span<const Node> nodes) {
   std::map<std::string, std::size_t> counts;
   for (const Node& node : nodes)
     for (std::size_t i = 1; i < node.name.size(); ++i)
       if (std::isalnum(static_cast<unsigned char>(node.name[i - 1])) == 0) ++counts[node.name.substr(0, i)];
-  std::vector<std::string> beginnings;
+  std::vector<std::string> prefixes;
   for (const auto& [text, count] : counts)
-    if (count >= kRig) beginnings.push_back(text);
-  std::ranges::stable_sort(beginnings, std::greater(), &std::string::size);
-  return beginnings;
+    if (count >= kMinRigNodes) prefixes.push_back(text);
+  std::ranges::stable_sort(prefixes, std::greater(), &std::string::size);
+  return prefixes;
 }
 
-/// Beginnings without a mark ("EthanHips", "EthanLeftArm"), which so many nodes share and no longer one does, the
-/// longest first.
-std::vector<std::string> unmarked_beginnings(const std::vector<std::string>& names) {
+/// Prefixes without a separator ("EthanHips", "EthanLeftArm") that at least kMinRigNodes nodes share and that cannot be
+/// extended without losing nodes; longest first.
+std::vector<std::string> prefixes_without_separator(const std::vector<std::string>& names) {
   std::map<std::string, std::size_t> counts;
   for (const std::string& name : names)
     for (std::size_t i = 1; i < name.size(); ++i) ++counts[name.substr(0, i)];
-  std::vector<std::string> beginnings;
+  std::vector<std::string> prefixes;
   for (const auto& [text, count] : counts) {
-    if (text.size() < kLeastName || count < kRig) continue;
-    // The next texts in order that begin with it are one letter longer, or more.
-    bool ends_here = true;
+    if (text.size() < kMinPrefixLength || count < kMinRigNodes) continue;
+    // Entries that follow in order and begin with this text extend it.
+    bool is_maximal = true;
     for (auto next = counts.upper_bound(text); next != counts.end() && next->first.starts_with(text); ++next)
-      ends_here = ends_here && next->second < count;
-    if (ends_here) beginnings.push_back(text);
+      is_maximal = is_maximal && next->second < count;
+    if (is_maximal) prefixes.push_back(text);
   }
-  std::ranges::stable_sort(beginnings, std::greater(), &std::string::size);
-  return beginnings;
+  std::ranges::stable_sort(prefixes, std::greater(), &std::string::size);
+  return prefixes;
 }
 
-/// What stands around the parts of the body in the names of a rig: its name at the beginning, at the end, or both.
+/// Prefix and suffix that a rig adds to the names of body parts.
 struct Affixes {
-  std::string beginning, end;
+  std::string prefix, end;
 
-  /// What is between both; empty where a name has not both.
+  /// The name without both; empty if it does not have both.
   std::string strip(const std::string& name) const {
-    if (name.size() <= beginning.size() + end.size() || !name.starts_with(beginning) || !name.ends_with(end)) return {};
-    return name.substr(beginning.size(), name.size() - beginning.size() - end.size());
+    if (name.size() <= prefix.size() + end.size() || !name.starts_with(prefix) || !name.ends_with(end)) return {};
+    return name.substr(prefix.size(), name.size() - prefix.size() - end.size());
   }
 };
 
-/// Beginnings up to a mark come first, then those without one, then ends.
+/// Affixes in order: prefixes with a separator, prefixes without one, then suffixes.
 std::vector<Affixes> shared_affixes(std::span<const Node> nodes) {
   std::vector<std::string> names, reversed;
   for (const Node& node : nodes) {
     names.push_back(node.name);
     reversed.emplace_back(node.name.rbegin(), node.name.rend());
   }
-  std::vector<std::string> beginnings = shared_beginnings(nodes);
-  for (std::string& text : unmarked_beginnings(names))
-    if (std::ranges::find(beginnings, text) == beginnings.end()) beginnings.push_back(std::move(text));
+  std::vector<std::string> prefixes = prefixes_with_separator(nodes);
+  for (std::string& text : prefixes_without_separator(names))
+    if (std::ranges::find(prefixes, text) == prefixes.end()) prefixes.push_back(std::move(text));
   std::vector<Affixes> affixes;
-  for (const std::string& beginning : beginnings) affixes.push_back({beginning, {}});
-  beginnings.insert(beginnings.begin(), std::string());
-  for (const std::string& end : unmarked_beginnings(reversed))
-    for (const std::string& beginning : beginnings)
-      affixes.push_back({beginning, std::string(end.rbegin(), end.rend())});
+  for (const std::string& prefix : prefixes) affixes.push_back({prefix, {}});
+  prefixes.insert(prefixes.begin(), std::string());
+  for (const std::string& end : prefixes_without_separator(reversed))
+    for (const std::string& prefix : prefixes) affixes.push_back({prefix, std::string(end.rbegin(), end.rend())});
   return affixes;
 }
 
@@ -254,33 +254,33 @@ Index joint_number(const std::string& name) {
 }
 
 std::vector<Index> find_named_joints(std::span<const Node> nodes) {
-  std::map<std::pair<std::string, std::string>, Index> known;  // the first of each name counts
+  std::map<std::pair<std::string, std::string>, Index> known;  // the first node of each name counts
   for (std::size_t n = 0; n < nodes.size(); ++n) known.emplace(side_and_part(nodes[n].name), static_cast<Index>(n));
   std::vector<Index> joints;
-  const auto find = [&](const std::string& side, const Part& part) {
+  const auto find = [&](const std::string& side, const BodyPart& part) {
     for (const std::string& alias : part.aliases)
       if (const auto found = known.find({side, alias}); found != known.end()) return found->second;
     return Index{-1};
   };
-  for (const Part& part : kMiddle) joints.push_back(find("", part));
+  for (const BodyPart& part : kMiddle) joints.push_back(find("", part));
   for (const char* side : {"Left", "Right"}) {
     const std::size_t shoulder = joints.size();
-    for (const Part& part : kSides) joints.push_back(find(side, part));
-    // What some call the shoulder is the upper arm where there is no other, what some call the foot the toes where
-    // there is an ankle, and a leg without a knee below it is the lower one.
+    for (const BodyPart& part : kSides) joints.push_back(find(side, part));
+    // Resolve ambiguous names: a "shoulder" is the upper arm if there is no other, a "foot" is the toes if there is an
+    // ankle, and a leg without a knee below it is the lower one.
     if (joints[shoulder + 4] == joints[shoulder + 5]) joints[shoulder + 4] = -1;
     if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
     if (joints.back() == joints[joints.size() - 2]) joints.back() = -1;
   }
   if (joints[place_of(Joint::spine)] == joints[place_of(Joint::chest)]) joints[place_of(Joint::chest)] = -1;
-  settle_trunk(nodes, joints);
+  determine_trunk(nodes, joints);
   return joints;
 }
 
 namespace {
 
-/// Nodes without the number that Sketchfab puts behind the name of each bone ("CC_Base_L_Calf_05", "l knee_048"): where
-/// as many as a rig has end so, hardly two of them alike, while spines and fingers count from one.
+/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l knee_048"). It applies
+/// if at least kMinRigNodes names end so, hardly any two alike, unlike the numbers of spines and fingers.
 std::vector<Node> without_numbers(std::vector<Node> nodes) {
   const auto number_of = [](const std::string& name) {
     const std::size_t mark = name.rfind('_');
@@ -296,31 +296,32 @@ std::vector<Node> without_numbers(std::vector<Node> nodes) {
       ++count;
       numbers.insert(std::move(number));
     }
-  if (numbers.size() < kRig || 10 * numbers.size() < 9 * count) return nodes;
+  if (numbers.size() < kMinRigNodes || 10 * numbers.size() < 9 * count) return nodes;
   for (Node& node : nodes) node.name.resize(node.name.size() - number_of(node.name).size());
   return nodes;
 }
 
-/// Joints by name; where these do not say all, by what is left without the name of a rig ("UnityChan_LeftArm",
-/// "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"), of several rigs that of which most joints hold skin or move.
+/// Joints by name. If names do not suffice, tries names without the affixes of a rig ("UnityChan_LeftArm",
+/// "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"). Of several rigs, the one with most joints that influence skin or
+/// move wins.
 std::vector<Index> find_prefixed_joints(const Character& character) {
   std::vector<Index> best = find_named_joints(character.nodes);
-  if (is_whole(best)) return best;
+  if (has_all_limbs(best)) return best;
   const std::vector<Node> plain = without_numbers(character.nodes);
-  if (std::vector<Index> joints = find_named_joints(plain); is_whole(joints)) return joints;
-  std::vector<bool> acts(character.nodes.size(), false);
-  for (const Bone& bone : character.bones) acts[bone.node] = true;
+  if (std::vector<Index> joints = find_named_joints(plain); has_all_limbs(joints)) return joints;
+  std::vector<bool> is_active(character.nodes.size(), false);
+  for (const Bone& bone : character.bones) is_active[bone.node] = true;
   for (const Clip& clip : character.clips)
-    for (const Channel& channel : clip.channels) acts[channel.node] = true;
-  std::size_t most = 0;
+    for (const Channel& channel : clip.channels) is_active[channel.node] = true;
+  std::size_t best_count = 0;
   for (const Affixes& affixes : shared_affixes(plain)) {
     std::vector<Node> nodes = plain;
     for (Node& node : nodes) node.name = affixes.strip(node.name);
     std::vector<Index> joints = find_named_joints(nodes);
-    const auto count =
-        static_cast<std::size_t>(std::ranges::count_if(joints, [&](Index node) { return node >= 0 && acts[node]; }));
-    if (!is_whole(joints) || count <= most) continue;
-    most = count;
+    const auto count = static_cast<std::size_t>(
+        std::ranges::count_if(joints, [&](Index node) { return node >= 0 && is_active[node]; }));
+    if (!has_all_limbs(joints) || count <= best_count) continue;
+    best_count = count;
     best = std::move(joints);
   }
   return best;
@@ -330,11 +331,11 @@ std::vector<Index> find_prefixed_joints(const Character& character) {
 
 std::vector<Index> find_joints(const Character& character) {
   std::vector<Index> joints = find_prefixed_joints(character);
-  if (is_whole(joints)) return joints;
+  if (has_all_limbs(joints)) return joints;
   const std::vector<Index> nameless = find_nameless_joints(character);
   for (std::size_t j = 0; j < joints.size(); ++j)
     if (joints[j] < 0 && std::ranges::find(joints, nameless[j]) == joints.end()) joints[j] = nameless[j];
-  settle_trunk(character.nodes, joints);
+  determine_trunk(character.nodes, joints);
   return joints;
 }
 

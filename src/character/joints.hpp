@@ -1,4 +1,4 @@
-// The joints of a human body and what the usual rigs call them.
+// The joints of a human body, and their names in common rigs.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace weft::character {
 
-/// Joints, parents first. Those of the left side are followed by their mirror images on the right.
+/// Joints, parents first. All joints of the left side come first, then their mirror images on the right.
 enum class Joint : std::uint8_t {
   hips,
   spine,
@@ -36,35 +36,34 @@ enum class Joint : std::uint8_t {
   right_toes,
 };
 inline constexpr std::size_t kJointCount = 21;
-inline constexpr std::size_t kSideJointCount = 8;  ///< of one side
+inline constexpr std::size_t kSideJointCount = 8;  ///< per side
 
 constexpr std::size_t place_of(Joint joint) {
   return static_cast<std::size_t>(joint);
 }
 
-/// A joint of the left side, or its mirror image.
+/// A joint of the left side, or its mirror image if `right`.
 constexpr Joint on_side(Joint left, bool right) {
   return static_cast<Joint>(place_of(left) + (right ? kSideJointCount : 0));
 }
 
 std::string_view name(Joint joint);
-/// The parent; hips are their own.
+/// The parent joint; that of the hips is the hips.
 Joint parent(Joint joint);
 
-/// Hips, Spine, Chest, Neck, Head, and for Left and Right: Shoulder, UpperArm, LowerArm, Hand, UpperLeg, LowerLeg,
+/// Hips, Spine, Chest, Neck, Head, then for Left and Right: Shoulder, UpperArm, LowerArm, Hand, UpperLeg, LowerLeg,
 /// Foot, Toes.
 const std::vector<std::string>& joint_names();
 
-/// Place of a name in joint_names(); -1 for others.
+/// Index of a name in joint_names(); -1 for other names.
 Index joint_number(const std::string& name);
 
-/// For each of joint_names() the node that has its part, -1 where there is none, by the names of the usual rigs (a
-/// table in joints.cpp). Prefixes, case, spaces and underscores do not count. Hips, spine and chest are where limbs
-/// part.
+/// For each of joint_names(), the node with that role, found by the names of common rigs (a table in joints.cpp); -1 if
+/// there is none. Prefixes, case, spaces and underscores are ignored. Hips, spine and chest are found by branching.
 std::vector<Index> find_named_joints(std::span<const Node> nodes);
 
-/// The same, also where many names begin with that of their rig and a mark; and where names leave out upper or lower
-/// arms or legs what the tree says (nameless.hpp).
+/// The same, but also handles rigs whose node names share a prefix or suffix with the name of the rig. If names leave
+/// out upper or lower arms or legs, the tree determines them (nameless.hpp).
 std::vector<Index> find_joints(const Character& character);
 
 }  // namespace weft::character

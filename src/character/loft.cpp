@@ -7,13 +7,13 @@
 namespace weft::character {
 namespace {
 
-/// |x|^n without the cost of pow for ellipses.
+/// |x|^n, without the cost of pow for ellipses.
 double power(double x, double n) {
   return n == 2 ? x * x : std::pow(std::abs(x), n);
 }
 
-/// Slopes at the knots of the cubic spline that is flat at both ends; for inner knots i, with h and d the lengths and
-/// slopes of the chords: h[i] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i-1] s[i+1] = 3 (h[i] d[i-1] + h[i-1] d[i]).
+/// Slopes at the knots of the cubic spline with zero slope at both ends. For inner knots i, with h and d the lengths
+/// and slopes of the chords: h[i] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i-1] s[i+1] = 3 (h[i] d[i-1] + h[i-1] d[i]).
 std::vector<double> spline_slopes(const std::vector<double>& at, const std::vector<double>& value) {
   const std::size_t n = at.size();
   std::vector<double> slope(n, 0.0), upper(n, 0.0);
@@ -49,7 +49,7 @@ Loft::Loft(const LoftFrame& frame, const std::vector<Section>& sections, double 
     const std::vector<double> slope = at_.size() > 1 ? spline_slopes(at_, value) : std::vector<double>{0.0};
     for (std::size_t i = 0; i < slope.size(); ++i) slopes_[i][k] = slope[i];
   }
-  // Splines may swell between knots: sampled finely, with a hundredth to spare.
+  // Splines may overshoot between knots: sample finely and add a margin of 1 %.
   constexpr int samples = 64;
   for (int i = 0; i <= samples; ++i) {
     const Sizes s = sizes_at(at_.front() + (at_.back() - at_.front()) * i / samples);
@@ -91,7 +91,7 @@ double Loft::value(const Vec3& p) const {
   const double n = s[5];
   const double across = power(u / s[2], n) + power(v / (v > 0 ? s[3] : s[4]), n);
   const double rho_sq = (n == 2 ? across : std::pow(across, 2 / n)) + cap * cap;
-  // On the axis the direction is not known, and the ray is as long as the narrowest half.
+  // On the axis the ray has no direction; its length is that of the narrowest half.
   const double rho = std::sqrt(rho_sq), length = std::sqrt(u * u + v * v + beyond * beyond);
   return rho < 1e-9 ? -std::min({s[2], s[3], s[4]}) : length * (1 - 1 / rho);
 }
@@ -106,13 +106,13 @@ double BlendedBody::operator()(const Vec3& p) const {
   const Vec3 mirrored(-p.x(), p.y(), p.z());
   double f = nothing;
   for (const Part& part : parts_) {
-    // A part that is farther than what is there already, and its blend, changes nothing; likewise one that takes away.
-    const double reach = f == nothing ? nothing : part.blend + (part.carved ? -f : f);
-    const auto near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < reach; };
+    // A part whose distance exceeds the current value plus the blend width changes nothing; likewise for carved parts.
+    const double max_distance = f == nothing ? nothing : part.blend + (part.carved ? -f : f);
+    const auto is_near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < max_distance; };
     double value = nothing;
-    if (near(p)) value = part.value(p);
-    // Blended with its image first, so that the sum is even in x.
-    if (part.paired && part.shape.bounds().exteriorDistance(mirrored) < std::min(reach, value + part.blend)) {
+    if (is_near(p)) value = part.value(p);
+    // Blend with its mirror image first, so that the field is even in x.
+    if (part.paired && part.shape.bounds().exteriorDistance(mirrored) < std::min(max_distance, value + part.blend)) {
       const double image = part.value(mirrored);
       value = value == nothing ? image : smooth_min(value, image, part.blend);
     }

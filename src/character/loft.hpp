@@ -1,4 +1,4 @@
-// Smooth bodies from cross-sections: the implicit surfaces of which the mannequin is made.
+// Smooth bodies lofted from cross-sections: the implicit surfaces that make up the mannequin.
 #pragma once
 
 #include <array>
@@ -10,34 +10,34 @@
 
 namespace weft::character {
 
-/// A cross-section at a place along the axis of a loft: a superellipse, |u / side|^n + |v / depth|^n = 1, with
-/// different depths to the front (v > 0) and to the back. Lengths in metres.
+/// A cross-section at a position along the axis of a loft: the superellipse |u / side|^n + |v / depth|^n = 1, with
+/// separate depths to the front (v > 0) and to the back. Lengths in metres.
 struct Section {
-  double at = 0;        ///< along the axis
-  double u = 0, v = 0;  ///< its middle
-  double side = 0;      ///< half of its width
-  double front = 0;     ///< depth from the middle
+  double at = 0;        ///< position along the axis
+  double u = 0, v = 0;  ///< centre
+  double side = 0;      ///< half width
+  double front = 0;     ///< depth from the centre
   double back = 0;
   double exponent = 2;  ///< 2: an ellipse; more: toward a rectangle
 };
 
-/// How a loft lies: its axis, and the directions of u and v. Right-handed or not: only lengths count.
+/// Placement of a loft: its axis and the directions of u and v, right-handed or not.
 struct LoftFrame {
   Vec3 origin = Vec3::Zero();
   Vec3 along = Vec3::UnitZ(), u = Vec3::UnitX(), v = -Vec3::UnitY();
 };
 
-/// Sections joined by cubic splines (twice continuously differentiable, flat at both ends) and closed by two halves of
-/// ellipsoids. One section alone makes an ellipsoid.
+/// Sections joined by cubic splines (twice continuously differentiable, zero slope at both ends) and closed by half
+/// ellipsoids. A single section makes an ellipsoid.
 class Loft {
  public:
-  /// Sections in ascending order; caps are lengths > 0 [m] beyond the first and the last one.
+  /// `sections` in ascending order. Caps: lengths > 0 beyond the first and the last section [m].
   Loft(const LoftFrame& frame, const std::vector<Section>& sections, double first_cap, double last_cap);
 
-  /// Negative inside, 0 on the surface; the distance along the ray from the nearest point of the axis [m].
+  /// Negative inside, 0 on the surface: the distance along the ray from the nearest point of the axis [m].
   double value(const Vec3& p) const;
 
-  /// No surface outside of it.
+  /// Box that contains the surface.
   const Box3& bounds() const { return bounds_; }
 
  private:
@@ -50,26 +50,26 @@ class Loft {
   double first_cap_, last_cap_;
   std::vector<double> at_;
   std::vector<Sizes> sizes_;
-  std::vector<Sizes> slopes_;  ///< at the sections
+  std::vector<Sizes> slopes_;  ///< spline slopes at the sections
   Box3 bounds_;
 };
 
-/// The minimum of two fields, rounded where they are closer than `width` [m].
+/// Minimum of two fields, rounded where they differ by less than `width` [m].
 double smooth_min(double a, double b, double width);
 
-/// Union of lofts, each blended into those before it over a width of its own [m], so that no crease remains.
+/// Union of lofts. Each is blended into the preceding ones over its own width [m], so that no crease remains.
 class BlendedBody {
  public:
   /// Negative where a part is kept [m].
   using Cut = std::function<double(const Vec3&)>;
 
-  /// Paired parts are there twice, mirrored at x = 0. Of a part with a cut only what that keeps is there, with an edge
-  /// that is as round as the blend is wide.
+  /// Adds a part. A paired part exists twice, mirrored at x = 0. A cut part exists only where `cut` keeps it, with an
+  /// edge rounded over the blend width.
   void add(Loft part, double blend, bool paired, Cut cut = {}) {
     parts_.push_back({std::move(part), blend, paired, false, std::move(cut)});
   }
 
-  /// Takes a shape away from all parts before it, with an edge that is rounded over a width [m].
+  /// Subtracts a shape from all preceding parts, with an edge rounded over a width [m].
   void carve(Loft part, double blend, bool paired) { parts_.push_back({std::move(part), blend, paired, true, {}}); }
 
   double operator()(const Vec3& p) const;

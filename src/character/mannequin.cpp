@@ -13,17 +13,17 @@
 namespace weft::character {
 namespace {
 
-constexpr int kRemeshings = 8;  ///< more change the smallest angle by less than a degree
+constexpr int kRemeshRounds = 8;  ///< remeshing rounds; more change the smallest angle by less than a degree
 
 constexpr std::size_t kFirstLeft = 5, kFirstRight = kFirstLeft + kSideJointCount;
 
-constexpr double kFinest = 0.02;  ///< edge length from which on head and hands are no coarser [m], for 1.75 m
+constexpr double kMaxHandEdge = 0.02;  ///< maximum edge length on head and hands of a body of 1.75 m [m]
 
-constexpr double kRim = 0.012;  ///< rounding between sole and side of a foot [m], for a height of 1.75 m
+constexpr double kSoleRounding = 0.012;  ///< rounding between sole and side of a foot [m], for a height of 1.75 m
 
-/// The body with flat soles: what is below the floor is cut off.
+/// The body with flat soles: all below the floor is cut off.
 mesh::Field standing_on_floor(const BlendedBody& body, double height) {
-  const double rim = kRim * height / 1.75;
+  const double rim = kSoleRounding * height / 1.75;
   return [&body, rim](const Vec3& p) {
     const double f = body(p), floor = -p.z();
     const double h = std::max(rim - std::abs(f - floor), 0.0) / rim;
@@ -31,10 +31,10 @@ mesh::Field standing_on_floor(const BlendedBody& body, double height) {
   };
 }
 
-/// Shorter where the body is thinner or more curved: arms, hands, shins, feet, neck, head, between the legs and under
-/// the arms. Faces and fingers keep their length in coarser bodies, or they would lose their shape.
+/// Wanted edge length: shorter where the body is thin or strongly curved (arms, hands, shins, feet, neck, head, between
+/// the legs and under the arms). Faces and fingers keep their edge length in coarser bodies, to keep their shape.
 mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
-  const double unit = build.height / 1.75, edge = build.edge_length, fine = std::min(edge, kFinest * unit);
+  const double unit = build.height / 1.75, edge = build.edge_length, fine = std::min(edge, kMaxHandEdge * unit);
   const double wrist = joints[place_of(Joint::left_hand)].x(), shoulder = joints[place_of(Joint::left_upper_arm)].x();
   const Vec3 crotch(0, 0, 0.78 * unit), armpit(0.82 * shoulder, 0, 1.31 * unit);
   const Vec3 nose(0, -0.095 * unit, 1.61 * unit), ear(0.078 * unit, 0.019 * unit, 1.627 * unit);
@@ -44,10 +44,10 @@ mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJ
     const double neck = smooth_ramp(p.z(), 1.38 * unit, 1.52 * unit);
     const double fold = std::min((p - crotch).norm(), (p - armpit).norm());
     const double folds = 1 - smooth_ramp(fold, 0.02 * unit, 0.11 * unit);
-    // Lengths change slowly toward head and hands.
+    // Lengths change gradually toward head and hands.
     const double away = std::max(std::min(1.5 * unit - p.z(), 1.4 * (wrist - p.x())), 0.0);
-    const double most = 0.5 * fine + 0.6 * away;
-    const double coarse = std::min(edge * (1 - std::max({arm, 0.5 * leg, 0.3 * neck, 0.4 * folds})), most);
+    const double max_length = 0.5 * fine + 0.6 * away;
+    const double coarse = std::min(edge * (1 - std::max({arm, 0.5 * leg, 0.3 * neck, 0.4 * folds})), max_length);
     const double hand = smooth_ramp(p.x(), wrist - 0.01 * unit, wrist + 0.05 * unit);
     const double head = smooth_ramp(p.z(), 1.50 * unit, 1.55 * unit);
     const double face = std::max(1 - smooth_ramp((p - nose).norm(), 0.05 * unit, 0.10 * unit),
@@ -61,15 +61,15 @@ mesh::MirroredMesh make_skin(const MannequinBuild& build, const std::array<Vec3,
   const BlendedBody body = mannequin_body(build);
   const mesh::Field field = standing_on_floor(body, build.height);
   const Box3 bounds = body.bounds();
-  const Vec3 spare = Vec3::Constant(kRim * build.height);
-  // Fine enough for fingers and for the room between the thighs.
+  const Vec3 spare = Vec3::Constant(kSoleRounding * build.height);
+  // Fine enough for fingers and for the gap between the thighs.
   const double cell = std::min(0.7 * build.edge_length, 0.0075 * build.height / 1.75);
   mesh::Mesh half = mesh::march_half_space(field, Box3(bounds.min() - spare, bounds.max() + spare), cell);
-  mesh::remesh(half, field, edge_lengths(build, joints), kRemeshings);
+  mesh::remesh(half, field, edge_lengths(build, joints), kRemeshRounds);
   return mesh::join_mirror_image(half);
 }
 
-/// The same joint of the other side.
+/// The same joint on the other side.
 std::size_t mirrored(std::size_t joint) {
   if (joint < kFirstLeft) return joint;
   return joint < kFirstRight ? joint + kSideJointCount : joint - kSideJointCount;
@@ -92,8 +92,8 @@ void bind_skin(Character& character, const mesh::MirroredMesh& skin, const std::
 }  // namespace
 
 std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
-  // Fractions of the height: Drillis & Contini (1966): ankle 0.039, knee 0.285, hip 0.530, shoulder 0.818 less half
-  // of a shoulder's thickness, upper arm 0.186, forearm 0.146.
+  // Fractions of the height: Drillis & Contini (1966): ankle 0.039, knee 0.285, hip 0.530, shoulder 0.818 less half of
+  // the thickness of a shoulder, upper arm 0.186, forearm 0.146.
   const double h = build.height, cm = h / 175;
   const double wide = 1 + 0.2 * build.masculinity;
   std::array<Vec3, kJointCount> at{};

@@ -1,4 +1,4 @@
-// A relaxed hand of the mannequin in centimetres: the palm, four fingers that bend toward the thigh, and the thumb.
+// A relaxed hand of the mannequin in centimetres: palm, four fingers that bend toward the thigh, and thumb.
 #include <cmath>
 
 #include "character/mannequin_parts.hpp"
@@ -6,8 +6,8 @@
 namespace weft::character {
 namespace {
 
-/// Of a finger: where it begins along the arm and forward [cm], lengths of its two parts, its radius, how far it bends
-/// at its root and its middle joint [degrees].
+/// A finger: start position along the arm and forward [cm], lengths of its two segments, radius, bend at the root and
+/// at the middle joint [degrees].
 struct Finger {
   double at, forward, first, second, radius, root, middle;
 };
@@ -17,10 +17,10 @@ constexpr Finger kRelaxedFingers[] = {
     {67.0, -0.75, 4.6, 4.4, 0.88, 17, 26},
     {66.3, -2.35, 3.8, 3.5, 0.82, 19, 28},
 };
-constexpr double kPlateRoot = 16, kPlateTip = 41;  ///< mean bends of the fingers [degrees]
-constexpr double kClosing = 0.040;  ///< turn of a finger toward the others [1/cm], so that they touch to their tips
+constexpr double kPlateRoot = 16, kPlateTip = 41;  ///< mean bends of the fingers, for the plates between them [degrees]
+constexpr double kClosing = 0.040;  ///< fingers converge by this [1/cm], so that they touch up to their tips
 
-/// A rod with round ends.
+/// Adds a rod with round ends.
 void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& along, const Vec3& across, double length,
              double radius, double end_radius, double blend) {
   LoftFrame frame;
@@ -32,7 +32,7 @@ void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& al
   body.add(Loft(frame, scaled(rows, s, false), radius * s.length, end_radius * s.length), blend, true);
 }
 
-/// Flat: its length, half widths at both ends, half thickness [cm].
+/// A flat piece: length, half widths at both ends, half thickness [cm].
 struct Plate {
   double length, width, end_width, thickness;
 };
@@ -67,8 +67,7 @@ void add_hand(BlendedBody& body, const Scale& s, const LoftFrame& arm) {
     return arm.origin + s.length * (at * arm.along + out * arm.u + forward * arm.v);
   };
   const Vec3 inward = -arm.u;
-  // What lies between the fingers keeps the grooves shallow: surfaces that only just touch have no clear direction, and
-  // triangles between them would fold.
+  // Plates between the fingers keep the grooves shallow: triangles between surfaces that barely touch would fold.
   const Vec3 first_plate = bent(arm.along, inward, kPlateRoot), second_plate = bent(arm.along, inward, kPlateTip);
   const Vec3 knuckles = place(66.5, -0.1, 0.1);
   add_plate(body, s, knuckles, first_plate, arm.v, {4.9, 3.1, 2.7, 0.55});

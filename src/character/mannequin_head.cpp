@@ -1,5 +1,4 @@
-// Head and hair of the mannequin in centimetres, drawn by eye, with the middle of the eyes at half of the head's
-// height.
+// Head and hair of the mannequin in centimetres, drawn by eye. The eyes are at half the head's height.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,13 +9,13 @@
 namespace weft::character {
 namespace {
 
-/// From the forehead past the temple, before, above and behind the ear, to the nape: backward, up.
+/// From the forehead past the temple, in front of, above and behind the ear, to the nape: backward, up.
 const Vec2 kHairline[] = {{-13, 171.4},  {-9, 170.6},   {-7.8, 169.6}, {-6.8, 168.2}, {-5.9, 166.6}, {-5.0, 165.2},
                           {-4.0, 164.1}, {-3.0, 163.3}, {-2.1, 162.9}, {-1.3, 163.2}, {-0.7, 164.2}, {0.0, 165.4},
                           {1.0, 166.3},  {2.2, 166.6},  {3.5, 166.2},  {4.5, 165.1},  {5.1, 163.4},  {5.4, 160.8},
                           {5.8, 158.4},  {6.8, 156.9},  {8.5, 156.4},  {13, 156.4}};
 
-/// A skull and a jaw, without features.
+/// Skull and jaw, without features.
 void add_skull(BlendedBody& body, const Scale& s) {
   const double jaw = s.blend(1, 1.08);
   body.add(ellipsoid(s, {0, -0.3, 166.0}, {7.1, 9.0, 8.9}), 3 * s.length, false);
@@ -27,7 +26,7 @@ void add_skull(BlendedBody& body, const Scale& s) {
 }
 
 void add_eyes(BlendedBody& body, const Scale& s) {
-  // Sockets below the brows, and cheekbones.
+  // Eye sockets below the brows, cheekbones, and eyeballs.
   body.carve(ellipsoid(s, {3.0, 9.75, 163.95}, {2.0, 1.95, 1.25}, 0, 14), 1.4 * s.length, true);
   body.add(ellipsoid(s, {3.9, 5.6, 161.2}, {2.3, 2.0, 1.6}, 0, 25), 3 * s.length, true);
   body.add(ellipsoid(s, {3.05, 7.2, 163.95}, {1.35, 1.2, 1.2}), 0.4 * s.length, true);
@@ -52,7 +51,7 @@ void add_nose(BlendedBody& body, const Scale& s) {
 }
 
 void add_mouth(BlendedBody& body, const Scale& s) {
-  // The mound of the teeth, both lips with a groove between them, and the chin.
+  // Mound of the teeth, both lips with a groove between them, and chin.
   body.add(ellipsoid(s, {0, 7.0, 157.6}, {3.1, 2.1, 2.5}), 2.4 * s.length, false);
   body.add(ellipsoid(s, {0.8, 8.7, 157.78}, {1.75, 0.65, 0.5}, -10, 20), 0.4 * s.length, true);
   body.add(ellipsoid(s, {0, 8.65, 156.62}, {1.95, 0.7, 0.6}), 0.5 * s.length, false);
@@ -66,7 +65,7 @@ void add_ears(BlendedBody& body, const Scale& s) {
   body.add(ellipsoid(s, {6.9, -0.6, 162.1}, {0.6, 0.55, 0.8}, 0, -10), 0.6 * s.length, true);
 }
 
-/// Combed back into a knot.
+/// Hair, combed back into a knot.
 void add_hair(BlendedBody& body, const Scale& s) {
   const double cm = s.length;
   const auto cut = [cm](const Vec3& p) { return cm * hairline_distance(p.y() / cm, p.z() / cm); };

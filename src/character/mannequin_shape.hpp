@@ -1,4 +1,4 @@
-// The surface of the mannequin, apart from its triangles.
+// The implicit surface of the mannequin, before triangulation.
 #pragma once
 
 #include "character/loft.hpp"
@@ -6,10 +6,10 @@
 
 namespace weft::character {
 
-/// Height that the tables of the body are given for [cm].
+/// Body height that the tables refer to [cm].
 inline constexpr double kTableHeight = 175;
 
-/// Negative inside [m].
+/// The body as a field: negative inside [m].
 BlendedBody mannequin_body(const MannequinBuild& build);
 
 }  // namespace weft::character

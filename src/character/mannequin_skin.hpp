@@ -1,4 +1,4 @@
-// Which joint moves which part of the mannequin.
+// Skinning weights of the mannequin.
 #pragma once
 
 #include <array>
@@ -7,8 +7,7 @@
 
 namespace weft::character {
 
-/// Weight of each joint at a place of the left half, x >= 0; they add up to 1 and change smoothly. No more than four
-/// are above 0.
+/// Weight of each joint at a point of the left half, x >= 0. They sum to 1 and vary smoothly; at most four are > 0.
 std::array<double, kJointCount> mannequin_weights(const std::array<Vec3, kJointCount>& joints, double height,
                                                   const Vec3& p);
 

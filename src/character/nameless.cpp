@@ -11,31 +11,31 @@
 namespace weft::character {
 namespace {
 
-/// Chains of both sides differ by less in their first bones and as a whole, by what is longer: recordings have left and
-/// right legs that differ by 2 %, fingers end at different ones left and right.
-constexpr double kAlike = 0.1;
-/// Bones that are compared one by one: a helper, the upper and the lower one.
-constexpr int kCompared = 3;
-/// So many chains part at a hand.
-constexpr int kFingers = 3;
-/// Of two places for the elbow the outer one counts if its shorter bone is as long as this share of the other's: there
-/// are recordings with collarbones of 13 and forearms of 9 cm; hands have less than half of a forearm up to the
-/// fingers.
-constexpr double kElbow = 0.6;
-/// Halves of a bone differ by less, and upper and lower bones of limbs by no more than this factor (those of adults by
-/// 1.0 to 1.3).
-constexpr double kSameHalf = 0.01, kHalves = 1.5;
-/// Bones of necks that do not bend are shorter than this share of a leg; those that are longer are heads.
-constexpr double kNeckBone = 0.17;
-/// Of a clip so many moments say how somebody stands.
-constexpr int kMoments = 32;
-/// Rotations of a clip that differ by less do not move [radians].
-constexpr double kStill = 1e-4;
-/// What tells the left, in cubes of a leg: trunk times way forward times way across, 0.03 in a body whose feet are
-/// known, 2e-4 for knees that are 1 mm before a straight leg.
-constexpr double kTells = 1e-4;
+/// Maximum difference between the chains of both sides, in their first bones and as a whole, relative to the longer
+/// chain. Left and right legs of recordings differ by 2 %; hands end at different fingers.
+constexpr double kMaxChainDifference = 0.1;
+/// Number of bones that are compared one by one: a helper, the upper and the lower bone.
+constexpr int kComparedBones = 3;
+/// Minimum number of chains that branch at a hand.
+constexpr int kMinFingers = 3;
+/// Of two candidates for the elbow, the outer one counts if its shorter bone is longer than this fraction of that of
+/// the inner candidate. Some recordings have collarbones of 13 cm and forearms of 9 cm; hands up to the fingers are
+/// shorter than half a forearm.
+constexpr double kMinOuterElbowRatio = 0.6;
+/// Maximum relative difference of two halves of a bone, and ratio of upper and lower bones of limbs (1.0 to 1.3 in
+/// adults).
+constexpr double kMaxHalfDifference = 0.01, kMaxLimbBoneRatio = 1.5;
+/// Rigid neck bones are shorter than this fraction of a leg; longer ones are heads.
+constexpr double kMaxNeckBone = 0.17;
+/// Number of samples of a clip that determine the posture.
+constexpr int kPostureSamples = 32;
+/// Smaller rotations of a clip count as no motion [radians].
+constexpr double kMinRotation = 1e-4;
+/// Minimum triple product (trunk, forward, across) that determines the left side, in cubed leg lengths: 0.03 for a body
+/// with known feet, 2e-4 for knees that are 1 mm in front of a straight leg.
+constexpr double kMinLeftSignal = 1e-4;
 
-/// Nodes of a limb, from the trunk outward; -1 for those that it has not.
+/// Nodes of a limb, from the trunk outward; -1 if missing.
 struct Chain {
   Index shoulder = -1, upper = -1, lower = -1, end = -1, tip = -1;
   double length = 0;  ///< of upper and lower bone [m]
@@ -44,12 +44,12 @@ struct Chain {
 /// Two chains that leave one node.
 struct Pair {
   Index from = -1, a = -1, b = -1;
-  double reach = 0;  ///< of the shorter one [m]
+  double reach = 0;  ///< length of the shorter one [m]
 };
 
 bool moves(const Channel& channel) {
   return std::ranges::any_of(channel.rotation.values, [&](const Quat& turned) {
-    return turned.angularDistance(channel.rotation.values.front()) > kStill;
+    return turned.angularDistance(channel.rotation.values.front()) > kMinRotation;
   });
 }
 
@@ -63,11 +63,11 @@ class NamelessFinder {
     for (std::size_t n = 0; n < count_; ++n) {
       const Index parent = character.nodes[n].parent;
       if (parent < 0) continue;
-      // Turns do not change lengths, so that any pose is as good as that at rest.
+      // Rotations do not change lengths, so any pose would do.
       length_[n] = (at_rest[n].translation() - at_rest[parent].translation()).norm();
       children_[parent].push_back(static_cast<Index>(n));
     }
-    find_reach();
+    compute_reach();
     find_ends();
   }
 
@@ -76,34 +76,34 @@ class NamelessFinder {
     if (!pairs) return joints_;
     const auto& [legs, arms] = *pairs;
     const std::array leg{chain_of(legs.a, 1), chain_of(legs.b, 1)},
-        arm{chain_of(arms.a, kElbow), chain_of(arms.b, kElbow)};
+        arm{chain_of(arms.a, kMinOuterElbowRatio), chain_of(arms.b, kMinOuterElbowRatio)};
     const auto across = [&](const std::array<Chain, 2>& limb) {
-      return mean_over_moments([&](const std::vector<Vec3>& at) {
+      return mean_over_clip([&](const std::vector<Vec3>& at) {
         return (at[limb[0].upper] - at[limb[1].upper]).dot(to_the_left(at, leg, arm));
       });
     };
     const double legs_across = across(leg), arms_across = across(arm), size = legs.reach * legs.reach * legs.reach;
-    if (!(std::min(std::abs(legs_across), std::abs(arms_across)) > kTells * size)) return joints_;
+    if (!(std::min(std::abs(legs_across), std::abs(arms_across)) > kMinLeftSignal * size)) return joints_;
     for (const bool right : {false, true}) {
       const Chain &l = leg[right != (legs_across < 0)], &a = arm[right != (arms_across < 0)];
-      put(Joint::left_upper_leg, right, l.upper);
-      put(Joint::left_lower_leg, right, l.lower);
-      put(Joint::left_foot, right, l.end);
-      put(Joint::left_toes, right, l.tip);
-      put(Joint::left_shoulder, right, a.shoulder);
-      put(Joint::left_upper_arm, right, a.upper);
-      put(Joint::left_lower_arm, right, a.lower);
-      put(Joint::left_hand, right, a.end);
+      set_joint(Joint::left_upper_leg, right, l.upper);
+      set_joint(Joint::left_lower_leg, right, l.lower);
+      set_joint(Joint::left_foot, right, l.end);
+      set_joint(Joint::left_toes, right, l.tip);
+      set_joint(Joint::left_shoulder, right, a.shoulder);
+      set_joint(Joint::left_upper_arm, right, a.upper);
+      set_joint(Joint::left_lower_arm, right, a.lower);
+      set_joint(Joint::left_hand, right, a.end);
     }
     find_head(arms, leg, arm);
     return joints_;
   }
 
  private:
-  void put(Joint left, bool right, Index node) { joints_[place_of(on_side(left, right))] = node; }
+  void set_joint(Joint left, bool right, Index node) { joints_[place_of(on_side(left, right))] = node; }
 
-  /// How far the longest chain below each node goes, and along which child.
-  void find_reach() {
+  /// Computes the length of the longest chain below each node, and the child along which it runs.
+  void compute_reach() {
     reach_.assign(count_, 0);
     next_.assign(count_, -1);
     for (std::size_t n = count_; n-- > 0;)
@@ -115,12 +115,12 @@ class NamelessFinder {
   }
 
   void find_ends() {
-    acts_.assign(count_, false);
-    for (const Influence& influence : character_.influences) acts_[character_.bones[influence.bone].node] = true;
+    is_active_.assign(count_, false);
+    for (const Influence& influence : character_.influences) is_active_[character_.bones[influence.bone].node] = true;
     for (const Clip& clip : character_.clips)
       for (const Channel& channel : clip.channels)
-        if (moves(channel)) acts_[channel.node] = true;
-    is_joint_ = acts_;
+        if (moves(channel)) is_active_[channel.node] = true;
+    is_joint_ = is_active_;
     for (std::size_t n = 0; n < count_; ++n)
       if (!children_[n].empty()) is_joint_[n] = true;
   }
@@ -130,37 +130,37 @@ class NamelessFinder {
     return node >= 0;
   }
 
-  bool alike(Index a, Index b) const {
-    const double most = kAlike * std::max(reach_[a], reach_[b]);
-    if (std::abs(reach_[a] - reach_[b]) > most) return false;
-    for (int k = 0; k < kCompared; ++k) {
+  bool are_alike(Index a, Index b) const {
+    const double max_difference = kMaxChainDifference * std::max(reach_[a], reach_[b]);
+    if (std::abs(reach_[a] - reach_[b]) > max_difference) return false;
+    for (int k = 0; k < kComparedBones; ++k) {
       a = next_[a];
       b = next_[b];
       if (a < 0 || b < 0) return a == b;
-      if (std::abs(length_[a] - length_[b]) > most) return false;
+      if (std::abs(length_[a] - length_[b]) > max_difference) return false;
     }
     return true;
   }
 
-  /// Legs and arms.
+  /// Finds the pairs of legs and arms.
   std::optional<std::pair<Pair, Pair>> find_pairs() const {
     std::vector<Pair> pairs;
     for (std::size_t n = 0; n < count_; ++n)
       for (std::size_t i = 0; i < children_[n].size(); ++i)
         for (std::size_t j = i + 1; j < children_[n].size(); ++j) {
           const Index a = children_[n][i], b = children_[n][j];
-          if (alike(a, b) && chain_of(a, 1).end >= 0 && chain_of(b, 1).end >= 0)
+          if (are_alike(a, b) && chain_of(a, 1).end >= 0 && chain_of(b, 1).end >= 0)
             pairs.push_back({static_cast<Index>(n), a, b, std::min(reach_[a], reach_[b])});
         }
     std::ranges::stable_sort(pairs, std::greater(), &Pair::reach);
-    // A spine may be like a leg: what it is paired with meets all others.
+    // The spine may be as long as a leg: a pair that contains it overlaps all others.
     for (std::size_t first = 0; first < pairs.size(); ++first)
       for (std::size_t second = first + 1; second < pairs.size(); ++second)
-        if (apart(pairs[first], pairs[second])) return legs_and_arms(pairs[first], pairs[second]);
+        if (are_disjoint(pairs[first], pairs[second])) return legs_and_arms(pairs[first], pairs[second]);
     return {};
   }
 
-  bool apart(const Pair& p, const Pair& q) const {
+  bool are_disjoint(const Pair& p, const Pair& q) const {
     const auto meet = [&](Index x, Index y) { return is_below(x, y) || is_below(y, x); };
     return !meet(p.a, q.a) && !meet(p.a, q.b) && !meet(p.b, q.a) && !meet(p.b, q.b);
   }
@@ -172,14 +172,14 @@ class NamelessFinder {
     return p_above || (!q_above && p_longer) ? std::pair{p, q} : std::pair{q, p};
   }
 
-  /// `outer`: how much shorter bones may be to be preferred because they lie farther out.
+  /// `outer`: an outer pair of bones is preferred if its shorter bone is longer than this fraction of the best so far.
   Chain chain_of(Index from, double outer) const {
     std::vector<Index> nodes;
-    std::size_t last = 0, hand = 0;  // that may end the lower bone; where fingers part
+    std::size_t last = 0, hand = 0;  // last node that may end the lower bone; node where fingers branch
     for (Index n = from; n >= 0; n = next_[n]) {
       nodes.push_back(n);
       if (is_joint_[n]) last = nodes.size() - 1;
-      if (hand == 0 && std::ranges::count_if(children_[n], [&](Index c) { return reach_[c] > 0; }) >= kFingers)
+      if (hand == 0 && std::ranges::count_if(children_[n], [&](Index c) { return reach_[c] > 0; }) >= kMinFingers)
         hand = nodes.size() - 1;
     }
     if (hand >= 2) last = hand;
@@ -198,21 +198,23 @@ class NamelessFinder {
     return chain;
   }
 
-  /// The length of the bones from a node to one below it.
+  /// Total length of the bones from a node to one below it.
   double length_between(Index above, Index below) const {
     double sum = 0;
     for (; below != above; below = character_.nodes[below].parent) sum += length_[below];
     return sum;
   }
 
-  /// Upper and lower bones that are in two halves, as twists of rigs want them, become whole: four bones of which two
-  /// and two are as long, and one pair is not much longer than the other.
+  /// Merges upper and lower bones that are split in two halves, as rigs with twist bones have: four bones, equal in
+  /// pairs, with pairs of similar length.
   void join_halves(std::vector<Index>& nodes, std::size_t& last) const {
     for (std::size_t i = 0; i + 4 <= last; ++i) {
       const auto bone = [&](std::size_t k) { return length_[nodes[i + k]]; };
-      const auto same = [](double a, double b) { return std::abs(a - b) < kSameHalf * std::max(a, b); };
+      const auto same = [](double a, double b) { return std::abs(a - b) < kMaxHalfDifference * std::max(a, b); };
       const double ratio = bone(3) / bone(1);
-      if (!same(bone(1), bone(2)) || !same(bone(3), bone(4)) || !(ratio > 1 / kHalves && ratio < kHalves)) continue;
+      if (!same(bone(1), bone(2)) || !same(bone(3), bone(4)) ||
+          !(ratio > 1 / kMaxLimbBoneRatio && ratio < kMaxLimbBoneRatio))
+        continue;
       nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i + 3));
       nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i + 1));
       last -= 2;
@@ -220,29 +222,29 @@ class NamelessFinder {
     }
   }
 
-  /// The mean of a figure over what the first clip shows, or at rest. `figure`: by the places of all nodes.
+  /// Mean of `figure(positions of all nodes)` over the first clip, or its value at rest if there is no clip.
   template <class Figure>
-  double mean_over_moments(const Figure& figure) const {
+  double mean_over_clip(const Figure& figure) const {
     const bool clip = !character_.clips.empty();
-    const int moments = clip ? kMoments : 1;
+    const int samples = clip ? kPostureSamples : 1;
     double sum = 0;
     std::vector<Vec3> places(count_);
-    for (int k = 0; k < moments; ++k) {
+    for (int k = 0; k < samples; ++k) {
       const Pose pose =
-          clip ? pose_at(character_, character_.clips.front(), character_.clips.front().duration * k / moments)
+          clip ? pose_at(character_, character_.clips.front(), character_.clips.front().duration * k / samples)
                : rest_pose(character_);
       const std::vector<Affine> globals = global_transforms(character_, pose);
       for (std::size_t n = 0; n < count_; ++n) places[n] = globals[n].translation();
       sum += figure(places);
     }
-    return sum / moments;
+    return sum / samples;
   }
 
   static Vec3 trunk(const std::vector<Vec3>& at, const std::array<Chain, 2>& leg, const std::array<Chain, 2>& arm) {
     return (at[arm[0].upper] + at[arm[1].upper] - at[leg[0].upper] - at[leg[1].upper]) / 2;
   }
 
-  /// Across the trunk and what points forward: feet, and knees as far as they are bent.
+  /// Vector to the left: the trunk crossed with the forward direction of feet and of bent knees.
   Vec3 to_the_left(const std::vector<Vec3>& at, const std::array<Chain, 2>& leg,
                    const std::array<Chain, 2>& arm) const {
     Vec3 forward = Vec3::Zero();
@@ -253,7 +255,7 @@ class NamelessFinder {
     return trunk(at, leg, arm).cross(forward);
   }
 
-  /// Of the nodes right below the arms' that which goes farthest up, and from there to where it parts or ends.
+  /// Finds neck and head: the highest chain below the arms' node, up to where it branches or ends.
   void find_head(const Pair& arms, const std::array<Chain, 2>& leg, const std::array<Chain, 2>& arm) {
     Index neck = -1;
     double highest = 0;
@@ -262,7 +264,7 @@ class NamelessFinder {
       Index tip = child;
       while (next_[tip] >= 0) tip = next_[tip];
       if (is_below(leg[0].upper, child)) continue;
-      const double height = mean_over_moments(
+      const double height = mean_over_clip(
           [&](const std::vector<Vec3>& at) { return (at[tip] - at[arms.from]).dot(trunk(at, leg, arm)); });
       if (height <= highest) continue;
       highest = height;
@@ -274,7 +276,7 @@ class NamelessFinder {
       Index only = -1;
       int below = 0;
       for (const Index child : children_[head])
-        if (acts_[child] || (is_joint_[child] && length_[child] < kNeckBone * leg[0].length)) {
+        if (is_active_[child] || (is_joint_[child] && length_[child] < kMaxNeckBone * leg[0].length)) {
           only = child;
           ++below;
         }
@@ -291,9 +293,9 @@ class NamelessFinder {
   std::vector<double> length_;                // of the bone that ends at a node, at rest [m]
   std::vector<std::vector<Index>> children_;  // of each node
   std::vector<double> reach_;                 // of the longest chain below a node [m]
-  std::vector<Index> next_;                   // child along it, or -1
-  std::vector<bool> acts_;                    // holds skin, or moves in a clip
-  std::vector<bool> is_joint_;                // or has nodes below
+  std::vector<Index> next_;                   // child along that chain, or -1
+  std::vector<bool> is_active_;               // influences skin, or moves in a clip
+  std::vector<bool> is_joint_;                // is active, or has nodes below it
 };
 
 }  // namespace
@@ -318,8 +320,8 @@ std::array<Index, 2> find_knuckles(const Character& character, Index hand) {
     fingers.push_back(finger);
     along += place(finger);
   }
-  constexpr std::size_t kFewest = 4;
-  if (fingers.size() < kFewest) return {-1, -1};
+  constexpr std::size_t kMinFingerChains = 4;
+  if (fingers.size() < kMinFingerChains) return {-1, -1};
   const Index thumb = *std::ranges::min_element(fingers, {}, [&](Index f) { return reach[f]; });
   std::erase(fingers, thumb);
   std::array<Index, 2> ends{-1, -1};

@@ -10,13 +10,13 @@
 namespace weft::character {
 namespace {
 
-/// A part of several joints; of those that come in pairs both.
-struct Group {
+/// A part of several joints; `sides` counts for both sides.
+struct PartGroup {
   std::string name;
   std::vector<std::string> middle, sides;
 };
 
-const std::vector<Group> kGroups = {
+const std::vector<PartGroup> kGroups = {
     {"hands", {}, {"Hand"}},
     {"feet", {}, {"Foot", "Toes"}},
     {"arms", {}, {"UpperArm", "LowerArm", "Hand"}},
@@ -25,24 +25,24 @@ const std::vector<Group> kGroups = {
     {"torso", {"Hips", "Spine", "Chest"}, {"Shoulder"}},
 };
 
-std::string in_one_word(const std::string& name) {
+std::string normalise_word(const std::string& name) {
   std::string word;
   for (const char c : name)
     if (c != '_') word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return word;
 }
 
-/// The vertices whose bones' nodes pass the test with at least half of their weight.
-VertexMask held_by(const Character& character, const std::function<bool(Index node)>& test) {
+/// The vertices of which at least half the weight belongs to bones whose nodes pass the test.
+VertexMask vertices_weighted_by(const Character& character, const std::function<bool(Index node)>& test) {
   const std::size_t vertices = character.mesh.positions.size();
   VertexMask mask(vertices, 0);
   for (std::size_t v = 0; v < vertices; ++v) {
-    double share = 0;
+    double weight = 0;
     for (Index i = character.first_influence[v]; i < character.first_influence[v + 1]; ++i) {
       const Influence& influence = character.influences[i];
-      if (test(character.bones[influence.bone].node)) share += influence.weight;
+      if (test(character.bones[influence.bone].node)) weight += influence.weight;
     }
-    mask[v] = share >= 0.5;
+    mask[v] = weight >= 0.5;
   }
   return mask;
 }
@@ -52,7 +52,7 @@ VertexMask held_by(const Character& character, const std::function<bool(Index no
 const std::vector<std::string>& part_names() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> names;
-    for (const Group& group : kGroups) names.push_back(group.name);
+    for (const PartGroup& group : kGroups) names.push_back(group.name);
     names.insert(names.end(), joint_names().begin(), joint_names().end());
     return names;
   }();
@@ -60,22 +60,22 @@ const std::vector<std::string>& part_names() {
 }
 
 std::vector<Index> joints_of_part(const std::string& name) {
-  const std::string word = in_one_word(name);
+  const std::string word = normalise_word(name);
   std::vector<Index> joints;
-  for (const Group& group : kGroups) {
+  for (const PartGroup& group : kGroups) {
     if (group.name != word) continue;
     for (const std::string& joint : group.middle) joints.push_back(joint_number(joint));
     for (const char* side : {"Left", "Right"})
       for (const std::string& joint : group.sides) joints.push_back(joint_number(side + joint));
-    return joints;  // of the head, before the joint of that name
+    return joints;  // returns before the joint of the same name ("head")
   }
   for (std::size_t j = 0; j < joint_names().size(); ++j)
-    if (in_one_word(joint_names()[j]) == word) joints.push_back(static_cast<Index>(j));
+    if (normalise_word(joint_names()[j]) == word) joints.push_back(static_cast<Index>(j));
   return joints;
 }
 
 VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints) {
-  // Of each node the joint that is nearest above it or that it is itself.
+  // For each node, the joint that it is or that is nearest above it; -1: none.
   std::vector<Index> joint_of(character.nodes.size(), -1);
   for (std::size_t n = 0; n < joint_of.size(); ++n) {
     const auto own = std::ranges::find(nodes, static_cast<Index>(n));
@@ -86,7 +86,8 @@ VertexMask vertices_of(const Character& character, std::span<const Index> nodes,
       joint_of[n] = joint_of[parent];
     }
   }
-  return held_by(character, [&](Index node) { return std::ranges::find(joints, joint_of[node]) != joints.end(); });
+  return vertices_weighted_by(character,
+                              [&](Index node) { return std::ranges::find(joints, joint_of[node]) != joints.end(); });
 }
 
 std::vector<Limb> limbs_of(const Character& character, std::span<const Index> nodes) {
@@ -113,7 +114,7 @@ VertexMask vertices_below(const Character& character, Index node) {
     const Index parent = character.nodes[n].parent;
     below[n] = static_cast<Index>(n) == node || (parent >= 0 && below[parent]);
   }
-  return held_by(character, [&](Index n) { return below[n]; });
+  return vertices_weighted_by(character, [&](Index n) { return below[n]; });
 }
 
 VertexMask vertices_of_material(const Character& character, Index material) {
@@ -123,9 +124,9 @@ VertexMask vertices_of_material(const Character& character, Index material) {
 }
 
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places) {
-  // Radii of the mean, of the distance from the skin and of the size of the body: 3 cm for a person. Narrower, and
-  // places beside each other turn apart with single faces; wider, and a shoulder moves a neck.
-  constexpr double kOfDistance = 2, kOfSize = 0.015;
+  // Radius of the mean: multiples of the distance from the skin and of the body size (3 cm for a person). With a
+  // smaller radius, neighbouring positions diverge with single faces; with a larger one, a shoulder moves a neck.
+  constexpr double kRadiusPerDistance = 2, kRadiusPerSize = 0.015;
   std::vector<Vec3> skinned(character.mesh.positions.size());
   skin(character, pose, skinned);
   const std::vector<Affine> globals = global_transforms(character, pose);
@@ -135,7 +136,7 @@ void add_followers(Character& character, const Pose& pose, const VertexMask& par
     double nearest_sq = std::numeric_limits<double>::infinity();
     for (std::size_t v = 0; v < part.size(); ++v)
       if (part[v] != 0) nearest_sq = std::min(nearest_sq, (skinned[v] - place).squaredNorm());
-    const double radius = kOfDistance * std::sqrt(nearest_sq) + kOfSize * box.diagonal().norm();
+    const double radius = kRadiusPerDistance * std::sqrt(nearest_sq) + kRadiusPerSize * box.diagonal().norm();
     std::vector<double> weights(character.bones.size(), 0);
     double total = 0;
     for (std::size_t v = 0; v < part.size(); ++v) {
@@ -160,7 +161,7 @@ void add_followers(Character& character, const Pose& pose, const VertexMask& par
 }
 
 bool has_fingers(const Character& character, std::span<const Index> nodes) {
-  std::vector<bool> holds(character.nodes.size(), false);  // skin, itself or by what is below it
+  std::vector<bool> holds(character.nodes.size(), false);  // influences skin, by itself or by a node below it
   for (const Influence& influence : character.influences) holds[character.bones[influence.bone].node] = true;
   for (std::size_t n = holds.size(); n-- > 0;)
     if (holds[n] && character.nodes[n].parent >= 0) holds[character.nodes[n].parent] = true;

@@ -1,4 +1,4 @@
-// Parts of a body, by what people call them: its hands, one arm, all that a bone of its file holds.
+// Parts of a body by common names: its hands, one arm, or all that a bone of its file influences.
 #pragma once
 
 #include <cstdint>
@@ -14,33 +14,32 @@ namespace weft::character {
 /// 1 for each vertex that belongs to a part, else 0.
 using VertexMask = std::vector<std::uint8_t>;
 
-/// hands, feet, arms, legs, head and torso, and then the names of joints.
+/// hands, feet, arms, legs, head and torso, then the names of joints.
 const std::vector<std::string>& part_names();
 
-/// The joints of part_names() that such a part consists of, as places in joint_names(); in any case, and with or
-/// without _ between words. Empty for other names.
+/// The joints that a part of part_names() consists of, as indices into joint_names(); empty for other names. Case and
+/// underscores between words are ignored.
 std::vector<Index> joints_of_part(const std::string& name);
 
-/// The vertices that are held for at least half by the nodes of these joints. The nodes of a joint are its own and all
-/// below it, up to the next joint. `nodes`: of each of joint_names(), −1 where there is none.
+/// The vertices of which at least half the weight belongs to nodes of these joints. The nodes of a joint are its own
+/// node and all below it, up to the next joint. `nodes`: one per entry of joint_names(), −1 if there is none.
 VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints);
 
-/// Of each vertex the limb that holds at least half of it; head and torso are one, and what no limb holds.
+/// Limbs. limbs_of() gives, per vertex, the limb with at least half of its weight, else trunk.
 enum class Limb : Index { trunk, left_arm, right_arm, left_leg, right_leg };
 std::vector<Limb> limbs_of(const Character& character, std::span<const Index> nodes);
 
-/// Those that are held for at least half by a node and all below it.
+/// The vertices of which at least half the weight belongs to a node or the nodes below it.
 VertexMask vertices_below(const Character& character, Index node);
 
-/// Those of a material of the file.
+/// The vertices of a material of the file.
 VertexMask vertices_of_material(const Character& character, Index material);
 
-/// Appends to the character vertices that are in no face and, as the character is posed now, are at these places: they
-/// go where the skin of the part around them goes, by the mean of its weights. The farther a place is from the skin,
-/// the wider the mean. [m]
+/// Appends vertices without faces at these positions [m], given for the current pose of the character. They follow the
+/// nearby skin of the part by a mean of its weights; the farther a position is from the skin, the wider the mean.
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places);
 
-/// Whether skin is held by three or more chains of nodes below a hand: thumb and fingers that move apart.
+/// Whether skin belongs to three or more chains of nodes below a hand: thumb and fingers that move separately.
 bool has_fingers(const Character& character, std::span<const Index> nodes);
 
 }  // namespace weft::character

@@ -1,4 +1,4 @@
-// A clip as a scene plays it: standing first, then getting going, once or again and again.
+// Playback of a clip in a scene: standing at first, then accelerating, once or in a loop.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace weft::character {
 
-/// When a clip is where.
+/// Timing of a clip in the scene.
 struct Timing {
-  double dressing = 0;  ///< [s] that pass before it moves
-  double blend = 0;     ///< [s] in which it then gets from rest to its speed
-  double start = 0;     ///< time of the clip that it gets going from [s]
+  double dressing = 0;  ///< time before it moves [s]
+  double blend = 0;     ///< time in which it then accelerates to its speed [s]
+  double start = 0;     ///< time of the clip at which it begins [s]
   double speed = 1;
 };
 
@@ -21,9 +21,9 @@ double clip_time(const Timing& timing, double t);
 
 struct Playing {
   Timing timing;
-  bool loop = false;     ///< each round goes on from where the last one has come to, level
-  double crossfade = 0;  ///< [s] of the clip at the end of a round that pass over into the next; at most half of it
-  std::optional<Pose> stance = {};  ///< that it stands in, where the clip begins, instead of the clip's pose at `start`
+  bool loop = false;     ///< each round continues horizontally from the end of the last
+  double crossfade = 0;  ///< end of a round that is blended into the next [s of the clip]; at most half of the clip
+  std::optional<Pose> stance = {};  ///< initial pose of the body, in place of the clip's pose at `start`
 };
 
 class Performance {
@@ -34,27 +34,27 @@ class Performance {
   /// The pose at time t [s] of the scene.
   Pose at(double t) const;
 
-  /// How far the furthest vertex jumps from the end of a round to the beginning of the next [m].
+  /// Largest jump of a vertex from the end of a round to the start of the next [m]; 0 if there is none.
   double gap() const;
 
  private:
   Pose at_clip_time(double t) const;
-  /// Moves a pose of the clip by a displacement in the world [m].
-  void displace(Pose& pose, const Vec3& by) const;
-  /// From where the clip is at time a to where it is at b, level, in the world [m].
-  Vec3 way(const Pose& a, const Pose& b) const;
+  /// Translates a pose of the clip in the world [m].
+  void translate(Pose& pose, const Vec3& by) const;
+  /// Horizontal displacement of the clip from pose a to pose b, in the world [m].
+  Vec3 displacement_between(const Pose& a, const Pose& b) const;
 
   const Character& character_;
   const Clip& clip_;
   Playing playing_;
   Vec3 up_;
-  Index root_ = -1;                        // the uppermost node that the clip moves along
-  Mat3 root_to_world_ = Mat3::Identity();  // directions of its parent
+  Index root_ = -1;                        // uppermost node that the clip translates; -1: none
+  Mat3 root_to_world_ = Mat3::Identity();  // axes of its parent, in the world
   double period_ = 0;                      // of a round [s]
-  Vec3 travel_{0, 0, 0}, shift_{0, 0, 0};  // of a round; of all poses of the clip [m]
+  Vec3 travel_{0, 0, 0}, shift_{0, 0, 0};  // per round; of all poses of the clip [m]
 };
 
-/// Keys a second of the channel of a clip that has the most; 0 for a clip that does not move.
+/// Keys per second of the channel with the most keys; 0 for a clip that does not move.
 double key_rate(const Clip& clip);
 
 }  // namespace weft::character

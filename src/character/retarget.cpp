@@ -18,41 +18,41 @@
 namespace weft::character {
 namespace {
 
-/// Skeletons whose joints differ by less are the same: a thousandth of all their lengths, 3 mm in an adult; and they
-/// face the same way if what the hips hang from is turned by less [radians].
+/// Skeletons are the same if joint positions differ by less than this fraction of the sum of all lengths (3 mm in an
+/// adult). They face the same way if the rotations above the hips differ by less than kSameAngle [radians].
 constexpr double kSameLength = 1e-3, kSameAngle = 1e-3;
 
-/// What people reach, and some more for limbs that others push and for noise [degrees]: knees and elbows bend by 150
-/// and overstretch by 10, thighs go up by 130, heads turn by 90 and lean by 45, the spine turns by 45 and bends by 80
+/// Limits of human joints, with a margin for noise and for limbs pushed by others [degrees]: knees and elbows bend by
+/// 150 and overextend by 10, thighs rise by 130, heads turn by 90 and lean by 45, the spine turns by 45 and bends by 80
 /// (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
-constexpr double kMostBend = 165, kMostBackward = 25, kMostThigh = 160, kMostHead = 120, kMostSpine = 120;
+constexpr double kMaxBend = 165, kMaxBackward = 25, kMaxThigh = 160, kMaxHead = 120, kMaxSpine = 120;
 
-/// Knees of a body that stands upright bend by less [degrees].
-constexpr double kMostRestBend = 30;
+/// Maximum knee bend of a body that stands upright [degrees].
+constexpr double kMaxRestBend = 30;
 
-/// Toes on the floor turn back by no more from where those of the motion point [radians].
-constexpr double kToesBack = 150 * kDegree;
+/// Maximum rotation of toes on the floor from the direction in the motion [radians].
+constexpr double kMaxToeTurn = 150 * kDegree;
 
-/// Soles that miss the floor by more are warned about [m].
-constexpr double kFloorMissed = 0.05;
+/// Soles that miss the floor by more cause a warning [m].
+constexpr double kMaxFloorError = 0.05;
 
-/// Rounds in which hands come to what they touch, which may be the other hand or its elbow.
+/// Rounds of moving hands to what they touch, which may itself be the other hand or its elbow.
 constexpr int kTouchingRounds = 3;
-/// Hands that are off by less are left where they are [m].
-constexpr double kTouching = 1e-4;
+/// Hands with a smaller error are not moved [m].
+constexpr double kMinPull = 1e-4;
 
 template <class Value>
 using PerJoint = std::array<Value, kJointCount>;
 
-/// The turn about `up` that makes a posture face as another does; both given by what goes to the left of the body.
-Quat facing(Vec3 from, Vec3 to, const Vec3& up) {
+/// Rotation about `up` that gives one posture the heading of another; both are given by their vectors to the left.
+Quat heading_rotation(Vec3 from, Vec3 to, const Vec3& up) {
   from -= from.dot(up) * up;
   to -= to.dot(up) * up;
   if (from.norm() < 1e-9 || to.norm() < 1e-9) return Quat::Identity();
   return Quat(Eigen::AngleAxisd(std::atan2(from.cross(to).dot(up), from.dot(to)), up));
 }
 
-/// To the left of the body: by the line of the hips and that of the shoulders.
+/// Vector to the left of the body, from the lines of hips and shoulders.
 Vec3 to_the_left(const Skeleton& skeleton, const Posture& posture) {
   const Vec3 hips = skeleton.across_hips(posture), shoulders = skeleton.across_shoulders(posture);
   return hips.normalized() + shoulders.normalized();
@@ -66,7 +66,7 @@ double lowest_foot(const Skeleton& skeleton, const Posture& posture, const Vec3&
   return height;
 }
 
-/// Whether two skeletons have the same joints and, up to one ratio, the same places of joints in the axes of their
+/// Whether two skeletons have the same joints and, up to one ratio, the same joint positions in the axes of their
 /// parents, which poses do not change.
 bool same_skeleton(const Rig& a, const Rig& b) {
   const auto place = [](const Rig& rig, std::size_t joint) -> Vec3 {
@@ -84,14 +84,14 @@ bool same_skeleton(const Rig& a, const Rig& b) {
   return size_b > 0;
 }
 
-/// The rotation of what the hips hang from.
+/// World rotation of the parent of the hips.
 Quat rotation_above_hips(const Rig& rig) {
   const Index above = rig.character.nodes[rig.joints[place_of(Joint::hips)]].parent;
   const Pose rest = rest_pose(rig.character);
   return above < 0 ? Quat::Identity() : to_placement(global_transforms(rig.character, rest)[above]).rotation;
 }
 
-/// What the body does at a key.
+/// Pose of the body at a key.
 struct Frame {
   PerJoint<Quat> axes;    ///< of the body parts, in the world; see find_anatomy
   PerJoint<Quat> turned;  ///< rotations of the joints, in the world
@@ -116,7 +116,8 @@ class Retargeter {
     same_ = same_skeleton(body, motion);
     if (!same_) steps_ = find_footsteps(theirs_, postures_, times_, up_);
     if (!same_ || rotation_above_hips(body).angularDistance(rotation_above_hips(motion)) > kSameAngle)
-      face_ = facing(to_the_left(theirs_, same_ ? motion_rest : postures_.front()), to_the_left(ours_, rest_), up_);
+      face_ = heading_rotation(to_the_left(theirs_, same_ ? motion_rest : postures_.front()), to_the_left(ours_, rest_),
+                               up_);
     find_axes();
     joint_of_.assign(body.character.nodes.size(), -1);
     for (std::size_t j = 0; j < kJointCount; ++j)
@@ -127,12 +128,12 @@ class Retargeter {
     std::vector<Frame> frames;
     for (std::size_t k = 0; k < times_.size(); ++k) frames.push_back(frame_at(k));
     Retargeted result;
-    if (!same_ && can_stand()) stand(frames, result.doubts);
-    if (!same_) touch(frames);
+    if (!same_ && can_stand()) plant_both_feet(frames, result.doubts);
+    if (!same_) keep_hands_near(frames);
     if (!same_) check_joints(result.doubts);
     if (!same_) check_rest(result.doubts);
     if (!same_)
-      if (auto doubt = doubt_of_two_legs(theirs_, postures_, up_)) result.doubts.push_back(*std::move(doubt));
+      if (auto doubt = warn_if_on_all_fours(theirs_, postures_, up_)) result.doubts.push_back(*std::move(doubt));
     result.clip = {clip_.name, clip_.duration, {}, {}};
     for (std::size_t n = 0; n < joint_of_.size(); ++n)
       if (joint_of_[n] >= 0) result.clip.channels.push_back({static_cast<Index>(n), {}, {}, {}});
@@ -149,22 +150,21 @@ class Retargeter {
   }
 
   void find_axes() {
-    theirs_own_.fill(Quat::Identity());
-    ours_own_ = theirs_own_;
+    their_axes_.fill(Quat::Identity());
+    our_axes_ = their_axes_;
     if (!same_) {
-      theirs_own_ = find_anatomy(theirs_, postures_, steps_.flat, up_);
+      their_axes_ = find_anatomy(theirs_, postures_, steps_.flat, up_);
       const std::vector<Flat> flat{{1, 1}};
-      ours_own_ = find_anatomy(ours_, std::span(&rest_, 1), flat, up_);
+      our_axes_ = find_anatomy(ours_, std::span(&rest_, 1), flat, up_);
     }
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto joint = static_cast<Joint>(j);
-      moves_[j] = ours_.has(joint) && (theirs_.has(joint) || (!same_ && between(joint)));
+      moves_[j] = ours_.has(joint) && (theirs_.has(joint) || (!same_ && is_interpolated(joint)));
     }
   }
 
-  /// Joints that follow others where the motion has none: of the trunk halfway between their neighbours, toes with the
-  /// foot.
-  bool between(Joint joint) const {
+  /// Whether a joint that the motion lacks follows others: trunk joints their neighbours, toes the foot.
+  bool is_interpolated(Joint joint) const {
     for (const bool right : {false, true})
       if (joint == on_side(Joint::left_toes, right)) return theirs_.has(on_side(Joint::left_foot, right));
     return (joint == Joint::spine && theirs_.has(Joint::chest)) ||
@@ -175,7 +175,7 @@ class Retargeter {
     const Posture& posture = postures_[k];
     Frame frame;
     for (std::size_t j = 0; j < kJointCount; ++j)
-      frame.axes[j] = (face_ * posture.rotations[j] * theirs_own_[j]).normalized();
+      frame.axes[j] = (face_ * posture.rotations[j] * their_axes_[j]).normalized();
     for (const Joint joint : {Joint::spine, Joint::neck})
       if (const std::size_t j = place_of(joint); !theirs_.has(joint) && moves_[j])
         frame.axes[j] = frame.axes[j - 1].slerp(0.5, frame.axes[j + 1]);
@@ -183,14 +183,14 @@ class Retargeter {
       if (const Joint toes = on_side(Joint::left_toes, right); !theirs_.has(toes))
         frame.axes[place_of(toes)] = frame.axes[place_of(toes) - 1];
     for (std::size_t j = 0; j < kJointCount; ++j)
-      frame.turned[j] = (frame.axes[j] * ours_own_[j].conjugate()).normalized();
+      frame.turned[j] = (frame.axes[j] * our_axes_[j].conjugate()).normalized();
     frame.hips = hips_at(k, frame);
     return frame;
   }
 
-  /// Where the hips of the body are at a key.
+  /// Position of the hips of the body at a key.
   Vec3 hips_at(std::size_t k, const Frame& frame) const {
-    // From the middle between the hip joints, whose height over the ankles is that of the legs.
+    // Based on the midpoint between the hip joints, whose height above the ankles is that of the legs.
     const Vec3 place = theirs_.middle_of_hips(postures_[k]);
     const Vec3 moved = face_ * (place - theirs_.middle_of_hips(postures_.front()));
     const Vec3 middle = ours_.middle_of_hips(rest_), hips = rest_.places[0];
@@ -213,7 +213,7 @@ class Retargeter {
     return can_stand() ? ankles / 2 + ratio_ * (up_.dot(place) - steps_.ankle_height) - travelled : 0;
   }
 
-  /// Node to world of all nodes of the body.
+  /// Node to world for all nodes of the body.
   std::vector<Affine> globals(const Frame& frame, std::vector<Placement>* locals = nullptr) const {
     std::vector<Affine> globals;
     for (std::size_t n = 0; n < joint_of_.size(); ++n) {
@@ -231,7 +231,7 @@ class Retargeter {
     return globals;
   }
 
-  /// Nodes come after their parents, so that each is turned against where its parent is by then.
+  /// Appends a key. Nodes follow their parents, so the parent's rotation is already known.
   void append(double t, const Frame& frame, Clip& result) const {
     std::vector<Placement> locals;
     globals(frame, &locals);
@@ -247,7 +247,7 @@ class Retargeter {
     }
   }
 
-  /// The height of the soles at rest: the lowest vertex, or the lowest joint of a body without skin.
+  /// Height of the soles at rest: the lowest vertex, or the lowest joint of a body without skin.
   double floor() const {
     double floor = lowest_foot(ours_, rest_, up_);
     std::vector<Vec3> skin_at_rest(body_.character.mesh.positions.size());
@@ -272,14 +272,14 @@ class Retargeter {
       leg.knee = place(Joint::left_lower_leg);
       leg.ankle = place(Joint::left_foot);
       leg.heel = leg.ankle - above_sole(Joint::left_foot) * normal;
-      // Toes stay flat while the heel rises, and their joint stays above them.
+      // Toes stay flat while the heel rises; their joint stays above them.
       leg.ball = place(toes) - above_sole(toes) * (toes == Joint::left_toes ? up_ : normal);
       leg.hinge = frame.axes[place_of(on_side(Joint::left_lower_leg, right))] * Vec3::UnitX();
     }
     return legs;
   }
 
-  void stand(std::vector<Frame>& frames, std::vector<std::string>& doubts) {
+  void plant_both_feet(std::vector<Frame>& frames, std::vector<std::string>& doubts) {
     const double sole = floor();
     for (const bool right : {false, true}) toe_length_[right] = toe_length(right);
     std::vector<Legs> legs;
@@ -306,7 +306,7 @@ class Retargeter {
     for (std::size_t k = 0; k < frames.size(); ++k) {
       const Legs legs = legs_of(frames[k], sole);
       const auto above = [&](const Leg& leg) { return std::min(up_.dot(leg.ball), up_.dot(leg.heel)) - sole; };
-      if (std::min(above(legs[0]), above(legs[1])) > kFloorMissed) ++in_air;
+      if (std::min(above(legs[0]), above(legs[1])) > kMaxFloorError) ++in_air;
       for (const bool right : {false, true}) {
         const double gap = above(legs[right]);
         if (!stances[k].in_contact[right] || std::abs(gap) <= std::abs(worst)) continue;
@@ -314,16 +314,16 @@ class Retargeter {
         when = times_[k];
       }
     }
-    if (std::abs(worst) > kFloorMissed)
+    if (std::abs(worst) > kMaxFloorError)
       doubts.push_back(fmt::format("a foot that stands is {:.3g} m {} the floor at {:.3g} s of the motion",
                                    std::abs(worst), worst > 0 ? "above" : "below", when));
     if (2 * in_air > frames.size())
       doubts.push_back(fmt::format("in {:.0f} % of the motion both feet are more than {:g} m above the floor",
                                    100.0 * static_cast<double>(in_air) / static_cast<double>(frames.size()),
-                                   kFloorMissed));
+                                   kMaxFloorError));
   }
 
-  /// A leg, or likewise an arm.
+  /// Bends a leg, or likewise an arm, so that it ends at `end`.
   static void bend_limb(Frame& frame, const Leg& limb, const Vec3& end, Joint upper_joint) {
     const LegTurns turns = reach(limb, end);
     Quat& upper = frame.turned[place_of(upper_joint)];
@@ -332,9 +332,9 @@ class Retargeter {
     lower = (turns.lower * lower).normalized();
   }
 
-  /// Hands that are near something in the motion stay as near.
-  void touch(std::vector<Frame>& frames) const {
-    double trunk = 0;  // of the motion where it is most upright
+  /// Keeps hands as near to other parts as in the motion.
+  void keep_hands_near(std::vector<Frame>& frames) const {
+    double trunk = 0;  // length of the motion's trunk where it is most upright
     for (const Posture& posture : postures_) trunk = std::max(trunk, theirs_.trunk(posture).norm());
     const double our_arm = ours_.arm_length(rest_), their_arm = theirs_.arm_length(postures_.front());
     if (our_arm == 0 || their_arm == 0 || trunk == 0) return;
@@ -350,7 +350,7 @@ class Retargeter {
         for (std::size_t j = 0; j < kJointCount; ++j)
           ours[j] = both[j] ? Vec3(nodes[body_.joints[j]].translation()) : Vec3(Vec3::Zero());
         const std::array<Vec3, 2> pull = pull_hands(theirs, ours, both, proportions, rests[k]);
-        if (std::max(pull[0].norm(), pull[1].norm()) < kTouching) break;
+        if (std::max(pull[0].norm(), pull[1].norm()) < kMinPull) break;
         for (const bool right : {false, true}) {
           const std::size_t upper = place_of(on_side(Joint::left_upper_arm, right));
           if (pull[right].isZero()) continue;
@@ -363,25 +363,25 @@ class Retargeter {
     }
   }
 
-  /// Toes do not reach below the floor.
+  /// Bends toes up so that they do not reach below the floor.
   void bend_toes(Frame& frame, const Vec3& ball, double floor, bool right) const {
     const std::size_t toes = place_of(on_side(Joint::left_toes, right));
     if (!moves_[toes] || toe_length_[right] <= 0) return;
     const Vec3 forward = frame.axes[toes] * Vec3::UnitX(), normal = frame.axes[toes] * Vec3::UnitZ();
-    // Turned by an angle toward their back, toes go down by cos(angle) · down + sin(angle) · back times their length.
+    // Rotated up by an angle, toes reach down by their length times cos(angle) · down + sin(angle) · back.
     const double down = -up_.dot(forward), back = -up_.dot(normal);
-    const double most = std::max(0.0, (up_.dot(ball) - floor) / toe_length_[right]), size = std::hypot(down, back);
-    if (down <= most || size <= most) return;
-    const double angle = std::atan2(back, down) + std::acos(most / size);
-    const Quat turn(Eigen::AngleAxisd(std::min(angle, kToesBack), forward.cross(normal)));
+    const double limit = std::max(0.0, (up_.dot(ball) - floor) / toe_length_[right]), size = std::hypot(down, back);
+    if (down <= limit || size <= limit) return;
+    const double angle = std::atan2(back, down) + std::acos(limit / size);
+    const Quat turn(Eigen::AngleAxisd(std::min(angle, kMaxToeTurn), forward.cross(normal)));
     frame.turned[toes] = (turn * frame.turned[toes]).normalized();
   }
 
-  /// How far the skin of the toes goes beyond their joint at rest [m].
+  /// Length of the skin of the toes beyond their joint at rest [m].
   double toe_length(bool right) const {
     const std::size_t toes = place_of(on_side(Joint::left_toes, right));
     if (body_.joints[toes] < 0) return 0;
-    const Vec3 forward = rest_.rotations[toes] * (ours_own_[toes] * Vec3::UnitX());
+    const Vec3 forward = rest_.rotations[toes] * (our_axes_[toes] * Vec3::UnitX());
     const VertexMask mask = vertices_below(body_.character, body_.joints[toes]);
     std::vector<Vec3> at_rest(mask.size());
     skin(body_.character, at_rest_, at_rest);
@@ -391,9 +391,9 @@ class Retargeter {
     return length;
   }
 
-  /// Warns of a joint that goes further than it does in people. `angle`: of a posture [degrees].
+  /// Warns if a joint exceeds the human limit `limit` [degrees]. `angle`: of a posture [rad].
   template <class Angle>
-  void check_joint(const std::string& what, double most, const Angle& angle, std::vector<std::string>& doubts) const {
+  void check_joint(const std::string& what, double limit, const Angle& angle, std::vector<std::string>& doubts) const {
     double worst = 0, when = 0;
     for (std::size_t k = 0; k < times_.size(); ++k) {
       const double here = angle(postures_[k]) / kDegree;
@@ -401,28 +401,28 @@ class Retargeter {
       worst = here;
       when = times_[k];
     }
-    if (worst > most)
+    if (worst > limit)
       doubts.push_back(
-          fmt::format("{} by {:.0f}° at {:.3g} s of the motion; people reach {:.0f}°", what, worst, when, most));
+          fmt::format("{} by {:.0f}° at {:.3g} s of the motion; people reach {:.0f}°", what, worst, when, limit));
   }
 
   void check_joints(std::vector<std::string>& doubts) const {
     const auto axis = [&](const Posture& p, Joint joint, const Vec3& of) -> Vec3 {
-      return p.rotations[place_of(joint)] * (theirs_own_[place_of(joint)] * of);
+      return p.rotations[place_of(joint)] * (their_axes_[place_of(joint)] * of);
     };
     const auto angle = [](const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); };
-    const auto lean = [&](Joint a, Joint b, const std::string& what, double most) {
+    const auto lean = [&](Joint a, Joint b, const std::string& what, double limit) {
       if (theirs_.has(a) && theirs_.has(b))
         check_joint(
-            what, most, [&](const Posture& p) { return angle(axis(p, a, Vec3::UnitZ()), axis(p, b, Vec3::UnitZ())); },
+            what, limit, [&](const Posture& p) { return angle(axis(p, a, Vec3::UnitZ()), axis(p, b, Vec3::UnitZ())); },
             doubts);
     };
-    lean(Joint::hips, Joint::chest, "the chest leans against the hips", kMostSpine);
-    lean(Joint::chest, Joint::head, "the head leans against the chest", kMostHead);
+    lean(Joint::hips, Joint::chest, "the chest leans against the hips", kMaxSpine);
+    lean(Joint::chest, Joint::head, "the head leans against the chest", kMaxHead);
     for (const bool right : {false, true}) {
       if (const Joint thigh = on_side(Joint::left_upper_leg, right); theirs_.has(thigh))
         check_joint(
-            fmt::format("{} goes up", name(thigh)), kMostThigh,
+            fmt::format("{} goes up", name(thigh)), kMaxThigh,
             [&](const Posture& p) { return angle(-axis(p, Joint::hips, Vec3::UnitZ()), theirs_.bone(p, thigh)); },
             doubts);
       for (const Joint left : {Joint::left_lower_arm, Joint::left_lower_leg}) {
@@ -433,27 +433,27 @@ class Retargeter {
           const Vec3 hinge = theirs_.bone(p, upper).cross(theirs_.bone(p, lower));
           return hinge.dot(axis(p, lower, Vec3::UnitX())) < 0 ? bend(p) : 0;
         };
-        check_joint(fmt::format("{} bends", name(lower)), kMostBend, bend, doubts);
-        check_joint(fmt::format("{} bends backward", name(lower)), kMostBackward, backward, doubts);
+        check_joint(fmt::format("{} bends", name(lower)), kMaxBend, bend, doubts);
+        check_joint(fmt::format("{} bends backward", name(lower)), kMaxBackward, backward, doubts);
       }
     }
   }
 
-  /// All that is said of the body is said of how its file has it.
+  /// Warns if the rest pose does not stand upright: all rotations of the body refer to it.
   void check_rest(std::vector<std::string>& doubts) const {
-    double most = 0;
+    double largest = 0;
     for (const bool right : {false, true}) {
       const Joint thigh = on_side(Joint::left_upper_leg, right), shin = on_side(Joint::left_lower_leg, right);
       if (!ours_.has(thigh) || !ours_.has(shin) || !ours_.has(on_side(Joint::left_foot, right))) continue;
       const Vec3 a = ours_.bone(rest_, thigh), b = ours_.bone(rest_, shin);
-      most = std::max(most, std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree);
+      largest = std::max(largest, std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree);
     }
-    if (most > kMostRestBend)
+    if (largest > kMaxRestBend)
       doubts.push_back(
           fmt::format("the body of the file stands with a knee bent by {:.0f}°, so that feet will not stand well; "
                       "motions of others "
                       "ask for one that stands upright",
-                      most));
+                      largest));
   }
 
   const Rig body_;
@@ -463,15 +463,15 @@ class Retargeter {
   const Pose at_rest_;  // of the body
   const Posture rest_;
   const std::vector<double> times_;
-  std::vector<Posture> postures_;  // of the motion, at these times
-  double ratio_ = 1;               // of lengths, body to motion
-  bool same_ = false;              // skeletons
+  std::vector<Posture> postures_;  // of the motion, at `times_`
+  double ratio_ = 1;               // ratio of lengths, body / motion
+  bool same_ = false;              // whether the skeletons are the same
   Footsteps steps_;
   std::array<double, 2> toe_length_{};  // [m]
   Quat face_ = Quat::Identity();
-  PerJoint<Quat> theirs_own_, ours_own_;  // axes of body parts in those of the joints
-  PerJoint<bool> moves_{};                // joints of the body
-  std::vector<int> joint_of_;             // of each node of the body, or -1
+  PerJoint<Quat> their_axes_, our_axes_;  // axes of body parts in those of the joints
+  PerJoint<bool> moves_{};                // whether a joint of the body moves
+  std::vector<int> joint_of_;             // joint of each node of the body, or -1
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The motion of one skeleton on another.
+// Transfers the motion of one skeleton to another.
 #pragma once
 
 #include <string>
@@ -11,20 +11,20 @@ namespace weft::character {
 
 struct Retargeted {
   Clip clip;
-  std::vector<std::string> doubts;  ///< what no body does, with figures
+  std::vector<std::string> doubts;  ///< warnings about motions that no person can make, with figures
 };
 
-/// A clip that moves `body` as `clip` moves `motion`. Both skeletons must have Hips; other joints count where both have
-/// them, and spine and neck go halfway where the motion has none. Bones point where those of the motion point and turn
-/// about themselves as those do, by the axes of find_anatomy(), so that rest poses of the motion do not matter; that of
-/// the body is to stand upright, feet flat on the floor. The body faces at time 0 where it faces at rest. Hips travel
-/// by the ratio of the legs' lengths, from where the body stands; feet keep the contacts of the motion (footing.hpp).
-///
-/// A motion of the same skeleton, by the places of its joints up to one ratio, is taken over turn by turn, with its
-/// lowest foot as high as those of the body at rest. `up`: unit vector.
+/// Makes a clip that moves `body` as `clip` moves `motion`. Both skeletons must have Hips; other joints count if both
+/// have them. If the motion lacks spine or neck, these are interpolated halfway.
+/// Bones take the directions and the twist of those of the motion, relative to the axes of find_anatomy(), so that rest
+/// poses of the motion do not matter. The rest pose of the body must stand upright with its feet flat on the floor; the
+/// body faces at time 0 where it faces at rest. Hips travel in the ratio of the leg lengths, from the body's own
+/// position; feet keep the contacts of the motion (footing.hpp).
+/// A motion of the same skeleton (joint positions equal up to one ratio) is copied rotation by rotation, with its
+/// lowest foot at the height of the body's feet at rest. `up`: unit vector.
 Retargeted retarget(const Rig& body, const Rig& motion, const Clip& clip, const Vec3& up);
 
-/// The mean over a clip of the direction from the hips to between the shoulders; zero without a trunk.
+/// Mean over a clip of the direction from the hips to between the shoulders; zero without a trunk.
 Vec3 mean_trunk(const Rig& motion, const Clip& clip);
 
 }  // namespace weft::character

@@ -12,61 +12,61 @@
 namespace weft::character {
 namespace {
 
-/// Skin that is held this differently is of two limbs: 1 that of two bones, 0 what the same bones hold alike. Near a
-/// joint, where it changes from one bone to the other, it folds onto itself.
-constexpr float kOther = 0.15F;
+/// Skin whose limb weights differ by more than this belongs to another limb (1: no common bone, 0: equal weights). Near
+/// a joint, where weights change gradually, skin folds onto itself.
+constexpr float kMinWeightDifference = 0.15F;
 
-/// Lines looked at by one task; a task then takes some hundred microseconds.
+/// Lines per task; such a task takes some hundred microseconds.
 constexpr std::size_t kLinesPerTask = 512;
 
-/// Boxes of the search along the longest side of the body: of a person 3 cm.
-constexpr double kCells = 60;
+/// Number of grid cells along the longest side of the body: 3 cm for a person.
+constexpr double kCellsPerSide = 60;
 
-/// Rounds of giving way. One is enough where both sides see each other straight; each halves what is left elsewhere.
-constexpr int kYieldingRounds = 8;
+/// Maximum number of rounds. One suffices if both sides face each other; elsewhere each round halves the remainder.
+constexpr int kMaxRounds = 8;
 
-/// Of the room, what may be missing in the end.
-constexpr double kLeastMissing = 0.02;
+/// Tolerated missing clearance at the end, as a fraction of the clearance.
+constexpr double kMissingTolerance = 0.02;
 
-/// Smoothings in each round: dents end over so many edges and more.
-constexpr int kSmoothings = 3;
+/// Smoothing passes per round: dents extend over at least this number of edges.
+constexpr int kSmoothingPasses = 3;
 
-/// Of the room, what is left between the body and the ground.
-constexpr double kAboveGround = 0.5;
+/// Clearance between body and ground, as a fraction of the clearance between limbs.
+constexpr double kGroundClearanceRatio = 0.5;
 
-/// Each of two limbs gives at most this fraction of what is missing between them.
-constexpr double kGivenByEach = 0.5;
+/// Each of two limbs gives at most this fraction of the missing clearance.
+constexpr double kMaxGivenFraction = 0.5;
 
-/// Least fraction of the way from bone to skin that is left of a limb: with less it looks deflated.
-constexpr double kLeast = 0.5;
+/// Minimum fraction of the distance from bone to skin that remains of a limb; a thinner limb looks deflated.
+constexpr double kMinRemainingFraction = 0.5;
 
-/// Skin without cloth nearby moves by at most so much along with its neighbours [m]; 5 mm are seen.
-constexpr double kUnseen = 0.004;
+/// Skin without cloth nearby moves by at most this distance along with its neighbours [m]; 5 mm are visible.
+constexpr double kMaxMoveWithoutCloth = 0.004;
 
-/// Skin near cloth moves by at most so much, or twice the room [m]: what goes deeper into another limb is not opened
-/// up, for that would be seen.
-constexpr double kMostMove = 0.03;
+/// Skin near cloth moves by at most this distance, or twice the clearance [m]. Limbs that overlap more deeply stay so,
+/// since larger moves would be visible.
+constexpr double kMaxMoveNearCloth = 0.03;
 
-/// Skin without cloth of its own that is deeper in the other limb than this has no cloth near it [m].
-constexpr double kNearDepth = 0.05;
+/// Skin without cloth of its own that is deeper in the other limb than this does not count as near cloth [m].
+constexpr double kMaxNearClothDepth = 0.05;
 
-/// Over edges up to this length skin takes its neighbours along whole; over longer ones by less, so that a dent in a
-/// body of few triangles stays as narrow [m].
-constexpr double kWholeEdge = 0.02;
+/// Over edges up to this length skin fully follows its neighbours; over longer ones less, so that dents in coarse
+/// bodies stay as narrow [m].
+constexpr double kFullFollowEdge = 0.02;
 
-/// The limb of each joint, in the order of joints: the trunk with neck, head and shoulders is one limb, hands belong to
-/// lower arms, feet to lower legs. What moves at a wrist or an ankle is too thin to lose anything.
+/// The limb of each joint, in the order of joints. The trunk includes neck, head and shoulders; hands belong to lower
+/// arms, feet to lower legs. Hands and feet are too thin to give way separately.
 constexpr std::array<std::uint8_t, kJointCount> kLimbOf = {0, 0, 0, 0, 0, 0, 1, 2, 2, 3, 4,
                                                            4, 4, 0, 5, 6, 6, 7, 8, 8, 8};
 constexpr std::array<const char*, 9> kLimbNames = {"trunk",           "left upper arm",  "left lower arm",
                                                    "left upper leg",  "left lower leg",  "right upper arm",
                                                    "right lower arm", "right upper leg", "right lower leg"};
 
-const char* name_of(const Room::Shares& shares) {
-  return kLimbNames[static_cast<std::size_t>(std::ranges::max_element(shares) - shares.begin())];
+const char* name_of(const Room::LimbWeights& weights) {
+  return kLimbNames[static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin())];
 }
 
-std::vector<Room::Shares> shares_of_limbs(const Rig& rig) {
+std::vector<Room::LimbWeights> limb_weights_of(const Rig& rig) {
   const Character& body = rig.character;
   std::vector<std::uint8_t> limb_of_node(body.nodes.size(), 0);
   for (std::size_t n = 0; n < limb_of_node.size(); ++n) {
@@ -77,38 +77,38 @@ std::vector<Room::Shares> shares_of_limbs(const Rig& rig) {
       limb_of_node[n] = limb_of_node[body.nodes[n].parent];
     }
   }
-  std::vector<Room::Shares> shares(body.mesh.positions.size(), Room::Shares{});
-  for (std::size_t v = 0; v < shares.size(); ++v)
+  std::vector<Room::LimbWeights> weights(body.mesh.positions.size(), Room::LimbWeights{});
+  for (std::size_t v = 0; v < weights.size(); ++v)
     for (Index i = body.first_influence[v]; i < body.first_influence[v + 1]; ++i)
-      shares[v][limb_of_node[body.bones[body.influences[i].bone].node]] +=
+      weights[v][limb_of_node[body.bones[body.influences[i].bone].node]] +=
           static_cast<float>(body.influences[i].weight);
-  return shares;
+  return weights;
 }
 
-/// Half of the sum of all differences.
-float difference(const Room::Shares& a, const Room::Shares& b) {
+/// Half of the sum of all differences: 0 for equal weights, 1 for disjoint ones.
+float difference(const Room::LimbWeights& a, const Room::LimbWeights& b) {
   float sum = 0;
   for (std::size_t l = 0; l < a.size(); ++l) sum += std::abs(a[l] - b[l]);
   return 0.5F * sum;
 }
 
-/// The body with these places, given as they are in its rest pose, in the place of its skin as bound.
-Character hung_on_bones(const Character& body, const std::vector<Vec3>& places) {
-  Character hung{body.nodes, body.bones, {}, body.first_influence, body.influences, {}, {}, {}, {}, {}};
-  const Pose rest = rest_pose(hung);
-  // Where the map of each vertex takes the origin and the ends of the axes.
+/// The body with these positions, given in its rest pose, as its skin as bound.
+Character rebind_to_bones(const Character& body, const std::vector<Vec3>& places) {
+  Character rebound{body.nodes, body.bones, {}, body.first_influence, body.influences, {}, {}, {}, {}, {}};
+  const Pose rest = rest_pose(rebound);
+  // Images of the origin and of the axis ends under the map of each vertex.
   std::array<std::vector<Vec3>, 4> images;
   for (int k = 0; k < 4; ++k) {
-    hung.mesh.positions.assign(places.size(), k == 0 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(k - 1)));
+    rebound.mesh.positions.assign(places.size(), k == 0 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(k - 1)));
     images[k].resize(places.size());
-    skin(hung, rest, images[k]);
+    skin(rebound, rest, images[k]);
   }
   for (std::size_t v = 0; v < places.size(); ++v) {
     Mat3 map;
     for (int k = 0; k < 3; ++k) map.col(k) = images[k + 1][v] - images[0][v];
-    hung.mesh.positions[v] = map.fullPivLu().solve(places[v] - images[0][v]);
+    rebound.mesh.positions[v] = map.fullPivLu().solve(places[v] - images[0][v]);
   }
-  return hung;
+  return rebound;
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cl
            std::vector<Ground> grounds)
     : room_(room),
       grounds_(std::move(grounds)),
-      shares_(shares_of_limbs(rig)),
+      limb_weights_(limb_weights_of(rig)),
       near_(std::move(near_cloth)),
       touched_(touched),
       foot_(vertices_of(rig.character, rig.joints, joints_of_part("feet"))) {
@@ -125,14 +125,14 @@ Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cl
     if (std::ranges::any_of(t, [&](Index v) { return touched_[v] == 0; })) continue;
     triangles_.push_back(t);
     near_of_triangle_.push_back(std::min({near_[t[0]], near_[t[1]], near_[t[2]]}));
-    Shares& mean = shares_of_triangle_.emplace_back();
+    LimbWeights& mean = limb_weights_of_triangle_.emplace_back();
     for (std::size_t l = 0; l < mean.size(); ++l)
-      mean[l] = (shares_[t[0]][l] + shares_[t[1]][l] + shares_[t[2]][l]) / 3;
+      mean[l] = (limb_weights_[t[0]][l] + limb_weights_[t[1]][l] + limb_weights_[t[2]][l]) / 3;
     for (int k = 0; k < 3; ++k) edges_.push_back({t[k], t[(k + 1) % 3]});
   }
   const Pose rest = rest_pose(rig.character);
   std::vector<Vec3> places = places_on_bones(rig.character, rest);
-  bones_ = hung_on_bones(rig.character, places);
+  bones_ = rebind_to_bones(rig.character, places);
   std::vector<Vec3> skinned(rig.character.mesh.positions.size());
   skin(rig.character, rest, skinned);
   missing_at_rest_.assign(touched_.size(), 0);
@@ -141,26 +141,27 @@ Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cl
   for (std::size_t v = 0; v < missing.size(); ++v) missing_at_rest_[v] = missing[v].distance;
 }
 
-// How much of the way from the bone through the skin, to the room beyond it, is in another limb. `skin`: where the
-// lines go, x: where the skin is now.
+// Computes how much of the line from the bone through the skin, up to the clearance beyond it, lies in another limb.
+// `skin` defines the lines, `x` is the current position of the skin.
 void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
                         std::vector<Missing>& missing) const {
   Box3 box;
   for (const mesh::Triangle& t : triangles_) box.extend(x[t[0]]);
   if (triangles_.empty()) return;
-  const mesh::TriangleGrid grid(triangles_, x, box.diagonal().maxCoeff() / kCells);
+  const mesh::TriangleGrid grid(triangles_, x, box.diagonal().maxCoeff() / kCellsPerSide);
   parallel_for(touched_.size(), kLinesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       missing[v] = {};
       const double length = (skin[v] - from[v]).norm();
-      // More than the room is missing at rest where limbs cross there, as plates of armour do by design.
+      // If more than the clearance is missing at rest, limbs cross there by design, as plates of armour do.
       if (touched_[v] == 0 || !(length > 0) || missing_at_rest_[v] > room_) continue;
       const Vec3 to = x[v] + room_ / length * (skin[v] - from[v]);
-      const mesh::Entry entry = grid.first_entry(
-          from[v], to, [&](Index t) { return difference(shares_of_triangle_[t], shares_[v]) > kOther; });
+      const mesh::Entry entry = grid.first_entry(from[v], to, [&](Index t) {
+        return difference(limb_weights_of_triangle_[t], limb_weights_[v]) > kMinWeightDifference;
+      });
       if (entry.triangle < 0) continue;
       const double all = (1 - entry.t) * (to - from[v]).norm();
-      const double shallow = std::clamp(2 - 2 * (all - room_) / kNearDepth, 0.0, 1.0);
+      const double shallow = std::clamp(2 - 2 * (all - room_) / kMaxNearClothDepth, 0.0, 1.0);
       missing[v] = {std::max(0.0, all - missing_at_rest_[v]),
                     std::max(near_[v], static_cast<float>(shallow) * near_of_triangle_[entry.triangle]),
                     entry.triangle};
@@ -168,31 +169,31 @@ void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, 
   });
 }
 
-// Each vertex gives way at least as far as its neighbours in the mean, but hardly where no cloth is near.
-void Room::smooth(std::span<const double> lengths, std::vector<double>& shares) const {
-  std::vector<double> sums(shares.size()), counts(shares.size());
-  for (int round = 0; round < kSmoothings; ++round) {
+// Moves each vertex back at least as far as the mean of its neighbours, weighted by edge length.
+void Room::smooth(std::span<const double> lengths, std::vector<double>& remaining) const {
+  std::vector<double> sums(remaining.size()), counts(remaining.size());
+  for (int round = 0; round < kSmoothingPasses; ++round) {
     std::ranges::fill(sums, 0);
     std::ranges::fill(counts, 0);
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       const auto [a, b] = edges_[e];
-      const double along = std::min(1.0, kWholeEdge / lengths[e]);
-      sums[a] += along * (1 - shares[b]), sums[b] += along * (1 - shares[a]);
+      const double along = std::min(1.0, kFullFollowEdge / lengths[e]);
+      sums[a] += along * (1 - remaining[b]), sums[b] += along * (1 - remaining[a]);
       ++counts[a], ++counts[b];
     }
-    for (std::size_t v = 0; v < shares.size(); ++v)
-      if (counts[v] > 0) shares[v] = std::min(shares[v], 1 - sums[v] / counts[v]);
+    for (std::size_t v = 0; v < remaining.size(); ++v)
+      if (counts[v] > 0) remaining[v] = std::min(remaining[v], 1 - sums[v] / counts[v]);
   }
 }
 
-// Limbs whose bones are in the ground stay there: they are meant to, or nothing helps.
-void Room::lift(std::span<const Vec3> from, std::span<Vec3> x) const {
+// Lifts skin out of the ground. Limbs whose bones are in the ground stay there: this is intended, or cannot be mended.
+void Room::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const {
   for (const Ground& ground : grounds_)
     for (std::size_t v = 0; v < touched_.size(); ++v) {
       if (touched_[v] == 0 || foot_[v] != 0 || near_[v] <= 0) continue;
-      const double missing = ground.height + kAboveGround * room_ - ground.up.dot(x[v]);
-      const double held = std::clamp((ground.up.dot(from[v]) - ground.height) / room_, 0.0, 1.0);
-      if (missing > 0) x[v] += static_cast<double>(near_[v]) * held * missing * ground.up;
+      const double missing = ground.height + kGroundClearanceRatio * room_ - ground.up.dot(x[v]);
+      const double lift_fraction = std::clamp((ground.up.dot(from[v]) - ground.height) / room_, 0.0, 1.0);
+      if (missing > 0) x[v] += static_cast<double>(near_[v]) * lift_fraction * missing * ground.up;
     }
 }
 
@@ -203,48 +204,50 @@ Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> x, std:
     if (distance > moved.distance) moved.distance = distance, moved.vertex = static_cast<Index>(v);
   }
   if (moved.vertex < 0) return moved;
-  moved.limb = name_of(shares_[moved.vertex]);
+  moved.limb = name_of(limb_weights_[moved.vertex]);
   const Index triangle = other[moved.vertex];
-  moved.away_from = triangle < 0 ? "the ground" : name_of(shares_of_triangle_[triangle]);
+  moved.away_from = triangle < 0 ? "the ground" : name_of(limb_weights_of_triangle_[triangle]);
   return moved;
 }
 
 Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
-  const std::vector<Vec3> whole(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(touched_.size()));
+  const std::vector<Vec3> original(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(touched_.size()));
   std::vector<Vec3> from(touched_.size());
   skin(bones_, {pose.nodes, {}}, from);
   std::vector<double> lengths;
-  for (const auto& [a, b] : edges_) lengths.push_back((whole[a] - whole[b]).norm());
-  std::vector<double> shares(touched_.size(), 1);
-  std::vector<double> given(touched_.size(), 0);  // most that each vertex may give of its own [m]
+  for (const auto& [a, b] : edges_) lengths.push_back((original[a] - original[b]).norm());
+  std::vector<double> remaining(touched_.size(), 1);
+  std::vector<double> max_given(touched_.size(), 0);  // maximum distance that each vertex may give by itself [m]
   std::vector<float> near = near_;
   std::vector<Index> other(touched_.size(), -1);
   std::vector<Missing> missing(touched_.size());
-  for (int round = 0; round < kYieldingRounds; ++round) {
-    find_missing(from, whole, x, missing);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    find_missing(from, original, x, missing);
     bool changed = false;
-    for (std::size_t v = 0; v < shares.size(); ++v) {
+    for (std::size_t v = 0; v < remaining.size(); ++v) {
       if (missing[v].distance <= 0 || missing[v].near <= 0) continue;
       if (other[v] < 0) other[v] = missing[v].triangle;
       near[v] = std::max(near[v], missing[v].near);
-      given[v] = std::max(given[v], kGivenByEach * static_cast<double>(missing[v].near) * missing[v].distance);
-      const double length = (whole[v] - from[v]).norm(), before = shares[v];
-      const double least = std::max(kLeast, 1 - given[v] / length);
-      shares[v] = std::min(before, std::max(least, before - kGivenByEach * missing[v].distance / length));
-      changed |= (before - shares[v]) * length > kLeastMissing * room_;
+      max_given[v] =
+          std::max(max_given[v], kMaxGivenFraction * static_cast<double>(missing[v].near) * missing[v].distance);
+      const double length = (original[v] - from[v]).norm(), before = remaining[v];
+      const double lower_limit = std::max(kMinRemainingFraction, 1 - max_given[v] / length);
+      remaining[v] = std::min(before, std::max(lower_limit, before - kMaxGivenFraction * missing[v].distance / length));
+      changed |= (before - remaining[v]) * length > kMissingTolerance * room_;
     }
-    // In each round: what gives way alone leaves its neighbours in what it went out of.
-    smooth(lengths, shares);
-    for (std::size_t v = 0; v < shares.size(); ++v) {
-      if (!(shares[v] < 1)) continue;
-      const double most = std::lerp(kUnseen, std::max(kMostMove, 2 * room_), static_cast<double>(near[v]));
-      shares[v] = std::max({shares[v], kLeast, 1 - most / (whole[v] - from[v]).norm()});
-      x[v] = from[v] + shares[v] * (whole[v] - from[v]);
+    // Smooth in every round: a vertex that moves back alone leaves its neighbours inside the other limb.
+    smooth(lengths, remaining);
+    for (std::size_t v = 0; v < remaining.size(); ++v) {
+      if (!(remaining[v] < 1)) continue;
+      const double max_move =
+          std::lerp(kMaxMoveWithoutCloth, std::max(kMaxMoveNearCloth, 2 * room_), static_cast<double>(near[v]));
+      remaining[v] = std::max({remaining[v], kMinRemainingFraction, 1 - max_move / (original[v] - from[v]).norm()});
+      x[v] = from[v] + remaining[v] * (original[v] - from[v]);
     }
     if (!changed) break;
   }
-  lift(from, x);
-  return farthest(whole, x, other);
+  lift_from_ground(from, x);
+  return farthest(original, x, other);
 }
 
 }  // namespace weft::character

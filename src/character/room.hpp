@@ -1,5 +1,5 @@
-// Room for cloth between the limbs of a body: where a motion brings two limbs closer together than that, or into each
-// other, and cloth is there, the skin of both gives way.
+// Clearance for cloth between the limbs of a body: if a motion brings two limbs too close or into each other where
+// there is cloth, the skin of both moves back.
 #pragma once
 
 #include <array>
@@ -14,60 +14,60 @@
 
 namespace weft::character {
 
-/// What the body lies on.
+/// A plane that the body lies on.
 struct Ground {
   Vec3 up{0, 0, 1};   ///< of unit length
-  double height = 0;  ///< up · x of its surface [m]
+  double height = 0;  ///< up · x of the plane [m]
 };
 
 /// The vertex that Room::make() moved farthest.
 struct Moved {
   double distance = 0;  ///< [m]; 0: nothing moved
   Index vertex = -1;
-  std::string limb;       ///< that holds the vertex
-  std::string away_from;  ///< the limb that came close, or "the ground"
+  std::string limb;       ///< limb that the vertex belongs to
+  std::string away_from;  ///< the other limb, or "the ground"
 };
 
-/// The skin moves along the lines from its bones to where it is: upper and lower arms and legs, and the trunk with the
-/// head against each other, each by at most half of what is missing. Cloth must be near one of both. Skin that is as
-/// close at rest, as at the joint of two limbs, is not asked for more room than it has there; limbs that cross at rest
-/// are left so. Skin that goes into the ground, but for that of feet, is flattened above it where cloth is near.
+/// Moves skin along the lines from its bones. Limbs are upper and lower arms, upper and lower legs, and the trunk with
+/// the head; each of two limbs moves by at most half of the missing clearance, and only if cloth is near one of them.
+/// Skin that is closer at rest, as at the joint of two limbs, keeps its clearance at rest; limbs that cross at rest are
+/// not changed. Skin near cloth that enters the ground is flattened above it, except that of feet.
 class Room {
  public:
-  /// How much of a vertex each limb holds.
-  using Shares = std::array<float, 9>;
+  /// Weight of each limb at a vertex.
+  using LimbWeights = std::array<float, 9>;
 
-  /// `touched`: for each vertex whether cloth can touch it. `near_cloth`: for each vertex from 0, where no cloth is
-  /// near, to 1, where cloth lies on it. `room`: [m]; half of it is left above the ground.
+  /// `touched`: per vertex, whether cloth can touch it. `near_cloth`: per vertex, from 0 (no cloth near) to 1 (cloth
+  /// lies on it). `room`: clearance [m]; half of it is kept above the ground.
   Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cloth, double room,
        std::vector<Ground> grounds);
 
-  /// Moves the skin, given as skin() has it in a pose.
+  /// Moves the skin `x`, which must be the result of skin() for the pose.
   Moved make(const Pose& pose, std::span<Vec3> x) const;
 
  private:
-  /// What a round finds for one vertex.
+  /// Missing clearance of one vertex in one round.
   struct Missing {
-    double distance = 0;  // [m] of what is to be asked
-    float near = 0;       // the larger nearness to cloth of both sides
-    Index triangle = -1;  // of the other limb
+    double distance = 0;  // missing clearance [m]
+    float near = 0;       // larger proximity to cloth of both limbs
+    Index triangle = -1;  // of the other limb; -1: none
   };
 
   void find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
                     std::vector<Missing>& missing) const;
-  void smooth(std::span<const double> lengths, std::vector<double>& shares) const;
-  void lift(std::span<const Vec3> from, std::span<Vec3> x) const;
+  void smooth(std::span<const double> lengths, std::vector<double>& remaining) const;
+  void lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const;
   Moved farthest(std::span<const Vec3> before, std::span<const Vec3> x, std::span<const Index> other) const;
 
   double room_;
   std::vector<Ground> grounds_;
-  std::vector<mesh::Triangle> triangles_;  // that cloth can touch
-  std::vector<Shares> shares_, shares_of_triangle_;
+  std::vector<mesh::Triangle> triangles_;  // those that cloth can touch
+  std::vector<LimbWeights> limb_weights_, limb_weights_of_triangle_;
   std::vector<float> near_, near_of_triangle_;
   VertexMask touched_, foot_;
   std::vector<double> missing_at_rest_;  // [m]
   std::vector<std::array<Index, 2>> edges_;
-  Character bones_;  // its mesh: where the lines of the vertices begin, as bound
+  Character bones_;  // its mesh holds the start points of the lines of the vertices, as bound
 };
 
 }  // namespace weft::character

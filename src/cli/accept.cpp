@@ -28,8 +28,9 @@ bool is_blank(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; });
 }
 
-// References are added and replaced, never taken away.
-void tell_left(const fs::path& references, const fs::path& test, const std::vector<std::string>& names) {
+// References without a counterpart are listed but never removed.
+void report_unmatched_references(const fs::path& references, const fs::path& test,
+                                 const std::vector<std::string>& names) {
   if (!fs::is_directory(references)) return;
   const std::string machine = compare::machine_class_of(test / names.front());
   for (const std::string& name : compare::reference_names(references, machine))
@@ -48,7 +49,7 @@ ExitCode accept(const AcceptOptions& options) {
     throw Error(ExitCode::usage, "{} files cannot all become {}: name the folder of references instead",
                 options.tests.size(), options.reference.string());
   }
-  // All are looked at before the first reference changes.
+  // All are checked before the first reference changes.
   std::vector<compare::Acceptance> plans;
   const auto add = [&](const fs::path& test, const std::string& name) {
     plans.push_back(compare::Acceptance::plan(options.reference, test, name));
@@ -66,13 +67,13 @@ ExitCode accept(const AcceptOptions& options) {
     const std::vector<std::string> names = compare::comparable_names(test);
     if (names.empty()) throw Error(ExitCode::asset_unreadable, "{}: holds no pictures or videos", test.string());
     for (const std::string& name : names) add(test / name, name);
-    tell_left(options.reference, test, names);
+    report_unmatched_references(options.reference, test, names);
   }
   PathLedger paths;
   for (const compare::Acceptance& plan : plans) paths.reads(plan.test, "a picture to accept");
   for (const compare::Acceptance& plan : plans) paths.writes("REFERENCE", plan.reference);
   if (!plans.empty()) paths.writes("the log", plans.front().log);
-  paths.check_absent(true);  // to be replaced is what they are named for
+  paths.check_absent(true);  // the user named them in order to replace them
   for (const compare::Acceptance& plan : plans) {
     const bool changed = plan.carry_out();
     log::info(fmt::format("{}: {}", plan.reference.string(),

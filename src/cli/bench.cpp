@@ -52,7 +52,7 @@ bench::Table try_cases(const std::filesystem::path& folder, bench::Tally& count)
   return table;
 }
 
-/// Refuses before anything is measured.
+/// Throws before anything is measured.
 void check_outputs(PathLedger& paths, const BenchOptions& options, const std::filesystem::path& folder,
                    const std::vector<std::string>& names) {
   for (const std::string& name : names) paths.writes("-o", folder / name);
@@ -91,7 +91,7 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
 }
 
-/// The scene of the options with `more` overrides; without one of theirs that which is built in, under this name.
+/// The scene of the options, or if they name none the built-in `text` under this name, with additional overrides.
 scene::Scene scene_of(const BenchOptions& options, const char* text, const char* name,
                       const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = options.overrides;
@@ -113,12 +113,12 @@ std::string title_of(const scene::Scene& scene) {
   return scene.title.empty() ? scene.name : scene.title;
 }
 
-// Tells of each run, and how long the others will take.
+// Reports each run and the remaining time.
 class RunProgress {
  public:
   explicit RunProgress(std::string name) : name_(std::move(name)) {}
 
-  /// `done`: share of all work.
+  /// `done`: fraction of all work.
   void operator()(double done, const std::string& run) {
     remaining_.sample(timer_.seconds(), {static_cast<int>(done * kUnits), 0, 0});
     const auto left = remaining_.seconds();
@@ -133,7 +133,7 @@ class RunProgress {
   RemainingTime remaining_{{kUnits, 0, 0}};
 };
 
-// "friction 2, step 0.5", of what is not as in the scene.
+// For example "friction 2, step 0.5"; lists only what differs from the scene.
 std::string describe(const bench::Factors& factors) {
   std::string text;
   for (std::size_t a = 0; a < bench::kVariedValues; ++a)
@@ -176,7 +176,7 @@ ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path
   PathLedger paths;
   if (!options.scene.empty()) add_inputs(paths, scene);
   check_outputs(paths, options, folder, {name + ".md", name + ".html", name + ".csv", work, settings});
-  // So that CPU seconds mean the same everywhere.
+  // One thread, so that CPU seconds are comparable between machines.
   set_thread_count(1);
   RunProgress progress("accuracy");
   const auto report = [&](const bench::Run& run, double done) {
@@ -211,13 +211,13 @@ bench::SpeedFrames speed_frames(const BenchOptions& options, const scene::Scene&
   return {begin, std::min(usual.end, scene.frame_count())};
 }
 
-/// A run of speed that is to come.
+/// A planned run of `bench speed`.
 struct PlannedRun {
   bench::SpeedSetting setting;
   scene::Scene scene;
 };
 
-/// Reads all scenes, so that mistakes show at once.
+/// Reads all scenes first, so that mistakes show at once.
 std::vector<PlannedRun> plan_speed(const BenchOptions& options, const scene::Scene& scene) {
   const std::vector<int> all_cores = thread_count() > 1 ? std::vector{1, thread_count()} : std::vector{1};
   const bool fixed_size = !bench::has_sizes(scene);
@@ -285,9 +285,9 @@ ExitCode bench_speed(const BenchOptions& options, const std::filesystem::path& f
     try {
       report.runs.push_back(run_alone(run, report.frames, options, signals.requested()));
     } catch (const Error&) {
-      break;  // asked to end
+      break;  // interrupted
     }
-    // Whatever ends it, what was measured is there.
+    // Written after each run, so that an interruption loses nothing.
     write_file(folder / (name + ".csv"), bench::csv(bench::speed_table(report.runs)));
     done += bench::expected_work(run.setting);
     progress(done / all_work, describe(report.runs.back()));

@@ -9,10 +9,10 @@
 namespace weft::cli {
 namespace {
 
-/// Frames that cannot be taken.
+/// Frames that cannot be used.
 struct Missing {
   std::vector<int> absent, broken;
-  std::string first_problem;  ///< of the first that is broken
+  std::string first_problem;  ///< message of the first broken frame
 
   void look_at(const cache::Reader& reader, int frame) {
     if (!reader.has(frame)) return absent.push_back(frame);
@@ -42,7 +42,7 @@ struct Missing {
 
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial) {
   const FrameRange wanted = resolve_frames(selection, reader.manifest().frame_count);
-  FrameRange before{wanted.begin, wanted.begin, wanted.step};  // the first that is missing
+  FrameRange before{wanted.begin, wanted.begin, wanted.step};  // frames before the first missing one
   Missing missing;
   for (int frame = wanted.begin; frame < wanted.end; frame += wanted.step) {
     missing.look_at(reader, frame);

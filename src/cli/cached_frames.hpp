@@ -1,4 +1,4 @@
-// Which frames of a cache a command takes.
+// Selection of the frames of a cache that a command uses.
 #pragma once
 
 #include "cache/reader.hpp"
@@ -7,13 +7,13 @@
 
 namespace weft::cli {
 
-/// The frames that were asked for, all of the scene where none were. Each was read, so that a command that takes many
-/// finds what is broken before it writes. Where some are missing or broken: Error(not_whole), which names them; with
-/// `partial` those before the first of them, with a warning, and the error only where that is the first. Throws
-/// Error(usage) too.
+/// Returns the selected frames, or all frames of the scene if `selection` names none. Reads each of them first, so that
+/// a damaged frame is found before anything is written. If some are missing or broken: throws Error(not_whole), which
+/// names them; with `partial`, warns and returns the frames before the first of them, and throws only if there are
+/// none. Also throws Error(usage).
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial);
 
-/// Shows the camera all frames that are there with the looks of the scene.
+/// Passes all frames of the cache that have the scene's current looks to the camera.
 void show_frames(const cache::Reader& reader, render::CameraPath& camera);
 
 }  // namespace weft::cli

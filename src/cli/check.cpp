@@ -35,7 +35,7 @@ std::string plan_table(const scene::Scene& scene) {
   return format_table(rows, "lll", 2);
 }
 
-/// Everything that is wrong with one scene: exit code and lines.
+/// Everything that is wrong with one scene: exit code and messages.
 struct Mistakes {
   ExitCode code = ExitCode::ok;
   std::string lines;
@@ -46,7 +46,7 @@ struct Mistakes {
   }
 };
 
-/// The patterns that a scene names are looked at even where it has mistakes itself.
+/// Checks the patterns that a scene names, even if the scene itself has mistakes.
 void check_patterns(const scene::Scene& scene, Mistakes& mistakes) {
   std::set<std::filesystem::path> files;
   for (const scene::Cloth& cloth : scene.cloths)
@@ -59,7 +59,7 @@ void check_patterns(const scene::Scene& scene, Mistakes& mistakes) {
   }
 }
 
-/// Particles of all cloths; those that a file holds or a pattern gives are counted by making them.
+/// Number of particles of all cloths. Cloths from files or patterns are built to count them.
 std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes) {
   std::size_t particles = 0;
   environment::Wearers wearers(scene);
@@ -73,7 +73,7 @@ std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes)
   return particles;
 }
 
-/// The effective scene that `against` names. Throws Error(scene_invalid), or Error(asset_unreadable).
+/// The effective scene of `against`. Throws Error(scene_invalid) or Error(asset_unreadable).
 std::string scene_text_of(const std::filesystem::path& against) {
   const bool is_cache = std::filesystem::is_directory(against);
   if (is_cache || against.string().ends_with(".effective.toml"))
@@ -100,7 +100,7 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
     log::info(mistakes.lines);
     return mistakes.code;
   }
-  // All that a run does before its first step, and some steps where they are asked for.
+  // Everything that a run does before its first step, or with --estimate also some steps.
   std::optional<Estimate> estimate;
   std::vector<std::string> enclosed;
   if (options.estimate)
@@ -108,7 +108,7 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
   else
     enclosed = find_enclosed(loaded.scene, *simulation::Simulation(loaded.scene).snapshot());
   print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
-  for (const std::string& doubt : simulation::doubts(loaded.scene)) print("{}: note: {}\n", file.string(), doubt);
+  for (const std::string& warning : simulation::doubts(loaded.scene)) print("{}: note: {}\n", file.string(), warning);
   for (const std::string& note : enclosed) print("{}: note: {}\n", file.string(), note);
   if (!options.against.empty()) print_changes(file, loaded.scene, options.against);
   if (options.plan) print("{}", plan_table(loaded.scene));

@@ -16,26 +16,26 @@
 namespace weft::cli {
 namespace {
 
-/// Where a child writes; -1: where its parent does.
+/// Output descriptors of a child; -1: those of its parent.
 struct Outputs {
   int out = -1, err = -1;
 };
 
-/// In the child: becomes the program, or returns with the reason in errno. Calls nothing that another thread of the
-/// parent may have been in at the fork.
+/// Runs in the child: executes the program, or returns with the reason in errno. Calls only async-signal-safe
+/// functions, since another thread of the parent may have held a lock at the fork.
 void become(const std::vector<char*>& arguments, Outputs outputs, pid_t parent) {
-  // Whoever kills the parent means its runs as well: the same command goes on, and two processes would write one run.
-  // posix_spawn cannot ask for this.
+  // If the parent is killed, its runs must end too; otherwise resuming the command would make two processes write one
+  // run. posix_spawn has no such option.
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
-  if (::getppid() != parent) ::_exit(127);  // killed before it was asked for
-  int input[2];  // without /dev/null, which the root of a container may lack; at its end once this program is another
+  if (::getppid() != parent) ::_exit(127);  // the parent has died before prctl()
+  int input[2];  // a closed pipe as empty input, since a container may lack /dev/null; exec closes the write end
   if (::pipe2(input, O_CLOEXEC) != 0 || ::dup2(input[0], STDIN_FILENO) < 0) return;
   if (outputs.out >= 0 && ::dup2(outputs.out, STDOUT_FILENO) < 0) return;
   if (outputs.err >= 0 && ::dup2(outputs.err, STDERR_FILENO) < 0) return;
   ::execvp(arguments[0], arguments.data());
 }
 
-/// 0, or the reason why there is no such process.
+/// Returns 0, or the errno if the process could not be started.
 int start(std::vector<std::string> words, Outputs outputs, pid_t& process) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -51,7 +51,7 @@ int start(std::vector<std::string> words, Outputs outputs, pid_t& process) {
     ::_exit(::write(answer[1], &problem, sizeof problem) < 0 ? 126 : 127);
   }
   ::close(answer[1]);
-  // Closed without a word where the program runs.
+  // If the program starts, the pipe is closed without data.
   while (process > 0 && ::read(answer[0], &problem, sizeof problem) < 0 && errno == EINTR) continue;
   ::close(answer[0]);
   if (process > 0 && problem != 0) ::waitpid(process, nullptr, 0);

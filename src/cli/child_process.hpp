@@ -1,4 +1,4 @@
-// Other programs, and this one again.
+// Starting other programs, or this one again.
 #pragma once
 
 #include <sys/types.h>
@@ -9,22 +9,23 @@
 
 namespace weft::cli {
 
-/// File name of the program that holds the commands which make no film.
+/// File name of the program with the commands that do not make films.
 inline constexpr const char* kToolsName = "weft-tools";
 
-/// The program that was called; where this process is that of the tools, the one beside it.
+/// Path of the program `weft` that was called. In the process of the tools it is the program beside their own.
 std::filesystem::path own_program();
 
-/// Starts `words[0]`, looked up as a shell does, without input; what it prints goes to `log`, empty: where ours does.
-/// Killed with the calling thread. Throws Error(output_failed) where it cannot be started or `log` cannot be written.
+/// Starts `words[0]`, searched as a shell does, with empty input. Its output goes to `log`, or if `log` is empty to
+/// this process's output. The process is killed when the calling thread ends. Throws Error(output_failed) if it cannot
+/// be started or `log` cannot be written.
 pid_t start_process(const std::vector<std::string>& words, const std::filesystem::path& log);
 
 struct ProcessResult {
-  int exit_code = 0;   ///< 127: there is no such program; 128 and more: ended by a signal
-  std::string output;  ///< what it printed; its errors go where ours go
+  int exit_code = 0;   ///< 127: program not found; 128 and above: ended by a signal
+  std::string output;  ///< its standard output; its standard error goes to that of this process
 };
 
-/// Waits for its end.
+/// Runs a program and waits for its end.
 ProcessResult run_process(const std::vector<std::string>& words);
 
 }  // namespace weft::cli

@@ -1,4 +1,4 @@
-// What each command does. All return the exit code or throw Error.
+// One function per command. Each returns the exit code or throws Error.
 #pragma once
 
 #include "cli/options.hpp"
@@ -6,59 +6,59 @@
 
 namespace weft::cli {
 
-/// Simulates, draws and writes side by side; ends early but in order on SIGINT, SIGTERM or failure, keeping what is
-/// finished.
+/// Simulates, draws and writes concurrently. On SIGINT, SIGTERM or a failure it ends early and keeps what is finished.
 ExitCode run(const RunOptions& options);
 
 /// Simulates into a frame cache.
 ExitCode simulate(const SimulateOptions& options);
 
-/// Draws and writes what a frame cache holds.
+/// Draws and writes the frames of a frame cache.
 ExitCode render(const RenderOptions& options);
 
-/// Mistakes go to standard error, good scenes and plans to standard output.
+/// Checks scenes. Mistakes go to standard error, valid scenes and plans to standard output.
 ExitCode check(const CheckOptions& options);
 
-/// One still: the frame that is asked for, or the one that tells most.
+/// Draws one still: the requested frame, or the most informative one.
 ExitCode thumbnail(const ThumbnailOptions& options);
 
-/// Evenly spaced frames on one picture, with their numbers and times.
+/// Draws evenly spaced frames on one picture, with their numbers and times.
 ExitCode sheet(const SheetOptions& options);
 
-/// Puts the parts of a film together to one video.
+/// Joins the parts of a film to one video.
 ExitCode join(const JoinOptions& options);
 
-/// Runs a scene with many values; ends with the exit code of the first run that failed.
+/// Runs a scene with many values; returns the exit code of the first run that failed.
 ExitCode sweep(const SweepOptions& options);
 
-/// Hands runs and sweeps to a Slurm cluster, tells how far they are, takes them back.
+/// Submits runs and sweeps to a Slurm cluster, reports their progress, cancels them.
 ExitCode farm(const FarmOptions& options);
 
-/// Writes a first scene to go on from.
+/// Writes a template scene.
 ExitCode make_new(const NewOptions& options);
 
-/// What make_new() can take.
+/// Names of the templates that make_new() accepts.
 std::vector<std::string> template_names();
 
 /// Draws a scene again whenever one of its files changes, until it is interrupted.
 ExitCode watch(const WatchOptions& options);
 
-/// Prints what this machine offers and tries it.
+/// Prints what this machine offers and tests it.
 ExitCode doctor(const DoctorOptions& options);
 
-/// Measures what this program can do and writes tables and plots; exit code 1 where a case ends in nonsense.
+/// Measures the program and writes tables and plots. Returns exit code 1 if a stability case is wrong (unbounded energy
+/// or not finite).
 ExitCode bench(const BenchOptions& options);
 
-/// Prints how each pair differs; exit code 4, 7 or 8 where one cannot be read, differs, or has no reference.
+/// Prints the difference of each pair; exit code 4, 7 or 8 if one cannot be read, differs, or has no reference.
 ExitCode diff(const DiffOptions& options);
 
-/// Replaces references by the files named, after writing down why.
+/// Replaces references by the named files, after logging the reason.
 ExitCode accept(const AcceptOptions& options);
 
-/// Writes the page for looking at runs.
+/// Writes the review page.
 ExitCode review(const ReviewOptions& options);
 
-/// Writes what a frame cache holds as files for other programs.
+/// Exports the frames of a frame cache to files for other programs.
 ExitCode export_frames(const ExportOptions& options);
 
 }  // namespace weft::cli

@@ -41,7 +41,7 @@ void check_exists(const fs::path& path, ExitCode code, const char* what) {
   if (!fs::exists(path)) throw Error(code, "{}: the {} does not exist", path.string(), what);
 }
 
-/// What is to be compared. Nothing is read yet.
+/// A pair to compare; its files are not read yet.
 struct Pair {
   std::string name;
   std::optional<fs::path> reference;
@@ -89,7 +89,7 @@ std::vector<Pair> all_pairs(const DiffOptions& options) {
   return {{test.filename(), options.reference, test}};
 }
 
-// Of the whole comparison: what hides most comes first.
+// Exit code of the whole comparison: unreadable files first, then differences, then missing references.
 ExitCode exit_code(const std::vector<FileComparison>& results) {
   ExitCode code = ExitCode::ok;
   for (const FileComparison& result : results) {
@@ -108,14 +108,14 @@ std::string summary(const std::vector<FileComparison>& results) {
   return fmt::format("{} of {} are as their references", good, results.size());
 }
 
-// GitHub's runners read such lines from what a step prints, and set this for all of them.
+// GitHub Actions reads annotations from standard output, and sets this variable for every step.
 bool is_annotated(const DiffOptions& options) {
   const char* actions = std::getenv("GITHUB_ACTIONS");
   return options.annotations || (actions != nullptr && std::string_view(actions) == "true");
 }
 
-// Where the heat map of a pair goes; empty where none is asked for. A video that has the name of a picture keeps its
-// ending.
+// File for the heat map of a pair; empty if none is requested. A video whose name is also that of a picture keeps its
+// extension.
 fs::path heatmap_file(const DiffOptions& options, const std::vector<Pair>& pairs, const std::string& name) {
   if (options.heatmap.empty() || options.heatmap.extension() == ".png") return options.heatmap;
   const std::string picture = fs::path(name).replace_extension(".png").string();
@@ -178,7 +178,7 @@ ExitCode diff(const DiffOptions& options) {
         lines.back() += "; " + origin;
       }
     if (!options.html.empty()) page.add(result, lines.back());
-    // Thousands of pictures need not fit into memory.
+    // Releases the pictures, so that thousands of pairs fit into memory.
     result.worst.flip = {};
     result.reference_picture = result.test_picture = {};
     results.push_back(std::move(result));

@@ -1,4 +1,4 @@
-// Limits of single pictures, from a file.
+// Limits of `weft diff` for single pictures, read from a file.
 #pragma once
 
 #include <filesystem>
@@ -12,21 +12,21 @@ namespace weft::cli {
 
 class DiffLimits {
  public:
-  /// What a picture is held against.
+  /// The limits and mask of one picture.
   struct Rules {
     compare::Limits limits;
-    std::filesystem::path mask;  ///< a picture, white where is compared; empty: everywhere
+    std::filesystem::path mask;  ///< a picture; white pixels are compared; empty: all are compared
   };
 
-  /// `all`: of every picture. `file` may be empty; else TOML with tables [[picture]]: a name, in which * and ? stand
-  /// for other characters, and what of the limits is another for it, or its mask, beside the file. Throws
+  /// `all`: the limits of every picture. `file`: empty, or TOML with tables [[picture]], each with a name (wildcards *
+  /// and ?) and the limits or the mask that differ for it; mask paths are relative to the file. Throws
   /// Error(asset_unreadable) with line and column.
   DiffLimits(const compare::Limits& all, const std::filesystem::path& file);
 
-  /// Later tables count before earlier ones.
+  /// The rules of a picture; later tables take precedence over earlier ones.
   Rules of(const std::string& name) const;
-  /// Throws Error(asset_unreadable) with line and column where a table fits none of these pictures: its limit would
-  /// hold nothing without a word.
+  /// Throws Error(asset_unreadable) with line and column if a table matches none of these pictures, since its limit
+  /// would silently have no effect.
   void check_used(const std::vector<std::string>& names) const;
 
  private:
@@ -34,7 +34,7 @@ class DiffLimits {
     bool fits(const std::string& name) const;
 
     std::string pattern;
-    std::string place;  // "limits.toml:3:1"
+    std::string place;  // for example "limits.toml:3:1"
     std::vector<std::function<void(Rules&)>> changes;
   };
   Rules all_;

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a picture or video says of itself; empty if it cannot be read.
+/// Metadata of a picture or video; empty if it cannot be read.
 KeyedValues metadata_of(const fs::path& file) {
   try {
     if (compare::is_video(file)) return video::Decoder(file).metadata();
@@ -29,7 +29,7 @@ KeyedValues metadata_of(const fs::path& file) {
   }
 }
 
-/// Written by the run beside its output; empty if it is not there.
+/// The effective scene that the run has written beside its output; empty if there is none.
 fs::path effective_scene_file(const fs::path& picture, const std::string& scene) {
   for (const std::string& name : {picture.stem().string(), scene}) {
     fs::path file = picture.parent_path() / (name + ".effective.toml");
@@ -39,9 +39,10 @@ fs::path effective_scene_file(const fs::path& picture, const std::string& scene)
 }
 
 std::string join_some(const std::vector<std::string>& lines) {
-  constexpr std::size_t kMost = 4;  // on one line, beside the figures
-  if (lines.size() <= kMost) return fmt::format("{}", fmt::join(lines, "; "));
-  return fmt::format("{}; and {} more", fmt::join(lines.begin(), lines.begin() + kMost, "; "), lines.size() - kMost);
+  constexpr std::size_t kMaxListedChanges = 4;  // as they share one line with the figures
+  if (lines.size() <= kMaxListedChanges) return fmt::format("{}", fmt::join(lines, "; "));
+  return fmt::format("{}; and {} more", fmt::join(lines.begin(), lines.begin() + kMaxListedChanges, "; "),
+                     lines.size() - kMaxListedChanges);
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ std::string describe_origin_changes(const fs::path& reference, const fs::path& t
       return fmt::format("the scene has changed; {}", error.what());
     }
   }
-  // Of the same scene: what has drawn it, and how.
+  // Same scene: compare the program and the drawing settings.
   KeyedValues old_program, new_program;
   for (const char* key : {"weft_version", "gl", "quality", "look", "camera", "motion_blur"})
     if (before[key] != after[key]) old_program[key] = before[key], new_program[key] = after[key];

@@ -1,4 +1,4 @@
-// What differs between the runs that two pictures come from.
+// Differences between the runs that made two pictures.
 #pragma once
 
 #include <filesystem>
@@ -6,8 +6,8 @@
 
 namespace weft::cli {
 
-/// What of scene and program differs, as pictures or videos say of themselves, and as the effective scenes beside them
-/// say. Empty if it is not known.
+/// Lists the differences of scene and program, from the metadata of the pictures or videos and from the effective
+/// scenes beside them. Empty if unknown.
 std::string describe_origin_changes(const std::filesystem::path& reference, const std::filesystem::path& test);
 
 }  // namespace weft::cli

@@ -17,10 +17,10 @@ namespace {
 
 using compare::FileComparison;
 
-// A browser opens a page of this size in some seconds. Pairs past it are named only.
-constexpr std::size_t kMostPictureBytes = 100'000'000;
+// A browser opens a page of this size in some seconds. Later pairs are shown without pictures.
+constexpr std::size_t kMaxPagePictureBytes = 100'000'000;
 
-// Pictures of a pair are stacked by its radio buttons, whose arrow keys flip between before and after on one place.
+// Radio buttons select a view of a pair; arrow keys switch between before and after in the same place.
 constexpr const char* kStyle = R"(
 :root { color-scheme: light dark; --text: #1b2227; --ground: #f4f6f7; --panel: #fff; --muted: #56626b; --line: #d9dfe3; --accent: #0b6579; }
 @media (prefers-color-scheme: dark) { :root { --text: #e2e8ec; --ground: #12161a; --panel: #1a2025; --muted: #9aa8b2; --line: #2d363d; --accent: #63c3d8; } }
@@ -42,11 +42,11 @@ std::string base64(std::string_view bytes) {
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   if (av_base64_encode(text.data(), static_cast<int>(text.size()), data, static_cast<int>(bytes.size())) == nullptr)
     throw Error(ExitCode::output_failed, "a picture of {} bytes is too large for the page", bytes.size());
-  text.pop_back();  // the zero that ends it
+  text.pop_back();  // the terminating zero
   return text;
 }
 
-// Of a pair of which one is missing, or both have other sizes; empty for what cannot be read.
+// For pairs that were not compared (one file is missing, or sizes differ); empty if unreadable.
 image::Image picture_of(const std::filesystem::path& file) {
   try {
     return compare::first_picture(file);
@@ -76,7 +76,7 @@ void DiffPage::add(const FileComparison& result, const std::string& description)
   sections_ += fmt::format("<section class=\"pair\">\n<h2>{}</h2>\n<p>{}</p>\n", markup_text(result.name),
                            markup_text(description.substr(std::min(description.size(), result.name.size() + 2))));
   const bool compared = result.frames > 0;
-  if (picture_bytes_ > kMostPictureBytes) {
+  if (picture_bytes_ > kMaxPagePictureBytes) {
     sections_ += "<p class=\"muted\">Without pictures: the page holds 100 MB of them already.</p>\n";
   } else {
     const auto view = [&](const char* kind, const char* text, const char* checked = "") {

@@ -1,4 +1,4 @@
-// What weft diff found, as a page to look at.
+// The result of `weft diff` as an HTML page.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace weft::cli {
 
-/// One HTML file with all that it shows in it: of each pair that differs the picture before, the one after and where
-/// they differ, of videos the worst frame; of the others their names. It runs no scripts.
+/// One self-contained HTML file without scripts. It shows each differing pair before, after, and as a map of the
+/// differences (of videos, the worst frame); other pairs are only listed by name.
 class DiffPage {
  public:
-  /// `description`: of the result.
+  /// `description`: text of the result.
   void add(const compare::FileComparison& result, const std::string& description);
-  /// `title`: how many are as they should be.
+  /// `title`: how many pairs are within their limits.
   std::string html(const std::string& title) const;
 
  private:

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using compare::FileComparison;
 using Outcome = FileComparison::Outcome;
 
-// Each figure that is past its limit says so.
+// Figures of the comparison; each that exceeds its limit is marked.
 std::string describe_figures(const FileComparison& result, const compare::Limits& limits) {
   const compare::Figures& f = result.worst.figures;
   const auto limit = [](double figure, double most) {

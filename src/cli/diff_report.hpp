@@ -1,4 +1,4 @@
-// What weft diff says of its pairs: to people, to scripts, to CI systems.
+// Output of `weft diff` for people, scripts and CI systems.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace weft::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// One line; each figure that is past its limit says so.
+/// One line; each figure that exceeds its limit is marked.
 std::string describe(const compare::FileComparison& result, const compare::Limits& limits);
 
 Json describe_json(const compare::Limits& limits);
@@ -20,12 +20,12 @@ Json describe_json(const compare::Limits& limits);
 Json describe_json(const compare::FileComparison& result, const compare::Limits& limits,
                    const std::filesystem::path& heatmap);
 
-/// A line that GitHub Actions, and what speaks its language, shows at the reference, or at the test where there is
-/// none: paths from GITHUB_WORKSPACE on, if that is set. `description`: of the result.
+/// A workflow annotation of GitHub Actions, attached to the reference, or to the test if there is no reference. Paths
+/// are relative to GITHUB_WORKSPACE if that is set. `description`: text of the result.
 std::string annotation(const compare::FileComparison& result, const std::string& description);
 
-/// A test case for each pair, in the form of JUnit: what differs or is missing has failed, what cannot be read is an
-/// error. `descriptions`: of each result.
+/// JUnit XML with one test case per pair: different or missing pictures are failures, unreadable ones are errors.
+/// `descriptions`: one text per result.
 std::string junit_xml(const std::vector<compare::FileComparison>& results,
                       const std::vector<std::string>& descriptions);
 

@@ -30,9 +30,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kWidth = 64, kHeight = 36;  // pixels of the test picture
+constexpr int kWidth = 64, kHeight = 36;  // of the test picture [pixels]
 
-// A white square before the camera.
+// A white square in front of the camera.
 frame::FrameSnapshot test_scene() {
   auto surface = std::make_shared<frame::Surface>();
   surface->name = "square";
@@ -57,8 +57,8 @@ std::string libraries() {
       NLOHMANN_JSON_VERSION_PATCH);
 }
 
-// Which of the levels of the x86-64 psABI the processor has, and which one this program was built for. By features that
-// came with each level: clang before 16 does not know the levels by name.
+// The x86-64 psABI level of the processor and that of this build. Tests features of each level, since clang before 16
+// does not know the levels by name.
 std::string cpu_level() {
 #if defined(__x86_64__)
   const bool v2 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
@@ -79,12 +79,12 @@ std::string cpu_level() {
 #endif
 }
 
-// The findings, printed as a table once all tests are done.
+// Collects the findings for one table.
 class Examination {
  public:
   void note(const std::string& what, const std::string& finding) { rows_.push_back({"ok", what, finding}); }
 
-  /// Runs `test`, which returns what it found. False if it threw.
+  /// Runs `test`, which returns its finding. Returns false if it threw.
   bool test(const std::string& what, const std::function<std::string()>& test) {
     try {
       note(what, test());

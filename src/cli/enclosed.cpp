@@ -10,8 +10,8 @@
 namespace weft::cli {
 namespace {
 
-/// How often a surface goes around p: the sum of the solid angles of its triangles (Van Oosterom and Strackee, 1983,
-/// eq. 8) in those of a sphere. 1 inside a closed surface, 0 outside, a fraction where it is open.
+/// Winding number of a surface around p: sum of the solid angles of its triangles (Van Oosterom and Strackee, 1983, eq.
+/// 8) over 4π. ±1 inside a closed surface, 0 outside, a fraction if the surface is open.
 double winding_number(const frame::Surface& surface, const std::vector<Vec3>& positions, const Vec3& p) {
   double sum = 0;
   for (const auto& triangle : surface.triangles) {
@@ -24,9 +24,9 @@ double winding_number(const frame::Surface& surface, const std::vector<Vec3>& po
   return sum / (4 * std::numbers::pi);
 }
 
-/// By three of its particles: cloth that is inside in part only crosses the surface, which is found elsewhere.
+/// Tests three particles only: cloth that is partly inside crosses the surface, which is detected elsewhere.
 bool is_inside(const std::vector<Vec3>& cloth, const frame::Surface& surface, const std::vector<Vec3>& positions) {
-  constexpr double kSlack = 1e-6;  // of an angle that is summed over a million triangles
+  constexpr double kSlack = 1e-6;  // rounding error of the sum over a million triangles
   const std::size_t last = cloth.size() - 1;
   return std::ranges::all_of(std::array{std::size_t{0}, last / 2, last}, [&](std::size_t particle) {
     return std::abs(std::abs(winding_number(surface, positions, cloth[particle])) - 1) < kSlack;

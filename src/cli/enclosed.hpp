@@ -1,4 +1,4 @@
-// Cloth that starts wholly inside a body: it touches nothing, and never comes out.
+// Detection of cloth that starts wholly inside a body: it touches nothing and never comes out.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace weft::cli {
 
-/// A sentence for each cloth of the scene that is inside a closed obstacle in this frame.
+/// Returns a sentence for each cloth that is inside a closed obstacle in this frame.
 std::vector<std::string> find_enclosed(const scene::Scene& scene, const frame::FrameSnapshot& snapshot);
 
 }  // namespace weft::cli

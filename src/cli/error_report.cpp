@@ -11,7 +11,7 @@ namespace {
 
 using bench::ErrorEstimate, bench::ErrorPart, bench::ErrorSource, bench::Quantity;
 
-// What is told of, with its column and its key.
+// A reported quantity with its column and key.
 struct Figure {
   Quantity quantity;
   const char *column, *format, *key;
@@ -40,7 +40,7 @@ std::string remedy(ErrorSource source) {
   return {};
 }
 
-// What the moved start alone comes out as [mm].
+// Position error due to the displaced start alone [mm].
 std::string start_text(const ErrorEstimate& estimate) {
   for (const ErrorPart& part : estimate.parts)
     if (part.source == ErrorSource::start && part.missing.empty())
@@ -86,16 +86,16 @@ std::string relative_length(double length, double cloth_size) {
 std::string error_sentence(const ErrorEstimate& estimate, double cloth_size) {
   const ErrorPart& largest = estimate.largest();
   const std::string length = relative_length(at(estimate.all, Quantity::position), cloth_size);
-  const std::string doubt =
+  const std::string remark =
       estimate.steps_irregular ? "; steps twice as long fail or change it hardly more than steps half as long" : "";
   if (estimate.start_matters)
     return fmt::format(
         "the motion is chaotic: a start moved by 1 µm alone moves positions by {} mm; in all they are off by {} or "
         "more, and no setting lessens that{}",
-        start_text(estimate), length, doubt);
+        start_text(estimate), length, remark);
   return fmt::format("positions {} {}, most of it by the {}; {} lessens it{}",
                      estimate.steps_irregular ? "are off by at least" : "may be off by", length,
-                     name_of(largest.source), remedy(largest.source), doubt);
+                     name_of(largest.source), remedy(largest.source), remark);
 }
 
 nlohmann::ordered_json error_json(const ErrorEstimate& estimate) {

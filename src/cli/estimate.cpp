@@ -12,8 +12,8 @@
 namespace weft::cli {
 namespace {
 
-// More tell little more, where they cost little.
-constexpr int kMostFrames = 10;
+// Further frames would hardly improve the estimate, even if they are cheap.
+constexpr int kMaxTrialFrames = 10;
 
 std::string duration_text(double seconds) {
   if (seconds < 100) return fmt::format("{:.0f} s", std::max(1.0, seconds));
@@ -34,8 +34,10 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
   estimate.setup = process_cpu_seconds() - begin;
 
   begin = process_cpu_seconds();
-  const auto enough = [&] { return estimate.tried > 0 && (wall.seconds() > seconds || estimate.tried >= kMostFrames); };
-  // Asked before each frame of the preroll, so the first time none is done.
+  const auto enough = [&] {
+    return estimate.tried > 0 && (wall.seconds() > seconds || estimate.tried >= kMaxTrialFrames);
+  };
+  // Called before each frame of the preroll, so the first call means that no frame is done.
   int asked = -1;
   const bool shown = simulation.run_preroll([&] {
     estimate.tried = ++asked;

@@ -18,8 +18,8 @@ EventLog::EventLog(std::string destination) : destination_(std::move(destination
     file_ = stdout;
     return;
   }
-  check_writable(destination_);  // makes the folder too
-  // Not emptied: it may have another name, which keeps what is in it.
+  check_writable(destination_);  // creates the folder too
+  // Removed, not truncated: a hard link to it must keep its content.
   if (may_replace(destination_)) std::remove(destination_.c_str());
   file_ = std::fopen(destination_.c_str(), "wbxe");
   if (file_ == nullptr) {
@@ -35,7 +35,7 @@ void EventLog::write(const char* event, Json fields) {
   if (file_ == nullptr) return;
   Json line{{"event", event}};
   line.update(fields);
-  // Text from the outside, such as names of files, may not be UTF-8: replaced, since JSON cannot hold it.
+  // Text from outside, such as file names, may not be UTF-8; json_text() replaces what JSON cannot hold.
   const std::string text = json_text(line) + "\n";
   const std::lock_guard lock(mutex_);
   if (error_ != 0) return;

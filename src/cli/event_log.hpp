@@ -8,17 +8,17 @@
 
 namespace weft::cli {
 
-/// One JSON object a line: `event`, then what belongs to it. Written straight under its final name, because each line
-/// is whole in itself and is there to be followed. Safe from all threads.
+/// Writes one JSON object per line: `event`, then its fields. Written directly under the final name, so that other
+/// programs can follow it; each line is complete in itself. Thread-safe.
 class EventLog {
  public:
-  /// `destination`: a file, made anew; "-" for standard output; empty for none. Throws Error(output_failed).
+  /// `destination`: a file, which is replaced; "-" for standard output; empty for none. Throws Error(output_failed).
   explicit EventLog(std::string destination);
   ~EventLog();
   EventLog(const EventLog&) = delete;
   EventLog& operator=(const EventLog&) = delete;
 
-  /// A failing log does not stop a run of hours: it is remembered and told by check().
+  /// Does not throw: a failing log must not stop a long run. check() reports the failure.
   void write(const char* event, nlohmann::ordered_json fields);
 
   /// Throws Error(output_failed) if any line was lost.

@@ -19,7 +19,7 @@ namespace weft::cli {
 
 namespace {
 
-/// What a longer film has left under the names of this one.
+/// Removes files of a longer film with the same names.
 void remove_stale(const exporter::Request& request, const cache::Manifest& scene, const FrameRange& frames) {
   if (request.format != exporter::Format::ply && request.format != exporter::Format::obj) return;
   const char* ending = request.format == exporter::Format::ply ? ".ply" : ".obj";
@@ -33,7 +33,7 @@ bool places_cameras(exporter::Format format) {
          format == exporter::Format::blender;
 }
 
-/// All cameras of a scene, first that which pictures show; where it names none, the one that is found for it.
+/// All cameras of a scene, the one of the pictures first. If the scene has none, the camera found for it.
 class Cameras {
  public:
   Cameras(const cache::Reader& reader, const frame::FrameSnapshot& first) {
@@ -63,7 +63,7 @@ class Cameras {
     return views;
   }
 
-  /// Of a frame, as its pictures have it.
+  /// Lighting of a frame, as in its pictures.
   exporter::Lighting lighting(const frame::FrameSnapshot& snapshot) const {
     const frame::Camera camera = paths_.front().second.at(snapshot);
     const frame::Stage& stage = *snapshot.stage;

@@ -14,17 +14,17 @@
 namespace weft::cli {
 namespace {
 
-// Words that are longer than any path come from an argument or a file, and are of no use in a message.
-constexpr std::size_t kLongestWord = 4096, kShown = 200;
+// Words longer than any path come from an argument or a file; messages show only their beginning.
+constexpr std::size_t kMaxWordBytes = 4096, kShownWordBytes = 200;
 
 std::string shorten_words(std::string_view text) {
   std::string result;
   while (!text.empty()) {
     const std::size_t size = std::min(text.find_first_of(" \n"), text.size());
     std::string_view word = text.substr(0, size);
-    if (size > kLongestWord) {
-      word = word.substr(0, kShown);
-      while (!word.empty() && (word.back() & 0x80) != 0) word.remove_suffix(1);  // no half of a character
+    if (size > kMaxWordBytes) {
+      word = word.substr(0, kShownWordBytes);
+      while (!word.empty() && (word.back() & 0x80) != 0) word.remove_suffix(1);  // drop a truncated UTF-8 character
       result += fmt::format("{}... ({} bytes)", word, size);
     } else {
       result += word;
@@ -45,7 +45,7 @@ Failure describe_failure(const std::exception_ptr& exception) {
   } catch (const std::bad_alloc&) {
     return {ExitCode::internal, "out of memory; a smaller scene or picture may fit"};
   } catch (const std::filesystem::filesystem_error& error) {
-    // A path that nobody has asked about beforehand: no folder, too long a name, no permission.
+    // A path that was not checked beforehand: no such folder, name too long, no permission.
     const bool too_long = error.code() == std::errc::filename_too_long;
     return {too_long ? ExitCode::usage : ExitCode::output_failed,
             fmt::format("{}: cannot be used: {}", error.path1().string().substr(0, 200), error.code().message())};
@@ -57,7 +57,7 @@ Failure describe_failure(const std::exception_ptr& exception) {
 }
 
 void report(const Failure& failure) {
-  // Mistakes of a scene name their file first, as compilers do, so that editors can jump there.
+  // Mistakes of a scene start with the file name, as compiler messages do, so that editors can jump there.
   log::info(failure.code == ExitCode::scene_invalid ? failure.text : "weft: " + failure.text);
 }
 

@@ -7,16 +7,16 @@
 
 namespace weft::cli {
 
-/// What to tell the user of an exception, and the caller of the program.
+/// Message and exit code for an exception.
 struct Failure {
   ExitCode code = ExitCode::internal;
   std::string text;
 };
 
-/// Any exception at all: those that are not an Error are our own fault.
+/// Accepts any exception; those that are not an Error count as internal errors.
 Failure describe_failure(const std::exception_ptr& exception);
 
-/// Prints it on standard error.
+/// Prints the message on standard error.
 void report(const Failure& failure);
 
 }  // namespace weft::cli

@@ -1,5 +1,5 @@
-// weft farm: runs and sweeps as jobs of a Slurm cluster. The tasks are weft commands that go on where they were
-// stopped; all that is known of them lies in the folder of the sweep, which the machines share.
+// weft farm: runs and sweeps as jobs of a Slurm cluster. Tasks are weft commands that resume where they were stopped;
+// their whole state is in the folder of the sweep, which the machines share.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -26,12 +26,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is asked of the scheduler, by what a trial took: frames with contacts take longer than the first ones, and what
-// runs out of time goes on later, while what runs out of memory is killed.
+// Requested resources over those of a trial. Frames with contact take longer than the first ones. A task that exceeds
+// its time is resumed later; one that exceeds its memory is killed.
 constexpr double kTimeFactor = 4, kMemoryFactor = 1.5;
-constexpr int kLeastMinutes = 10, kMoreMemory = 256;  // [min], [MB]
+constexpr int kMinTaskMinutes = 10, kExtraMemory = 256;  // [min], [MB]
 
-void need_slurm(const char* program, const ProcessResult& result) {
+void check_slurm_found(const char* program, const ProcessResult& result) {
   if (result.exit_code == 127)
     throw Error(
         ExitCode::output_failed,
@@ -40,7 +40,7 @@ void need_slurm(const char* program, const ProcessResult& result) {
         program);
 }
 
-/// Numbers of jobs with their names, those handed in last at the end.
+/// Numbers and names of submitted jobs, oldest first.
 std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> jobs;
   std::istringstream in(read_start(folder / "farm/jobs", kLargestText));
@@ -50,7 +50,7 @@ std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folde
   return jobs;
 }
 
-/// Those that wait or run, with their number: `1234_5`, or `1234_[0-3]` of those that wait in an array.
+/// Numbers of the waiting or running jobs of this folder; also counts their tasks by state.
 std::vector<std::string> active_jobs(const fs::path& folder, std::map<std::string, int>& states) {
   std::vector<std::string> numbers;
   for (const auto& [number, name] : read_jobs(folder)) numbers.push_back(number);
@@ -67,7 +67,7 @@ std::vector<std::string> active_jobs(const fs::path& folder, std::map<std::strin
   return active;
 }
 
-/// How far a run is.
+/// Progress of a run.
 struct State {
   std::string text;
   bool done = false;
@@ -122,11 +122,11 @@ class Farm {
     find_needs();
     write();
     if (options_.dry_run) return ExitCode::ok;
-    const ProcessResult handed_in = run_process({"sh", (folder_ / "farm/submit.sh").string()});
-    need_slurm("sbatch", handed_in);
-    if (handed_in.exit_code != 0)
+    const ProcessResult submission = run_process({"sh", (folder_ / "farm/submit.sh").string()});
+    check_slurm_found("sbatch", submission);
+    if (submission.exit_code != 0)
       throw Error(ExitCode::output_failed, "{}: ended with {}; weft farm cancel {} takes back what was handed in",
-                  (folder_ / "farm/submit.sh").string(), handed_in.exit_code, folder_.string());
+                  (folder_ / "farm/submit.sh").string(), submission.exit_code, folder_.string());
     log::info(fmt::format("{}: {} of {} runs handed in; weft farm status {} tells how far they are", folder_.string(),
                           plan_.submitted.size(), plan_.jobs.size(), folder_.string()));
     return ExitCode::ok;
@@ -159,7 +159,7 @@ class Farm {
     for (const std::string& job : active_jobs(folder_, states)) words.push_back(job);
     if (words.size() > 1) {
       const ProcessResult result = run_process(words);
-      need_slurm("scancel", result);
+      check_slurm_found("scancel", result);
       if (result.exit_code != 0)
         throw Error(ExitCode::output_failed, "scancel ended with {}; its own words stand above", result.exit_code);
     }
@@ -181,7 +181,7 @@ class Farm {
     return index;
   }
 
-  /// What the program said last, on a line of its own; empty where it said nothing.
+  /// The last message of the program, preceded by a line feed; empty if there is none.
   static std::string last_error(const fs::path& log) {
     std::string last;
     std::istringstream in(read_start(log, kLargestText));
@@ -190,7 +190,7 @@ class Farm {
     return last;
   }
 
-  /// Tasks that ended with another exit code than 0, and where they say why.
+  /// One line for each task that ended with an exit code other than 0, with its log.
   std::vector<std::string> failures() const {
     std::vector<std::string> lines;
     std::error_code none;
@@ -209,7 +209,7 @@ class Farm {
     return lines;
   }
 
-  // By the first run and the last, which have the smallest and the largest of what is swept.
+  // Estimates the resources from the first and the last run, which have the smallest and the largest swept values.
   void find_needs() {
     plan_.needs.simulate_minutes = plan_.needs.draw_minutes = options_.minutes.value_or(0);
     plan_.needs.memory = options_.memory.value_or(0);
@@ -226,10 +226,10 @@ class Farm {
       peak = std::max(peak, static_cast<double>(estimate.peak));
       if (plan_.submitted.size() == 1) break;
     }
-    const auto minutes = [](double seconds) { return kLeastMinutes + static_cast<int>(kTimeFactor * seconds / 60); };
+    const auto minutes = [](double seconds) { return kMinTaskMinutes + static_cast<int>(kTimeFactor * seconds / 60); };
     if (!options_.minutes) plan_.needs.simulate_minutes = minutes(simulate);
     if (!options_.minutes) plan_.needs.draw_minutes = minutes(picture * plan_.part);
-    if (!options_.memory) plan_.needs.memory = kMoreMemory + static_cast<int>(kMemoryFactor * 1e-6 * peak);
+    if (!options_.memory) plan_.needs.memory = kExtraMemory + static_cast<int>(kMemoryFactor * 1e-6 * peak);
     log::info(fmt::format("by a trial: {} min at most to simulate a run, {} min to draw {} frames, {} MB",
                           plan_.needs.simulate_minutes, plan_.needs.draw_minutes, plan_.part, plan_.needs.memory));
   }
@@ -248,7 +248,7 @@ class Farm {
     write_file(folder_ / "farm/jobs", "");
   }
 
-  // Not what a task has unpacked already.
+  // Skips the archive if a task has already unpacked it.
   void write_program() {
     plan_.archive = program_->fingerprint();
     const fs::path tar = folder_ / program_tar(plan_.archive);

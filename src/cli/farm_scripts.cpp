@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Indices in an array of Slurm where its administrator has set nothing (MaxArraySize, less one).
+// Default array size of Slurm (MaxArraySize, minus one).
 constexpr std::size_t kArray = 1000;
 
-// One word for the shell, whatever is in it.
+// Quotes a text as one word of the shell.
 std::string quoted(const std::string& text) {
   std::string word = "'";
   for (const char c : text) {
@@ -36,7 +36,7 @@ std::string quoted(const std::vector<std::string>& words) {
   return text;
 }
 
-// Options of weft sweep that a command takes as well, with their values.
+// Those of `passed_on` that are in `names`, with their values.
 std::vector<std::string> chosen(const std::vector<std::string>& passed_on, std::initializer_list<const char*> names) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < passed_on.size(); ++i) {
@@ -49,7 +49,7 @@ std::vector<std::string> chosen(const std::vector<std::string>& passed_on, std::
   return words;
 }
 
-// The same sweep, to gather what the tasks have made.
+// Arguments that run the same sweep with --report, to gather the results of the tasks.
 std::vector<std::string> report_words(const SweepOptions& sweep) {
   std::vector<std::string> words{"sweep", fs::absolute(sweep.scene).string()};
   for (const Axis& axis : sweep.axes)
@@ -65,7 +65,7 @@ std::string_view embedded(std::string_view name) {
   return std::ranges::find(kEmbeddedCli, name, &EmbeddedFile::name)->text;
 }
 
-/// Runs in a row as Slurm writes them: 0-3,7.
+/// Indices in Slurm's notation: 0-3,7.
 std::string array_text(const std::vector<std::size_t>& indices) {
   std::string text;
   for (std::size_t i = 0; i < indices.size();) {
@@ -103,7 +103,7 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
     return words;
   };
   const std::string threads = std::to_string(options.threads);
-  // Size and camera become those of the cache.
+  // Size and camera are stored in the cache.
   define("simulate", with({"simulate", fs::absolute(sweep.scene).string(), "--threads", threads},
                           chosen(passed_on, {"--size", "--camera", "--error"})));
   define("draw", with({"render", "--threads", threads}, chosen(passed_on, {"--size", "--camera", "--quality"})));
@@ -141,7 +141,7 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
     fmt::format_to(out, "hand_in unpack unpack --time={}\nunpack=$job\n", plan.needs.draw_minutes);
     after = " --dependency=\"afterok:$unpack\"";
   }
-  // Of the simulations in one array, each run waits for its own.
+  // The simulations of an array are one job; the drawing of each run waits only for its own array element.
   for (std::size_t at = 0; at < plan.submitted.size();) {
     const std::size_t base = plan.submitted[at];
     std::vector<std::size_t> offsets;

@@ -1,5 +1,5 @@
-// The scripts of a farm: one that does any task, wherever it is started, one that hands the tasks to Slurm, and a list
-// of them for other schedulers.
+// The scripts of a farm: one that performs any task on any machine, one that submits the tasks to Slurm, and a list of
+// tasks for other schedulers.
 #pragma once
 
 #include <cstddef>
@@ -12,30 +12,30 @@
 
 namespace weft::cli {
 
-/// What the scheduler is told to keep free for a task.
+/// Resources that a task requests from the scheduler.
 struct Needs {
   int memory = 0;                      ///< [MB]
-  int simulate_minutes, draw_minutes;  ///< at most
+  int simulate_minutes, draw_minutes;  ///< time limits
 };
 
 struct FarmPlan {
   std::vector<SweepJob> jobs;          ///< all runs
-  std::vector<FrameRange> frames;      ///< of each that are drawn
-  std::vector<std::size_t> submitted;  ///< of jobs: those to do, ascending
-  int part = 50;                       ///< frames of a drawing task
-  std::string archive;                 ///< fingerprint of the program that tasks unpack; empty: they run this one
+  std::vector<FrameRange> frames;      ///< frames drawn, per job
+  std::vector<std::size_t> submitted;  ///< indices of the jobs to do, ascending
+  int part = 50;                       ///< frames per drawing task
+  std::string archive;  ///< fingerprint of the program archive that tasks unpack; empty: tasks run this program
   Needs needs;
 
   int parts(std::size_t job) const { return (frames[job].count() + part - 1) / part; }
 };
 
-/// Of an archive, in the folder of the runs; without its ending: what a task has unpacked.
+/// File name of the program archive in the folder of the runs; without its extension, the folder where it is unpacked.
 std::string program_tar(const std::string& archive);
 
-/// `farm/task.sh`: with paths that hold on all machines that share the folder.
+/// `farm/task.sh`; its paths are valid on all machines that share the folder.
 std::string task_script(const FarmOptions& options, const FarmPlan& plan);
 
-/// `farm/submit.sh`: sbatch, with what waits for what; numbers and names of jobs go to `farm/jobs`.
+/// `farm/submit.sh`: calls sbatch with dependencies; writes numbers and names of jobs to `farm/jobs`.
 std::string submit_script(const FarmOptions& options, const FarmPlan& plan);
 
 /// `farm/tasks.tsv`: name, names of the tasks to wait for, command.

@@ -14,7 +14,7 @@
 namespace weft::cli {
 namespace {
 
-// Enough for one stage to ride out a slow frame of another; a picture of 1280×720 takes 2.7 MB.
+// Lets a stage continue during a slow frame of another; a picture of 1280×720 takes 2.7 MB.
 constexpr std::size_t kQueueLength = 4;
 
 struct MadePair {
@@ -26,8 +26,8 @@ struct DrawnFrame {
   Picture picture;
 };
 
-// A frame goes through make_frames(), draw_frames() and write_frames(), each in a thread of its own. Fields of a
-// FrameRecord are written by the stage they belong to; the queues order writes before reads.
+// A frame passes through make_frames(), draw_frames() and write_frames(), each in its own thread. Each stage writes its
+// own fields of a FrameRecord; the queues order these writes before later reads.
 class Film {
  public:
   Film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted, const std::atomic<bool>& stop,
@@ -49,7 +49,7 @@ class Film {
       try {
         drawing = std::jthread([this] { draw_frames(); });
       } catch (...) {
-        snapshots_.cancel();  // else the simulation would wait for ever for someone to draw
+        snapshots_.cancel();  // otherwise the simulation would wait for ever for a drawing thread
         throw;
       }
       write_frames();
@@ -75,19 +75,19 @@ class Film {
     }
   }
 
-  /// Hands on what is wanted, or only shows all to the camera.
+  /// Passes wanted frames on to drawing, or with `only_show` all frames to the camera.
   void make_frames(FrameSource& source, bool only_show) {
     const int last = only_show ? made_.last() : wanted_.last();
-    // The first one costs little more, so even a run that is stopped at once has a picture.
+    // The first frame is made even after a stop request: it costs little, and gives the run a picture.
     for (int frame = made_.begin; frame <= last; frame += made_.step) {
       if (frame > made_.begin && stop_) {
         result_.interrupted = true;
         break;
       }
-      MadeFrame made = source.next();  // simulated, or read
+      MadeFrame made = source.next();  // simulated or read
       if (frame == made_.begin) result_.cloth_size = bench::cloth_size(*made.snapshot);
       if (parts_.look) parts_.look(made);
-      if (parts_.store) parts_.store->keep(made);  // so that it is not simulated again
+      if (parts_.store) parts_.store->keep(made);  // so that it need not be simulated again
       for (const std::string& warning : made.report.warnings) log::warn(warning);
       record(frame).report = std::move(made.report);
       ++made_so_far_;
@@ -103,7 +103,7 @@ class Film {
     if (parts_.store) parts_.store->keep_last_state();
   }
 
-  /// With the frame before, where that is asked for and is there.
+  /// Pushes a frame, with the previous one if motion blur needs it. Returns false if drawing has ended.
   bool hand_on(const frame::SnapshotPtr& snapshot, const FrameSource* source) {
     const int frame = snapshot->frame - wanted_.step;
     if (parts_.motion && !before_ && frame >= 0)
@@ -111,7 +111,7 @@ class Film {
     return snapshots_.push({snapshot, before_});
   }
 
-  /// The camera sees all frames before the first is drawn. Whatever ends the making, what was made is handed on.
+  /// Passes all frames to the camera first, then draws from the store. If making fails, draws the frames made so far.
   void make_then_hand_on(FrameSource& source) {
     std::exception_ptr failure;
     try {
@@ -188,7 +188,7 @@ class Film {
     return source;
   }
 
-  // A failure upstream ends the line like its last frame does: what came before is still finished.
+  // Ends normally if an earlier stage failed, so that its earlier frames are finished.
   std::optional<DrawnFrame> next_picture() {
     try {
       return pictures_.pop();
@@ -207,9 +207,9 @@ class Film {
   EventLog& log_;
   BoundedQueue<MadePair> snapshots_{kQueueLength};
   BoundedQueue<DrawnFrame> pictures_{kQueueLength};
-  std::optional<render::CameraPath> camera_;  // from the making to the drawing thread, before the first snapshot
-  frame::SnapshotPtr before_;                 // of the making thread: the frame before among those that are wanted
-  int made_so_far_ = 0;                       // by the making thread; read after it has ended
+  std::optional<render::CameraPath> camera_;  // moves from the making to the drawing thread before the first snapshot
+  frame::SnapshotPtr before_;                 // making thread: the previous wanted frame
+  int made_so_far_ = 0;                       // written by the making thread; read after it has ended
   FilmResult result_;
 };
 

@@ -8,7 +8,7 @@
 
 namespace weft::cli {
 
-/// As typed: half-open, from 0; an end left out is that of the scene.
+/// As typed: half-open, from 0; a missing end is that of the scene.
 struct FrameSelection {
   std::optional<int> begin, end;
   int step = 1;
@@ -24,13 +24,13 @@ struct FrameRange {
   std::string text() const;
 };
 
-/// Frames in words, those in a row as a range: `3, 8:21`. Ascending, at least one.
+/// Frames in words, consecutive ones as a half-open range: `3, 8:21`. Ascending, at least one.
 std::string frames_text(const std::vector<int>& frames);
 
-/// Reads `A:B`, `A:B:STEP`, `A:`, `:B` or `:`. Throws Error(usage).
+/// Parses `A:B`, `A:B:STEP`, `A:`, `:B` or `:`. Throws Error(usage).
 FrameSelection parse_frames(std::string_view text);
 
-/// The selected frames of a scene with `frame_count` frames. Throws Error(usage) where it has no such frames.
+/// The selected frames of a scene with `frame_count` frames. Throws Error(usage) if there are none.
 FrameRange resolve_frames(const FrameSelection& selection, int frame_count);
 
 }  // namespace weft::cli

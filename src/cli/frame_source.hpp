@@ -1,4 +1,4 @@
-// Where frames come from: a simulation, or a cache.
+// Sources of frames: a simulation or a cache.
 #pragma once
 
 #include <atomic>
@@ -16,23 +16,24 @@
 
 namespace weft::cli {
 
-/// Yields one frame after the other.
+/// Yields frames in order.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
-  /// Throws where it cannot go on.
+  /// Throws if the next frame cannot be made or read.
   virtual MadeFrame next() = 0;
-  /// Shows the camera all frames of the run, whichever next() yields; false where they have to be made first.
+  /// Passes all frames of the run to the camera, not only those of next(). Returns false if they must be made first.
   virtual bool show_all(render::CameraPath&) const { return false; }
   virtual std::vector<frame::ObjectInfo> objects() const { return {}; }
-  /// A frame before all that next() yields; null where it is not there.
+  /// A frame before those that next() yields; null if it is not available.
   virtual frame::SnapshotPtr earlier(int) const { return nullptr; }
 };
 
-/// Frames of a scene: those that the store has from an earlier run, with the looks of now, then those it simulates.
+/// Frames of a scene: first those that the store has from an earlier run, with the scene's current looks, then
+/// simulated ones.
 class SceneSource : public FrameSource {
  public:
-  /// Opens `store` for what is made. `stop` ends a preroll, which `progress` is told of.
+  /// Opens `store` for new frames. `stop` interrupts a preroll, whose progress goes to `progress`.
   SceneSource(const scene::Scene& scene, Store& store, const std::atomic<bool>& stop, Progress& progress);
 
   MadeFrame next() override;
@@ -49,7 +50,7 @@ class SceneSource : public FrameSource {
   const std::atomic<bool>& stop_;
   Progress& progress_;
   std::unique_ptr<simulation::Simulation> simulation_;
-  std::optional<simulation::Looks> looks_;  // of the scene, where frames of the store have others
+  std::optional<simulation::Looks> looks_;  // current looks of the scene, if stored frames have others
   int next_ = 0;
 };
 

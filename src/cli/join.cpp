@@ -1,5 +1,5 @@
-// weft join: what was drawn in parts, by many machines perhaps, as one video. Each part tells in its metadata what it
-// is; nothing is taken from names.
+// weft join: joins parts of a film, possibly drawn on several machines, to one video. Each part is identified by its
+// metadata, not by its name.
 #include "video/join.hpp"
 
 #include <algorithm>
@@ -23,14 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A picture, or a video.
+/// A picture or a video.
 struct Piece {
   fs::path file;
-  std::vector<int> frames = {};  ///< that are in it, ascending
-  int step = 1;                  ///< between them
+  std::vector<int> frames = {};  ///< frame numbers, ascending
+  int step = 1;                  ///< between frames
   int width = 0, height = 0;
-  Metadata film = {};   ///< what all pieces of a film have in common
-  std::string gl = {};  ///< what drew it
+  Metadata film = {};   ///< metadata that all pieces of a film share
+  std::string gl = {};  ///< OpenGL description of the drawing machine
 };
 
 bool is_video(const fs::path& file) {
@@ -54,7 +54,7 @@ Number number(const fs::path& file, const Metadata& metadata, const std::string&
   return value;
 }
 
-// Frame k is at k / fps, also in what another machine has drawn. Broadcast rates are within 1.1e-6 of their decimals.
+// Frame k is at k / fps. The tolerance covers broadcast rates, which are within 1.1e-6 of their decimals.
 void check_time(const fs::path& file, double found, double expected, const char* what) {
   if (std::abs(found - expected) <= 1e-5 * std::max(1.0, expected)) return;
   throw Error(ExitCode::usage, "{}: expected {} {:g}, got {:g}", file.string(), what, expected, found);
@@ -72,7 +72,7 @@ Piece read_picture(const fs::path& file) {
   return piece;
 }
 
-// Decodes all of it: what cannot be shown is not there.
+// Decodes the whole video: frames that cannot be decoded count as missing.
 Piece read_video(const fs::path& file) {
   video::Decoder decoder(file);
   Piece piece{.file = file, .width = decoder.width(), .height = decoder.height(), .film = decoder.metadata()};
@@ -88,7 +88,7 @@ Piece read_video(const fs::path& file) {
 Piece read_piece(const fs::path& file) {
   Piece piece = is_video(file) ? read_video(file) : read_picture(file);
   piece.gl = piece.film["gl"];
-  // What holds for one piece, or is that of the file.
+  // Metadata of a single piece or of its file format.
   for (const char* own : {"gl", "frame", "time_s", "frames", "major_brand", "minor_version", "compatible_brands",
                           "encoder", "creation_time"})
     piece.film.erase(own);
@@ -106,7 +106,7 @@ std::vector<fs::path> files_of(const fs::path& part) {
   return files;
 }
 
-/// All pieces, in the order of their frames.
+/// All pieces, ordered by frame.
 class Film {
  public:
   explicit Film(const std::vector<fs::path>& parts) {
@@ -121,7 +121,8 @@ class Film {
   const Piece& first() const { return pieces_.front(); }
   bool of_videos() const { return is_video(first().file); }
 
-  /// Those that were asked for, or with `partial` the first of them. Throws Error(not_whole), which names the missing.
+  /// The requested frames, or with `partial` those before the first missing one. Throws Error(not_whole), which names
+  /// the missing frames.
   FrameRange frames(const JoinOptions& options) const;
 
  private:
@@ -158,15 +159,15 @@ class Film {
   }
 
   std::vector<Piece> pieces_;
-  std::map<int, fs::path> where_;  // by frame
-  std::string problem_;            // of the first file that could not be read
+  std::map<int, fs::path> where_;  // file of each frame
+  std::string problem_;            // message of the first unreadable file
 };
 
 FrameRange Film::frames(const JoinOptions& options) const {
   FrameSelection selection = options.frames;
   if (of_videos() && selection.step == 1) selection.step = first().step;
   const FrameRange wanted = resolve_frames(selection, number<int>(first().file, first().film, "scene_frames"));
-  FrameRange before{wanted.begin, wanted.begin, wanted.step};  // the first that is missing
+  FrameRange before{wanted.begin, wanted.begin, wanted.step};  // frames before the first missing one
   std::vector<int> missing;
   for (int frame = wanted.begin; frame < wanted.end; frame += wanted.step) {
     if (!where_.contains(frame)) missing.push_back(frame);
@@ -184,7 +185,7 @@ FrameRange Film::frames(const JoinOptions& options) const {
   return missing.empty() ? wanted : before;
 }
 
-/// The pieces of these frames, in order. A video is taken as it is or not at all.
+/// The files with these frames, in order. Throws Error(usage) if only some frames of a video are wanted.
 std::vector<fs::path> files_of(const Film& film, const FrameRange& frames) {
   std::vector<fs::path> files;
   for (const Piece& piece : film.pieces()) {
@@ -208,7 +209,7 @@ Metadata describe(const Film& film, const FrameRange& frames) {
   return metadata;
 }
 
-/// False where it was stopped; nothing is left then.
+/// Returns false if interrupted; no file is left then.
 bool encode(const std::vector<fs::path>& pictures, const fs::path& file, const video::Settings& settings) {
   const StopSignals signals;
   video::Encoder encoder(file, settings);

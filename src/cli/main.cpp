@@ -4,8 +4,9 @@
 
 #if defined(__x86_64__) && defined(__AVX2__)
 
-// Runs before all other initialisation of the program (101 is the first priority left to users) and is itself compiled
-// for every x86-64 processor, so that an old one meets this text and not an illegal instruction.
+// Checks the processor before any other initialisation of the program (101 is the first constructor priority for
+// users). Compiled for every x86-64 processor, so that an old one prints a message instead of failing on an
+// instruction.
 __attribute__((constructor(101), target("arch=x86-64"))) static void check_cpu() {
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return;

@@ -1,4 +1,4 @@
-// weft new: a first scene to go on from, or a repository of scenes.
+// weft new: writes a template scene, or a repository of scenes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,13 +22,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestIgnoreFile = 1 << 20;  // [bytes]
 
-// A file, or a folder of files with all below it.
+// Name of the template: of its single file, or of its folder.
 std::string template_of(const EmbeddedFile& file) {
   return (*fs::path(file.name).begin()).stem().string();
 }
 
-// A template of several files may go into a repository that has some of them: it adds, and replaces nothing. Lines that
-// a .gitignore lacks are put at its end, a README goes beside that of the repository, and other files stay.
+// Result of adding a template of several files to an existing folder without replacing anything. Missing lines are
+// appended to .gitignore, a README is written beside an existing one, and other existing files are kept.
 struct Added {
   std::vector<std::pair<fs::path, std::string>> files;
   std::vector<std::string> kept;
@@ -79,7 +79,7 @@ std::vector<std::string> template_names() {
 }
 
 ExitCode make_new(const NewOptions& options) {
-  // Editors know all keys from the start: the first line of a scene names its schema.
+  // The first line of a scene names its schema, from which editors know all keys.
   std::vector<std::pair<fs::path, std::string>> files;
   fs::path scene = options.name;
   bool is_folder = false;

@@ -13,9 +13,9 @@ namespace weft::cli {
 namespace {
 
 struct Option {
-  std::vector<std::string> names;    ///< with their dashes, the short one first; of an argument its own
-  std::string value;                 ///< `FILE.mp4`; empty: it takes none
-  std::vector<std::string> choices;  ///< of the value; empty: it is no word of a few
+  std::vector<std::string> names;    ///< with dashes, short names first; for an argument its name
+  std::string value;                 ///< for example `FILE.mp4`; empty: takes no value
+  std::vector<std::string> choices;  ///< allowed values; empty: any value
   std::string meaning;
 };
 
@@ -24,7 +24,7 @@ bool is_word(const std::string& text) {
          std::ranges::all_of(text, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-// `draft|preview|final`; nothing where one of them stands for something else, such as FILE.
+// The choices in `draft|preview|final`; empty if one part is a placeholder such as FILE.
 std::vector<std::string> choices_of(const std::string& value) {
   std::vector<std::string> choices;
   std::istringstream parts(value);
@@ -60,7 +60,7 @@ std::vector<Option> arguments_of(const CLI::App& command) {
   return arguments;
 }
 
-/// The words of which the first argument is one; empty: a file.
+/// The allowed words of the first argument; empty if it is a file.
 std::vector<std::string> first_words(const CLI::App& command) {
   const std::vector<Option> arguments = arguments_of(command);
   return arguments.empty() ? std::vector<std::string>{} : arguments.front().choices;
@@ -116,7 +116,7 @@ std::string bash_completion(const CLI::App& app) {
 }
 
 std::string zsh_completion(const CLI::App& app) {
-  // Brackets and colons part the fields of a specification.
+  // Escapes brackets and colons, which separate the fields of a specification.
   const auto field = [](const std::string& text) {
     std::string result;
     for (const char c : text)
@@ -176,7 +176,7 @@ std::string fish_completion(const CLI::App& app) {
   return text;
 }
 
-// What troff would take for its own. Quotes and the like must stay what a shell reads, also in UTF-8.
+// Escapes what troff interprets. Quotes, ^ and ~ must stay ASCII, so that a shell can read copied commands.
 std::string roff(const std::string& text) {
   std::string result;
   std::istringstream lines(text);
@@ -190,7 +190,7 @@ std::string roff(const std::string& text) {
   return result;
 }
 
-// Below the options: examples and what else there is to know, as it is laid out there.
+// The text below the options, such as examples, with its layout.
 std::string footer(const CLI::App& command) {
   const std::string text = command.get_footer();
   if (text.empty()) return "";

@@ -1,4 +1,4 @@
-// The command line as texts for other programs: shells that complete it, and man. All come from what --help prints.
+// The command line for other programs: shell completion and the manual page, both generated from the text of --help.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,8 +6,7 @@
 
 namespace weft::cli {
 
-/// A script that completes commands, options and their values; other words are names of files. `shell`: bash, zsh or
-/// fish.
+/// A script that completes commands, options and their values, and file names. `shell`: bash, zsh or fish.
 std::string completion(const CLI::App& app, const std::string& shell);
 
 /// The manual page, section 1.

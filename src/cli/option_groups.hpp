@@ -31,27 +31,27 @@ inline constexpr std::array kQualities{Choice<render::Quality>{"draft", render::
                                        Choice<render::Quality>{"final", render::Quality::final}};
 inline constexpr const char* kSceneOrCache = "The scene, a TOML file, or the folder of a cache";
 
-/// One option with one value, handed to `read` as text.
+/// Adds an option with one value, which `read` receives as text.
 void add_value(CLI::App& command, const char* name, const char* value, const std::string& description,
                std::function<void(const std::string&)> read);
 
-/// --set.
+/// Adds --set.
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides);
 void add_backend(CLI::App& command, render::Backend& backend);
-/// --size, --camera, --quality, --backend.
+/// Adds --size, --camera, --quality, --backend.
 void add_picture(CLI::App& command, SceneOptions& options);
-/// --threads, --progress, --overwrite.
+/// Adds --threads, --progress, --overwrite.
 void add_process(CLI::App& command, SceneOptions& options);
-/// All that changes how a scene is read or drawn.
+/// Adds all options that change how a scene is read or drawn.
 void add_scene_changes(CLI::App& command, SceneOptions& options);
-/// The scene, and these.
+/// Adds the scene argument, and add_scene_changes().
 void add_common(CLI::App& command, SceneOptions& options, const char* what = "The scene, a TOML file");
 void add_output(CLI::App& command, RunOptions& options);
 void add_video(CLI::App& command, VideoOptions& options);
 void add_frames(CLI::App& command, RunOptions& options, const char* description);
-/// --meshes, --stats, --log-json.
+/// Adds --meshes, --stats, --log-json.
 void add_side_files(CLI::App& command, RunOptions& options);
-/// --error, --mesh-error.
+/// Adds --error, --mesh-error.
 void add_error(CLI::App& command, RunOptions& options);
 void add_partial(CLI::App& command, bool& partial);
 

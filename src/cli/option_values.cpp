@@ -8,7 +8,7 @@
 namespace weft::cli {
 namespace {
 
-// The whole text as a number.
+// Parses the whole text as a number; nullopt if it is not one.
 template <class Number>
 std::optional<Number> number_in(const std::string& text) {
   Number value = 0;

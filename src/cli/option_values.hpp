@@ -1,4 +1,4 @@
-// Texts of the command line as checked values. All throw Error(usage) with what was expected.
+// Conversion of command-line texts to checked values. All functions throw Error(usage) with what was expected.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace weft::cli {
 
-/// "; did you mean X?", or nothing where none is near.
+/// "; did you mean X?", or empty if no known name is similar.
 std::string did_you_mean(const std::string& name, std::span<const std::string> known);
 
 template <class Value>
@@ -32,13 +32,13 @@ Value parse_choice(const char* option, const std::string& text, const std::array
 int parse_integer(const char* option, const std::string& text, int low, int high);
 /// From 0 to 1.
 double parse_share(const char* option, const std::string& text);
-/// How many times something: above 0, as far as anyone would go.
+/// A factor above 0, with a generous upper bound.
 double parse_factor(const char* option, const std::string& text);
 /// A length in metres, from a nanometre to a metre.
 double parse_length(const char* option, const std::string& text);
 double parse_fps(const std::string& text);
 
-/// `0.5,1,2`: ascending, each once.
+/// Parses `0.5,1,2` into ascending values without duplicates.
 template <class Value, class Parse>
 std::vector<Value> parse_list(const char* option, const std::string& text, const Parse& parse) {
   std::set<Value> values;
@@ -51,7 +51,7 @@ std::vector<Value> parse_list(const char* option, const std::string& text, const
   return {values.begin(), values.end()};
 }
 
-/// As it was, `key=value`.
+/// Checks the form `key=value` and returns the text unchanged.
 std::string check_override(const std::string& text);
 
 }  // namespace weft::cli

@@ -10,7 +10,7 @@
 namespace weft::cli {
 namespace {
 
-// All long and short option names of a command, as typed.
+// All long and short option names of a command, with dashes.
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -20,7 +20,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-// The first argument must be a command or an option of the program itself; CLI11 alone would only say "required".
+// Checks that the first argument is a command or an option of the program; CLI11 would only report "required".
 void check_command_name(const Parser& parser, const std::vector<std::string>& arguments) {
   const std::vector<std::string> known = parser.command_names();
   const std::string list = fmt::format("{}", fmt::join(known, ", "));
@@ -34,7 +34,7 @@ void check_command_name(const Parser& parser, const std::vector<std::string>& ar
     throw Error(ExitCode::usage, "unknown option {} before the command{}; see weft --help", first,
                 did_you_mean(first, options));
   }
-  const auto is_it = [&](const CLI::App* command) { return command->check_name(first); };  // also by another name
+  const auto is_it = [&](const CLI::App* command) { return command->check_name(first); };  // includes aliases
   if (std::ranges::any_of(parser.app.get_subcommands(nullptr), is_it)) return;
   if (std::filesystem::path(first).extension() == ".toml") {
     throw Error(ExitCode::usage, "expected a command before {}; did you mean weft run {}?", first, first);
@@ -42,7 +42,7 @@ void check_command_name(const Parser& parser, const std::vector<std::string>& ar
   throw Error(ExitCode::usage, "unknown command {}{}; the commands are {}", first, did_you_mean(first, known), list);
 }
 
-// A file may be called as an option is.
+// Hint for an argument that may be a file whose name looks like an option; empty if it is not.
 std::string as_file(const std::string& argument) {
   const std::filesystem::path file = argument;
   std::error_code none;
@@ -50,7 +50,7 @@ std::string as_file(const std::string& argument) {
   return fmt::format("; a file of this name is written ./{}, or behind --", argument);
 }
 
-// Options that the command does not have; returns where there are none.
+// Throws if the command was given an unknown option.
 void check_unknown(const CLI::App& command, const std::string& prefix) {
   for (const std::string& argument : command.remaining(true)) {
     if (!argument.starts_with('-')) continue;
@@ -60,7 +60,8 @@ void check_unknown(const CLI::App& command, const std::string& prefix) {
   }
 }
 
-// What CLI11 says of it, behind what it does not say: a misspelt option may be why something else is missing.
+// Throws for a parse error. Unknown options and surplus arguments are reported first, as a misspelt option may cause
+// another error of CLI11.
 [[noreturn]] void throw_usage(const CLI::App* command, const CLI::ParseError& error) {
   if (command == nullptr) throw Error(ExitCode::usage, "weft: {}; see weft --help", error.what());
   const std::string prefix = "weft " + command->get_name();
@@ -71,7 +72,7 @@ void check_unknown(const CLI::App& command, const std::string& prefix) {
 }
 
 std::string_view name_of(BenchOptions::Kind kind) {
-  return kind == BenchOptions::Kind::speed ? "speed" : "accuracy";  // those that have options of their own
+  return kind == BenchOptions::Kind::speed ? "speed" : "accuracy";  // the kinds that have their own options
 }
 
 BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options) {
@@ -91,7 +92,7 @@ BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options
 }
 
 SweepOptions checked(SweepOptions sweep) {
-  // Of a farm, a scene alone is a run to report on.
+  // For a farm, a single scene without changes is also a run to report.
   if (sweep.axes.empty() && sweep.list.empty() && !sweep.gather)
     throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
   return sweep;
@@ -119,7 +120,8 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     throw Error(ExitCode::usage, "weft {}: expected no empty argument, got one; is a variable of the shell empty?",
                 arguments.front());
   try {
-    parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them reversed
+    // CLI11 expects them in reverse order
+    parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
     return PrintText{parser.app.help()};
   } catch (const CLI::CallForVersion& version) {

@@ -23,15 +23,15 @@ struct PictureSize {
   int width = 0, height = 0;  ///< pixels
 };
 
-/// What all commands that start from a scene share.
+/// Options shared by all commands that start from a scene.
 struct SceneOptions {
   std::filesystem::path scene;
   std::vector<std::string> overrides;      ///< of --set
-  std::optional<PictureSize> size;         ///< else that of the scene
-  std::optional<double> fps;               ///< else that of the scene
+  std::optional<PictureSize> size;         ///< default: that of the scene
+  std::optional<double> fps;               ///< default: that of the scene
   std::string camera;                      ///< empty: the scene's choice
-  std::optional<frame::Stage::Look> look;  ///< else that of the scene
-  std::optional<double> motion_blur;       ///< angle of the shutter [degrees], else that of the scene
+  std::optional<frame::Stage::Look> look;  ///< default: that of the scene
+  std::optional<double> motion_blur;       ///< shutter angle [degrees]; default: that of the scene
   render::Quality quality = render::Quality::final;
   render::Backend backend = render::Backend::automatic;
   int threads = 0;  ///< 0: all cores
@@ -49,16 +49,16 @@ struct RunOptions {
   bool resume = false;
   int depth = 8;  ///< bits a channel of PNG pictures, 8 or 16
   VideoOptions video;
-  bool error = false, mesh_error = false;  ///< whether companions are to tell the error; the second: of the mesh too
+  bool error = false, mesh_error = false;  ///< estimate the error; mesh_error: also that of the mesh
 };
 
 struct SimulateOptions : RunOptions {
   std::filesystem::path cache;  ///< folder
 };
 
-/// Its scene is the folder of a cache.
+/// `common.scene` is the folder of a cache.
 struct RenderOptions : RunOptions {
-  bool partial = false;  ///< takes the frames before the first that is missing
+  bool partial = false;  ///< use the frames before the first missing one
 };
 
 struct CheckOptions {
@@ -66,22 +66,22 @@ struct CheckOptions {
   std::vector<std::string> overrides;
   std::filesystem::path against;  ///< a scene, an effective scene or a cache; may be empty
   bool plan = false;
-  bool estimate = false;  ///< also of time and memory
+  bool estimate = false;  ///< also estimate time and memory
 };
 
 struct ThumbnailOptions {
-  SceneOptions common;                        ///< `scene` is set while one is drawn
-  std::vector<std::filesystem::path> scenes;  ///< or caches; one at least
-  /// A picture, or without an ending a folder, which gets <scene>.png of each; empty: output/<scene>.png.
+  SceneOptions common;                        ///< `scene` is set for each scene in turn
+  std::vector<std::filesystem::path> scenes;  ///< scenes or caches, at least one
+  /// A picture, or without an extension a folder that gets <scene>.png for each; empty: output/<scene>.png.
   std::filesystem::path output;
-  std::optional<int> frame;  ///< else the one that tells most
-  bool start = false;        ///< instead of a frame: the start, also one that is refused
+  std::optional<int> frame;  ///< default: the most informative one
+  bool start = false;        ///< draw the start instead of a frame, even if the simulation refuses it
 };
 
 struct SheetOptions {
   SceneOptions common;           ///< the size is that of each picture
   std::filesystem::path output;  ///< empty: output/<scene>.sheet.png
-  int count = 12;                ///< pictures at most
+  int count = 12;                ///< maximum number of pictures
   std::optional<int> columns;
 
   SheetOptions() { common.quality = render::Quality::preview; }
@@ -90,9 +90,9 @@ struct SheetOptions {
 struct JoinOptions {
   std::vector<std::filesystem::path> parts;  ///< videos, or folders of pictures
   std::filesystem::path output;
-  VideoOptions video;  ///< of what is made of pictures
+  VideoOptions video;  ///< used if the parts are pictures
   FrameSelection frames;
-  bool partial = false;  ///< takes the frames before the first that is missing
+  bool partial = false;  ///< use the frames before the first missing one
   bool overwrite = false;
 };
 
@@ -100,43 +100,43 @@ struct SweepOptions {
   std::filesystem::path scene, list;  ///< the list may be empty
   std::vector<Axis> axes;
   std::filesystem::path output;        ///< folder
-  std::vector<std::string> passed_on;  ///< to each run, checked
-  int jobs = 1;                        ///< runs at once
-  std::optional<int> frame;            ///< of the sheet, else the last
-  bool gather = false;                 ///< makes no run, only sheet, table and page of what is there
+  std::vector<std::string> passed_on;  ///< checked options that are passed on to each run
+  int jobs = 1;                        ///< number of concurrent runs
+  std::optional<int> frame;            ///< frame shown on the sheet; default: the last
+  bool gather = false;                 ///< make only sheet, table and page from existing runs
   bool overwrite = false;
 };
 
 struct FarmOptions {
   enum class Action { submit, status, cancel };
   Action action = Action::status;
-  SweepOptions sweep;  ///< of submit: its scene, and its folder in all cases
+  SweepOptions sweep;  ///< for submit: the scene and the folder; otherwise the folder
   FrameSelection frames;
-  int part = 50;                           ///< frames that one task draws
-  int threads = 1;                         ///< of a task
-  int retries = 3;                         ///< of a task that was killed or found no room
-  std::optional<int> memory, minutes;      ///< of a task [MB, min]; else from a trial
+  int part = 50;                           ///< frames per drawing task
+  int threads = 1;                         ///< per task
+  int retries = 3;                         ///< for a task that was killed or found no disk space
+  std::optional<int> memory, minutes;      ///< per task [MB, min]; default: from a trial
   std::vector<std::string> for_scheduler;  ///< options of sbatch
-  std::filesystem::path program;           ///< archive that tasks unpack and run; empty: this program, where it lies
-  bool dry_run = false;                    ///< writes the scripts and prints them
+  std::filesystem::path program;  ///< program archive that tasks unpack and run; empty: this program at its own path
+  bool dry_run = false;           ///< write and print the scripts, submit nothing
 };
 
 struct NewOptions {
   std::string name;            ///< of the scene, with its folder
-  std::string kind = "drape";  ///< of the template
+  std::string kind = "drape";  ///< name of the template
   bool overwrite = false;
 };
 
 struct WatchOptions {
   std::filesystem::path scene;
   std::vector<std::string> overrides;  ///< of --set
-  std::vector<std::string> passed_on;  ///< to what draws, checked
-  bool film = false;                   ///< the whole video, not a still
-  int times = 0;                       ///< ends after so many; 0: when it is interrupted
+  std::vector<std::string> passed_on;  ///< checked options that are passed on to the drawing command
+  bool film = false;                   ///< draw the whole video instead of a still
+  int times = 0;                       ///< number of drawings before it ends; 0: until interrupted
 };
 
 struct SchemaOptions {
-  bool pattern = false;  ///< of sewing patterns, not of scenes
+  bool pattern = false;  ///< schema of sewing patterns instead of scenes
 };
 
 struct DoctorOptions {
@@ -146,19 +146,19 @@ struct DoctorOptions {
 struct BenchOptions {
   enum class Kind { stability, accuracy, speed, fabrics };
   Kind kind = Kind::stability;
-  std::filesystem::path scene;         ///< of stability, accuracy and speed; empty: built-in ones
+  std::filesystem::path scene;         ///< for stability, accuracy and speed; empty: built-in ones
   std::vector<std::string> overrides;  ///< of --set
-  /// Of speed: what is varied, ascending, and which frames are measured.
+  /// For speed: varied values, ascending, and the measured frames.
   std::vector<double> sizes{0.5, 1, 2, 4}, steps{0.5, 1, 2};
   std::vector<int> threads;  ///< empty: 1, and all cores
   FrameSelection frames;     ///< as typed
   std::optional<render::Quality> drawing;
-  bench::AccuracyPlan plan;      ///< of accuracy
+  bench::AccuracyPlan plan;      ///< for accuracy
   std::filesystem::path output;  ///< folder; empty: output/bench
   bool overwrite = false;
 };
 
-/// An option of weft bench that is not for every kind.
+/// An option of weft bench that only some kinds accept.
 struct BenchOption {
   std::string name;
   std::vector<BenchOptions::Kind> kinds;
@@ -170,7 +170,7 @@ struct DiffOptions {
   std::filesystem::path limits_file;  ///< limits and masks of single pictures; empty: none
   std::filesystem::path heatmap;      ///< picture or folder; empty: none
   std::filesystem::path junit, html;  ///< files; empty: none
-  bool annotations = false;           ///< also where no GitHub Actions asks for them
+  bool annotations = false;           ///< print annotations even outside GitHub Actions
   bool overwrite = false;
   bool json = false;
 };
@@ -192,11 +192,11 @@ struct ExportOptions {
   std::filesystem::path cache, output;  ///< folders
   exporter::Format format = exporter::Format::gltf;
   FrameSelection frames;
-  bool partial = false;  ///< takes the frames before the first that is missing
+  bool partial = false;  ///< use the frames before the first missing one
   bool overwrite = false;
 };
 
-/// Help or version: to be printed on standard output, and that was all.
+/// Text of help or version, to be printed on standard output instead of running a command.
 struct PrintText {
   std::string text;
 };
@@ -206,10 +206,10 @@ using Command =
                  SweepOptions, FarmOptions, NewOptions, WatchOptions, SchemaOptions, DoctorOptions, BenchOptions,
                  DiffOptions, AcceptOptions, ReviewOptions, ExportOptions, PrintText>;
 
-/// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
+/// `arguments` without the program's name. Throws Error(usage) with what was expected and the most similar known name.
 Command parse_command_line(const std::vector<std::string>& arguments);
 
-/// Reads `1280x720`. Throws Error(usage).
+/// Parses `1280x720`. Throws Error(usage).
 PictureSize parse_size(const std::string& text);
 
 }  // namespace weft::cli

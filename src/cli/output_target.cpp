@@ -18,7 +18,7 @@ constexpr std::string_view kFrame = "{frame";
   throw Error(ExitCode::usage, "-o: expected one {{frame}} or {{frame:05}} in the name of the pictures, got {}", text);
 }
 
-// The number of digits in what stands between the braces: "frame", "frame:5" or "frame:05".
+// Number of digits in the text between the braces: "frame", "frame:5" or "frame:05".
 int parse_digits(std::string_view field, std::string_view text) {
   if (field == "frame") return 1;
   if (field.substr(0, 6) != "frame:") bad_pattern(text);
@@ -32,7 +32,7 @@ int parse_digits(std::string_view field, std::string_view text) {
 }  // namespace
 
 FramePattern::FramePattern(std::string_view text) {
-  // Other braces are a part of the name, as of a folder.
+  // Other braces belong to the name, for example of a folder.
   const std::size_t open = text.find(kFrame), close = text.find('}', std::min(open, text.size()));
   if (open == std::string_view::npos || close == std::string_view::npos) bad_pattern(text);
   before_ = text.substr(0, open);
@@ -53,7 +53,7 @@ std::vector<fs::path> FramePattern::names(const FrameRange& frames) const {
 
 void FramePattern::remove_others(const FrameRange& frames,
                                  const std::function<bool(const fs::path&, int)>& is_own) const {
-  // The number may stand in the name of a folder.
+  // The frame number may be in the name of a folder.
   const std::size_t slash = before_.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : before_.substr(0, slash + 1);
   const std::string start = slash == std::string::npos ? before_ : before_.substr(slash + 1);
@@ -91,7 +91,7 @@ OutputTarget parse_output(const std::string& text, const std::string& scene_name
     return {OutputTarget::Kind::video, text};
   }
   if (ending == ".png" || ending == ".exr") {
-    (void)FramePattern(text);  // checked now, not at the first picture
+    (void)FramePattern(text);  // checks the pattern now instead of at the first picture
     return {OutputTarget::Kind::images, text};
   }
   throw Error(ExitCode::usage,

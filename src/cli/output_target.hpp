@@ -1,4 +1,4 @@
-// Where the pictures go: one video, one PNG or EXR file per frame, or nowhere.
+// Destination of the pictures: one video, one PNG or EXR file per frame, or none.
 #pragma once
 
 #include <filesystem>
@@ -14,28 +14,28 @@
 
 namespace weft::cli {
 
-/// How a video is written.
+/// Encoding options of a video.
 struct VideoOptions {
   video::Codec codec = video::Codec::automatic;
-  std::optional<int> crf;  ///< of H.264; else 18
+  std::optional<int> crf;  ///< for H.264; default: 18
 
   bool any() const { return codec != video::Codec::automatic || crf.has_value(); }
 };
 
-/// The codec of a video of this name. Throws Error(usage) for options that do not go with it.
+/// The codec of a video of this name. Throws Error(usage) if the options do not suit it.
 video::Codec codec_of(const std::filesystem::path& file, const VideoOptions& options);
 
 /// A file name with a place for the frame number: `{frame}`, or `{frame:05}` for five digits.
 class FramePattern {
  public:
-  /// Throws Error(usage) if the text has no such place, several, or other braces.
+  /// Throws Error(usage) if the text has no such place, more than one, or other braces.
   explicit FramePattern(std::string_view text);
   FramePattern(std::string before, int digits, std::string after)
       : before_(std::move(before)), after_(std::move(after)), digits_(digits) {}
 
   std::filesystem::path name(int frame) const;
   std::vector<std::filesystem::path> names(const FrameRange& frames) const;
-  /// Removes files that have the name of a frame, but none of these, and that `is_own` says a longer run has left.
+  /// Removes files named like a frame that is not in `frames`, if `is_own` identifies them as remains of a longer run.
   void remove_others(const FrameRange& frames,
                      const std::function<bool(const std::filesystem::path&, int frame)>& is_own) const;
 
@@ -47,16 +47,16 @@ class FramePattern {
 struct OutputTarget {
   enum class Kind { video, images, none };
   Kind kind = Kind::video;
-  std::string text;  ///< as the user typed it, or the default; a pattern where kind is images
+  std::string text;  ///< as typed, or the default; a pattern if kind is images
 
-  /// Whether pictures are written with all layers of a frame, as OpenEXR.
+  /// Whether pictures are written as OpenEXR with all layers of a frame.
   bool layered() const { return kind == Kind::images && std::filesystem::path(text).extension() == ".exr"; }
-  /// The file of one frame (images) or of all of them (video).
+  /// The file of one frame (images) or of all frames (video).
   std::filesystem::path file(int frame) const;
   std::vector<std::filesystem::path> files(const FrameRange& frames) const;
 };
 
-/// Understands `-o`; empty: `output/<scene>.mp4`. Throws Error(usage) for endings that cannot be written.
+/// Parses `-o`; empty: `output/<scene>.mp4`. Throws Error(usage) for unsupported extensions.
 OutputTarget parse_output(const std::string& text, const std::string& scene_name);
 
 }  // namespace weft::cli

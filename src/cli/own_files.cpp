@@ -19,12 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 bool starts_with_one_of(const fs::path& file, std::initializer_list<std::string> beginnings) {
-  constexpr std::size_t kMost = 4096;  // [bytes]
-  const std::string start = read_start(file, kMost);
+  constexpr std::size_t kMaxStartBytes = 4096;  // [bytes]
+  const std::string start = read_start(file, kMaxStartBytes);
   return std::ranges::any_of(beginnings, [&](const std::string& each) { return start.starts_with(each); });
 }
 
-/// What a picture or video says of itself; empty where it says nothing or cannot be read.
+/// Metadata of a picture or video; empty if it has none or cannot be read.
 std::map<std::string, std::string> metadata_of(const fs::path& file) {
   try {
     if (file.extension() == ".png") return image::read_png_metadata(file);
@@ -35,7 +35,7 @@ std::map<std::string, std::string> metadata_of(const fs::path& file) {
   }
 }
 
-bool says(const std::map<std::string, std::string>& metadata, const std::string& key, const std::string& value) {
+bool has_entry(const std::map<std::string, std::string>& metadata, const std::string& key, const std::string& value) {
   const auto found = metadata.find(key);
   return found != metadata.end() && found->second == value;
 }
@@ -44,8 +44,8 @@ bool says(const std::map<std::string, std::string>& metadata, const std::string&
 
 bool is_picture_of(const fs::path& file, const std::string& scene, int frame) {
   const auto metadata = metadata_of(file);
-  return metadata.contains("weft_version") && says(metadata, "scene", scene) &&
-         says(metadata, "frame", fmt::format("{}", frame));
+  return metadata.contains("weft_version") && has_entry(metadata, "scene", scene) &&
+         has_entry(metadata, "frame", fmt::format("{}", frame));
 }
 
 bool is_own_mesh(const fs::path& file) {
@@ -56,10 +56,10 @@ bool is_output_of(const fs::path& file, const std::string& scene) {
   std::error_code error;
   if (fs::file_size(file, error) == 0 && !error) return true;
   const std::string ending = file.extension().string();
-  // The effective scene says nothing of itself, and holds nothing that the scene does not.
+  // The effective scene has no mark of its own, and contains nothing that the scene does not.
   if (ending == ".toml" || (ending == ".ply" && is_own_mesh(file))) return true;
   const auto metadata = metadata_of(file);
-  if (metadata.contains("weft_version") && says(metadata, "scene", scene)) return true;
+  if (metadata.contains("weft_version") && has_entry(metadata, "scene", scene)) return true;
   const std::string name = json_text(scene);
   return starts_with_one_of(file, {fmt::format("{{\n  \"scene\": {},", name),
                                    fmt::format("{{\"event\":\"scene_loaded\",\"scene\":{},", name)});

@@ -1,4 +1,4 @@
-// The program's commands, and the values that CLI11 writes into while parsing.
+// The program's commands, and the values that CLI11 sets while parsing.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -22,11 +22,11 @@ struct Parser {
   FarmOptions farm;
   NewOptions fresh;
   WatchOptions watch;
-  std::string shell;  // of completion
+  std::string shell;  // for completion
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
-  std::vector<BenchOption> bench_options;  // those that were given and are not for every kind
+  std::vector<BenchOption> bench_options;  // given options that only some kinds accept
   DiffOptions diff;
   AcceptOptions accept;
   ReviewOptions review;
@@ -55,7 +55,7 @@ struct Parser {
   void add_export();
 
   std::vector<std::string> command_names() const;
-  /// The command that was typed; null before one is parsed.
+  /// The parsed command; null before parsing.
   CLI::App* selected() const;
 };
 

@@ -1,4 +1,4 @@
-// Commands for those who write scenes.
+// Commands for authors of scenes.
 #include "cli/commands.hpp"
 #include "cli/option_groups.hpp"
 #include "cli/parser.hpp"
@@ -7,7 +7,7 @@
 namespace weft::cli {
 namespace {
 
-// One of some words; throws Error(usage) with the nearest.
+// Returns `text` if it is one of `words`; throws Error(usage) with the most similar word otherwise.
 std::string chosen(const char* name, const std::string& text, const std::vector<std::string>& words) {
   if (std::ranges::find(words, text) != words.end()) return text;
   throw Error(ExitCode::usage, "{}: expected {}, got {}{}", name, fmt::join(words, ", "), text,

@@ -1,4 +1,4 @@
-// Commands that make many runs.
+// Commands that start many runs.
 #include "cli/option_groups.hpp"
 #include "cli/parser.hpp"
 #include "core/error.hpp"
@@ -10,7 +10,7 @@ constexpr std::array kFarmActions{Choice<FarmOptions::Action>{"submit", FarmOpti
                                   Choice<FarmOptions::Action>{"status", FarmOptions::Action::status},
                                   Choice<FarmOptions::Action>{"cancel", FarmOptions::Action::cancel}};
 
-/// Which runs there are, and what each is told. `see_frames` may be null.
+/// Adds the options that choose the runs and those that are passed on to them. `frames` may be null.
 void add_runs(CLI::App& command, SweepOptions& sweep, FrameSelection* frames) {
   command
       .add_option_function<std::vector<std::string>>(

@@ -1,4 +1,4 @@
-// Commands beside films: checks, measurements, comparison, exports.
+// Commands that make no films: checks, measurements, comparison, exports.
 #include "cli/option_groups.hpp"
 #include "cli/parser.hpp"
 #include "core/error.hpp"
@@ -13,7 +13,7 @@ constexpr std::array kBenches{Choice<BenchOptions::Kind>{"stability", BenchOptio
 constexpr std::array kIntegrators{Choice<scene::Integrator>{"implicit_euler", scene::Integrator::implicit_euler},
                                   Choice<scene::Integrator>{"implicit_midpoint", scene::Integrator::implicit_midpoint},
                                   Choice<scene::Integrator>{"bdf2", scene::Integrator::bdf2}};
-constexpr int kMostStarts = 100;
+constexpr int kMaxStarts = 100;
 constexpr std::array kFormats{Choice<exporter::Format>{"ply", exporter::Format::ply},
                               Choice<exporter::Format>{"obj", exporter::Format::obj},
                               Choice<exporter::Format>{"pc2", exporter::Format::pc2},
@@ -22,7 +22,7 @@ constexpr std::array kFormats{Choice<exporter::Format>{"ply", exporter::Format::
                               Choice<exporter::Format>{"usdz", exporter::Format::usdz},
                               Choice<exporter::Format>{"blender", exporter::Format::blender}};
 
-// `none`, or a list.
+// `none` gives an empty list; otherwise parses a list.
 std::vector<double> parse_values(const char* option, const std::string& text,
                                  double (*parse)(const char*, const std::string&)) {
   return text == "none" ? std::vector<double>() : parse_list<double>(option, text, parse);
@@ -110,7 +110,7 @@ void Parser::add_bench() {
           [this](const std::string& text) { bench.plan.meshes = parse_values("--meshes", text, parse_factor); });
   only_of({Kind::accuracy}, "--starts", "N",
           "Of accuracy: runs of each setting, their starts moved by 1 µm from one to the next [1; with contact 3]",
-          [this](const std::string& text) { bench.plan.starts = parse_integer("--starts", text, 1, kMostStarts); });
+          [this](const std::string& text) { bench.plan.starts = parse_integer("--starts", text, 1, kMaxStarts); });
   of_speed("--sizes", "F,F,...", "Of speed: particles along each side, times those of the scene [0.5,1,2,4]",
            [this](const std::string& text) { bench.sizes = parse_list<double>("--sizes", text, parse_factor); });
   of_speed("--threads", "N,N,...", "Of speed: numbers of threads [1 and all cores]", [this](const std::string& text) {

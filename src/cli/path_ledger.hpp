@@ -1,4 +1,4 @@
-// No file is ever lost: the one place that knows what a command reads and writes.
+// Prevents the loss of files: registers everything that a command reads and writes.
 #pragma once
 
 #include <filesystem>
@@ -11,45 +11,45 @@
 
 namespace weft::cli {
 
-/// All paths of one command, told before any work is done; those that are read first. Through links, hard links and
-/// `..`, no output may be an input, another output, or inside of a file or folder that is either: Error(usage).
+/// All paths of one command, registered before any work; inputs first. An output must not be an input, another output,
+/// or inside of either, also through links, hard links and `..`: throws Error(usage).
 class PathLedger {
  public:
-  /// A file; `what` it is, for messages: "the scene".
+  /// Registers an input file; `what` names it in messages: "the scene".
   void reads(const std::filesystem::path& file, const std::string& what);
-  /// A folder that is read as a whole, such as a frame cache: nothing else may be put there.
+  /// Registers a folder that is read as a whole, such as a frame cache: no output may be inside.
   void reads_folder(const std::filesystem::path& folder, const std::string& what);
-  /// A folder of which files are taken: others may be put there.
+  /// Registers a folder from which files are taken: outputs may be inside.
   void searches(const std::filesystem::path& folder, const std::string& what);
 
-  /// Files that are written; `place` stands for all of them: the folder or pattern that the user has given.
+  /// Registers output files; `place` names them all in messages: the folder or pattern that the user has given.
   void writes(const std::string& option, const std::filesystem::path& place,
               const std::vector<std::filesystem::path>& files);
   void writes(const std::string& option, const std::filesystem::path& file) { writes(option, file, {file}); }
-  /// A file that loses nothing where it holds the same already.
+  /// Registers an output that may be overwritten if it already has this content.
   void writes_content(const std::string& option, const std::filesystem::path& file, const std::string& content);
-  /// A folder that the command has for itself. Who makes it sees to what is there.
+  /// Registers a folder that the command uses exclusively. The code that creates the folder checks what it contains.
   void fills(const std::string& option, const std::filesystem::path& folder);
 
-  /// Throws Error(output_failed) where one of the files is there already, or a folder of its name. Those that are not
-  /// there are kept if somebody makes them meanwhile. `own`: outputs() of an interrupted run that is gone on with; of
-  /// those are replaced which `is_own`.
+  /// Throws Error(output_failed) if one of the output files, or a folder of its name, exists. From now on, files that
+  /// appear in the meantime are protected too. `own`: outputs() of an interrupted run that is resumed; their existing
+  /// files are replaced if `is_own` accepts them.
   void check_absent(bool overwrite, const std::set<std::string>& own = {},
                     const std::function<bool(const std::filesystem::path&)>& is_own = {}) const;
-  /// Throws Error(output_failed) where the first file of an output cannot be written.
+  /// Throws Error(output_failed) if the first file of an output cannot be written.
   void check_writable() const;
-  /// What the outputs are: option and place.
+  /// Option and place of each output.
   std::set<std::string> outputs() const;
 
  private:
   struct Place {
-    std::string what;       // "the scene, which is read", "what -o writes"
-    bool searched = false;  // may hold outputs
+    std::string what;       // for example "the scene, which is read" or "what -o writes"
+    bool searched = false;  // may contain outputs
   };
   struct Output {
     std::string name;  // option and place
     std::vector<std::filesystem::path> files;
-    std::string content;  // that it may have already
+    std::string content;  // content that an existing file may have
   };
   using FileId = std::pair<unsigned long, unsigned long>;  // device and inode
 
@@ -59,7 +59,7 @@ class PathLedger {
 
   std::map<std::string, Place> places_;  // by resolved path
   std::map<FileId, std::string> inputs_;
-  std::map<std::string, std::string> folders_;  // resolved before: thousands of files share few
+  std::map<std::string, std::string> folders_;  // cache of resolved folders: thousands of files share few folders
   std::vector<Output> outputs_;
 };
 

@@ -6,7 +6,7 @@
 namespace weft::cli {
 namespace {
 
-constexpr int kMinPictureSide = 16, kMaxPictureSide = 8192;  // as render.width and render.height of a scene
+constexpr int kMinPictureSide = 16, kMaxPictureSide = 8192;  // same limits as render.width and render.height of a scene
 
 }  // namespace
 

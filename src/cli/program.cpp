@@ -53,7 +53,7 @@ struct Dispatch {
   ExitCode (*run_other)(const Command&, char**);
 };
 
-// All relative paths start there.
+// Throws if the working folder is gone, since relative paths start there.
 void check_working_folder() {
   std::error_code error;
   if (std::filesystem::current_path(error).empty())
@@ -72,11 +72,11 @@ ExitCode become_tools(const Command& /*command*/, char** argv) {
 
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {
   try {
-    // A closed pipe or a file past its size limit is an error of the write that meets it, not a reason to die with half
-    // a file.
+    // A closed pipe or a file beyond its size limit must be an error of the write, not a signal that kills the process
+    // and leaves half a file.
     ::signal(SIGPIPE, SIG_IGN);
     ::signal(SIGXFSZ, SIG_IGN);
-    // Of an archive the process bears the name of its loader.
+    // A program from an archive is started by its loader, whose name the process would otherwise show.
     if (const Installation own = own_installation(); !own.libraries.empty())
       ::prctl(PR_SET_NAME, own.code.filename().c_str());
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);

@@ -5,14 +5,14 @@
 
 namespace weft::cli {
 
-/// Runs one command line, as handed to main(), and returns the exit code. Never throws. Commands that make no film go
-/// to `run_other`.
+/// Runs the command line given to main() and returns the exit code. Never throws. Commands that do not make films are
+/// passed to `run_other`.
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept;
 
-/// Runs such a command itself: it is compiled into the program of tools alone.
+/// Runs such a command in this process. Linked only into the tools program.
 ExitCode run_tool(const Command& command, char** argv);
 
-/// Becomes the program of tools, which lies beside this one. Throws Error(usage) where it is not there.
+/// Replaces this process by the tools program beside it. Throws Error(usage) if that does not exist.
 ExitCode become_tools(const Command& command, char** argv);
 
 }  // namespace weft::cli

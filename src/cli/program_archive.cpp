@@ -30,10 +30,10 @@ namespace fs = std::filesystem;
               file.string(), reason);
 }
 
-/// Reads the headers of a POSIX ustar archive as its bytes come by.
+/// Reads the headers of a POSIX ustar archive from a stream of bytes.
 class TarHeaders {
  public:
-  /// Throws std::runtime_error with what is not as it should be.
+  /// Throws std::runtime_error with the defect.
   void add(std::string_view bytes) {
     while (!bytes.empty()) {
       const std::size_t count = std::min(bytes.size(), skip_ > 0 ? skip_ : kBlock - header_.size());
@@ -60,7 +60,7 @@ class TarHeaders {
     return text.substr(0, text.find('\0'));
   }
 
-  // Places and lengths of fields: POSIX.1-2017, pax, "ustar Interchange Format".
+  // Offsets and lengths of fields: POSIX.1-2017, pax, "ustar Interchange Format".
   void read_header() {
     if (header_.find_first_not_of('\0') == std::string::npos) {
       ended_ = true;
@@ -85,15 +85,15 @@ class TarHeaders {
     header_.clear();
   }
 
-  static constexpr std::size_t kLargestFile = std::size_t{1} << 33;  // 11 octal digits have no more
+  static constexpr std::size_t kLargestFile = std::size_t{1} << 33;  // limit of 11 octal digits
 
-  std::string header_;    // what is read of it
-  std::size_t skip_ = 0;  // bytes of a file before the next header
-  bool ended_ = false;    // by a block of zeros
+  std::string header_;    // bytes of the current header read so far
+  std::size_t skip_ = 0;  // remaining bytes of a file before the next header
+  bool ended_ = false;    // a block of zeros was read
   std::set<std::string> names_;
 };
 
-/// Calls `take` with the bytes, part by part. Throws std::runtime_error with what is not as it should be.
+/// Calls `take` with consecutive parts of the decompressed bytes. Throws std::runtime_error with the defect.
 void decompress(const std::string& compressed, const std::function<void(std::string_view)>& take) {
   const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(), ZSTD_freeDStream);
   if (!stream) throw std::bad_alloc();

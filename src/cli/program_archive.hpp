@@ -1,4 +1,4 @@
-// The archive that `ninja bundle` makes, for the machines of a farm on which nothing is installed.
+// The archive that `ninja bundle` makes, for farm machines on which nothing is installed.
 #pragma once
 
 #include <filesystem>
@@ -6,16 +6,16 @@
 
 namespace weft::cli {
 
-/// Such an archive, read and checked as a whole: a stopped download and the archive of another program are found before
-/// any task starts.
+/// A program archive, read and checked completely, so that a truncated download or the archive of another program is
+/// found before any task starts.
 class ProgramArchive {
  public:
   /// Throws Error(asset_unreadable) with what was expected.
   explicit ProgramArchive(const std::filesystem::path& file);
 
-  /// Differs between contents; 16 hexadecimal digits.
+  /// Hash of the content; 16 hexadecimal digits.
   const std::string& fingerprint() const { return fingerprint_; }
-  /// As an uncompressed archive, for which any tar program does. Throws Error(output_failed).
+  /// Writes it as an uncompressed archive, which any tar program reads. Throws Error(output_failed).
   void write_tar(const std::filesystem::path& tar) const;
 
  private:

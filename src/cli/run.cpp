@@ -1,5 +1,4 @@
-// run, simulate and render: each puts a film together from parts, from the options to the exit code. The way of a frame
-// is in film.cpp.
+// Commands run, simulate and render, from options to exit code: each composes a film, which film.cpp makes.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -30,31 +29,31 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = OutputTarget::Kind;
 
-/// What is made and where it goes.
+/// What a command makes and where it goes.
 struct FilmPlan {
   cache::Manifest scene;
   std::string scene_text;     ///< the effective scene
-  FrameRange made;            ///< by the source
-  FrameRange wanted;          ///< of those: drawn, or written as meshes
-  int simulated = 0;          ///< frames that are, those before frame 0 too; 0 where frames are only read
-  bool whole_film = true;     ///< else a part, beside which other commands may put theirs
-  bool finds_camera = false;  ///< from all frames, before the first is drawn
+  FrameRange made;            ///< made by the source
+  FrameRange wanted;          ///< subset of `made` that is drawn or written as meshes
+  int simulated = 0;          ///< number of simulated frames, including those before frame 0; 0 if frames are only read
+  bool whole_film = true;     ///< otherwise other commands may write other frames to the same place
+  bool finds_camera = false;  ///< the camera is found from all frames before the first is drawn
   OutputTarget target;
   render::Settings settings;
   std::vector<std::string> objects;  ///< names
-  Drawn drawn = {};                  ///< by an earlier run that this one goes on with
+  Drawn drawn = {};                  ///< output of an earlier run that is resumed
 
-  bool blurs = false;  ///< whether pictures may want the frame before
+  bool blurs = false;  ///< whether pictures may need the previous frame, for motion blur
 
   bool draws() const { return target.kind != Kind::none; }
 
-  /// Also what is not wanted: a camera that is found from all frames shows the same in any range of them.
+  /// Makes all frames, not only wanted ones, so that the found camera does not depend on the range of frames.
   void make_all(const scene::Scene& of) {
     made = {0, of.frame_count(), 1};
     simulated = of.preroll_frames() + made.count();
   }
 
-  /// Beside the output: the checked scene with every default filled in.
+  /// Path of the effective scene (checked, with all defaults), beside the output.
   fs::path effective_scene_file() const {
     const fs::path file = target.file(wanted.begin);
     return file.parent_path() / ((target.kind == Kind::video ? file.stem().string() : scene.scene) + ".effective.toml");
@@ -67,8 +66,8 @@ bool finds_camera(const scene::Scene& scene, const std::string& name) {
   return true;
 }
 
-/// Before the time of the run is spent.
-void tell_odd_size(const FilmPlan& plan, video::Codec codec) {
+/// Warns of odd sizes before time is spent on the run.
+void warn_of_odd_size(const FilmPlan& plan, video::Codec codec) {
   const int width = plan.settings.width, height = plan.settings.height;
   const bool any_size = codec == video::Codec::ffv1 || codec == video::Codec::h264_lossless;
   if (any_size || (width % 2 == 0 && height % 2 == 0)) return;
@@ -78,7 +77,7 @@ void tell_odd_size(const FilmPlan& plan, video::Codec codec) {
                   width, height, width + width % 2, height + height % 2));
 }
 
-/// Where the pictures go, and how they are written. Throws Error(usage) for options that do not go with it.
+/// Sets the target and how it is written. Throws Error(usage) if options do not suit it.
 void take_output(FilmPlan& plan, const RunOptions& options) {
   plan.target = parse_output(options.output, plan.scene.scene);
   plan.settings.layers = plan.target.layered();
@@ -88,7 +87,7 @@ void take_output(FilmPlan& plan, const RunOptions& options) {
     throw Error(ExitCode::usage, "--depth: expected pictures (.png), got {}", plan.target.text);
   if (!video && options.video.any())
     throw Error(ExitCode::usage, "--codec, --crf: expected a video, got {}", plan.target.text);
-  if (video) tell_odd_size(plan, codec_of(plan.target.text, options.video));
+  if (video) warn_of_odd_size(plan, codec_of(plan.target.text, options.video));
 }
 
 FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
@@ -143,7 +142,7 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
   if (!options.log_json.empty() && options.log_json != "-") paths.writes("--log-json", options.log_json);
 }
 
-/// What a longer run has left under the names of this one.
+/// Removes files of a longer run with the same names.
 void remove_stale(const FilmPlan& plan, const RunOptions& options) {
   if (!options.common.overwrite || !plan.whole_film) return;
   const auto is_picture = [&](const fs::path& file, int frame) { return is_picture_of(file, plan.scene.scene, frame); };
@@ -153,21 +152,21 @@ void remove_stale(const FilmPlan& plan, const RunOptions& options) {
   for (const std::string& object : plan.objects) mesh_files(options.meshes, object).remove_others(plan.wanted, is_mesh);
 }
 
-/// What all three commands have from their first moment to their last.
+/// State that all three commands share for their whole duration.
 class Session {
  public:
   explicit Session(const RunOptions& options) : options_(options) { set_thread_count(options.common.threads); }
 
   const std::atomic<bool>& stop() const { return signals_.requested(); }
-  bool error_asked() const { return options_.error || options_.mesh_error; }
+  bool wants_error() const { return options_.error || options_.mesh_error; }
   Progress& progress() { return *progress_; }
 
-  /// After all that could be refused was.
+  /// Call it after all checks that may refuse the command.
   void begin(const FilmPlan& plan);
   void make(const FilmPlan& plan, FilmParts parts);
-  /// Simulates companions of what was made, if that is whole.
+  /// Simulates companions of the run, if that is complete.
   void estimate_error(const scene::Scene& scene, bench::Recorder& recorder);
-  /// Tells it all, and how to go on after an early end.
+  /// Writes all reports, and after an early end how to continue. Returns the exit code.
   ExitCode end(const FilmPlan& plan, const Store* store);
 
  private:
@@ -246,7 +245,7 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
   report_.frames = std::move(result.frames);
   report_.written = result.written;
   report_.gl = result.painter;
-  // A video that could not be finished holds nothing; pictures are whole one by one.
+  // An unfinished video holds no frames; pictures are complete one by one.
   if (plan.target.kind == Kind::video && !result.finished_output) {
     report_.written = 0;
     for (FrameRecord& record : report_.frames) record.written = false;
@@ -257,7 +256,7 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
   }
   if (result.failure) {
     Failure failure = describe_failure(result.failure);
-    // What is only read and drawn fails by what was read.
+    // If frames are only read, a failure in drawing them means that the cache is broken.
     if (report_.replayed && failure.code == ExitCode::internal)
       failure = {ExitCode::asset_unreadable,
                  fmt::format("{}: broken: {}", options_.common.scene.string(), failure.text)};
@@ -273,7 +272,7 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
 
 void Session::end_early(const FilmPlan& plan, const Store* store) {
   std::error_code ignored;
-  // Somebody may have removed what was written.
+  // The output may have been removed in the meantime.
   const fs::path place =
       fs::absolute(plan.draws() ? plan.target.file(plan.wanted.begin) : fs::path(report_.output), ignored);
   const int written = plan.draws() ? report_.written : static_cast<int>(report_.frames.size());
@@ -282,13 +281,13 @@ void Session::end_early(const FilmPlan& plan, const Store* store) {
     report_.message += fmt::format("; {} frame{} kept in {}", kept, kept == 1 ? " is" : "s are", report_.output);
   else
     report_.message += written > 0 ? "; no frame is kept" : "; no frame was written";
-  // A simulation that cannot go on will not be able to again.
+  // A failed simulation would fail again.
   if (store != nullptr && store->can_resume() && report_.exit_code != ExitCode::simulation_failed &&
       fs::exists(store->folder(), ignored))
     report_.message += "; the same command with --resume goes on from there";
 }
 
-// Side files first: what they cannot take must show in the exit code. The message comes last, where it is seen.
+// Side files come first, as their failures affect the exit code. The message comes last, where it is visible.
 ExitCode Session::end(const FilmPlan& plan, const Store* store) {
   if (report_.exit_code != ExitCode::ok) end_early(plan, store);
   if (store != nullptr) {
@@ -332,15 +331,15 @@ void Session::try_side_file(const Write& write) {
   }
 }
 
-// Beside the output, hidden: `output/.falling_band.weft-cache`. Pictures have a folder, and one run at a time for each
-// scene in it.
+// A hidden folder beside the output: `output/.falling_band.weft-cache`. For pictures it is named after the scene, so
+// that a folder of pictures allows one run per scene at a time.
 fs::path working_cache(const OutputTarget& target, const std::string& scene) {
   const fs::path file = target.file(0);
   const std::string name = target.kind == Kind::video ? file.stem().string() : scene;
   return file.parent_path() / ("." + name + ".weft-cache");
 }
 
-/// Simulates into `store`, which may have the first frames already.
+/// Simulates into `store`, which may already have the first frames.
 ExitCode make_from_scene(Session& session, const scene::Scene& scene, const FilmPlan& plan, const PathLedger& paths,
                          Store& store) {
   if (!store.resumes()) store.clear();
@@ -350,7 +349,7 @@ ExitCode make_from_scene(Session& session, const scene::Scene& scene, const Film
   parts.open_source = [&] { return std::make_unique<SceneSource>(scene, store, session.stop(), session.progress()); };
   parts.store = &store;
   std::optional<bench::Recorder> recorder;
-  if (session.error_asked())
+  if (session.wants_error())
     parts.look = [&](const MadeFrame& made) {
       if (recorder)
         recorder->see(made.snapshot, made.report);
@@ -364,7 +363,7 @@ ExitCode make_from_scene(Session& session, const scene::Scene& scene, const Film
 
 }  // namespace
 
-// Simulates, draws and writes side by side. What is simulated is kept until the output is whole.
+// Simulates, draws and writes concurrently. Simulated frames are kept until the output is complete.
 ExitCode run(const RunOptions& options) {
   Session session(options);
   const scene::Scene scene = load_scene(options.common);
@@ -379,13 +378,13 @@ ExitCode run(const RunOptions& options) {
   const bool overwrite = options.common.overwrite;
   if (options.resume && !overwrite && !cache::is_cache(cache) &&
       is_whole(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects)) {
-    if (fs::exists(cache)) cache::Lock(cache).remove();  // killed while it did this
+    if (fs::exists(cache)) cache::Lock(cache).remove();  // an earlier run was killed during removal
     log::info(fmt::format("note: {} is whole already: frames {}", plan.target.text, plan.wanted.text()));
     return ExitCode::ok;
   }
   if (!options.resume) paths.check_absent(overwrite);
   paths.check_writable();
-  // Pictures whose camera is found are drawn from there.
+  // If the camera is found, pictures are drawn from the store, so it must not fail.
   Store store(cache, plan.finds_camera ? Store::Need::required : Store::Need::helpful, plan.scene, plan.scene_text);
   if (options.resume) {
     store.find_start();
@@ -401,7 +400,7 @@ ExitCode run(const RunOptions& options) {
   return code;
 }
 
-// Into a frame cache, and meshes where they are asked for.
+// Simulates into a frame cache, and writes meshes if requested.
 ExitCode simulate(const SimulateOptions& options) {
   Session session(options);
   const scene::Scene scene = load_scene(options.common);
@@ -426,7 +425,7 @@ ExitCode simulate(const SimulateOptions& options) {
   return make_from_scene(session, scene, plan, paths, store);
 }
 
-// Draws what a cache holds; several processes may, each its own frames.
+// Draws the frames of a cache. Several processes may draw different frames at the same time.
 ExitCode render(const RenderOptions& options) {
   Session session(options);
   const cache::Reader reader(options.common.scene);

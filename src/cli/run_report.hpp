@@ -1,4 +1,4 @@
-// Everything a run found out about itself, for the statistics file and for the summary.
+// All results of a run, for the statistics file and the summary.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace weft::cli {
 
-/// What became of one frame.
+/// The outcome of one frame.
 struct FrameRecord {
   simulation::FrameReport report;
   bool written = false;  ///< drawn and written; false outside the wanted frames or after a failure
   StageTime render, encode, meshes;
 };
 
-/// Of all cloths.
+/// Sum over all cloths.
 std::size_t count_particles(const std::vector<simulation::ObjectInfo>& objects);
 
 struct RunReport {
@@ -33,28 +33,28 @@ struct RunReport {
   double cloth_size = 0;  ///< longest side of the box around the largest cloth, in the first frame [m]; 0: no cloth
   int threads = 0;
   std::string gl;
-  int width = 0, height = 0;  ///< pixels; 0 where nothing is drawn
+  int width = 0, height = 0;  ///< [pixels]; 0 if nothing is drawn
   double fps = 0;
   std::string output;               ///< as the user named it
   std::uintmax_t output_bytes = 0;  ///< of a video; 0 for pictures or none
-  bool replayed = false;            ///< frames were read, not simulated
+  bool replayed = false;            ///< frames were read from a cache, not simulated
   FrameRange wanted;
-  std::vector<FrameRecord> frames;  ///< those simulated or read
+  std::vector<FrameRecord> frames;  ///< simulated or read frames
   int written = 0;
-  StageTime cache;                 ///< keeping frames and states
-  std::uintmax_t cache_bytes = 0;  ///< written to it
+  StageTime cache;                 ///< storing frames and states
+  std::uintmax_t cache_bytes = 0;  ///< written to the cache
   StageTime setup;                 ///< reading the scene and building the simulation
   double wall_s = 0, cpu_s = 0;    ///< of the whole process, all threads
   std::int64_t peak_memory = 0;    ///< [bytes]
   std::vector<std::string> warnings;
-  std::vector<std::string> notes;  ///< what was done and is not wrong, such as skin moved for cloth
+  std::vector<std::string> notes;  ///< remarks that are not problems, such as skin moved to make space for cloth
   ExitCode exit_code = ExitCode::ok;
-  std::string message;                        ///< why it ended early; empty if it did not
-  std::optional<bench::ErrorEstimate> error;  ///< where it was asked for
+  std::string message;                        ///< why the run ended early; empty if it did not
+  std::optional<bench::ErrorEstimate> error;  ///< if requested
 };
 
 struct StageTotals {
-  StageTime simulate, collide, forces, preconditioner, linear;  ///< the others are parts of simulate
+  StageTime simulate, collide, forces, preconditioner, linear;  ///< all but the first are parts of `simulate`
   StageTime render, encode, meshes;
 };
 
@@ -62,9 +62,9 @@ StageTotals total_times(const std::vector<FrameRecord>& frames);
 
 struct StepTotals {
   long long accepted = 0, rejected = 0;
-  long long inexact = 0;      ///< of the accepted ones, with an error above the tolerance
+  long long inexact = 0;      ///< of the accepted ones, those with an error above the tolerance
   double error_estimate = 0;  ///< of the time steps [m]
-  double solver_error = 0;    ///< of what the solver left [m]
+  double solver_error = 0;    ///< residual error of the solver [m]
 };
 
 StepTotals total_steps(const std::vector<FrameRecord>& frames);

@@ -1,4 +1,4 @@
-// What differs between two scenes.
+// Differences between two scenes.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@ namespace weft::cli {
 
 using KeyedValues = std::map<std::string, std::string>;  ///< by key, as text
 
-/// "wind: [8, 2, 0] -> [8, 3, 0]" for each key that differs, in their order; what one of them lacks is "none".
+/// "wind: [8, 2, 0] -> [8, 3, 0]" for each key that differs, in key order; a missing value is "none".
 std::vector<std::string> list_changes(const KeyedValues& before, const KeyedValues& after);
 
-/// The same of two effective scenes, as TOML. Entries of lists go by name, as in --set. The files are for messages.
-/// Throws Error(asset_unreadable) for what is not TOML.
+/// The differences of two effective scenes, given as TOML. List entries are addressed by name, as in --set. The file
+/// names are for messages. Throws Error(asset_unreadable) if a text is not TOML.
 std::vector<std::string> scene_changes(const std::string& before, const std::filesystem::path& before_file,
                                        const std::string& after, const std::filesystem::path& after_file);
 

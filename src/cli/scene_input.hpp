@@ -1,4 +1,4 @@
-// From the scene named on the command line to a checked Scene.
+// Reading the scene of the command line as a checked Scene.
 #pragma once
 
 #include <string>
@@ -13,25 +13,25 @@
 
 namespace weft::cli {
 
-/// Reads the scene with the changes of the command line. Throws Error(scene_invalid) with all mistakes, one a line, and
-/// Error(usage) for a camera that the scene does not have.
+/// Reads the scene with the changes of the command line. Throws Error(scene_invalid) with all mistakes, one per line,
+/// and Error(usage) for a camera that the scene does not have.
 scene::Scene load_scene(const SceneOptions& options);
 
-/// The scene's own file and all that it names.
+/// Registers the scene file and all files that it names.
 void add_inputs(PathLedger& paths, const scene::Scene& scene);
 
-/// The mistakes of a scene, one a line, without a line feed at the end.
+/// The mistakes of a scene, one per line, without a line feed at the end.
 std::string mistakes_text(const scene::LoadResult& loaded);
 
-/// Throws Error(usage) with the nearest name where `camera` is none of `names`.
+/// Throws Error(usage) with the most similar name if `camera` is not in `names`.
 void check_camera(const std::vector<std::string>& names, const std::string& camera);
 
-/// `size` and `camera` hold where the options say nothing.
+/// `size` and `camera` apply if the options do not set them.
 render::Settings render_settings(const PictureSize& size, const std::string& camera, const SceneOptions& options);
 render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options);
 
-/// What a frame cache of the scene says of itself; the objects are not known yet. Its pictures are drawn with
-/// `settings` where `weft render` is told nothing else.
+/// The manifest of a frame cache of the scene, without its objects. `settings` are the defaults with which `weft
+/// render` draws the cache.
 cache::Manifest manifest_of(const scene::Scene& scene, const render::Settings& settings);
 
 /// "1 cloth, 2 obstacles, 2091 particles, 126 frames at 25 fps"; `particles`: of all cloths.

@@ -15,16 +15,16 @@
 namespace weft::cli {
 namespace {
 
-constexpr int kPictureWidth = 400;  // pixels: four beside each other fill a screen
+constexpr int kPictureWidth = 400;  // [pixels]; four side by side fill a screen
 constexpr int kColumns = 4;
 
-/// Pictures as wide as that, in the shape of the scene's own.
+/// The default size of a small picture, with the aspect ratio of the scene.
 PictureSize small_size(const render::Settings& settings) {
   const double height = static_cast<double>(kPictureWidth) * settings.height / settings.width;
   return {kPictureWidth, std::max(1, static_cast<int>(std::lround(height)))};
 }
 
-/// `count` of the frames, the first and the last among them, the others at equal distances as far as frames allow.
+/// Selects `count` frames as evenly as possible, including the first and the last.
 std::vector<int> evenly_spaced(const std::vector<int>& frames, int count) {
   const auto all = static_cast<int>(frames.size());
   if (count >= all) return frames;

@@ -18,14 +18,14 @@ constexpr long long kRepeatWindow = 1'000'000'000;  // [ns]
 
 std::atomic<bool> g_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
-std::string_view g_promise;  // set before any handler is
+std::string_view g_promise;  // set before any handler is installed
 std::array<struct sigaction, kSignals.size()> g_previous;
 
 void say(std::string_view text) {
-  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // nobody reads it: nothing to be done here
+  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // standard error is closed: nothing can be done
 }
 
-// Only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.
+// Makes only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.
 void on_signal(int) {
   const long long now = monotonic_ns();
   long long first = 0;
@@ -49,7 +49,7 @@ StopSignals::StopSignals(std::string_view promise) {
   stop_requested_at = 0;
   struct sigaction action {};
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART;  // system calls of other threads go on as if nothing had happened
+  action.sa_flags = SA_RESTART;  // interrupted system calls are restarted
   sigemptyset(&action.sa_mask);
   for (const int signal : kSignals) sigaddset(&action.sa_mask, signal);
   for (std::size_t i = 0; i < kSignals.size(); ++i) {

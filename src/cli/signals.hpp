@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM.
+// Orderly end on Ctrl-C and SIGTERM.
 #pragma once
 
 #include <atomic>
@@ -6,20 +6,20 @@
 
 namespace weft::cli {
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP only ask for an orderly end, which `requested()` tells; a simulation step
-/// that takes longer than kStopGrace from then on throws Error(interrupted). A second signal
-/// removes temporary files and quits at once with exit code 75; repeats within a second count as one, since tools such
-/// as timeout(1) and terminals send a signal to the process and again to its group. Signals that the parent chose to
-/// ignore (nohup, background jobs) stay ignored. One object at a time.
+/// While an object lives, SIGINT, SIGTERM and SIGHUP only set `requested()`. A simulation step that takes longer than
+/// kStopGrace after that throws Error(interrupted). A second signal removes temporary files and exits at once with code
+/// 75. Signals within a second count as one, since terminals and tools such as timeout(1) signal both the process and
+/// its group. Signals that the parent process ignores (nohup, background jobs) stay ignored. Only one object may exist
+/// at a time.
 class StopSignals {
  public:
-  /// `promise`: what is said to whoever asks; a literal.
+  /// `promise`: what is printed at the first signal; must be a string literal.
   explicit StopSignals(std::string_view promise = "finishing the current frame");
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// True from the first signal on. Safe from all threads.
+  /// True from the first signal on. Thread-safe.
   const std::atomic<bool>& requested() const;
 };
 

@@ -20,7 +20,7 @@ namespace weft::cli {
 namespace {
 
 bool shows_single_color(const image::Image& image) {
-  // Equal to itself shifted by one pixel: every pixel equals its neighbour.
+  // If the pixels equal those shifted by one, all pixels are equal.
   return image.rgb.size() > 3 && std::equal(image.rgb.begin() + 3, image.rgb.end(), image.rgb.begin());
 }
 
@@ -52,7 +52,7 @@ class GlPainter : public FramePainter {
   bool deep_ = false, warned_ = false;
 };
 
-// What the figures of the layer id.object stand for.
+// Adds the names of the objects for the numbers in the layer id.object.
 Metadata name_objects(Metadata metadata, const frame::FrameSnapshot& snapshot) {
   int number = render::kFirstSurface;
   for (const auto& surface : snapshot.surfaces)
@@ -89,7 +89,7 @@ class OutputWriter : public FrameWriter {
     video::Settings video;
     video.width = settings_.width;
     video.height = settings_.height;
-    // Every STEP-th frame: fewer pictures a second, so that the motion keeps its true speed.
+    // Every STEP-th frame: a lower frame rate keeps the speed of the motion.
     video.fps = settings_.fps / settings_.frames.step;
     video.codec = settings_.codec;
     video.crf = settings_.crf.value_or(video.crf);

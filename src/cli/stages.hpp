@@ -1,4 +1,4 @@
-// The stages of the pipeline as they are in a real run.
+// The stages of the pipeline in a real run.
 #pragma once
 
 #include <filesystem>
@@ -18,26 +18,26 @@
 
 namespace weft::cli {
 
-/// What is drawn of a frame.
+/// A drawn frame.
 struct Picture {
   image::Image image;
-  image::Layers layers = {};  ///< where they are asked for
-  image::Image16 deep = {};   ///< where it is asked for
+  image::Layers layers = {};  ///< if requested
+  image::Image16 deep = {};   ///< if requested
 };
 
 /// Draws frames.
 class FramePainter {
  public:
   virtual ~FramePainter() = default;
-  /// Takes cameras that were found; without them, what is not placed is found from the first frame that is drawn.
+  /// Sets the camera path. Without it, cameras that the scene does not place are found from the first drawn frame.
   virtual void look_through(render::CameraPath) {}
-  /// `before`: the frame drawn before, where motion is asked for and there is one.
+  /// `before`: the previous frame if motion blur is on and there is one; else null.
   virtual Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) = 0;
   virtual StageTime last_time() const = 0;
   virtual std::string description() const = 0;
 };
 
-/// Takes pictures. Without finish() it must leave no half file.
+/// Writes pictures. Without finish() it must leave no incomplete file.
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
@@ -45,22 +45,21 @@ class FrameWriter {
   virtual void finish() = 0;
 };
 
-/// Draws with OpenGL; warns of the first picture that shows a single colour.
+/// Draws with OpenGL; warns at the first picture that shows a single colour.
 std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings);
 
 using Metadata = std::map<std::string, std::string>;
 
-/// What video and stills say about themselves: scene, scene_hash, weft_version, gl, fps and scene_frames (of the
-/// scene), camera, quality.
+/// Metadata of video and stills: scene, scene_hash, weft_version, gl, fps, scene_frames, camera, quality and others.
 Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl);
 
-/// Adds what holds for one still: frame and time_s.
+/// Adds the metadata of one still: frame and time_s.
 Metadata describe_still(Metadata metadata, int frame, double time_s);
 
 struct WriterSettings {
   OutputTarget target;
   FrameRange frames;
-  int width = 0, height = 0;  ///< pixels
+  int width = 0, height = 0;  ///< [pixels]
   double fps = 0;             ///< of the scene
   int depth = 8;              ///< bits a channel of PNG pictures
   video::Codec codec = video::Codec::automatic;
@@ -68,7 +67,7 @@ struct WriterSettings {
   Metadata metadata = {};
 };
 
-/// Writes the video or the pictures.
+/// Returns the writer of a video or of pictures.
 std::unique_ptr<FrameWriter> make_writer(const WriterSettings& settings);
 
 /// `DIR/<object>_<frame:05>.ply`.

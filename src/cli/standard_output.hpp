@@ -1,4 +1,4 @@
-// What commands tell on standard output.
+// Text output of commands.
 #pragma once
 
 #include <fmt/format.h>
@@ -7,8 +7,8 @@
 
 namespace weft::cli {
 
-/// Writes all of it at once. Where the reader has gone, as in `weft man | head`, nobody wants the rest, and nothing is
-/// said. Throws Error(output_failed) for what else keeps it from being written.
+/// Writes the text at once. If the reader has closed its end, as in `weft man | head`, it returns silently. Throws
+/// Error(output_failed) for any other failure.
 void write_standard_output(std::string_view text);
 
 template <class... Args>

@@ -18,24 +18,24 @@ namespace {
 
 using simulation::MeetingPlace;
 
-// Places that get a picture of their own.
+// Maximum number of close-ups.
 constexpr std::size_t kCloseUps = 5;
 constexpr double kCloseUpAngle = 30;  // vertical field of view [degrees]
-// Of a close-up: least height of what it shows [m], and that height in sizes of the place.
-constexpr double kLeastHeight = 0.1, kHeightOfSize = 1.6;
-// What another side must show more to be taken instead of one nearer to the front.
-constexpr double kWorthATurn = 1.25;
-constexpr double kMarkWidth = 1.5 / 360;  // of an outline, in heights of the picture
+// Height of a close-up [m]: minimum, and ratio to the size of the place.
+constexpr double kMinCloseUpHeight = 0.1, kCloseUpHeightRatio = 1.6;
+// A later candidate view must show more by this factor to replace an earlier one.
+constexpr double kMinVisibilityGain = 1.25;
+constexpr double kMarkWidth = 1.5 / 360;  // outline width over picture height
 constexpr std::array<std::uint8_t, 3> kMark{225, 20, 40};
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   return snapshot.stage ? snapshot.stage->up : Vec3::UnitZ();
 }
 
-// Share of the picture in which the triangles of a place are seen: as if they alone were of cloth. First in the list
-// they are in front of themselves.
-double share_seen(const frame::FrameSnapshot& snapshot, const MeetingPlace& place, const frame::Camera& camera,
-                  double aspect) {
+// Fraction of the picture in which the triangles of a place are visible. They are rendered as the only cloth, first in
+// the list, so that they win against the coinciding original surface.
+double visible_fraction(const frame::FrameSnapshot& snapshot, const MeetingPlace& place, const frame::Camera& camera,
+                        double aspect) {
   auto marks = std::make_shared<frame::Surface>();
   std::vector<Vec3> corners;
   for (const auto& triangle : place.triangles) {
@@ -48,7 +48,7 @@ double share_seen(const frame::FrameSnapshot& snapshot, const MeetingPlace& plac
   for (auto& surface : marked.surfaces) {
     auto copy = std::make_shared<frame::Surface>(*surface);
     copy->kind = frame::ObjectKind::obstacle;
-    copy->infinite_floor = false;  // hides what is below it
+    copy->infinite_floor = false;  // would hide what is below it
     surface = copy;
   }
   marked.surfaces.insert(marked.surfaces.begin(), std::move(marks));
@@ -56,13 +56,13 @@ double share_seen(const frame::FrameSnapshot& snapshot, const MeetingPlace& plac
   return render::saliency_of(marked, nullptr, 0, "", aspect).coverage;
 }
 
-// From the one of 26 sides that shows most of a place; of equals from the front and from above.
-frame::Camera look_at(const frame::FrameSnapshot& snapshot, const MeetingPlace& place, double aspect) {
+// Best of 32 camera directions for a place; ties go to earlier ones, which are from the front and from above.
+frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const MeetingPlace& place, double aspect) {
   const Vec3 up = up_of(snapshot), right = Vec3::UnitX(), front = right.cross(up);
-  const double height = std::max(kLeastHeight, kHeightOfSize * place.size);
+  const double height = std::max(kMinCloseUpHeight, kCloseUpHeightRatio * place.size);
   const double distance = 0.5 * height / std::tan(kCloseUpAngle * std::numbers::pi / 360) + 0.5 * place.size;
   frame::Camera best;
-  double most = -1;
+  double best_fraction = -1;
   for (const double rise : {0.5, 1.0, 0.0, -0.5}) {
     for (int turn = 0; turn < 8; ++turn) {
       const double angle = turn * std::numbers::pi / 4;
@@ -71,9 +71,9 @@ frame::Camera look_at(const frame::FrameSnapshot& snapshot, const MeetingPlace& 
       camera.position = place.centre + distance * (std::cos(rise) * level + std::sin(rise) * up);
       camera.target = place.centre;
       camera.field_of_view = kCloseUpAngle;
-      const double seen = share_seen(snapshot, place, camera, aspect);
-      if (seen > kWorthATurn * most) {
-        most = seen;
+      const double seen = visible_fraction(snapshot, place, camera, aspect);
+      if (seen > kMinVisibilityGain * best_fraction) {
+        best_fraction = seen;
         best = camera;
       }
     }
@@ -82,7 +82,7 @@ frame::Camera look_at(const frame::FrameSnapshot& snapshot, const MeetingPlace& 
 }
 
 void draw_line(image::Image& image, const Vec2& from, const Vec2& to, int width) {
-  // No mark is longer than the picture, unless it leaves it.
+  // A longer line leaves the picture far beyond its borders, so it is skipped.
   const double length = (to - from).norm();
   if (!(length < 4.0 * (image.width + image.height))) return;
   const int steps = std::max(1, static_cast<int>(std::ceil(length)));
@@ -135,7 +135,8 @@ std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, 
   add(render::camera_of(snapshot, settings.camera, aspect), "the start", "");
   for (std::size_t p = 0; p < std::min(start.places.size(), kCloseUps); ++p) {
     const MeetingPlace& place = start.places[p];
-    add(look_at(snapshot, place, aspect), place.a == place.b ? place.a + " itself" : place.a + " and " + place.b,
+    add(find_close_up_camera(snapshot, place, aspect),
+        place.a == place.b ? place.a + " itself" : place.a + " and " + place.b,
         fmt::format("{} pair{}, {:.3g} m across", place.pairs, place.pairs == 1 ? "" : "s", place.size));
   }
   return pictures;

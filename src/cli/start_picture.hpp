@@ -1,4 +1,4 @@
-// The start of a scene, with what touches or crosses marked, from sides that show it.
+// Pictures of the start of a scene, in which touching or crossing triangles are marked.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace weft::cli {
 
-/// The whole as the scene's camera sees it, or framed automatically, and the places of most pairs from near; triangles
-/// that meet are outlined in red, also where something hides them.
-/// The painter draws what its snapshots' first camera sees.
+/// Draws the whole scene (from its camera, or framed automatically) and close-ups of the places with the most pairs.
+/// Touching or crossing triangles are outlined in red, also if hidden. The painter must use the first camera of each
+/// snapshot.
 std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, const render::Settings& settings,
                                             FramePainter& painter);
 

@@ -27,7 +27,7 @@ const char* kind_name(frame::ObjectKind kind) {
   return "unknown";
 }
 
-// JSON knows neither infinity nor NaN.
+// JSON has neither infinity nor NaN.
 Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }

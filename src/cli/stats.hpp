@@ -8,10 +8,10 @@
 
 namespace weft::cli {
 
-/// One frame: times in ms, counts, distances and energies in SI units. An infinite distance becomes null.
+/// One frame: times in ms; counts, distances and energies in SI units. An infinite distance becomes null.
 nlohmann::ordered_json frame_json(const FrameRecord& record);
 
-/// All of --stats.
+/// The content of the --stats file.
 nlohmann::ordered_json stats_json(const RunReport& report);
 
 }  // namespace weft::cli

@@ -12,7 +12,7 @@
 namespace weft::cli {
 namespace {
 
-/// Simulates what it is asked for: each frame needs all those before it.
+/// Simulates the requested frames; each frame needs all earlier ones.
 class SceneStills : public Stills {
  public:
   explicit SceneStills(const SceneOptions& options) : input_(load_scene(options)) {

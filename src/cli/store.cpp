@@ -13,9 +13,9 @@
 namespace weft::cli {
 namespace {
 
-// Of the time in which it would be simulated again. States take some times the place of a frame, and most are replaced
-// unused.
-constexpr double kSaveShare = 0.01;
+// Limit on the time of a save, relative to the simulation time since the last save. A state is several times as large
+// as a frame, and most states are replaced unused.
+constexpr double kMaxSaveTimeRatio = 0.01;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ Store::~Store() {
   try {
     if (lock_.empty()) lock_.remove();
   } catch (const Error&) {
-    return;  // a folder that cannot be looked at stays
+    return;  // a folder that cannot be accessed is kept
   }
 }
 
@@ -66,7 +66,7 @@ void Store::find_start() {
   }
 }
 
-// Frames that are there keep the looks of their scene until they pass by and are dressed anew.
+// Stored frames keep the looks of their former scene until they are read and get the current looks.
 void Store::note_former_looks(const cache::Manifest& found) {
   std::set<std::uint64_t> former(found.former_hashes.begin(), found.former_hashes.end());
   former.insert(found.scene_hash);
@@ -98,7 +98,7 @@ void Store::note_outputs(std::set<std::string> outputs) const {
   }
 }
 
-// What is there stays: the output may fail for the same reason, and then nothing but this is left of the work.
+// Keeps stored frames: if the output fails for the same reason, they are all that is left.
 void Store::give_up(const std::string& reason) {
   log::warn(reason + "; the run goes on, but from here on it would have to be simulated again if it is interrupted");
   writer_.reset();
@@ -113,7 +113,7 @@ void Store::attempt(const Write& write) {
   try {
     write();
   } catch (const Error& error) {
-    // Whoever has removed the folder of the output does not want the rest of the run.
+    // If the user has removed the folder of the output, the run must not continue.
     std::error_code ignored;
     if (need_ == Need::required || !std::filesystem::exists(folder().parent_path(), ignored)) throw;
     give_up(error.what());
@@ -159,7 +159,7 @@ void Store::keep_last_state() {
 }
 
 void Store::save_if_cheap(const simulation::Simulation& simulation, int frame) {
-  if (!saved_frame_ || save_seconds_ <= kSaveShare * since_save_.seconds()) save(simulation, frame);
+  if (!saved_frame_ || save_seconds_ <= kMaxSaveTimeRatio * since_save_.seconds()) save(simulation, frame);
 }
 
 void Store::save(const simulation::Simulation& simulation, int frame) {

@@ -1,4 +1,4 @@
-// The frame cache that a run fills while it works, and where a run before it stopped.
+// The frame cache that a run fills while it works; also finds where an earlier run can be resumed.
 #pragma once
 
 #include <filesystem>
@@ -20,57 +20,57 @@ namespace weft::cli {
 struct MadeFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  bool fresh = false;                                  ///< not in the cache yet, or with other looks
-  const simulation::Simulation* simulation = nullptr;  ///< stands at this frame; null where the frame was read
+  bool fresh = false;                                  ///< not yet in the cache, or there with other looks
+  const simulation::Simulation* simulation = nullptr;  ///< its state is that of this frame; null if the frame was read
 };
 
 class Store {
  public:
   enum class Need {
-    required,  ///< what cannot be kept ends the run
-    helpful,   ///< what cannot be kept, or takes the room of the other output, is given up with a warning
+    required,  ///< a storage failure ends the run
+    helpful,   ///< if storing fails or the disk is nearly full, the store is given up with a warning
   };
 
-  /// Nobody else writes to `folder` from now on. Throws Error(output_failed).
+  /// Locks `folder` against other writers. Throws Error(output_failed).
   Store(std::filesystem::path folder, Need need, cache::Manifest manifest, std::string scene_text);
-  /// Leaves no folder where nothing was put in.
+  /// Removes the folder if nothing was written.
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  /// Frames that an earlier run has left.
+  /// Number of frames that an earlier run has left.
   std::size_t leftover_frames() const;
   bool has_leftover() const { return cache::is_cache(lock_.folder()); }
 
-  /// Looks up where the earlier run can be gone on with. What is broken is not used, and said. Throws
-  /// Error(output_failed) where it is one of another scene or by another program.
+  /// Finds the frame from which the earlier run can be resumed. Damaged files are reported and not used. Throws
+  /// Error(output_failed) if the earlier run has another scene or was made by another program.
   void find_start();
-  /// There is something to go on with.
+  /// Whether find_start() found a state to resume from.
   bool resumes() const { return reader_ != nullptr; }
-  /// Takes away what an earlier run has left.
+  /// Removes what an earlier run has left.
   void clear() const { lock_.clear(); }
 
-  /// The outputs of the run that goes on here: what is there of them is its own, and may be replaced when it goes on.
+  /// The outputs of the run that is resumed; their existing files may be replaced.
   std::set<std::string> outputs() const;
-  /// Adds some.
+  /// Adds to outputs().
   void note_outputs(std::set<std::string> outputs) const;
 
-  /// The cache of the earlier run; call resumes() first.
+  /// The cache of the earlier run; only if resumes().
   const cache::Reader& earlier() const { return *reader_; }
-  /// Has it, and all before it, with the looks of now; call resumes() first.
+  /// Whether the cache has this and all earlier frames, with the current looks; only if resumes().
   bool holds(int frame) const;
-  /// Of the last frame that is not simulated again; call resumes() first.
+  /// The state of the last frame that need not be simulated again; only if resumes().
   const cache::SolverState& start() const { return start_; }
 
-  /// Everything from here on is called by one thread, the simulating one.
+  /// The functions from here on must be called by the simulating thread only.
   void open(std::vector<frame::ObjectInfo> objects);
-  /// Keeps what is fresh, and now and then the state of the simulation.
+  /// Stores the frame if it is fresh, and from time to time the state of the simulation.
   void keep(const MadeFrame& frame);
-  /// A frame that was kept, or read from the earlier run, again.
+  /// Reads a frame that was stored in this run or an earlier one.
   frame::SnapshotPtr stored(int frame);
-  /// That of the last frame. An earlier one is there where this one cannot be kept.
+  /// Saves the state of the last frame. If this fails, an earlier state remains.
   void keep_last_state();
-  /// Keeps the state where that has cost little so far for the work that it saves.
+  /// Saves the state if saving has been cheap compared with the simulation time that it protects.
   void save_if_cheap(const simulation::Simulation& simulation, int frame);
   void save(const simulation::Simulation& simulation, int frame);
 
@@ -78,7 +78,7 @@ class Store {
   /// Not while frames are added.
   void remove();
   const std::vector<frame::ObjectInfo>& objects() const { return manifest_.objects; }
-  /// A state is there.
+  /// Whether a state is stored.
   bool can_resume() const { return saved_frame_ || reader_; }
   StageTime time() const { return time_; }
   std::uintmax_t bytes() const { return writer_ ? writer_->bytes_added() : 0; }
@@ -94,14 +94,14 @@ class Store {
   const std::string scene_text_;
   cache::Lock lock_;
   std::unique_ptr<cache::Reader> reader_;      // of the earlier run
-  std::unique_ptr<cache::Reader> now_reader_;  // of this one
+  std::unique_ptr<cache::Reader> now_reader_;  // of this run
   cache::SolverState start_;
   std::unique_ptr<cache::Writer> writer_;
-  std::string state_;  // kept for its memory
+  std::string state_;  // buffer, kept to reuse its memory
   WallTimer since_save_;
   double save_seconds_ = 0;  // of the last save
   std::optional<int> saved_frame_;
-  const simulation::Simulation* simulation_ = nullptr;  // stands at last_
+  const simulation::Simulation* simulation_ = nullptr;  // its state is that of frame last_
   int last_ = 0;
   StageTime time_;
 };

@@ -12,7 +12,7 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-constexpr double kLargeStrain = 0.25;  // woven cloth tears near it
+constexpr double kLargeStrain = 0.25;  // woven cloth tears at about this strain
 
 std::string bytes_text(std::uintmax_t bytes) {
   const auto value = static_cast<double>(bytes);
@@ -41,7 +41,7 @@ Row stage_row(const char* name, const StageTime& time, int frames) {
 
 std::string times_table(const RunReport& report) {
   const StageTotals totals = total_times(report.frames);
-  // Frame 0 is given, not computed.
+  // Frame 0 is the given start, not a computed frame.
   const int simulated = std::max(0, static_cast<int>(report.frames.size()) - 1);
   std::vector<Row> rows{{"", "wall", "CPU", "CPU a frame"},
                         stage_row("set up", report.setup, 0),
@@ -57,7 +57,7 @@ std::string times_table(const RunReport& report) {
   return format_table(rows, "lrrr", 2);
 }
 
-// The frame where `value` is largest, as text "0.0123 (frame 45)".
+// The largest value and its frame, for example "0.0123 (frame 45)".
 template <class Value>
 std::string at_largest(const std::vector<FrameRecord>& frames, const char* format, const Value& value, double scale) {
   const auto largest = std::max_element(
@@ -66,13 +66,13 @@ std::string at_largest(const std::vector<FrameRecord>& frames, const char* forma
          fmt::format(" (frame {})", largest->report.frame);
 }
 
-// Below a picojoule there is only rounding.
+// Energies below a picojoule are rounding errors.
 std::string joule(double energy) {
   return fmt::format("{:.3g} J", std::abs(energy) < 1e-12 ? 0.0 : energy);
 }
 
-// How far positions may be off, by whose doing, and what lessens it. Errors of single frames are no error of the run:
-// they may cancel or grow. So the worst frame is told of, unless companions have measured the run.
+// One sentence: the error of positions, its main source, and how to reduce it. Errors of single frames may cancel or
+// grow, so without companions only the worst frame is reported.
 std::string error_text(const RunReport& report) {
   if (report.error) return error_sentence(*report.error, report.cloth_size);
   const auto of_frame = [](const FrameRecord& record) {

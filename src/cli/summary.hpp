@@ -6,11 +6,11 @@
 
 namespace weft::cli {
 
-/// What a run made and what it took, for people: several lines, without a line feed at the end. Warnings that the
-/// figures give reason for come last.
+/// Result and cost of a run, for people: several lines, without a line feed at the end. Warnings derived from the
+/// figures come last.
 std::string summary(const RunReport& report);
 
-/// Hints at figures that look wrong: strain, rejected steps, surfaces that touch.
+/// Warnings about suspicious figures: strain, rejected steps, touching surfaces.
 std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames);
 
 }  // namespace weft::cli

@@ -1,5 +1,5 @@
-// weft sweep: many runs of one scene. Each is `weft run` in a process of its own, so that what befalls one is nothing
-// to the others, and anybody can do one of them again.
+// weft sweep: many runs of one scene. Each is `weft run` in its own process, so that a failure does not affect the
+// others and each run can be repeated alone.
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -36,7 +36,7 @@ struct Job : SweepJob {
 
   fs::path log() const { return folder / "run.log"; }
 
-  /// By what it has left.
+  /// Exit code of the run, from the files that it has left.
   ExitCode outcome() const {
     if (is_done()) return ExitCode::ok;
     const auto told = static_cast<ExitCode>(value_or(read_json_or_null(stats()), "exit_code", 0));
@@ -95,7 +95,7 @@ class Sweep {
     while (next < jobs_.size() || !running.empty()) {
       if (stop_.requested()) {
         next = jobs_.size();
-        // The terminal tells the whole group; whoever tells this process alone means them as well.
+        // A terminal signals the whole process group; a signal to this process alone must be passed on.
         if (!std::exchange(told, true))
           for (const Job* job : running) ::kill(job->process, SIGTERM);
       }
@@ -114,7 +114,7 @@ class Sweep {
       std::erase_if(running, [&](Job* job) {
         int status = 0;
         if (::waitpid(job->process, &status, WNOHANG) == 0) return false;
-        // Killed from outside, or for want of memory: our own code leaves by exit().
+        // Killed from outside or out of memory: Weft itself ends by exit().
         job->code = WIFEXITED(status) ? static_cast<ExitCode>(WEXITSTATUS(status)) : ExitCode::internal;
         const std::string how = job->code == ExitCode::ok
                                     ? "done"
@@ -156,7 +156,7 @@ class Sweep {
                             results.size()));
       return ExitCode::interrupted;
     }
-    std::vector<std::string> made;  // no sheet where no run has a picture
+    std::vector<std::string> made;  // there is no sheet if no run has a picture
     for (const char* file : {"sheet.png", "table.md", "table.csv", "page/index.html"})
       if (fs::exists(options_.output / file)) made.emplace_back(file);
     log::info(fmt::format("{}: {}", options_.output.string(), fmt::join(made, ", ")));

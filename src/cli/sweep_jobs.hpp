@@ -1,4 +1,4 @@
-// The runs of a sweep with their folders, for all commands that make or watch them.
+// The runs of a sweep and their folders, for all commands that make or watch them.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@
 
 namespace weft::cli {
 
-/// One run, checked: nothing is made yet.
+/// One checked run; nothing is written yet.
 struct SweepJob {
   SweepRun run;
   std::uint64_t scene_hash = 0;
-  std::optional<std::size_t> twin = {};  ///< an earlier run of the same scene, which is not made again
+  std::optional<std::size_t> twin = {};  ///< index of an earlier run of the same scene, which is used instead
   std::filesystem::path folder = {};
   std::string scene = {};  ///< its name
   int frame_count = 1;     ///< of the scene
@@ -27,18 +27,18 @@ struct SweepJob {
   std::filesystem::path stats() const { return folder / (scene + ".json"); }
   /// `key=value` for each --set.
   std::vector<std::string> overrides() const;
-  /// Its video and statistics are there, of this very scene, to its end.
+  /// Whether its video and statistics exist, belong to this scene, and are complete.
   bool is_done() const;
 };
 
-/// Reads all scenes: what is wrong with one ends the sweep at once. Throws Error (usage, scene_invalid,
-/// asset_unreadable), with all mistakes of all scenes. `paths` learns what is read.
+/// Reads all scenes; a mistake in one of them ends the sweep at once. Throws Error (usage, scene_invalid,
+/// asset_unreadable) with all mistakes of all scenes. Registers the files read in `paths`.
 std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths);
 
-/// The folder is new, empty, or one of the same sweep. Throws Error(output_failed).
+/// Throws Error(output_failed) unless the folder is new, empty, or of the same sweep.
 void check_sweep_folder(const SweepOptions& options, PathLedger& paths);
 
-/// Writes what the folder holds: also the mark of a folder that sweeps fill.
+/// Writes the index of the folder, which also marks it as the folder of a sweep.
 void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>& jobs);
 
 }  // namespace weft::cli

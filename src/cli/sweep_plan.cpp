@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostKeys = 200;     // of a run; scenes have fewer that make sense together
-constexpr std::size_t kLongestName = 120;  // bytes; file systems take 255 for a name
+constexpr std::size_t kMaxSweepKeys = 200;  // per run; far more than a scene has
+constexpr std::size_t kMaxNameBytes = 120;  // [bytes]; file systems allow 255 for a name
 
 std::string trimmed(const std::string& text) {
   const auto blank = [](unsigned char c) { return std::isspace(c) != 0; };
@@ -49,7 +49,7 @@ std::vector<std::string> split_values(const std::string& text) {
   return values;
 }
 
-// Spreadsheets begin UTF-8 with a byte order mark, which is no part of the first key. Of UTF-16 the mark is an error.
+// Removes the byte order mark that spreadsheets put before UTF-8. Throws for UTF-16.
 std::string without_byte_order_mark(const fs::path& file, const std::string& text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw Error(ExitCode::asset_unreadable, "{}:1:1: expected UTF-8, got UTF-16; save the table as CSV UTF-8",
@@ -57,7 +57,7 @@ std::string without_byte_order_mark(const fs::path& file, const std::string& tex
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
 
-// Fields of one line; those in quotes may hold commas, and quotes twice (RFC 4180).
+// Fields of one line; quoted fields may contain commas, and doubled quotes (RFC 4180).
 std::vector<std::string> csv_fields(const std::string& line) {
   std::vector<std::string> fields(1);
   bool quoted = false;
@@ -95,12 +95,12 @@ std::vector<Changes> read_csv(const fs::path& file, const std::string& text) {
                   number, keys.size(), fields.size());
     Changes& row = rows.emplace_back();
     for (std::size_t k = 0; k < keys.size(); ++k)
-      if (!fields[k].empty()) row.emplace_back(keys[k], fields[k]);  // else as the scene has it
+      if (!fields[k].empty()) row.emplace_back(keys[k], fields[k]);  // an empty field keeps the value of the scene
   }
   return rows;
 }
 
-// `cloth.flag.size = [1, 1]` is a table in a table.
+// Collects the values of nested tables, such as `cloth.flag.size = [1, 1]`, under dotted keys.
 void flatten(const toml::table& table, const std::string& above, Changes& changes) {
   for (const auto& [key, node] : table) {
     const std::string path = above.empty() ? std::string(key.str()) : above + "." + std::string(key.str());
@@ -110,7 +110,7 @@ void flatten(const toml::table& table, const std::string& above, Changes& change
     }
     std::ostringstream text;
     if (const auto* number = node.as_floating_point())
-      text << fmt::format("{}", number->get());  // in as few digits as tell it
+      text << fmt::format("{}", number->get());  // shortest exact form
     else
       node.visit([&](const auto& value) { text << value; });
     changes.emplace_back(path, text.str());
@@ -133,7 +133,7 @@ std::vector<Changes> read_toml(const fs::path& file, const std::string& text) {
   }
 }
 
-// "a.b.bend" ends in "bend", "b.bend" and itself.
+// The last `parts` parts of a key: "a.b.bend" gives "bend", "b.bend" or itself.
 std::string ending(const std::string& key, std::size_t parts) {
   std::size_t start = key.size();
   for (; parts > 0 && start != std::string::npos; --parts)
@@ -149,7 +149,7 @@ std::string short_name(const std::string& key, const std::set<std::string>& keys
   }
 }
 
-// Without what shells, file systems and patterns of names read in their own way.
+// Removes or replaces characters that shells, file systems and name patterns interpret.
 std::string plain(const std::string& text) {
   std::string name;
   for (const char c : text) {
@@ -164,7 +164,7 @@ std::string plain(const std::string& text) {
 std::string file_name(const Changes& difference) {
   std::string name;
   for (const auto& [key, value] : difference) name += (name.empty() ? "" : "_") + plain(key) + "=" + plain(value);
-  return name.substr(0, kLongestName);
+  return name.substr(0, kMaxNameBytes);
 }
 
 std::vector<Changes> combine(std::vector<Changes> rows, const std::vector<Axis>& axes) {
@@ -207,16 +207,16 @@ std::vector<Changes> parse_list(const fs::path& file, const std::string& raw) {
     throw Error(ExitCode::asset_unreadable, "{}: expected at most {} runs, got {}", file.string(), kMostRuns,
                 rows.size());
   for (const Changes& row : rows)
-    if (row.size() > kMostKeys)
-      throw Error(ExitCode::asset_unreadable, "{}: expected at most {} keys of a run, got {}", file.string(), kMostKeys,
-                  row.size());
+    if (row.size() > kMaxSweepKeys)
+      throw Error(ExitCode::asset_unreadable, "{}: expected at most {} keys of a run, got {}", file.string(),
+                  kMaxSweepKeys, row.size());
   return rows;
 }
 
 std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::vector<Axis>& axes) {
   std::vector<SweepRun> runs;
   std::set<Changes> known;
-  std::map<std::string, std::set<std::string>> values;  // by key; "" where a run leaves it as it is
+  std::map<std::string, std::set<std::string>> values;  // by key; "" if a run keeps the scene's value
   for (Changes& changes : combine(list, axes)) {
     std::set<std::string> keys;
     for (const auto& [key, value] : changes)
@@ -236,7 +236,7 @@ std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::ve
   std::map<std::string, std::string> short_names;
   for (const std::string& key : differing) short_names[key] = short_name(key, differing);
   std::set<std::string> names;
-  std::map<std::string, int> copies;  // of a name, so that many of one name do not ask for each number again
+  std::map<std::string, int> copies;  // number of runs with the same name, so that numbering many copies stays linear
   for (SweepRun& run : runs) {
     for (const auto& [key, value] : run.changes)
       if (differing.contains(key)) run.difference.emplace_back(short_names[key], value);

@@ -1,4 +1,4 @@
-// Which runs a sweep has: combinations of values, rows of a list, or both.
+// The runs of a sweep: combinations of values, rows of a list, or both.
 #pragma once
 
 #include <cstddef>
@@ -10,36 +10,36 @@
 
 namespace weft::cli {
 
-/// Of a sweep; more are a slip: a day of runs of ten seconds.
+/// Limit against mistakes; that many runs of ten seconds take a day.
 inline constexpr std::size_t kMostRuns = 10'000;
 
-/// A key of the scene and the texts of its values, as --set takes them.
+/// A key of the scene and its values as text, as --set takes them.
 struct Axis {
   std::string key;
   std::vector<std::string> values;
 };
 
-/// Reads `key=a,b,c`; commas within brackets, braces and quotes part nothing. Throws Error(usage).
+/// Parses `key=a,b,c`; commas within brackets, braces and quotes do not separate values. Throws Error(usage).
 Axis parse_axis(const std::string& text);
 
-/// Changes of one run: keys and values, in the order in which they were given.
+/// The changes of one run: keys and values in the given order.
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
-/// The rows of a list: CSV with the keys in its first line, or TOML with a table [[run]] for each. Throws
+/// Reads the rows of a list: CSV with the keys in its first line, or TOML with a table [[run]] for each. Throws
 /// Error(asset_unreadable) with the line.
 std::vector<Changes> read_list(const std::filesystem::path& file);
 
-/// The same of the text of a file, which the ending of its name says how to read.
+/// Parses the text of a list; the extension of `file` selects the format.
 std::vector<Changes> parse_list(const std::filesystem::path& file, const std::string& raw);
 
 struct SweepRun {
-  Changes changes;     ///< all of them
-  std::string name;    ///< of its folder: the values of what differs between runs
-  Changes difference;  ///< what differs, by the shortest endings of the keys that tell them apart
+  Changes changes;     ///< all changes
+  std::string name;    ///< of its folder; made of the values that differ between runs
+  Changes difference;  ///< the changes that differ between runs, with the shortest unique suffixes of their keys
 };
 
-/// Each row of the list with each combination of the axes, the last axis changing first. Runs that are asked for twice
-/// are there once. Throws Error(usage) where a key is given twice, or there are more than 10,000 runs.
+/// Combines each row of the list with each combination of the axes; the last axis changes first. Duplicate runs are
+/// removed. Throws Error(usage) if a key is given twice or there are more than kMostRuns runs.
 std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::vector<Axis>& axes);
 
 }  // namespace weft::cli

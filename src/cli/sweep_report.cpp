@@ -16,15 +16,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kPictureWidth = 400;  // pixels
-constexpr int kMostColumns = 8;
+constexpr int kPictureWidth = 400;  // [pixels]
+constexpr int kMaxSheetColumns = 8;
 constexpr std::uint8_t kGrey = 200;
 
 std::string text_of(const Json& value) {
   return value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : "";
 }
 
-// What stands at this place of the statistics; null where nothing does.
+// The value at this path of the statistics; null if there is none.
 Json at(const Json& json, std::initializer_list<const char*> path) {
   const Json* here = &json;
   for (const char* key : path) {
@@ -47,15 +47,15 @@ std::string largest(const Json& stats, const char* key) {
   return most ? fmt::format("{:.4g}", *most) : "";
 }
 
-/// Whether the error may be compared with that of another run; empty without --error.
+/// Whether the error is comparable with that of another run; empty without --error.
 std::string comparable_of(const Json& stats) {
   const Json comparable = at(stats, {"error", "comparable"});
   if (!comparable.is_boolean()) return "";
   return comparable.get<bool>() ? "yes" : "no";
 }
 
-/// Newton iterations, rejected steps, largest strain, energy at the end, error and whether it is comparable; empty
-/// where there is no frame.
+/// Newton iterations, rejected steps, largest strain, energy at the end, error, and whether it is comparable; empty
+/// texts if there is no frame.
 std::vector<std::string> figures_of(const Json& stats) {
   const Json& frames = frames_of(stats);
   if (frames.empty()) return std::vector<std::string>(6);
@@ -69,7 +69,7 @@ std::vector<std::string> figures_of(const Json& stats) {
           comparable_of(stats)};
 }
 
-/// "simulation 1.2 s, drawing 0.8 s", of CPU time.
+/// CPU times: "simulation 1.2 s, drawing 0.8 s".
 std::string costs_of(const Json& stats) {
   return fmt::format("simulation {} s, drawing {} s", text_of(at(stats, {"totals", "simulate_cpu"})),
                      text_of(at(stats, {"totals", "render_cpu"})));
@@ -91,8 +91,8 @@ std::optional<image::Image> picture_of(const std::filesystem::path& file, std::o
   }
 }
 
-/// A row of the sheet for each value of the first keys, where that is not too long: what differs by the last ones then
-/// stands side by side.
+/// Number of columns of the sheet. Runs that share the values of the first keys form a row, if it is not too long; the
+/// last keys then vary along the row.
 int columns_of(const std::vector<SweepResult>& results) {
   const Changes& first = results.front().run.difference;
   for (std::size_t keys = 1; keys < first.size(); ++keys) {
@@ -101,9 +101,9 @@ int columns_of(const std::vector<SweepResult>& results) {
       return other.size() == first.size() && std::equal(first.begin(), first.begin() + keys, other.begin());
     };
     const auto row = std::ranges::find_if_not(results, same) - results.begin();
-    if (row > 1 && row <= kMostColumns) return static_cast<int>(row);
+    if (row > 1 && row <= kMaxSheetColumns) return static_cast<int>(row);
   }
-  return std::min(kMostColumns, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(results.size())))));
+  return std::min(kMaxSheetColumns, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(results.size())))));
 }
 
 }  // namespace

@@ -1,14 +1,14 @@
-// What machine this is and what it gave us.
+// Identification of machine and program.
 #pragma once
 
 #include <string>
 
 namespace weft::cli {
 
-/// Model name of the processor; "unknown" where the system does not tell.
+/// Model name of the processor, or "unknown".
 std::string cpu_model();
 
-/// The same for the very same program only, 16 hexadecimal digits.
+/// A hash of the program file; 16 hexadecimal digits.
 std::string program_fingerprint();
 
 }  // namespace weft::cli

@@ -5,7 +5,7 @@
 namespace weft::cli {
 namespace {
 
-// Characters of UTF-8 text: all bytes but those that continue one.
+// Number of characters of a UTF-8 text: all bytes except continuation bytes.
 std::size_t width(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));

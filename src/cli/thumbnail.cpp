@@ -33,7 +33,7 @@ struct Still {
   render::Saliency saliency;
 };
 
-/// The first of the frames that tell most.
+/// The frame with the highest saliency; the first one of equals.
 Still most_salient(Stills& stills, const std::vector<int>& frames, Progress& progress) {
   const render::Settings& settings = stills.settings();
   Still best;
@@ -56,24 +56,24 @@ std::string describe_choice(const render::Saliency& saliency, std::size_t count)
                      count, 100 * saliency.coverage, saliency.folding, saliency.motion);
 }
 
-/// Without its folder.
+/// File name of the picture.
 std::string picture_name(const ThumbnailOptions& options, const Stills& stills) {
   return stills.scene().scene + (options.start ? ".start.png" : ".png");
 }
 
-/// Where `output` is not a folder by its name alone, one scene has a picture there, several have a folder.
+/// Whether `output` is a folder: it has no extension, or there are several scenes and it is an existing folder.
 bool is_folder(const ThumbnailOptions& options) {
   const bool may_exist = options.scenes.size() > 1 && std::filesystem::is_directory(options.output);
   return !options.output.empty() && (!options.output.has_extension() || may_exist);
 }
 
-/// Of several scenes, none is drawn after a signal that came while this one was.
+/// With several scenes, throws if a signal arrived while this one was drawn.
 void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
   if (stills.is_stopped() && options.scenes.size() > 1)
     throw Error(ExitCode::interrupted, "interrupted after {}", options.common.scene.string());
 }
 
-// The start as it is given, which a run may refuse: nothing is simulated.
+// Draws the given start without simulating, even if a run would refuse it.
 void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   if (options.frame || std::filesystem::is_directory(options.common.scene))
     throw Error(ExitCode::usage, "--start: expected a scene and no --frame, got {}",
@@ -84,7 +84,7 @@ void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   const simulation::StartView start = simulation::view_start(load_scene(options.common));
   render::Settings settings = stills->settings();
   if (!start.places.empty() && !options.common.size) settings.height /= 2, settings.width /= 2;
-  settings.camera.clear();  // each picture has a camera of its own
+  settings.camera.clear();  // each picture has its own camera
   const std::unique_ptr<FramePainter> painter = make_gl_painter(settings);
   settings.camera = stills->settings().camera;
   const std::vector<image::SheetPicture> pictures = draw_start(start, settings, *painter);
@@ -124,7 +124,7 @@ void draw_thumbnail(const ThumbnailOptions& options) {
   check_stopped(options, *stills);
 }
 
-/// Draws one picture of each scene into a folder, and goes on where a scene fails.
+/// Draws one picture per scene into a folder; continues after a failure.
 class Batch {
  public:
   explicit Batch(const ThumbnailOptions& options)
@@ -144,7 +144,7 @@ class Batch {
   }
 
  private:
-  /// What can be read of all that is named, and where it goes: checked before the first is drawn.
+  /// Checks all scenes and output files before the first is drawn; skips scenes that cannot be read.
   std::vector<ThumbnailOptions> plan() {
     std::vector<ThumbnailOptions> drawings;
     PathLedger paths;
@@ -164,8 +164,7 @@ class Batch {
     return drawings;
   }
 
-  /// Whether it went well. Reports a failure, and keeps its code if it is the first; throws on if it is an
-  /// interruption.
+  /// Returns whether `work` succeeded. Reports a failure and stores the first exit code; rethrows an interruption.
   bool attempt(const std::filesystem::path& scene, const std::function<void()>& work) {
     try {
       work();

@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kFilePollPause = 100'000;  // also of the process [microseconds]
+constexpr auto kFilePollPause = 100'000;  // for files and for the drawing process [microseconds]
 
-/// When which files were changed; those that are not there have no time.
+/// Modification times of files; the default time for missing ones.
 using Stamps = std::map<fs::path, fs::file_time_type>;
 
 Stamps stamps_of(const std::vector<fs::path>& files) {
@@ -39,7 +39,7 @@ Stamps stamps_of(const std::vector<fs::path>& files) {
 class Watch {
  public:
   explicit Watch(const WatchOptions& options) : options_(options) {
-    // What is drawn takes the place of what was drawn before, and of nothing else.
+    // A drawing may replace only earlier drawings of the scene.
     const auto option = std::ranges::find(options.passed_on, "--output");
     const std::string scene = options.scene.stem().string();
     const fs::path output = option != options.passed_on.end()
@@ -51,9 +51,9 @@ class Watch {
                   output.string(), scene);
   }
 
-  ExitCode look() {
+  ExitCode draw_repeatedly() {
     for (int times = 0; !stop_.requested() && (options_.times == 0 || times < options_.times); ++times) {
-      // A scene that is wrong names what it could: its own file at least.
+      // The files of an invalid scene are incomplete, but include the scene file.
       const scene::LoadResult loaded = scene::load(options_.scene, options_.overrides);
       files_ = {options_.scene};
       files_.insert(files_.end(), loaded.scene.files.begin(), loaded.scene.files.end());
@@ -68,7 +68,7 @@ class Watch {
  private:
   bool changed() const { return stamps_of(files_) != drawn_; }
 
-  /// In a process of its own, which says itself what is wrong; ended where a file changes meanwhile.
+  /// Draws in a separate process, which reports its own errors; kills it if a file changes in the meantime.
   void draw() const {
     std::vector<std::string> words{own_program().string(),
                                    options_.film ? "run" : "thumbnail",
@@ -79,12 +79,12 @@ class Watch {
     words.insert(words.end(), options_.passed_on.begin(), options_.passed_on.end());
     for (const std::string& text : options_.overrides) words.insert(words.end(), {"--set", text});
     const pid_t process = start_process(words, "");
-    bool told = false;
+    bool is_killed = false;
     int status = 0;
     while (::waitpid(process, &status, WNOHANG) == 0) {
-      if (!told && (stop_.requested() || changed())) {
-        ::kill(process, SIGKILL);  // what it writes gets its name when it is whole
-        told = true;
+      if (!is_killed && (stop_.requested() || changed())) {
+        ::kill(process, SIGKILL);  // no partial file remains, as outputs get their names only when complete
+        is_killed = true;
       }
       ::usleep(kFilePollPause);
     }
@@ -99,7 +99,7 @@ class Watch {
 }  // namespace
 
 ExitCode watch(const WatchOptions& options) {
-  return Watch(options).look();
+  return Watch(options).draw_repeatedly();
 }
 
 }  // namespace weft::cli

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What pictures say of themselves agrees with what they would say, wherever they were drawn.
+// Whether the metadata of an output agree with the expected ones, apart from the OpenGL implementation.
 bool agrees(const Metadata& found, Metadata expected) {
   expected.erase("gl");
   return std::ranges::all_of(expected, [&](const auto& entry) {
@@ -56,7 +56,7 @@ bool is_file(const fs::path& file) {
   return fs::is_regular_file(file, ignored);
 }
 
-// What stands at the place of these frames; of pictures of one.
+// State of the video, or of the picture of frames.begin.
 State state_of(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
                const Metadata& expected) {
   const fs::path file = target.file(frames.begin);
@@ -65,7 +65,7 @@ State state_of(const OutputTarget& target, const FrameRange& frames, const rende
     if (target.kind == OutputTarget::Kind::video) return state_of_video(file, frames, settings, expected);
     return state_of_picture(file, frames.begin, settings, expected);
   } catch (const Error&) {
-    return State::other;  // what cannot be read is nothing of ours
+    return State::other;  // an unreadable file is not ours
   }
 }
 

@@ -1,4 +1,4 @@
-// Whether there is nothing left to do.
+// Detection of complete or partial output of an earlier run.
 #pragma once
 
 #include <filesystem>
@@ -12,18 +12,18 @@
 
 namespace weft::cli {
 
-/// True where video or pictures hold all these frames of this very scene, drawn so, and all meshes are there.
+/// Whether the video or pictures contain all these frames of this scene with these settings, and all meshes exist.
 bool is_whole(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
               const cache::Manifest& scene, const std::filesystem::path& meshes,
               const std::vector<std::string>& objects);
 
-/// What an earlier drawing of the same film has left.
+/// Remains of an earlier drawing of the same film.
 struct Drawn {
-  std::set<int> frames;                 ///< that are whole, with their meshes
-  std::set<std::filesystem::path> own;  ///< files that may be replaced: nothing else is lost with them
+  std::set<int> frames;                 ///< complete frames, with their meshes
+  std::set<std::filesystem::path> own;  ///< files that may be replaced without losing anything else
 };
 
-/// Looks at pictures one by one; of a video that is not whole no frame counts.
+/// Checks pictures one by one; an incomplete video counts as no frames.
 Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
                  const cache::Manifest& scene, const std::filesystem::path& meshes,
                  const std::vector<std::string>& objects);

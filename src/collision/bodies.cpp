@@ -20,17 +20,17 @@ void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_c
     limb_of_.insert(limb_of_.end(), vertex_count, 0);
   else
     limb_of_.insert(limb_of_.end(), limbs.begin(), limbs.end());
-  skin_of_.insert(skin_of_.end(), vertex_count, skins_.size());
-  skins_.push_back({traits_.size(), traits.thickness, traits.friction});
+  material_of_.insert(material_of_.end(), vertex_count, materials_.size());
+  materials_.push_back({traits_.size(), traits.thickness, traits.friction});
   for (const Patch& patch : patches) {
     for (std::size_t v = 0; v < patch.vertices.size(); ++v)
-      if (patch.vertices[v] != 0) skin_of_[static_cast<std::size_t>(first_vertex) + v] = skins_.size();
-    skins_.push_back({traits_.size(), patch.thickness, patch.friction});
+      if (patch.vertices[v] != 0) material_of_[static_cast<std::size_t>(first_vertex) + v] = materials_.size();
+    materials_.push_back({traits_.size(), patch.thickness, patch.friction});
   }
   traits_.push_back(traits);
   deformable_ += traits.deformable && !traits.rigid ? 1 : 0;
   surfaces_.push_back({{}, first_triangle, first_vertex, vertex_count});
-  // The triangles may have moved in memory.
+  // Renew the views: push_back may have moved the triangles.
   for (std::size_t b = 0; b < surfaces_.size(); ++b) {
     const std::size_t begin = surfaces_[b].first_triangle,
                       end = b + 1 < surfaces_.size() ? surfaces_[b + 1].first_triangle : triangles_.size();

@@ -7,8 +7,7 @@
 namespace weft::collision {
 namespace {
 
-// Where pairs are kept with their closest points they are listed as a whole, else ProximityFinder knows who shares a
-// vertex.
+// With coherence the pairs must include those that share a vertex. Otherwise ProximityFinder looks these up itself.
 BroadPhaseOptions options_of(const SearchParameters& parameters) {
   BroadPhaseOptions options = parameters.broad_phase;
   options.one_shared = parameters.coherence;
@@ -18,10 +17,10 @@ BroadPhaseOptions options_of(const SearchParameters& parameters) {
 }  // namespace
 
 CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& parameters, std::span<const Vec3> x,
-                               double reach)
+                               double detection_distance)
     : bodies_(bodies),
       parameters_(parameters),
-      reach_(reach),
+      detection_distance_(detection_distance),
       broad_phase_(bodies.surfaces(), x, options_of(parameters)),
       from_(x.begin(), x.end()),
       low_(from_),
@@ -53,13 +52,14 @@ CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<co
                                         std::span<const Vec3> high_t1) {
   const Motion motion(x_t0, low_t1, high_t1);
   find_clear_bodies(motion);
-  double way = 0;
+  double largest_motion = 0;
   for (std::size_t i = 0; i < x_t0.size(); ++i)
     if (!is_clear(bodies_.body_of(static_cast<Index>(i))))
-      way = std::max(way, (high_t1[i] - x_t0[i]).cwiseMax(x_t0[i] - low_t1[i]).maxCoeff());
-  // Pairs of slow steps are listed for several of them.
-  const double verlet_margin = 2 * numerics.contact.margin * reach_;
-  const double margin = 0.5 * reach_ + (parameters_.reuse && way < verlet_margin ? verlet_margin : 0.0);
+      largest_motion = std::max(largest_motion, (high_t1[i] - x_t0[i]).cwiseMax(x_t0[i] - low_t1[i]).maxCoeff());
+  // In a slow step, add the Verlet margin so that the pairs last for several steps.
+  const double verlet_margin = 2 * numerics.contact.margin * detection_distance_;
+  const double margin =
+      0.5 * detection_distance_ + (parameters_.reuse && largest_motion < verlet_margin ? verlet_margin : 0.0);
   refit(motion, margin);
   pairs_.clear();
   for (const auto& [a, b] : wanted_) a == b ? broad_phase_.self_pairs(a, pairs_) : broad_phase_.pairs(a, b, pairs_);
@@ -75,7 +75,7 @@ void CandidateCache::cover(const Motion& motion, double margin) {
   margin_ = margin;
 }
 
-// By the box of all cloth: bounds of both sides grow by a margin of one reach at most.
+// Compares bounding boxes. The clearance of two detection distances allows for the margins of both sides.
 void CandidateCache::find_clear_bodies(const Motion& motion) {
   const auto extend = [&](std::size_t body, Box3& box) {
     for (std::span<const Vec3> x : {motion.x_t0, motion.low_t1, motion.high_t1})
@@ -91,13 +91,13 @@ void CandidateCache::find_clear_bodies(const Motion& motion) {
     extend(b, box);
     for (int axis = 0; axis < 3; ++axis)
       for (const double sign : {1.0, -1.0}) {
-        const double from = 2 * reach_ + (sign > 0 ? cloth.max()[axis] : -cloth.min()[axis]);
+        const double from = 2 * detection_distance_ + (sign > 0 ? cloth.max()[axis] : -cloth.min()[axis]);
         if ((sign > 0 ? box.min()[axis] : -box.max()[axis]) >= from) clear_[b] = {axis, sign, from};
       }
   }
 }
 
-// A still obstacle keeps the bounds it has.
+// A still obstacle keeps its bounds.
 void CandidateCache::refit(const Motion& motion, double margin) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto stays = [&](std::span<const Vec3> x) {
@@ -111,9 +111,9 @@ void CandidateCache::refit(const Motion& motion, double margin) {
 
 bool CandidateCache::covers_start(std::span<const Vec3> x) const {
   if (margin_ < 0) return false;
-  const double skin = margin_ - 0.5 * reach_;
+  const double verlet_margin = margin_ - 0.5 * detection_distance_;
   for (std::size_t i = 0; i < x.size(); ++i)
-    if (!((x[i] - from_[i]).squaredNorm() <= skin * skin) && !is_kept_clear(i, x[i])) return false;
+    if (!((x[i] - from_[i]).squaredNorm() <= verlet_margin * verlet_margin) && !is_kept_clear(i, x[i])) return false;
   return true;
 }
 
@@ -121,7 +121,7 @@ bool CandidateCache::is_kept_clear(std::size_t vertex, const Vec3& x) const {
   return clear_[bodies_.body_of(static_cast<Index>(vertex))].holds(x);
 }
 
-// Whether x is no farther than the margin from where the vertex was to end, or its body is out of everything's way.
+// Whether x is within the margin of the collected end of the vertex, or its body is clear of all cloth.
 bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin) const {
   return (x - high_end()[vertex]).cwiseMax(low_[vertex] - x).maxCoeff() <= margin || is_kept_clear(vertex, x);
 }
@@ -136,7 +136,7 @@ bool CandidateCache::covers_end(std::span<const Vec3> x) const {
 bool CandidateCache::lists_near(std::span<const Vec3> x) const {
   if (margin_ < 0) return false;
   for (std::size_t i = 0; i < x.size(); ++i)
-    if (!is_at_end(i, x[i], margin_ - 0.5 * reach_)) return false;
+    if (!is_at_end(i, x[i], margin_ - 0.5 * detection_distance_)) return false;
   return true;
 }
 

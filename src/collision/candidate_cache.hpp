@@ -1,4 +1,4 @@
-// Which pairs of triangles can meet, and for how long that holds.
+// Broad phase with reuse: lists candidate pairs of triangles and keeps them while they stay valid.
 #pragma once
 
 #include <cstddef>
@@ -16,77 +16,80 @@ namespace weft::collision {
 struct SearchParameters {
   bool self = true;        ///< cloth against itself and other cloth
   bool obstacles = true;   ///< cloth against obstacles
-  bool reuse = true;       ///< of candidates while nothing has moved far
-  bool coherence = false;  ///< of closest points instead, by velocity cones (see CoherentDetection)
+  bool reuse = true;       ///< keep candidate pairs while no vertex has moved far
+  bool coherence = false;  ///< keep closest points instead, by velocity cones (see CoherentDetection)
   BroadPhaseOptions broad_phase = {};
 };
 
-/// Pairs are collected for the way of all vertices from x_t0 to x_t1, with bounds enlarged by a margin at both ends.
-/// They hold for every other way whose ends are inside those bounds, and what was near the reach then tells who can be
-/// within it while no vertex has left its start by more than the rest of the margin: cloth at rest is searched once.
-/// An obstacle that an axis keeps clear of all cloth is left alone while that axis does: however it moves, it changes
-/// neither what is collected nor when.
-/// What moves along with each other is not listed: bounds of the whole way, from start to end, listed 70 pairs a
-/// particle where those of its ends list 4 (sphere_drape at 256², falling over the edge of the ball).
+/// Collects candidate pairs for the trajectories of all vertices from x_t0 to x_t1, with bounds enlarged by a margin at
+/// both ends. The pairs stay valid for all trajectories whose ends lie inside these bounds. The margin is half the
+/// detection distance plus, in slow steps, a Verlet margin. While no vertex leaves its start by more than the Verlet
+/// margin, the pairs within radius() at the collection include all pairs that are near now. Cloth at rest is searched
+/// once.
+///
+/// An obstacle that an axis-aligned plane separates from all cloth may move on its side without invalidating the pairs.
+///
+/// Bounds cover start and end, not the whole trajectory, so surfaces that move together are not listed (measured: 4
+/// instead of 70 pairs per particle in sphere_drape at 256²).
 class CandidateCache {
  public:
-  /// `bodies` must outlive it. `x`: all vertices at the start [m]; `reach`: distance below which features are near [m].
-  CandidateCache(const Bodies& bodies, const SearchParameters& parameters, std::span<const Vec3> x, double reach);
+  /// `bodies` must outlive it. `x`: all vertices at the start [m]. `detection_distance` [m]: closer features are near.
+  CandidateCache(const Bodies& bodies, const SearchParameters& parameters, std::span<const Vec3> x,
+                 double detection_distance);
 
-  /// All pairs of triangles that can come within the reach on the way from x_t0 to x_t1, and from now on the bounds
-  /// that covers_start() and covers_end() speak of. Who asked may thin them out.
+  /// Lists all pairs of triangles that can come within the detection distance on the trajectory from x_t0 to x_t1, and
+  /// sets the bounds that covers_start() and covers_end() test. The caller may remove pairs from the list.
   CandidatePairs& collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// The same, besides for all that was covered before; x_t1 is where pushing apart has led to. Vertices that it has
-  /// carried out of their bounds may end anywhere between start and end from then on, as those do that are taken back:
-  /// all of them where `all` says so.
+  /// Collects again, for all that was covered before and for x_t1, the positions after pushing apart. Each vertex that
+  /// has left its bounds may then end anywhere between its start and its end, because it may be backtracked. `all`:
+  /// every vertex may.
   CandidatePairs& collect_more(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, bool all);
 
-  /// The same for ends anywhere between two corners, for each vertex.
+  /// As above, with the end of each vertex anywhere in the box between `low_t1` and `high_t1`.
   CandidatePairs& collect(std::span<const Vec3> x_t0, std::span<const Vec3> low_t1, std::span<const Vec3> high_t1);
 
-  /// Where collect() lists them.
+  /// The list that collect() fills.
   CandidatePairs& pairs() { return pairs_; }
 
-  /// Distance at the start of the collection below which features are that can be within the reach at an x_t0 that is
-  /// covered [m].
+  /// Features within the detection distance at a covered x_t0 were closer than this when the pairs were collected [m].
   double radius() const { return 2 * margin_; }
-  double reach() const { return reach_; }
+  double reach() const { return detection_distance_; }
 
-  /// Whether features that are within the reach at x were within the radius when the pairs were collected.
+  /// Whether all features within the detection distance at x were closer than radius() when the pairs were collected.
   bool covers_start(std::span<const Vec3> x) const;
-  /// Whether x is inside the bounds of the end: the pairs hold all that can meet on a way from a start that is covered
-  /// to there.
+  /// Whether x is inside the bounds of the end. The pairs then include all that can meet on the way from a covered
+  /// start.
   bool covers_end(std::span<const Vec3> x) const;
 
-  /// Whether features that are within the reach at x, an end of the way, are listed.
+  /// Whether all features within the detection distance at x, an end of the trajectory, are listed.
   bool lists_near(std::span<const Vec3> x) const;
 
-  /// Whether x is where all vertices of this one's body are out of the way of all cloth.
+  /// Whether a vertex at x lies in the half-space that holds its obstacle and no cloth.
   bool is_kept_clear(std::size_t vertex, const Vec3& x) const;
 
-  /// For who collects by other means: pairs hold for ways within `margin` [m] of the one from x_t0 to x_t1.
+  /// For callers that collect pairs themselves: declares them valid within `margin` [m] of the given trajectory.
   void cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     find_clear_bodies(Motion(x_t0, x_t1));
     cover(Motion(x_t0, x_t1), margin);
   }
 
-  /// Whether cloth could not meet a body when pairs were last collected, and cannot as long as they are covered.
+  /// Whether cloth cannot meet this body as long as the pairs are covered.
   bool is_clear(std::size_t body) const { return clear_[body].sign != 0; }
 
-  /// The pairs of surfaces that are looked at.
+  /// The pairs of surfaces that are searched.
   const std::vector<SurfacePair>& wanted() const { return wanted_; }
-  /// The hierarchies, with bounds that hold the vertices of every way that is covered.
+  /// The hierarchies. Their bounds hold the vertices on every covered trajectory.
   BroadPhase& hierarchies() { return broad_phase_; }
   const BroadPhase& hierarchies() const { return broad_phase_; }
 
-  /// From now on nothing is covered.
+  /// Invalidates the pairs: nothing is covered from now on.
   void drop() { margin_ = -1; }
 
-  /// Lets go, between two steps, of what only makes the search faster and does not follow from positions.
+  /// Drops, between two steps, state that only speeds up the search and does not follow from positions.
   void forget();
 
-  /// What the pairs were collected for: collected for it again, they are the same.
+  /// The positions that the pairs were collected for. Collecting for them again gives the same pairs.
   std::span<const Vec3> from() const { return from_; }
   std::span<const Vec3> low_end() const { return low_; }
   std::span<const Vec3> high_end() const { return high_.empty() ? low_ : high_; }
@@ -99,21 +102,21 @@ class CandidateCache {
 
   const Bodies& bodies_;
   SearchParameters parameters_;
-  double reach_;
+  double detection_distance_;
   BroadPhase broad_phase_;
   std::vector<SurfacePair> wanted_;
   CandidatePairs pairs_;
-  // What they are good for: starts and ends of vertices no farther than the margin from here [m].
-  std::vector<Vec3> from_, low_, high_;  // the last one only where it is another than the one before
-  double margin_ = -1;                   // negative: there are none
-  /// Half of space without cloth: where sign · x[axis] >= from. Both ends of a way in it, all of the way is.
+  // Positions for which the pairs were collected [m]. They cover starts and ends within the margin of these.
+  std::vector<Vec3> from_, low_, high_;  // high_ is empty if it equals low_
+  double margin_ = -1;                   // [m]; negative: no pairs
+  /// Half-space without cloth: sign · x[axis] >= from. A trajectory with both ends inside stays inside.
   struct HalfSpace {
     int axis = 0;
-    double sign = 0;                                        // ±1; 0: there is none
+    double sign = 0;                                        // ±1; 0: no such half-space
     double from = std::numeric_limits<double>::infinity();  // [m]
     bool holds(const Vec3& x) const { return sign * x[axis] >= from; }
   };
-  std::vector<HalfSpace> clear_;  // per body: one that holds it
+  std::vector<HalfSpace> clear_;  // per body: a half-space that holds it
 };
 
 }  // namespace weft::collision

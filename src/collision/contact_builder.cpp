@@ -16,8 +16,8 @@ double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
 
-// One corner of a triangle against the point of the other that is closest to it.
-FeaturePair of_corner(Index corner, const Triangle& corners, const FeaturePair& closest) {
+// Pairs one corner of a triangle with the closest point of the other triangle.
+FeaturePair pair_with_corner(Index corner, const Triangle& corners, const FeaturePair& closest) {
   FeaturePair result = closest;
   double side = 0;
   std::size_t place = 0;
@@ -38,18 +38,18 @@ double stiffness_share(const Proximity& proximity, bool with_cloth) {
   const auto& outside = proximity.outside_wedge;
   const double inside_wedges = ramp(-numerics.contact.fade, 0, -std::max(outside[0], outside[1]));
   if (!with_cloth) return inside_wedges;
-  double least = 1;
-  for (double weight : proximity.weights) least = std::min(least, std::abs(weight));
+  double smallest_weight = 1;
+  for (double weight : proximity.weights) smallest_weight = std::min(smallest_weight, std::abs(weight));
   return ramp(numerics.contact.flat_fold(), 2 * numerics.contact.fade, -outside[0] - outside[1]) * inside_wedges *
-         ramp(0, numerics.contact.fade, least);
+         ramp(0, numerics.contact.fade, smallest_weight);
 }
 
-// Friction of a pair: the geometric mean of both coefficients, or what the pair has of its own.
+// A pair has its own coefficients, or else the geometric mean of both.
 ContactBuilder::ContactBuilder(const Bodies& bodies, const ContactParameters& parameters,
                                std::span<const double> masses)
     : bodies_(bodies), stiffness_(parameters.stiffness), step_(parameters.step), masses_(masses) {
-  for (const Skin& a : bodies.skins()) {
-    for (const Skin& b : bodies.skins()) {
+  for (const ContactMaterial& a : bodies.materials()) {
+    for (const ContactMaterial& b : bodies.materials()) {
       const double mean = std::sqrt(a.friction * b.friction);
       friction_.push_back({mean, mean});
       for (const PairFriction& pair : parameters.friction)
@@ -63,19 +63,20 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
                          ContactResponse& response) {
   for (const Proximity& proximity : proximities) {
     const bool with_cloth = std::ranges::any_of(proximity.vertices, [&](Index v) { return is_cloth(v); });
-    const double share = stiffness_share(proximity, with_cloth);
-    if (share == 0 || pinched.concern(proximity.vertices)) continue;
-    if (const auto contact = build(proximity, share, kNoLimit, motion)) response.add(*contact, motion.x_t0);
-    if (share == 1) in_contact_.insert(feature_key(proximity.kind, proximity.vertices));
+    const double fraction = stiffness_share(proximity, with_cloth);
+    if (fraction == 0 || pinched.are_pinched(proximity.vertices)) continue;
+    if (const auto contact = build(proximity, fraction, kNoLimit, motion)) response.add(*contact, motion.x_t0);
+    if (fraction == 1) in_contact_.insert(feature_key(proximity.kind, proximity.vertices));
   }
 }
 
 void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotion& motion,
                                  ContactResponse& response) const {
-  const double share = push.has_room ? 1 : numerics.contact.depenetration_stiffness;
-  auto contact = build(push.way, share, push.way.distance + numerics.contact.depenetration_velocity * motion.h, motion);
+  const double fraction = push.is_exit_clear ? 1 : numerics.contact.depenetration_stiffness;
+  auto contact = build(push.exit_pair, fraction,
+                       push.exit_pair.distance + numerics.contact.depenetration_velocity * motion.h, motion);
   if (!contact) return;
-  contact->full_range = kNoLimit;  // no stiffer as it is deeper
+  contact->full_range = kNoLimit;  // keep the stiffness constant with depth
   contact->friction = contact->static_friction = 0;
   response.add(*contact, motion.x_t0);
 }
@@ -99,27 +100,28 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& 
   return is_new;
 }
 
-// All corners of the triangle of cloth are kept beyond the plane through the obstacle's closest point.
+// Keeps all corners of the cloth triangle beyond the plane through the obstacle's closest point.
 void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                ContactResponse& response) const {
   const Triangle& cloth = is_particle(pair.a[0]) ? pair.a : pair.b;
   for (Index corner : cloth)
-    if (const auto contact = build(of_corner(corner, cloth, closest), 1, closest.distance, motion))
+    if (const auto contact = build(pair_with_corner(corner, cloth, closest), 1, closest.distance, motion))
       response.add_wall(*contact, motion.x_t0);
 }
 
-// What keeps its distance only as far as that is less than it was pushes nobody away, and has no friction: where it
-// slides to is the business of the closest features there.
+// Each corner contact has its present distance as activation distance, so it exerts no force now. It has no friction:
+// that belongs to the closest features.
 void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                  ContactResponse& response) const {
   for (const Triangle& corners : {pair.a, pair.b}) {
     for (Index corner : corners) {
       if (!is_particle(corner)) continue;
-      const FeaturePair apart = of_corner(corner, corners, closest);
-      if (apart.vertices == closest.vertices && apart.weights == closest.weights) continue;
+      const FeaturePair corner_pair = pair_with_corner(corner, corners, closest);
+      if (corner_pair.vertices == closest.vertices && corner_pair.weights == closest.weights) continue;
       double gap = 0;
-      for (std::size_t k = 0; k < 4; ++k) gap += apart.weights[k] * apart.normal.dot(motion.x_from[apart.vertices[k]]);
-      auto contact = build(apart, 1, gap, motion);
+      for (std::size_t k = 0; k < 4; ++k)
+        gap += corner_pair.weights[k] * corner_pair.normal.dot(motion.x_from[corner_pair.vertices[k]]);
+      auto contact = build(corner_pair, 1, gap, motion);
       if (!contact || gap <= 0) continue;
       contact->friction = contact->static_friction = 0;
       response.add(*contact, motion.x_t0);
@@ -127,8 +129,8 @@ void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& clos
   }
 }
 
-// Empty where neither side has a particle that can be pushed.
-std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double share, double range_limit,
+// Returns nothing if neither side has a particle.
+std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double fraction, double range_limit,
                                              const StepMotion& motion) const {
   Contact contact;
   Vec3 relative = Vec3::Zero();
@@ -142,7 +144,7 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
     const Index v = pair.vertices[k];
     const double weight = pair.weights[k];
     if (weight == 0) continue;
-    sides[weight > 0 ? 0 : 1] = bodies_.skin_of(v);
+    sides[weight > 0 ? 0 : 1] = bodies_.material_of(v);
     contact.relative_start += weight * motion.x_t0[v];
     relative += weight * motion.x_from[v];
     if (is_particle(v)) {
@@ -161,16 +163,16 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
     }
   }
   if (mass_weight == 0) return std::nullopt;
-  // Between cloth and a heavy body the lighter side is what stops.
+  // Between cloth and a heavy body the lighter side decides the stiffness.
   if (is_rigid && side_weight[0] > 0 && side_weight[1] > 0) {
     const std::size_t lighter = side_mass[0] * side_weight[1] < side_mass[1] * side_weight[0] ? 0 : 1;
     mass = side_mass[lighter], mass_weight = side_weight[lighter];
   }
-  contact.full_range = 0.5 * (bodies_.skins()[sides[0]].thickness + bodies_.skins()[sides[1]].thickness);
+  contact.full_range = 0.5 * (bodies_.materials()[sides[0]].thickness + bodies_.materials()[sides[1]].thickness);
   contact.range = std::min(range_limit, contact.full_range);
   contact.depth = contact.range - contact.normal.dot(relative);
   contact.stiffness =
-      share * std::max(stiffness_, numerics.contact.inertial_stiffness * mass / mass_weight / (step_ * step_));
+      fraction * std::max(stiffness_, numerics.contact.inertial_stiffness * mass / mass_weight / (step_ * step_));
   if (contact.obstacle_start != contact.obstacle_end)
     contact.stiffness *= std::pow(numerics.contact.hardening, std::clamp(failures - 1, 0, numerics.contact.hardenings));
   const Friction& friction = friction_of(sides[0], sides[1]);

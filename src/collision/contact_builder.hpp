@@ -1,4 +1,4 @@
-// From features that are near each other to contacts: how stiff they are, from which distance on, and how rough.
+// Turns near pairs into contacts: sets stiffness, activation distance and friction.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace weft::collision {
 
-/// Coulomb coefficients of two bodies while they slide and before.
+/// Coulomb coefficients of a pair of bodies: while it slides, and before it slides.
 struct Friction {
   double sliding = 0, static_friction = 0;
 };
@@ -26,56 +26,56 @@ struct PairFriction {
 };
 
 struct ContactParameters {
-  double stiffness = 100;                   ///< least stiffness of a contact [N/m]
-  double step = 0.01;                       ///< step that contacts are stiff enough for [s]
-  std::vector<PairFriction> friction = {};  ///< of pairs with coefficients of their own
+  double stiffness = 100;                   ///< minimum stiffness of a contact [N/m]
+  double step = 0.01;                       ///< time step for which contacts must be stiff enough [s]
+  std::vector<PairFriction> friction = {};  ///< pairs with coefficients of their own
 };
 
-/// The motion of all vertices over a step: in one straight piece, or with the last one beginning at x_from.
+/// Motion of all vertices over a step. `x_from` is x_t0, or where Engine::go_on_from continued the step.
 struct StepMotion {
   std::span<const Vec3> x_t0, x_from, x_t1;  ///< [m]
   double h = 0;                              ///< [s]
-  std::span<const std::uint8_t> failures{};  ///< how often each particle was pushed away in it before; empty: never
+  std::span<const std::uint8_t> failures{};  ///< how often each particle was pushed apart; empty: never
   bool is_straight() const { return x_t0.data() == x_from.data(); }
 };
 
-/// Share of its stiffness that a proximity pushes with: all of a vertex and a face. An edge pair pushes with all of it
-/// where its direction lies well inside of the wedges of both edges: an edge of a box against smooth cloth, a crease
-/// across a crease. It fades out towards the flat, where vertices and faces keep the layers apart, towards directions
-/// outside of a wedge, where a face at the edge is closer, and towards the ends of either edge: nothing is switched on
-/// or off while cloth rests. Between two smooth layers that leaves a fifth of the contacts. Between blocks, without
-/// cloth, only what is outside of a wedge fades: faces that lie on each other touch where their rims cross, and no
-/// vertex needs to be there.
+/// Fraction of the full stiffness that a near pair gets. Vertex-face pairs get 1. Edge pairs get 1 if the contact
+/// direction lies well inside the wedges of both edges, as for a box edge on smooth cloth or two crossed creases. The
+/// fraction fades to 0 as the surface becomes flat (vertices and faces then keep the layers apart), as the direction
+/// leaves a wedge (a neighbouring face is then closer), and towards the ends of an edge. So no contact switches on or
+/// off while cloth rests. Between two smooth layers a fifth of the contacts remain. Without cloth (rigid blocks) only
+/// directions outside a wedge fade: the rims of stacked faces may cross where no vertex is near.
 double stiffness_share(const Proximity& proximity, bool with_cloth = true);
 
 class ContactBuilder {
  public:
-  /// `bodies` and `masses`, those of the particles [kg], must outlive it.
+  /// `bodies` and `masses` (of the particles [kg]) must outlive it.
   ContactBuilder(const Bodies& bodies, const ContactParameters& parameters, std::span<const double> masses);
 
-  /// Contacts of a step from here on.
+  /// Clears the record of features in contact.
   void begin_step() { in_contact_.clear(); }
 
-  /// Adds the contacts of proximities, as far as they have a share. Those of pinched cloth and its obstacle are left
-  /// out: their direction does not tell the side.
+  /// Adds a contact for each near pair whose stiffness fraction is not 0. Skips pairs of pinched cloth and its
+  /// obstacle, because their direction does not show on which side the cloth belongs.
   void add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
            ContactResponse& response);
 
-  /// Adds the contact of pinched cloth and its obstacle, which pushes to the side that the cloth belongs to, at no more
-  /// than the speed of healing and without friction: softly while there is no room, which is nothing to clamp cloth
-  /// for, else as others do.
+  /// Adds the contact that pushes pinched cloth back to its own side of the obstacle, without friction and no faster
+  /// than the maximum depenetration speed. If the exit is blocked, the stiffness is reduced to avoid clamping.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
-  /// Adds contacts of the closest features of two triangles that would meet; false if these push with all their
-  /// stiffness already. On the first piece of a way what is closer than the range without being pushed is only kept
-  /// from coming closer. On those that follow it is pushed away, and every corner is kept on its own side of the plane
-  /// between the triangles: what slides past the features that were closest meets there. `features`: the closest ones
-  /// at x_from.
+  /// Adds contacts between the closest features of two triangles without a separating plane; returns false if these
+  /// features have full stiffness already. On the first piece of a trajectory the contact only keeps a pair that is
+  /// inside the activation distance from coming closer. On later pieces it restores the full activation distance, and
+  /// each corner is kept on its side of the plane between the triangles, because features that slide past the closest
+  /// ones would meet there. `features`: the closest features at x_from.
   bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
                    ContactResponse& response);
 
-  /// Of two skins.
-  const Friction& friction_of(std::size_t a, std::size_t b) const { return friction_[a * bodies_.skins().size() + b]; }
+  /// Coefficients for two contact materials, by number.
+  const Friction& friction_of(std::size_t a, std::size_t b) const {
+    return friction_[a * bodies_.materials().size() + b];
+  }
 
  private:
   void add_walls(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
@@ -84,14 +84,14 @@ class ContactBuilder {
                    ContactResponse& response) const;
   bool is_particle(Index vertex) const { return static_cast<std::size_t>(vertex) < masses_.size(); }
   bool is_cloth(Index vertex) const { return is_particle(vertex) && !bodies_[bodies_.body_of(vertex)].rigid; }
-  std::optional<Contact> build(const FeaturePair& pair, double share, double range_limit,
+  std::optional<Contact> build(const FeaturePair& pair, double fraction, double range_limit,
                                const StepMotion& motion) const;
 
   const Bodies& bodies_;
   double stiffness_, step_;
-  std::vector<Friction> friction_;  // of each pair of bodies
+  std::vector<Friction> friction_;  // per pair of contact materials
   std::span<const double> masses_;
-  std::set<FeatureKey> in_contact_;  // features that push with all their stiffness
+  std::set<FeatureKey> in_contact_;  // features that have full stiffness already
 };
 
 }  // namespace weft::collision

@@ -12,14 +12,14 @@
 namespace weft::collision {
 namespace {
 
-// Distance below which contacts are prepared [m].
-double reach_of(const Bodies& bodies) {
+// Contacts are prepared below this distance [m].
+double detection_distance_of(const Bodies& bodies) {
   double range = 0;
-  for (const Skin& skin : bodies.skins()) range = std::max(range, skin.thickness);
+  for (const ContactMaterial& verlet_margin : bodies.materials()) range = std::max(range, verlet_margin.thickness);
   return numerics.contact.detection * range;
 }
 
-// The bodies that particles carry.
+// The rigid bodies that are carried by frame particles.
 std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const double> masses) {
   constexpr Index kFrame = 4;
   std::vector<RigidGroup> groups;
@@ -28,7 +28,7 @@ std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const doubl
     if (frame < 0) continue;
     const Surface& surface = bodies.surfaces()[b];
     const auto of_frame = masses.subspan(static_cast<std::size_t>(frame), kFrame);
-    // Frames stand before the vertices of the first such body.
+    // The frame particles of such a body precede its triangle vertices.
     Index first = bodies.vertex_count(), last = 0;
     for (const Triangle& corners : surface.triangles)
       for (const Index v : corners) first = std::min(first, v), last = std::max(last, v);
@@ -42,9 +42,9 @@ std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const doubl
 Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<const Vec3> x,
                std::span<const double> masses)
     : bodies_(std::move(bodies)),
-      candidates_(bodies_, parameters.search, x, reach_of(bodies_)),
-      meets_itself_(parameters.search.self),
-      separation_(bodies_.triangles(), meets_itself_ ? bodies_.deformable() : std::span<const Surface>(), masses),
+      candidates_(bodies_, parameters.search, x, detection_distance_of(bodies_)),
+      has_self_collision_(parameters.search.self),
+      separation_(bodies_.triangles(), has_self_collision_ ? bodies_.deformable() : std::span<const Surface>(), masses),
       finder_(bodies_.triangles(), bodies_.vertex_count()),
       builder_(bodies_, parameters.contact, masses),
       response_(parameters.response, {masses.begin(), masses.end()}, parameters.stick_speed),
@@ -52,10 +52,11 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices(), bodies_.limb_of_vertices()),
       carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
   separation_.set_rigid(rigid_groups(bodies_, masses), bodies_.vertex_count());
-  const double reach = candidates_.reach();
+  const double detection_distance = candidates_.reach();
   if (parameters.search.coherence)
     coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,
-                       CoherenceParameters{reach, 0.5 * numerics.contact.margin * reach, numerics.contact.flat_fold()});
+                       CoherenceParameters{detection_distance, 0.5 * numerics.contact.margin * detection_distance,
+                                           numerics.contact.flat_fold()});
 }
 
 void Engine::forget() {
@@ -65,7 +66,7 @@ void Engine::forget() {
   candidates_.drop();
 }
 
-// Pairs that can meet on the way from x_t0 to x_t1.
+// Collects pairs that can meet on the trajectory from x_t0 to x_t1.
 void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   if (coherence_) return update_coherence(x_t0, x_t1);
   collect_by(x_t0, [&] { candidates_.collect(x_t0, x_t1); });
@@ -80,7 +81,7 @@ void Engine::update_coherence(std::span<const Vec3> x_t0, std::span<const Vec3> 
 
 template <class Collect>
 void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
-  // The long list of all pairs lives in one place.
+  // Swap the list of pairs with Separation, so that only one copy exists.
   CandidatePairs& pairs = candidates_.pairs();
   separation_.exchange(pairs.apart);
   list_pairs();
@@ -90,24 +91,25 @@ void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
   gathered_at_.clear();
 }
 
-// Features that may come within the reach not far from x. Of the pairs only those whose separating planes leave them
-// near can have some.
+// Gathers features that may come within the detection distance near x, skipping pairs that a plane keeps far apart.
 void Engine::gather(std::span<const Vec3> x) {
-  const double skin = numerics.contact.margin * candidates_.reach();
+  const double verlet_margin = numerics.contact.margin * candidates_.reach();
   const auto is_near = [&] {
     for (std::size_t v = 0; v < x.size(); ++v)
-      if (!((x[v] - gathered_at_[v]).squaredNorm() <= skin * skin) && !candidates_.is_kept_clear(v, x[v])) return false;
+      if (!((x[v] - gathered_at_[v]).squaredNorm() <= verlet_margin * verlet_margin) &&
+          !candidates_.is_kept_clear(v, x[v]))
+        return false;
     return true;
   };
   if (!gathered_at_.empty() && is_near()) return;
-  const double radius = candidates_.reach() + 2 * skin;
-  closer_.clear();
-  separation_.append_closer(radius, x, closer_);
-  if (meets_itself_)
-    finder_.gather(closer_, bodies_.deformable(), x, radius, numerics.contact.flat_fold(),
+  const double radius = candidates_.reach() + 2 * verlet_margin;
+  near_candidates_.clear();
+  separation_.append_closer(radius, x, near_candidates_);
+  if (has_self_collision_)
+    finder_.gather(near_candidates_, bodies_.deformable(), x, radius, numerics.contact.flat_fold(),
                    separation_.open_triangles(radius, x));
   else
-    finder_.gather(closer_, {}, x, radius, numerics.contact.flat_fold(), {});
+    finder_.gather(near_candidates_, {}, x, radius, numerics.contact.flat_fold(), {});
   gathered_at_.assign(x.begin(), x.end());
 }
 
@@ -115,7 +117,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
                         double h, std::span<const RigidMotion> motions) {
   step_ = h;
   x_t0_ = x_t0;
-  gathered_at_.clear();  // what is near follows from where the step starts alone
+  gathered_at_.clear();  // near pairs must depend on the start of the step alone
   pinched_pushes_.clear();
   carried_.begin_step(x_t0, x_t1, motions);
   begin_contacts(x_t0, x_t1);
@@ -124,26 +126,27 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
     pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach());
   }
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
-  pushed_.clear();
+  pushed_pairs_.clear();
   std::ranges::fill(failures_, 0);
-  // What might meet on the expected trajectory. Only planes of constant direction count here: what they cannot separate
-  // comes near.
+  // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here,
+  // because pairs that need others come near each other.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
   find_failing(x_t0, x_t1, Certificates::constant);
   if (response_.form() == ResponseForm::springs)
-    look_ahead(x_t0, x_t1);
+    find_near_at_expected_end(x_t0, x_t1);
   else
     find_near(x_t0, proximities_);
   add_contacts(proximities_, motion);
   add_failing(failing_, motion);
-  if (response_.lean(x_t1, 0.5 * candidates_.reach(), leaning_) && find_failing(x_t0, leaning_, Certificates::constant))
-    add_failing(failing_, {x_t0, x_t0, leaning_, h});
+  if (response_.lean(x_t1, 0.5 * candidates_.reach(), predicted_walls_x_t1_) &&
+      find_failing(x_t0, predicted_walls_x_t1_, Certificates::constant))
+    add_failing(failing_, {x_t0, x_t0, predicted_walls_x_t1_, h});
   response_.prepare(x_t0, x_t1);
   return is_moved;
 }
 
-// Contacts of a guess in which surfaces intersect have directions that say nothing, and layers that push each other are
-// found one in each iteration. Nothing is exempted for a guess.
+// Pushes an estimate with intersections apart. Contacts found there would have meaningless directions, and layers that
+// push each other would be found one per iteration. Nothing is exempted for an estimate.
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || apart(x_t0, x_t1)) return false;
   const std::vector<Vec3> expected(x_t1.begin(), x_t1.end());
@@ -154,10 +157,10 @@ bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, st
   return is_apart;
 }
 
-// Finds near pairs at the expected end of the step. Directions of its start point against the motion if cloth slides on
-// a curved surface, and take energy. A pair that no plane separates on the way there is found at the start, which alone
-// tells on which side its features are.
-void Engine::look_ahead(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+// Finds near pairs at the expected end of the step. On a curved surface, directions of the start would oppose sliding
+// and take energy. A pair that no plane separates on the trajectory is searched at the start, which shows the side of
+// its features.
+void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<FeatureKey> failing;
   for (const auto& [a, b] : failing_)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -199,21 +202,21 @@ void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& mot
 void Engine::go_on_from(std::span<const Vec3> x) {
   const StepMotion motion{x_t0_, x, x, step_, failures_};
   carried_.begin_step(x, x, {});
-  if (coherence_) candidates_.drop();  // what is kept was closest where the step began
+  if (coherence_) candidates_.drop();  // kept closest points belong to the start of the step
   begin_contacts(x, x);
-  find_near(x, near_bend_);
-  add_contacts(near_bend_, motion);
-  add_failing(pushed_, motion);
+  find_near(x, near_continuation_);
+  add_contacts(near_continuation_, motion);
+  add_failing(pushed_pairs_, motion);
 }
 
-// Candidates of the way from x_from to x_t1, and no contacts yet.
+// Provides the candidate pairs from x_from to x_t1 and clears the contacts.
 void Engine::begin_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1) {
   if (!candidates_.covers_start(x_from) || !candidates_.lists_near(x_t1)) collect(x_from, x_t1);
   response_.begin_step(step_);
   builder_.begin_step();
 }
 
-// Features near each other at x, where the way of the candidates begins.
+// Finds near features at x, the start of the candidate pairs' trajectory.
 void Engine::find_near(std::span<const Vec3> x, std::vector<Proximity>& near) {
   if (coherence_) {
     near.clear();
@@ -229,7 +232,7 @@ bool Engine::apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   return !find_failing(x_t0, x_t1, Certificates::all);
 }
 
-// Whether any pair has none of these certificates.
+// Whether any pair lacks a separating plane of the given kind.
 bool Engine::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, Certificates which) {
   if (!candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
   failing_ = separation_.find_failing(x_t0, x_t1, &pinched_, &carried_, which);
@@ -246,7 +249,7 @@ std::span<const CornerPair> Engine::find_meetings(std::span<const Vec3> x) {
   return failing_;
 }
 
-// Of the particles of pairs that are to be pushed apart.
+// Counts, for each particle, how often its pairs are pushed apart.
 void Engine::count_failures() {
   std::vector<std::uint8_t> fails(failures_.size());
   for (const CornerPair& pair : failing_)
@@ -254,13 +257,13 @@ void Engine::count_failures() {
       for (Index v : corners)
         if (static_cast<std::size_t>(v) < fails.size()) fails[v] = 1;
   for (std::size_t i = 0; i < fails.size(); ++i) failures_[i] += fails[i];
-  pushed_.insert(pushed_.end(), failing_.begin(), failing_.end());
+  pushed_pairs_.insert(pushed_pairs_.end(), failing_.begin(), failing_.end());
 }
 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                     std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_give_way) {
-  // Corrections can carry vertices out of the bounds that the candidates stand for; then these are collected anew, at
-  // last for all ways between start and end.
+  // Corrections can move vertices out of the bounds of the candidate pairs. Then collect again; after
+  // kTightCollections, for every trajectory between start and end.
   constexpr int kCollections = 8, kTightCollections = 3;
   SeparationReport report;
   count_failures();
@@ -300,9 +303,9 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
 }
 
 double Engine::min_distance() const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Proximity& proximity : proximities_) least = std::min(least, proximity.distance);
-  return least;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Proximity& proximity : proximities_) smallest = std::min(smallest, proximity.distance);
+  return smallest;
 }
 
 template <class Archive>
@@ -317,7 +320,7 @@ void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
     candidates_.drop();
 }
 
-// Candidates and features follow from the positions that they were collected for.
+// Saves only the positions: candidate pairs and features follow from them.
 template <class Archive>
 void Engine::serialize_candidates(Archive& archive) {
   const auto copy = [](std::span<const Vec3> x) { return std::vector<Vec3>(x.begin(), x.end()); };

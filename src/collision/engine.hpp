@@ -1,13 +1,12 @@
-// Collision of all cloths and obstacles over one time step: who is near, what pushes back, and that nothing passes.
+// Collision of all cloths and obstacles over one time step.
 //
-//   CandidateCache     which pairs of triangles can meet, and for how long that holds
-//   Separation         a separating plane for each of them, which bounds their distance from below
-//   ProximityFinder    of those that the planes leave near: vertices and faces, edges and edges within the reach, where
-//                      the step is expected to end
-//   ContactBuilder     from these to contacts: stiffness, range, friction
-//   ContactResponse    what the contacts do in the solve, as springs or as constraints of velocities
-//   Separation         that no pair meets on the way to what was solved; what does is a contact more, or moved apart
-//   PinchedPairs       cloth that obstacles leave no room, exempted from that
+//   CandidateCache     broad phase: candidate pairs of triangles, kept while valid
+//   Separation         a separating plane for each pair, which also bounds its distance from below
+//   ProximityFinder    narrow phase: near pairs of features at the expected end of the step
+//   ContactBuilder     near pairs -> contacts with stiffness, activation distance, friction
+//   ContactResponse    contacts in the solve, as springs or as velocity constraints
+//   Separation         checks the solved step; pairs that would meet get contacts or are pushed apart
+//   PinchedPairs       cloth squeezed between obstacles, exempt from the check
 #pragma once
 
 #include <array>
@@ -33,82 +32,80 @@ struct EngineParameters {
   SearchParameters search;
   ContactParameters contact;
   ResponseForm response = ResponseForm::springs;
-  double stick_speed = numerics.contact.stick_velocity;  ///< of springs [m/s]
+  double stick_speed = numerics.contact.stick_velocity;  ///< for the springs [m/s]
 };
 
 class Engine {
  public:
-  /// `x`: all vertices at the start [m]; `masses`: of the particles [kg]; must outlive the engine.
+  /// `x`: all vertices at the start [m]. `masses`: of the particles [kg]; must outlive the engine.
   Engine(Bodies bodies, const EngineParameters& parameters, std::span<const Vec3> x, std::span<const double> masses);
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Finds the contacts of a step over h [s] from x_t0, with x_t1 the expected end: obstacles exactly, particles by
-  /// guess. `motions`: of each body, as far as it keeps its shape; of none where nothing moves so. Both positions must
-  /// outlive the step. With springs, a guess at which surfaces have met is pushed apart in x_t1; `movable` says which
-  /// vertices (see Separation; empty: none). Returns whether x_t1 has changed.
+  /// Finds the contacts of a step over h [s] from x_t0. x_t1: expected end; exact for obstacles, an estimate for
+  /// particles. `motions`: rigid motion of each body that keeps its shape; empty: none moves so. x_t0 and x_t1 must
+  /// outlive the step. With springs, if surfaces intersect in the estimate, x_t1 is pushed apart; `movable` says which
+  /// vertices may move (see Separation; empty: none). Returns whether x_t1 has changed.
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {});
 
-  /// The way of the step bends: it has come to x [m] without meeting anything, with obstacles where they end, and goes
-  /// on from there. Contacts are found anew around x, with those of all pairs that were pushed apart in this step; what
-  /// slips in them still counts from where the step began. x takes the place of x_t0 in the calls that follow, and must
-  /// outlive the step.
+  /// Continues the step from x [m], which was reached without an intersection and has the obstacles at their end. Finds
+  /// contacts anew around x and adds those of all pairs that were pushed apart in this step. Friction still measures
+  /// slip from the start of the step. x replaces x_t0 in the calls that follow and must outlive the step.
   void go_on_from(std::span<const Vec3> x);
-  /// Pairs that the last call of apart() found to meet.
+  /// Pairs for which the last call of apart() found no separating plane.
   std::span<const CornerPair> failing() const { return failing_; }
 
-  /// Lets go, between two steps, of what only makes the search faster and does not follow from positions.
+  /// Drops, between two steps, state that only speeds up the search and does not follow from positions.
   void forget();
 
-  /// What the next step from x [m] depends on, besides that. Throws std::runtime_error where these bodies cannot have
-  /// it.
+  /// State besides x [m] that the next step depends on. Throws std::runtime_error if it does not fit these bodies.
   template <class Archive>
   void serialize(Archive& archive, std::span<const Vec3> x);
 
-  /// The contacts found, to act inside the solve.
+  /// The contacts, for use inside the solve.
   ContactResponse& response() { return response_; }
   const ContactResponse& response() const { return response_; }
 
-  /// Whether every pair of triangles stays apart on the way to x_t1.
+  /// Whether every pair of triangles has a separating plane on the trajectory to x_t1.
   bool apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Makes contacts of the pairs for which the last call of apart() said no; returns how many are new.
+  /// Adds contacts for the failing pairs of the last call of apart(); returns how many are new.
   int adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// The step is done.
+  /// Marks the step as accepted.
   void accept() { response_.accept(); }
 
-  /// Corrects the ends x_t1 of movable particles so that no triangles meet during the step. Cloth that obstacles leave
-  /// no room is exempted from that: `may_pinch` allows it; without, only where the obstacle pinches this cloth already.
-  /// Without `may_give_way` the report of pinned particles that gave way is that of a failure, and nothing is exempted.
+  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. `may_pinch`: allows exempting
+  /// pinched cloth from an obstacle; otherwise only a cloth that this obstacle pinches already is exempted. If
+  /// `may_give_way` is false and a pinned particle had to move, the result is not separated and nothing is exempted.
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                               bool may_pinch = false, bool may_give_way = true);
 
-  /// Triangles of cloth that are pinched by an obstacle, counted per obstacle.
+  /// Number of pinched cloth triangles, each counted once per obstacle limb.
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
-  /// Which cloths and obstacles that are, with places at x [m], where the last step began.
+  /// The pinched cloths and their obstacles, with places at x [m], the start of the last step.
   std::vector<Pinch> pinches(std::span<const Vec3> x) const {
     return list_pinches(pinched_, bodies_, candidates_.hierarchies(), x);
   }
 
-  /// What is exempted, and adding to it between two steps: for an engine that goes on where another has come to.
+  /// The exempted triangles, and a way to add one between two steps, for an engine that takes over from another.
   const PinchedPairs& exempted() const { return pinched_; }
   void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
 
-  /// Pairs of features within the reach, 1.5 contact ranges, where the last step was expected to end; of pairs that
-  /// would have met on the way there, where it began.
+  /// Number of near pairs within the detection distance at the expected end of the last step. A pair without a
+  /// separating plane was searched at the start of the step instead.
   int proximities() const { return static_cast<int>(proximities_.size()); }
-  /// Their smallest distance [m]; infinite if there are none.
+  /// Smallest distance of these pairs [m]; infinite if there are none.
   double min_distance() const;
 
-  /// All pairs that touch or cross at x [m]. Valid until the next call of this, apart() or begin_step().
+  /// All pairs of triangles that touch or cross at x [m]. Valid until the next call of this, apart() or begin_step().
   std::span<const CornerPair> find_meetings(std::span<const Vec3> x);
 
   const Bodies& bodies() const { return bodies_; }
-  /// Distance below which features are near [m].
+  /// Detection distance: features closer than this are near [m].
   double reach() const { return candidates_.reach(); }
-  /// Whether cloth cannot meet a body in the step that was begun last: what that does then has no influence.
+  /// Whether cloth cannot meet a body in the current step. If so, the motion of the body has no effect.
   bool is_clear(std::size_t body) const { return candidates_.is_clear(body); }
 
  private:
@@ -120,7 +117,7 @@ class Engine {
   void count_failures();
   bool separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
   bool find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, Certificates which);
-  void look_ahead(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  void find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   int add_failing(std::span<const CornerPair> pairs, const StepMotion& motion);
   void add_contacts(std::span<const Proximity> near, const StepMotion& motion);
   void begin_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1);
@@ -130,25 +127,25 @@ class Engine {
 
   Bodies bodies_;
   CandidateCache candidates_;
-  bool meets_itself_;  // cloth, and other cloth
+  bool has_self_collision_;  // cloth against itself and other cloth
   Separation separation_;
   ProximityFinder finder_;
-  std::vector<Vec3> gathered_at_;  // where the finder gathered features of these candidates [m]; empty: nowhere
-  PairList closer_;                // scratch: candidates that are near there
-  std::optional<CoherentDetection> coherence_;  // keeps pairs and closest points in place of the cache, where wanted
+  std::vector<Vec3> gathered_at_;               // where the near features were gathered [m]; empty: not gathered
+  PairList near_candidates_;                    // scratch: candidate pairs that are near there
+  std::optional<CoherentDetection> coherence_;  // if enabled, keeps pairs and closest points instead of the cache
   ContactBuilder builder_;
   ContactResponse response_;
-  std::vector<Vec3> leaning_;
-  std::vector<std::uint8_t> failures_;  // of each particle, in the step
+  std::vector<Vec3> predicted_walls_x_t1_;
+  std::vector<std::uint8_t> failures_;  // per particle: how often pushed apart in this step
   PinchedPairs pinched_;
   CarriedStarts carried_;
 
   double step_ = 0;                                 // h [s]
-  std::span<const Vec3> x_t0_;                      // where the step began
-  std::vector<PinchedPairs::Push> pinched_pushes_;  // back out of obstacles, of the step
-  std::vector<CornerPair> pushed_;                  // pairs that were pushed apart in it
-  std::vector<Proximity> proximities_;              // at the start of the step, or its expected end
-  std::vector<Proximity> near_bend_;                // where its way last bent
+  std::span<const Vec3> x_t0_;                      // start of the step
+  std::vector<PinchedPairs::Push> pinched_pushes_;  // contacts that push pinched cloth out, in this step
+  std::vector<CornerPair> pushed_pairs_;            // pairs that were pushed apart in this step
+  std::vector<Proximity> proximities_;              // at the expected end of the step, or at its start
+  std::vector<Proximity> near_continuation_;        // where the step was last continued
   std::span<const CornerPair> failing_;             // of the last call of apart()
 };
 

@@ -33,7 +33,7 @@ constexpr const char* kLogHead =
     "| date (UTC) | reference | old | new | difference | reason | by |\n"
     "|---|---|---|---|---|---|---|\n";
 
-// A reference must be whole: read to its end.
+// A reference must be complete, so the file is read to its end.
 void check_readable(const fs::path& file) {
   if (!fs::is_regular_file(file)) {
     throw Error(ExitCode::asset_unreadable, "{}: {}", file.string(),
@@ -58,7 +58,7 @@ std::string describe(const FileComparison& result) {
                      f.largest, f.ssim, f.flip);
 }
 
-// One cell of a Markdown table.
+// Escapes one cell of a Markdown table.
 std::string cell(const std::string& text) {
   std::string escaped;
   for (const char c : text) {

@@ -1,4 +1,4 @@
-// New references, and the log of why they are.
+// Replacement of references, and the log of the reasons.
 #pragma once
 
 #include <filesystem>
@@ -6,21 +6,20 @@
 
 namespace weft::compare {
 
-/// One reference about to be replaced.
+/// A reference that is about to be replaced.
 struct Acceptance {
-  std::filesystem::path test, reference;  ///< what it becomes; may not exist yet
+  std::filesystem::path test, reference;  ///< `reference` is replaced by `test`; it may not exist yet
   std::filesystem::path log;              ///< accepted.md
   std::string reason, user;
 
-  /// From the file to accept and the reference named on the command line: a file, or a folder whose reference of this
-  /// `name` is meant, as `find_reference` finds it. Throws Error: usage where both do not fit together,
-  /// asset_unreadable where the test is no whole picture or video.
+  /// Plans the replacement. `reference` is the one named on the command line: a file, or a folder in which
+  /// `find_reference` looks up `name`. Throws Error: usage if both do not fit together, asset_unreadable if the test is
+  /// not a complete picture or video.
   static Acceptance plan(const std::filesystem::path& reference, const std::filesystem::path& test,
                          const std::string& name);
 
-  /// Adds a line to the log, then puts the test in the place of the reference; both appear whole or not at all, and no
-  /// reference is ever without its line. False, and nothing done, where both are equal in every pixel. Throws
-  /// Error(output_failed).
+  /// Adds a line to the log, then replaces the reference; each file is replaced atomically, and no reference is ever
+  /// without its line. Returns false without any change if both are equal in every pixel. Throws Error(output_failed).
   bool carry_out() const;
 };
 

@@ -42,7 +42,7 @@ double sum_of(const Plane<float>& plane) {
   });
 }
 
-// The test with the pixels of the reference outside of the mask.
+// Replaces the pixels outside the mask by those of the reference.
 image::Image masked(const image::Image& reference, image::Image test, const Mask& mask) {
   if (mask.width != reference.width || mask.height != reference.height) {
     throw Error(ExitCode::internal, "expected a mask of {}x{} pixels, got {}x{}", reference.width, reference.height,
@@ -69,7 +69,7 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
     Comparison result = compare(reference, masked(reference, test, *mask), pixel_tolerance);
     result.figures.pixels = std::ranges::count_if(mask->values, [](std::uint8_t value) { return value != 0; });
     if (result.figures.pixels == 0) throw Error(ExitCode::internal, "expected a mask with pixels to compare");
-    // FLIP sees a difference around it too.
+    // FLIP also shows a difference around the mask, which must not count.
     for (std::size_t i = 0; i < mask->values.size(); ++i)
       if (mask->values[i] == 0) result.flip.values[i] = 0;
     result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
@@ -105,10 +105,10 @@ Limits for_size(Limits limits, const Figures& figures) {
 }
 
 double counted_pixels(const Figures& figures, const Limits& limits) {
-  // Twice what was measured between CPU types passes: 21 of 57,600 pixels (README, decisions).
-  constexpr double kAtEdge = 1.0 / 40;
+  // Allows twice the largest number measured between CPU types: 21 of 57,600 pixels (README, decisions).
+  constexpr double kEdgePixelWeight = 1.0 / 40;
   const auto over = static_cast<double>(figures.pixels_over), at_edges = static_cast<double>(figures.pixels_at_edges);
-  return has_default_budget(limits) ? (over - at_edges) + kAtEdge * at_edges : over;
+  return has_default_budget(limits) ? (over - at_edges) + kEdgePixelWeight * at_edges : over;
 }
 
 double allowed_pixels(const Figures& figures, const Limits& limits) {
@@ -123,16 +123,16 @@ Verdict verdict(const Figures& figures, const Limits& limits) {
 }
 
 bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits) {
-  // Up to 1.3 times the limit and 0.29 of the changed frame, in films of 96x64 pixels with a square in one or two
-  // frames that the others do not have.
+  // Measured: up to 1.3 times the limit, and 0.29 of the changed frame, in films of 96x64 pixels in which a square
+  // appears for one or two frames.
   constexpr std::size_t kFrames = 12;
-  constexpr double kOverLimit = 2, kShare = 1.0 / 3;
+  constexpr double kOverLimit = 2, kMaxFlipRatio = 1.0 / 3;
   Limits wider = limits;
   wider.flip *= kOverLimit, wider.pixel_budget *= kOverLimit;
   if (verdict(frames[k], wider) != Verdict::within) return false;
   const std::size_t first = k - std::min(k, kFrames), end = std::min(k + kFrames + 1, frames.size());
   const double largest = std::ranges::max(frames.subspan(first, end - first), {}, &Figures::flip).flip;
-  return frames[k].flip <= kShare * largest;
+  return frames[k].flip <= kMaxFlipRatio * largest;
 }
 
 image::Image heat_map(const Plane<float>& flip) {

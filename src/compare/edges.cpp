@@ -9,14 +9,14 @@
 namespace weft::compare {
 namespace {
 
-// With `GALLIUM_OVERRIDE_CPU_CAPS=sse4.1`, the groups in pictures of twelve scenes have at most 3 pixels.
-constexpr std::size_t kLargestGroup = 4;
+// Measured: with `GALLIUM_OVERRIDE_CPU_CAPS=sse4.1`, groups in pictures of twelve scenes have at most 3 pixels.
+constexpr std::size_t kMaxGroupSize = 4;
 
 struct Pixel {
   int x, y;
 };
 
-/// Calls body(x, y) for the pixel and those of its eight neighbours that are inside.
+/// Calls body(x, y) for the pixel and those of its eight neighbours that lie inside the image.
 template <class Body>
 void for_neighbourhood(int width, int height, Pixel p, const Body& body) {
   for (int y = std::max(p.y - 1, 0); y <= std::min(p.y + 1, height - 1); ++y)
@@ -60,7 +60,7 @@ std::int64_t count_at_edges(const image::Image& reference, const image::Image& t
           group.push_back({next_x, next_y});
         });
       }
-      if (group.size() > kLargestGroup) continue;
+      if (group.size() > kMaxGroupSize) continue;
       count += std::ranges::count_if(group, [&](Pixel p) {
         return is_between_neighbours(test.pixel(p.x, p.y), reference, p, tolerance) &&
                is_between_neighbours(reference.pixel(p.x, p.y), test, p, tolerance);

@@ -1,4 +1,4 @@
-// Which of the pixels that differ lie on an edge, where another CPU or Mesa puts a sample on the other side of it.
+// Counts differing pixels at edges, where another CPU type or Mesa version puts a sample on the other side.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace weft::compare {
 
-/// Counts the pixels over the tolerance in groups of at most 4 whose values can be seen beside them in the other image:
-/// each channel of the test is, to the tolerance, between the least and the largest value of the 3x3 pixels of the
-/// reference around it, and the reverse. A speck fails this in one of the two images, an edge that moves makes a longer
+/// Counts the pixels over the tolerance in groups of at most 4 whose values also occur next to them in the other image:
+/// each channel of the test lies, within the tolerance, between the smallest and the largest value of the 3x3 pixels of
+/// the reference around it, and vice versa. A speck fails this for one of the images; a moved edge makes a longer
 /// group.
 std::int64_t count_at_edges(const image::Image& reference, const image::Image& test, int tolerance);
 

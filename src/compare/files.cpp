@@ -22,7 +22,7 @@ std::string size_problem(int width, int height, int test_width, int test_height)
   return fmt::format("{}x{} pixels, the reference has {}x{}", test_width, test_height, width, height);
 }
 
-// By their gray, of which half or more is white. Throws Error(asset_unreadable).
+// Reads a mask; pixels whose mean of the channels is at least 128 are white. Throws Error(asset_unreadable).
 Mask read_mask(const std::filesystem::path& file, int width, int height) {
   const image::Image picture = image::read_png(file);
   if (picture.width != width || picture.height != height) {
@@ -37,7 +37,7 @@ Mask read_mask(const std::filesystem::path& file, int width, int height) {
   return mask;
 }
 
-// Two pictures that belong together, or two frames: compared and taken into the result, which keeps the worst.
+// Compares two pictures or frames and adds them to the result, which keeps the worst.
 Figures add_frame(FileComparison& result, image::Image&& reference, image::Image&& test, const Limits& limits,
                   const std::optional<Mask>& mask) {
   Comparison frame = compare(reference, test, limits.pixel_tolerance, mask ? &*mask : nullptr);
@@ -57,8 +57,8 @@ Figures add_frame(FileComparison& result, image::Image&& reference, image::Image
   return figures;
 }
 
-// Tells frames that differ from those that a changed one has spilled into.
-void set_spill_apart(FileComparison& result, std::span<const Figures> frames, const Limits& limits) {
+// Counts spilled frames separately from frames that differ.
+void count_spill(FileComparison& result, std::span<const Figures> frames, const Limits& limits) {
   result.frames_differing = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (verdict(frames[k], limits) != Verdict::differs) continue;
@@ -90,7 +90,7 @@ void compare_pictures(FileComparison& result, const Limits& limits, const std::f
   result.outcome = outcome_of(result);
 }
 
-// Decodes and counts what is left.
+// Number of remaining frames, which are decoded.
 int count_rest(video::Decoder& decoder) {
   int frames = 0;
   while (decoder.next()) ++frames;
@@ -110,7 +110,7 @@ void compare_videos(FileComparison& result, const Limits& limits, const std::fil
   while ((a = reference.next()), (b = test.next()), a && b)
     figures.push_back(add_frame(result, std::move(*a), std::move(*b), limits, where));
   result.outcome = outcome_of(result);
-  if (reference.lossy() || test.lossy()) set_spill_apart(result, figures, limits);
+  if (reference.lossy() || test.lossy()) count_spill(result, figures, limits);
   const int reference_frames = result.frames + (a ? 1 + count_rest(reference) : 0);
   const int test_frames = result.frames + (b ? 1 + count_rest(test) : 0);
   if (reference_frames != test_frames) {
@@ -148,7 +148,7 @@ FileComparison compare_files(const std::filesystem::path& reference, const std::
   result.test = test;
   result.video = is_video(reference) && is_video(test);
   try {
-    // A video against a picture ends as a picture that cannot be read, which is what it is.
+    // A video compared with a picture fails as an unreadable picture.
     result.video ? compare_videos(result, limits, mask) : compare_pictures(result, limits, mask);
   } catch (const Error& error) {
     if (error.code() != ExitCode::asset_unreadable) throw;

@@ -12,7 +12,7 @@ namespace {
 
 using Matrix = Eigen::Matrix3f;
 
-// Columns: X Y Z of the primaries of IEC 61966-2-1, scaled so that they add up to its white, D65.
+// Columns: XYZ of the primaries of IEC 61966-2-1, scaled so that their sum is its white point D65.
 Matrix xyz_from_linear() {
   const auto xyz = [](double x, double y) { return Vec3(x / y, 1, (1 - x - y) / y); };
   Mat3 primaries;
@@ -21,7 +21,7 @@ Matrix xyz_from_linear() {
   return (primaries * weights.asDiagonal()).cast<float>();
 }
 
-// Linear sRGB to XYZ in which white is (1, 1, 1).
+// Linear sRGB to XYZ relative to white, which is (1, 1, 1).
 const Matrix& relative_xyz() {
   static const Matrix matrix = [] {
     const Matrix xyz = xyz_from_linear();
@@ -42,15 +42,15 @@ float lab_curve(float t) {
   return t > kEdge * kEdge * kEdge ? std::cbrt(t) : t / (3 * kEdge * kEdge) + 4.0f / 29;
 }
 
-// a1 sqrt(pi/b1) exp(-pi² x²/b1) + a2 sqrt(pi/b2) exp(-pi² x²/b2), x in degrees; over a line the transform of
-// a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles a degree. The paper uses it over the plane, so we do.
+// a1 sqrt(pi/b1) exp(-pi² x²/b1) + a2 sqrt(pi/b2) exp(-pi² x²/b2), x in degrees. In one dimension this is the Fourier
+// transform of a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree; like the paper, we use it in two.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
 constexpr std::array kSensitivities{Sensitivity{1, 0.0047, 0, 1e-5}, Sensitivity{1, 0.0053, 0, 1e-5},
                                     Sensitivity{34.1, 0.04, 13.5, 0.025}};
 
-// exp(-pi² x² / b) at the pixels; x in degrees. The radius is the paper's: three sigmas of the widest of all.
+// Samples exp(-pi² x² / b) at the pixels; x in degrees. The radius is the paper's: three sigmas of the widest kernel.
 std::vector<float> gaussian(double b) {
   constexpr double kPiSq = std::numbers::pi * std::numbers::pi;
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPiSq)) * kPixelsPerDegree));
@@ -70,10 +70,10 @@ struct FeatureKernels {
   std::vector<float> smooth, edge, point;
 };
 
-// A Gaussian and its first two derivatives; of the derivatives what is positive adds up to 1 and what is negative to
-// -1, together with the other direction, as the paper wants.
+// A Gaussian and its first two derivatives. As in the paper, the positive weights of a derivative sum to 1 and the
+// negative ones to -1, including the smoothing in the other direction.
 FeatureKernels make_feature_kernels() {
-  constexpr double kWidth = 0.082;  // degrees, of the edge detector of the eye (Section 4.2.1)
+  constexpr double kWidth = 0.082;  // [degrees], of the eye's edge detector (Section 4.2.1)
   const double sigma = 0.5 * kWidth * kPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
   FeatureKernels kernels;
@@ -117,7 +117,7 @@ Channels opponent_channels(const image::Image& image) {
   return channels;
 }
 
-// Filtered as the eye does, then kept inside what a display shows, as L*a*b*.
+// Filters the channels, clamps them to displayable colours, and converts to L*a*b*.
 Channels seen_colors(const Channels& opponent) {
   Channels seen;
   for (int c = 0; c < 3; ++c) seen[c] = as_seen(opponent[c], c);
@@ -131,7 +131,7 @@ Channels seen_colors(const Channels& opponent) {
   return seen;
 }
 
-// Y of Y C_x C_z, -16 to 100, to [0, 1].
+// Scales Y of Y C_x C_z from [-16, 100] to [0, 1].
 Plane<float> unit_range(Plane<float> y) {
   for (float& value : y.values) value = (value + 16) / 116;
   return y;
@@ -163,8 +163,9 @@ float hyab(const Color& a, const Color& b) {
 float remapped(float distance) {
   constexpr float kPower = 0.7f, kBend = 0.4f, kAtBend = 0.95f;
   static const float largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kPower);
-  const float share = std::pow(distance, kPower) / largest;
-  const float value = share < kBend ? kAtBend * share / kBend : kAtBend + (1 - kAtBend) * (share - kBend) / (1 - kBend);
+  const float fraction = std::pow(distance, kPower) / largest;
+  const float value =
+      fraction < kBend ? kAtBend * fraction / kBend : kAtBend + (1 - kAtBend) * (fraction - kBend) / (1 - kBend);
   return std::min(value, 1.0f);
 }
 
@@ -199,7 +200,7 @@ Plane<float> feature_difference(const Plane<float>& reference, const Plane<float
   Plane<float> edges = stronger(kernels.edge);
   const Plane<float> points = stronger(kernels.point);
   for (std::size_t i = 0; i < edges.values.size(); ++i) {
-    // Power 1/2; the factor makes a corner, an edge in both directions, no more than 1.
+    // Power 1/2; the factor limits a corner, an edge in both directions, to 1.
     edges.values[i] = std::sqrt(std::max(edges.values[i], points.values[i]) / std::numbers::sqrt2_v<float>);
   }
   return edges;

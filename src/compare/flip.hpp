@@ -1,6 +1,6 @@
-// FLIP, how different two images look when one flips between them: Andersson, Nilsson, Akenine-Möller, Oskarsson,
-// Åström and Fairchild, "FLIP: a difference evaluator for alternating images", 2020. Written from its formulas; the
-// stages are here by themselves so that each can be checked.
+// FLIP, the visible difference between two alternating images: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström
+// and Fairchild, "FLIP: a difference evaluator for alternating images", 2020. Implemented from its formulas; the stages
+// are separate functions so that each can be tested.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace weft::compare {
 
-/// Pixels in a degree of the field of view: the paper's 0.7 m before a display 0.7 m wide with 3840 pixels.
+/// Pixels per degree of the field of view: the paper's 0.7 m distance from a display 0.7 m wide with 3840 pixels.
 inline constexpr double kPixelsPerDegree = 67.02064327658226;
 
-/// The map: for each pixel 0 (looks the same) to 1. Both images have the same size.
+/// Returns the map: per pixel, 0 (looks the same) to 1. Both images must have the same size.
 Plane<float> flip_map(const image::Image& reference, const image::Image& test);
 
 namespace flip {
@@ -27,21 +27,22 @@ using Channels = std::array<Plane<float>, 3>;
 Color opponent_from_linear(const Color& linear);
 Color linear_from_opponent(const Color& opponent);
 
-/// Linear sRGB to L*a*b* with the white of sRGB, a* and b* shrunk for dark colours after Hunt: a L* / 100
-/// (Section 4.1.2).
+/// Linear sRGB to L*a*b* with the white of sRGB; a* and b* are reduced for dark colours after Hunt: a L* / 100 (Section
+/// 4.1.2).
 Color hunt_lab(const Color& linear);
 
 /// |dL| + sqrt(da² + db²) (Section 4.1.2; Abasi et al. 2020).
 float hyab(const Color& a, const Color& b);
 
-/// A HyAB distance of Hunt-adjusted colours to [0, 1]: bent by the power 0.7, then small ones stretched to 0.95 of the
-/// scale, large ones up to the distance of pure green and blue pressed into the rest (Section 4.1.3).
+/// Maps a HyAB distance of Hunt-adjusted colours to [0, 1]: after a power of 0.7, small values are stretched to 0.95 of
+/// the scale; larger ones, up to the distance between pure green and blue, are compressed into the rest (Section
+/// 4.1.3).
 float remapped(float distance);
 
-/// One channel (0 to 2) as the eye resolves it: convolved with the contrast sensitivity of Section 4.1.1, Table 1.
+/// Filters one channel (0 to 2) with the contrast sensitivity of the eye (Section 4.1.1, Table 1).
 Plane<float> as_seen(const Plane<float>& plane, int channel);
 
-/// How much edges and points stand out differently, 0 to 1 (Section 4.2), of Y channels scaled to [0, 1].
+/// Difference of edges and points, 0 to 1 (Section 4.2); the Y channels must be scaled to [0, 1].
 Plane<float> feature_difference(const Plane<float>& reference, const Plane<float>& test);
 
 }  // namespace flip

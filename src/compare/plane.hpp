@@ -1,4 +1,4 @@
-// One number for each pixel, and the filters that the image metrics share.
+// One value per pixel, and the filters shared by the image metrics.
 #pragma once
 
 #include <algorithm>
@@ -35,13 +35,13 @@ void for_each_row(int height, const Body& body) {
 
 namespace detail {
 
-// Each row with `kernel`, whose middle lies on the pixel.
+// Convolves each row with `kernel`, whose middle lies on the pixel.
 template <class T>
 Plane<T> convolve_rows(const Plane<T>& in, std::span<const T> kernel) {
   const int radius = static_cast<int>(kernel.size() / 2), width = in.width;
   Plane<T> out(width, in.height);
   for_each_row(in.height, [&](int y) {
-    // The row with its ends repeated, so that the loop below has no cases.
+    // Repeats the ends of the row, so that the loop below needs no cases.
     std::vector<T> padded(static_cast<std::size_t>(width + 2 * radius));
     for (int i = 0; i < width + 2 * radius; ++i) padded[i] = in.row(y)[std::clamp(i - radius, 0, width - 1)];
     T* to = out.row(y);
@@ -71,8 +71,8 @@ Plane<T> convolve_columns(const Plane<T>& in, std::span<const T> kernel) {
 
 }  // namespace detail
 
-/// Convolution with `column[j] row[i]`, both of odd length, value at (0, 0) in their middle. Past the border the
-/// outermost pixels go on.
+/// Convolution with `column[j] row[i]`, both of odd length, with the value at (0, 0) in their middle. Beyond the
+/// border, the outermost pixels are repeated.
 template <class T>
 Plane<T> convolve(const Plane<T>& in, std::span<const T> row, std::span<const T> column) {
   return detail::convolve_columns(detail::convolve_rows(in, row), column);

@@ -15,14 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where references may be, the more special first.
+// Folders that may contain references, most specific first.
 std::vector<fs::path> places(const fs::path& folder, const std::string& machine) {
   std::vector<fs::path> found = {folder / "default", folder};
   if (!machine.empty()) found.insert(found.begin(), folder / machine);
   return found;
 }
 
-// Lies in the folder of a class, not in one of the pictures'.
+// Whether the name lies in the folder of a class rather than in a subfolder of pictures.
 bool is_of_class(const std::string& name) {
   static const std::regex kClass(R"((default|mesa-\d+\.\d+(-\d+bit)?)/.*)");
   return std::regex_match(name, kClass);
@@ -47,7 +47,7 @@ std::string machine_class_of(const fs::path& file) {
     }
     return machine_class(metadata["gl"]);
   } catch (const Error&) {
-    return "";  // told when the file is compared
+    return "";  // reported when the file is compared
   }
 }
 
@@ -71,10 +71,10 @@ std::vector<std::string> reference_names(const fs::path& folder, const std::stri
 std::vector<std::string> comparable_names(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
-  // A folder that is a link is one like the others; a circle of them ends with an error.
+  // Linked folders are followed; a cycle of links ends with an error.
   fs::recursive_directory_iterator entry(folder, fs::directory_options::follow_directory_symlink, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    // Hidden files are those that are still being written.
+    // Hidden files are still being written.
     const bool hidden = entry->path().filename().string().starts_with('.');
     std::error_code ignored;
     if (entry->is_directory(ignored)) {

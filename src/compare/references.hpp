@@ -1,12 +1,12 @@
-// Folders of reference pictures. Pictures depend a little on Mesa and on the vectors of the processor, and motion on
-// the processor for which the program is built; where that is more than the limits let through, a class of machines has
-// references of its own:
+// Folders of reference pictures. Pictures depend slightly on Mesa and on the vector width of the processor, and motion
+// on the processor for which the program is built. If that exceeds the limits, a class of machines has its own
+// references:
 //
 //     references/mesa-22.3-256bit/name.png   the references of this class of machines
 //     references/default/name.png            those of all others
-//     references/name.png                    or, without any classes, simply this
+//     references/name.png                    used if there are no classes
 //
-// Below these a name may have folders of its own: references/default/front/name.png is that of front/name.png.
+// Below these folders, a name may have its own folders: references/default/front/name.png is that of front/name.png.
 #pragma once
 
 #include <filesystem>
@@ -16,21 +16,21 @@
 
 namespace weft::compare {
 
-/// The class of machines that an OpenGL description names, as in the metadata of our pictures: version of Mesa, and
-/// bits of the vectors that llvmpipe uses. Empty if it names none.
+/// The class of machines in an OpenGL description, as in the metadata of Weft's pictures: version of Mesa, and vector
+/// width of llvmpipe in bits. Empty if it has none.
 std::string machine_class(const std::string& gl);
 
-/// The class of the machine that drew a picture or video; empty for those of other programs and for unreadable ones.
+/// The class of the machine that drew a picture or video; empty for files of other programs and unreadable ones.
 std::string machine_class_of(const std::filesystem::path& file);
 
-/// The reference for a file of this name in `folder`: that of the class, else of `default`, else in the folder itself.
+/// The reference of this name in `folder`: of the class, else of `default`, else in the folder itself.
 std::optional<std::filesystem::path> find_reference(const std::filesystem::path& folder, const std::string& name,
                                                     const std::string& machine);
 
-/// Names of all references that this class has, sorted.
+/// Sorted names of all references that apply to this class.
 std::vector<std::string> reference_names(const std::filesystem::path& folder, const std::string& machine);
 
-/// Names of all pictures and videos below a folder, such as "front/name.png", sorted; not of hidden ones. Throws
+/// Sorted names of all pictures and videos below a folder, such as "front/name.png", without hidden ones. Throws
 /// Error(asset_unreadable).
 std::vector<std::string> comparable_names(const std::filesystem::path& folder);
 

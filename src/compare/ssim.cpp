@@ -9,7 +9,7 @@ namespace weft::compare {
 namespace {
 
 constexpr int kRadius = 5;
-constexpr double kSigma = 1.5;                       // pixels
+constexpr double kSigma = 1.5;                       // [pixels]
 constexpr double kC1 = (0.01 * 255) * (0.01 * 255);  // levels²
 constexpr double kC2 = (0.03 * 255) * (0.03 * 255);  // levels²
 
@@ -21,7 +21,7 @@ std::vector<double> window() {
   return weights;
 }
 
-// In levels of 255. ITU-R BT.709, the primaries of sRGB.
+// BT.709 luma (the primaries of sRGB), in levels of 255.
 Plane<double> luma(const image::Image& image) {
   Plane<double> plane(image.width, image.height);
   for_each_row(image.height, [&](int y) {
@@ -58,7 +58,7 @@ double structural_similarity(const image::Image& reference, const image::Image& 
     }
     return sum;
   };
-  // An image smaller than a window has none inside it: then those past the border count.
+  // An image smaller than the window has no window inside, so all of its pixels are used.
   const int margin_x = a.width > 2 * kRadius ? kRadius : 0, margin_y = a.height > 2 * kRadius ? kRadius : 0;
   const int rows = a.height - 2 * margin_y, columns = a.width - 2 * margin_x;
   const double sum =

@@ -1,5 +1,5 @@
-// Values to plain bytes and back. A type is described once, as `template <class Archive> void serialize(Archive&, T&)`,
-// so that writing and reading cannot differ.
+// Conversion of values to plain bytes and back. Each type has one description, `template <class Archive> void
+// serialize(Archive&, T&)`, so that writing and reading cannot differ.
 #pragma once
 
 #include <cstring>
@@ -13,13 +13,13 @@
 
 namespace weft {
 
-/// Appends what it is called with, in the byte order of this machine.
+/// Appends the values it is called with, in the byte order of this machine.
 struct ByteWriter {
   static constexpr bool kReads = false;
   std::string bytes;
 
   void raw(const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }
-  /// Plain values without padding, which would be bytes that nobody has set.
+  /// T must have no padding, whose bytes would be indeterminate.
   template <class T>
   void value(T& value) {
     raw(&value, sizeof value);
@@ -31,7 +31,7 @@ struct ByteWriter {
   }
 };
 
-/// Fills what it is called with. Throws std::runtime_error where the bytes are too few.
+/// Fills the values it is called with. Throws std::runtime_error if there are too few bytes.
 struct ByteReader {
   static constexpr bool kReads = true;
   std::string_view bytes;
@@ -44,24 +44,25 @@ struct ByteReader {
   template <class T>
   void value(T& value) {
     if constexpr (std::is_same_v<T, bool>) {
-      unsigned char byte = 0;  // of which a bool may hold but two values
+      unsigned char byte = 0;  // a bool must not hold any other value than 0 or 1
       raw(&byte, 1);
       value = byte != 0;
     } else {
       raw(static_cast<void*>(&value), sizeof value);
     }
   }
-  /// Each entry takes `least` bytes or more: no more memory is asked for than the bytes can fill.
+  /// Resizes the list. Each entry takes at least `min_entry_size` bytes, so a broken count cannot allocate
+  /// more than the bytes can fill.
   template <class List>
-  void size(List& list, std::size_t least = 1) {
+  void size(List& list, std::size_t min_entry_size = 1) {
     std::size_t count = 0;
     raw(&count, sizeof count);
-    if (count > bytes.size() / least) throw std::runtime_error("the data was cut short");
+    if (count > bytes.size() / min_entry_size) throw std::runtime_error("the data was cut short");
     list.resize(count);
   }
 };
 
-/// For what was read: throws std::runtime_error where it cannot be.
+/// Checks a value that was read: throws std::runtime_error if `holds` is false.
 inline void require(bool holds, const char* expected) {
   if (!holds) throw std::runtime_error(std::string("the data does not fit: expected ") + expected);
 }
@@ -72,7 +73,7 @@ void serialize_values(Archive& archive, Values&... values) {
   (archive.value(values), ...);
 }
 
-/// A list of plain values, or a text.
+/// A list of plain values, or a string.
 template <class Archive, class List>
 void serialize_plain(Archive& archive, List& list) {
   archive.size(list, sizeof list[0]);
@@ -80,12 +81,12 @@ void serialize_plain(Archive& archive, List& list) {
 }
 
 template <class Archive, class List, class Serialize>
-void serialize_each(Archive& archive, List& list, const Serialize& serialize_one, std::size_t least = 1) {
-  archive.size(list, least);
+void serialize_each(Archive& archive, List& list, const Serialize& serialize_one, std::size_t min_entry_size = 1) {
+  archive.size(list, min_entry_size);
   for (auto& entry : list) serialize_one(entry);
 }
 
-/// A list whose length is known before it is read, of finite points or vectors.
+/// A list of finite points or vectors, whose length `count` is known before it is read.
 template <class Archive>
 void serialize_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
   serialize_plain(archive, points);

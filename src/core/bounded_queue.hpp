@@ -11,15 +11,15 @@
 
 namespace weft {
 
-/// Hands items from one thread to another in order. Trouble travels both ways: `close(failure)` reaches the consumer
-/// after the last whole item, so that finished work is kept; `cancel()` stops the producer at its next push.
+/// Hands items from one thread to another in order. Failures travel both ways: `close(failure)` reaches the consumer
+/// after the last item, so that finished work is kept; `cancel()` stops the producer at its next push.
 template <class T>
 class BoundedQueue {
  public:
-  /// `capacity` items (at least 1) may wait; the memory of the pipeline is bounded by it.
+  /// `capacity`: maximum number of waiting items (at least 1); it bounds the memory of the pipeline.
   explicit BoundedQueue(std::size_t capacity) : capacity_(capacity > 0 ? capacity : 1) {}
 
-  /// Waits for room. False when nobody will take the item any more: the producer should stop.
+  /// Waits for space. Returns false if the queue is closed or cancelled: the producer should stop.
   [[nodiscard]] bool push(T item) {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [&] { return items_.size() < capacity_ || closed_ || cancelled_; });
@@ -30,7 +30,7 @@ class BoundedQueue {
     return true;
   }
 
-  /// Waits for an item. Nothing at the end of the line; there the producer's failure, if any, is thrown.
+  /// Waits for an item. Returns nothing at the end of the queue; if the producer failed, throws its exception there.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     arrived_.wait(lock, [&] { return !items_.empty() || closed_ || cancelled_; });
@@ -45,7 +45,7 @@ class BoundedQueue {
     return item;
   }
 
-  /// The producer is done; what waits can still be popped. Only the first call counts.
+  /// Called when the producer is done. Waiting items can still be popped. Only the first call counts.
   void close(std::exception_ptr failure = nullptr) {
     {
       const std::lock_guard lock(mutex_);
@@ -56,7 +56,7 @@ class BoundedQueue {
     room_.notify_all();
   }
 
-  /// The consumer is done; what waits is dropped.
+  /// Called when the consumer is done. Waiting items are dropped.
   void cancel() {
     {
       const std::lock_guard lock(mutex_);

@@ -1,4 +1,4 @@
-// Which of many things hang together (union-find).
+// Disjoint sets (union-find).
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace weft {
 
-/// Sets of 0 to count − 1, each alone at first; the least member stands for each set.
+/// Sets of 0 to count − 1, initially of one member each. The root of a set is its least member.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }

@@ -1,4 +1,4 @@
-// A file that was built into the program; embed_files.cmake writes the arrays of them.
+// A file that is compiled into the program; embed_files.cmake generates arrays of these.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,7 @@
 namespace weft {
 
 struct EmbeddedFile {
-  std::string_view name;  ///< path below the folder that was built in, with slashes
+  std::string_view name;  ///< path below the embedded folder, with slashes
   std::string_view text;
 };
 

@@ -16,11 +16,11 @@ namespace {
   throw std::runtime_error(why);
 }
 
-/// An open regular file, closed at the end of the scope. Throws std::runtime_error with what is wrong with it.
+/// An open regular file, closed by the destructor. The constructor throws std::runtime_error with the reason.
 class InputFile {
  public:
   explicit InputFile(const std::filesystem::path& file) {
-    // Without O_NONBLOCK the opening of a pipe waits for a writer.
+    // Without O_NONBLOCK, opening a pipe would wait for a writer.
     descriptor_ = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     struct stat status {};
     if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
@@ -39,7 +39,7 @@ class InputFile {
 
   std::uintmax_t size() const { return size_; }
 
-  /// So many bytes, or fewer where the file ends.
+  /// Reads `count` bytes, or fewer at the end of the file.
   std::string read(std::size_t count) const {
     std::string bytes(count, '\0');
     std::size_t done = 0;
@@ -66,9 +66,9 @@ class InputFile {
 
 }  // namespace
 
-std::string read_bytes(const std::filesystem::path& file, std::uintmax_t most) {
+std::string read_bytes(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   const InputFile input(file);
-  if (input.size() > most) refuse(fmt::format("expected at most {} bytes, got {}", most, input.size()));
+  if (input.size() > max_bytes) refuse(fmt::format("expected at most {} bytes, got {}", max_bytes, input.size()));
   try {
     return input.read(input.size());
   } catch (const std::bad_alloc&) {
@@ -76,9 +76,9 @@ std::string read_bytes(const std::filesystem::path& file, std::uintmax_t most) {
   }
 }
 
-std::string read_file(const std::filesystem::path& file, std::uintmax_t most) {
+std::string read_file(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   try {
-    return read_bytes(file, most);
+    return read_bytes(file, max_bytes);
   } catch (const std::exception& error) {
     throw Error(ExitCode::asset_unreadable, "{}: cannot be read: {}", file.string(), error.what());
   }

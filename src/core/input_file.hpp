@@ -1,5 +1,4 @@
-// Files from outside are read here: regular files only, since a pipe or a device may never end, and every failure
-// names its file.
+// Reads input files: regular files only, because a pipe or a device may never end. Every error names its file.
 #pragma once
 
 #include <cstdint>
@@ -17,22 +16,21 @@ namespace weft {
 inline constexpr std::uintmax_t kLargestText = std::uintmax_t{256} << 20;
 inline constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
 
-/// All bytes of a regular file. Throws std::runtime_error with the reason alone for what is no regular file, holds more
-/// than `most` bytes, or cannot be read. Never waits for a writer.
-std::string read_bytes(const std::filesystem::path& file, std::uintmax_t most = kAnySize);
+/// Returns all bytes of a regular file. Throws std::runtime_error, with the reason but without the file's name, if it
+/// is no regular file, holds more than `max_bytes` bytes, or cannot be read. Never waits for a writer.
+std::string read_bytes(const std::filesystem::path& file, std::uintmax_t max_bytes = kAnySize);
 
-/// The same. Throws Error(asset_unreadable) with the name of the file and the reason.
-std::string read_file(const std::filesystem::path& file, std::uintmax_t most = kAnySize);
+/// Like read_bytes(), but throws Error(asset_unreadable) with the name of the file and the reason.
+std::string read_file(const std::filesystem::path& file, std::uintmax_t max_bytes = kAnySize);
 
-/// For libraries that open files by themselves: throws std::runtime_error with the reason where `file` is no regular
-/// file, or cannot be opened.
+/// For libraries that open files: throws std::runtime_error if `file` is no regular file or cannot be opened.
 void check_is_file(const std::filesystem::path& file);
 
-/// The first bytes of a regular file, at most `count`; empty where it cannot be read.
+/// Returns the first bytes of a regular file, at most `count`; empty if it cannot be read.
 std::string read_start(const std::filesystem::path& file, std::size_t count);
 
-/// Returns what `read` returns. What `read` throws that is no Error becomes Error(asset_unreadable) with the name of
-/// the file: whatever a file holds, its reader's failure is never an internal error.
+/// Returns what `read` returns. An exception of `read` that is no Error becomes Error(asset_unreadable) with the name
+/// of the file: whatever a file contains, a failure to read it is never an internal error.
 template <class Read>
 auto read_checked(const std::filesystem::path& file, const Read& read) {
   try {

@@ -9,18 +9,18 @@ namespace weft {
 namespace fs = std::filesystem;
 
 namespace {
-Installation assumed;
+Installation overridden_installation;
 }  // namespace
 
 void set_own_installation(const Installation& installation) {
-  assumed = installation;
+  overridden_installation = installation;
 }
 
 Installation own_installation() {
-  if (!assumed.program.empty()) return assumed;
+  if (!overridden_installation.program.empty()) return overridden_installation;
   std::error_code none;
   const fs::path running = fs::read_symlink("/proc/self/exe", none);
-  // bin/NAME of an archive starts lib/ld-linux-x86-64.so.2, which runs libexec/NAME and calls it bin/NAME
+  // In an archive, bin/NAME starts lib/ld-linux-x86-64.so.2, which runs libexec/NAME with bin/NAME as its name
   // (.packaging/start.c).
   const fs::path started = program_invocation_name, libraries = running.parent_path(), top = libraries.parent_path();
   const fs::path code = top / "libexec" / started.filename();

@@ -1,5 +1,5 @@
-// Where this program lies: in a system, or in the unpacked archive of `ninja bundle`, which brings its own loader and
-// libraries.
+// Location of this program: installed in a system, or in the unpacked archive of `ninja bundle`, which contains its own
+// loader and libraries.
 #pragma once
 
 #include <filesystem>
@@ -7,15 +7,15 @@
 namespace weft {
 
 struct Installation {
-  std::filesystem::path program;    ///< to start in order to run it again
-  std::filesystem::path code;       ///< the file with the running code; in an archive not the one that was started
-  std::filesystem::path libraries;  ///< folder of the libraries that came along; empty if they are those of the system
+  std::filesystem::path program;    ///< executable that starts the program
+  std::filesystem::path code;       ///< file that contains the running code; in an archive another one than `program`
+  std::filesystem::path libraries;  ///< folder of the archive's libraries; empty for those of the system
 };
 
-/// Of this process. All empty where /proc is not mounted.
+/// Location of this process. All paths are empty if /proc is not mounted.
 Installation own_installation();
 
-/// From now on own_installation() returns this. For tests, whose forks stand for the program; not for several threads.
+/// Overrides the result of own_installation(). For tests, which fork to run the program; not thread-safe.
 void set_own_installation(const Installation& installation);
 
 }  // namespace weft

@@ -24,7 +24,7 @@
 namespace weft {
 namespace {
 
-/// First byte of the answer: what follows are the bytes of `work`, or the text of its exception.
+/// First byte of the answer: the bytes of `work` follow, or the text of its exception.
 constexpr char kDone = 'D', kFailed = 'F';
 
 [[noreturn]] void fail(const char* what) {
@@ -35,7 +35,7 @@ constexpr char kDone = 'D', kFailed = 'F';
   throw Error(ExitCode::interrupted, "interrupted");
 }
 
-/// Descriptors of a pipe, closed at the end of the scope.
+/// Descriptors of a pipe, closed by the destructor.
 class Pipe {
  public:
   Pipe() {
@@ -62,7 +62,7 @@ class Pipe {
 
 void limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   const rlimit both{soft, hard};
-  // A stricter limit than ours may stand already; then it stays.
+  // If a stricter limit exists, setrlimit fails and that limit stays.
   static_cast<void>(::setrlimit(resource, &both));
 }
 
@@ -75,16 +75,17 @@ void send(int descriptor, std::string_view bytes) {
   }
 }
 
-/// The child: never returns and runs no destructors of the parent's objects, whose files and threads are not its own.
+/// The child process. Never returns, and runs no destructors of the parent's objects: their files and threads belong to
+/// the parent.
 [[noreturn]] void run_child(const std::function<std::string()>& work, const Isolation& isolation, int answer) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int crash : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGTERM}) std::signal(crash, SIG_DFL);
-  // Ctrl-C reaches all of the terminal's processes; the parent decides what becomes of it.
+  // Ctrl-C reaches all processes of the terminal; the parent decides about the child.
   for (const int request : {SIGINT, SIGHUP}) std::signal(request, SIG_IGN);
   limit(RLIMIT_CORE, 0, 0);
-  // First XCPU, a second later KILL.
+  // SIGXCPU first, SIGKILL a second later.
   if (isolation.cpu_seconds > 0) limit(RLIMIT_CPU, isolation.cpu_seconds, isolation.cpu_seconds + 1);
-#ifndef __SANITIZE_ADDRESS__  // it reserves terabytes
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer reserves terabytes
   if (isolation.addresses > 0) limit(RLIMIT_AS, isolation.addresses, isolation.addresses);
 #endif
   char kind = kDone;
@@ -106,16 +107,16 @@ void send(int descriptor, std::string_view bytes) {
   ::_exit(0);
 }
 
-// Until the end, or until it is to stop.
+// Receives bytes until the pipe ends, or until the child must stop.
 std::string receive(int descriptor, const Isolation& isolation) {
   using Clock = std::chrono::steady_clock;
-  constexpr int kLookEvery = 100;  // [ms]
+  constexpr int kPollInterval = 100;  // [ms]
   const auto deadline = Clock::now() + std::chrono::seconds(isolation.wall_seconds);
   std::string bytes;
   std::array<char, 1 << 16> buffer{};
   for (;;) {
     pollfd wait{descriptor, POLLIN, 0};
-    while (::poll(&wait, 1, kLookEvery) <= 0) {
+    while (::poll(&wait, 1, kPollInterval) <= 0) {
       if (isolation.stop != nullptr && *isolation.stop) throw_interrupted();
       if (isolation.wall_seconds > 0 && Clock::now() > deadline)
         throw std::runtime_error(fmt::format("{} was stopped after {} s", isolation.name, isolation.wall_seconds));
@@ -128,7 +129,7 @@ std::string receive(int descriptor, const Isolation& isolation) {
   }
 }
 
-/// Waits for a child at the end of the scope at the latest, so that none is left behind.
+/// A child process. The destructor kills and reaps it if wait() was not called, so that none is left behind.
 class Child {
  public:
   explicit Child(pid_t process) : process_(process) {}
@@ -163,7 +164,7 @@ std::string run_isolated(const std::function<std::string()>& work, const Isolati
   pipe.close_write_end();
   std::string answer = receive(pipe.read_end(), isolation);
   const int status = child.wait();
-  // Whoever asked for an end may have asked the child too.
+  // The signal that stopped this process may have stopped the child, too.
   if (isolation.stop != nullptr && *isolation.stop) throw_interrupted();
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);

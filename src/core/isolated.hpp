@@ -1,4 +1,4 @@
-// Runs code in a process of its own: what cannot be trusted with damaged input, or what is to be measured by itself.
+// Runs code in a child process: code that damaged input may crash, or that is measured separately.
 #pragma once
 
 #include <atomic>
@@ -9,17 +9,17 @@
 namespace weft {
 
 struct Isolation {
-  std::string name = "the process";         ///< as messages call it
-  unsigned cpu_seconds = 0;                 ///< that it may use; 0: no limit
-  unsigned wall_seconds = 0;                ///< after which it is killed, as where it waits for ever; 0: no limit
-  std::uint64_t addresses = 0;              ///< [bytes] that it may ask for; 0: no limit
-  const std::atomic<bool>* stop = nullptr;  ///< once true, it is killed; nullptr: never
+  std::string name = "the process";  ///< used in messages
+  unsigned cpu_seconds = 0;          ///< CPU time limit; 0: none
+  unsigned wall_seconds = 0;         ///< wall time limit, after which it is killed, also if it waits forever; 0: none
+  std::uint64_t addresses = 0;       ///< address space limit [bytes]; 0: none
+  const std::atomic<bool>* stop = nullptr;  ///< if it becomes true, the child is killed; nullptr: never
 };
 
-/// Calls `work` in a child process and returns its bytes. Whatever becomes of the child, a crash, an endless loop or a
-/// runaway allocation, this process goes on: it throws std::runtime_error with the reason, or with the text of the
-/// exception that `work` threw; Error(interrupted) where it was stopped. Other threads of this process do not exist in
-/// the child: `work` must not wait for them.
+/// Calls `work` in a child process and returns its bytes. This process survives whatever happens to the child (a crash,
+/// an endless loop, a runaway allocation): it throws std::runtime_error with the reason, or with the text of the
+/// exception that `work` threw; Error(interrupted) if it was stopped. Other threads of this process do not exist in the
+/// child: `work` must not wait for them.
 std::string run_isolated(const std::function<std::string()>& work, const Isolation& isolation);
 
 }  // namespace weft

@@ -1,4 +1,4 @@
-// The one way to JSON from text, and back. json.cpp alone instantiates the parser and the writer of nlohmann::json.
+// Parses and writes JSON. Only json.cpp instantiates the parser and the writer of nlohmann::json.
 #pragma once
 
 #include <filesystem>
@@ -10,16 +10,16 @@
 
 namespace weft {
 
-/// Throws std::exception for what is no JSON, nests too deep (nlohmann::json copies, compares and writes by recursion),
-/// or has too many keys in one object (nlohmann::ordered_json compares each key with all those before it).
+/// Throws std::exception if the text is no JSON, nests too deep (nlohmann::json copies, compares and writes
+/// recursively), or has too many keys in one object (nlohmann::ordered_json compares each key with all keys before it).
 template <class Json = nlohmann::ordered_json>
 Json parse_json(std::string_view text);
 
 extern template nlohmann::ordered_json parse_json(std::string_view);
 extern template nlohmann::json parse_json(std::string_view);
 
-/// The value of a key; `otherwise` where `json` is no object, lacks the key, or has a value of another type there.
-/// nlohmann's own value() throws for the first and the last, which is an internal error unless somebody catches it.
+/// The value of a key; `otherwise` if `json` is no object, lacks the key, or has a value of another type there. The
+/// value() of nlohmann::json throws in the first and last case, which becomes an internal error if nobody catches it.
 template <class T, class Json>
 T value_or(const Json& json, const char* key, T otherwise) {
   if (!json.is_object()) return otherwise;
@@ -38,16 +38,16 @@ T value_or(const Json& json, const char* key, T otherwise) {
   return fits ? found->template get<T>() : otherwise;
 }
 
-/// What a file holds; null for what cannot be read.
+/// Contents of a file; null if it cannot be read.
 nlohmann::ordered_json read_json_or_null(const std::filesystem::path& file);
 
 enum class JsonLetters { all, ascii };
 
-/// Text from outside, such as names of files, may not be UTF-8, which JSON cannot hold: it is replaced. With an indent
-/// below 0 it is one line.
+/// JSON as text, on one line if `indent` is negative. Strings that are not UTF-8, such as names of files, are replaced,
+/// as JSON cannot hold them.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1, JsonLetters letters = JsonLetters::all);
 
-/// The same of JSON whose keys are sorted.
+/// The same for JSON with sorted keys.
 std::string sorted_json_text(const nlohmann::json& json, int indent = -1);
 
 }  // namespace weft

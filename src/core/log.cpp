@@ -25,13 +25,13 @@ State& state() {
 // Carriage return and "erase to the end of the line" (ECMA-48 EL).
 constexpr std::string_view kEraseLine = "\r\x1b[K";
 
-// One write per line, so that lines of other processes on the same terminal do not mix in. Trouble with standard error
-// cannot be reported anywhere and must not stop a run.
+// Writes each line by one call, so that lines of other processes on the same terminal do not mix in. A failure of
+// standard error cannot be reported anywhere and must not stop a run.
 void write(std::string_view text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
-// What a terminal would take for commands, as in the name of a file.
+// Escapes what a terminal would interpret as commands, for example in the name of a file.
 std::string without_controls(std::string_view text) {
   std::string plain;
   for (const char c : text) {
@@ -53,12 +53,12 @@ void print(State& s, std::string_view text) {
   }
 }
 
-/// Prints a text that is new to the list, and keeps it there.
+/// Prints and keeps a text if the list does not contain it yet.
 void keep(std::string_view text, const char* kind, std::vector<std::string> State::*list) {
   State& s = state();
   std::unique_lock lock(s.mutex);
   if (const auto handle = s.handle) {
-    lock.unlock();  // it may wait for a lock that another thread holds while it logs
+    lock.unlock();  // `handle` may wait for a lock that another thread holds while it logs
     return handle(text);
   }
   if (std::find((s.*list).begin(), (s.*list).end(), text) != (s.*list).end()) return;

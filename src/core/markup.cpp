@@ -5,7 +5,7 @@
 namespace weft {
 
 std::string markup_text(const std::string& text) {
-  const std::string valid = parse_json(json_text(text));  // what is not UTF-8 is replaced there
+  const std::string valid = parse_json(json_text(text));  // replaces bytes that are not UTF-8
   std::string safe;
   for (const char c : valid) {
     if (c == '<')

@@ -1,14 +1,14 @@
-// What the system says of the memory of this process.
+// Memory of this process.
 #pragma once
 
 #include <cstdint>
 
 namespace weft {
 
-/// The most memory that the process held so far [bytes].
+/// Largest resident memory of this process so far [bytes].
 std::int64_t peak_memory_bytes();
 
-/// What it holds now [bytes].
+/// Current resident memory [bytes].
 std::int64_t memory_bytes();
 
 }  // namespace weft

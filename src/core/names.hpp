@@ -1,12 +1,12 @@
-// What may become part of a file's name.
+// Checks names that become part of file names.
 #pragma once
 
 #include <string_view>
 
 namespace weft {
 
-/// Whether a name from outside can name files as it is: it leads into no other folder, and no terminal, list or log
-/// reads it in another way. What is not ASCII is left to its writer.
+/// Whether a name from outside can be used in file names as it is: it leads into no other folder, and contains no
+/// control characters for terminals, lists or logs. Bytes beyond ASCII are not checked.
 inline bool is_plain_name(std::string_view name) {
   if (name.empty() || name == "." || name == "..") return false;
   for (const char c : name)

@@ -1,16 +1,16 @@
-// How deep TOML and JSON nest, found out before any parser or destructor recurses into them.
+// Nesting depth of TOML and JSON, checked before any parser or destructor recurses.
 #pragma once
 
 #include <string_view>
 
 namespace weft {
 
-/// Levels that a document may nest: lists, tables, and the parts of a dotted key. No scene has more than ten; a level
-/// takes less than 1 kB of a stack of 8 MB.
+/// Maximum nesting depth of a document: lists, tables, and the components of a dotted key. No scene has more than ten.
+/// Each level takes less than 1 kB of a stack of 8 MB.
 inline constexpr int kMaxDepth = 128;
 
-/// Whether TOML or JSON text nests deeper than kMaxDepth. Text that is neither may be called deep or not: its parser
-/// stops at the first mistake, before which this function counts at least as many levels as the parser makes.
+/// Whether TOML or JSON text nests deeper than kMaxDepth. The result is arbitrary for invalid text: up to the first
+/// mistake, at which the parser stops, this function counts at least as many levels as the parser creates.
 bool nests_too_deep(std::string_view text);
 
 }  // namespace weft

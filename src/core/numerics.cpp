@@ -5,7 +5,7 @@ namespace {
 
 constexpr Numerics chosen() {
   Numerics chosen;
-#ifdef WEFT_CHANGED_NUMERICS  // tests/tools/change_numerics.sh: a statement
+#ifdef WEFT_CHANGED_NUMERICS  // defined by tests/tools/change_numerics.sh, as a statement
   chosen.WEFT_CHANGED_NUMERICS;
 #endif
   return chosen;

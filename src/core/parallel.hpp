@@ -1,5 +1,5 @@
-// Deterministic parallel loops: the work is cut into chunks of a fixed size, whatever the number of threads, and
-// partial results are combined in chunk order, so the same input gives the same bits on 1 and on N threads.
+// Deterministic parallel loops: work is divided into chunks of a fixed size, and partial results are combined in the
+// order of chunks, so that the same input gives the same bits on any number of threads.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -11,12 +11,12 @@
 
 namespace weft {
 
-/// Upper limit on the threads used by parallel_for and parallel_sum; 0 takes all cores. Call before any loop runs.
+/// Sets the maximum number of threads of the loops below; 0: all cores. Call before any loop runs.
 void set_thread_count(int threads);
 int thread_count();
 
-/// Items of a chunk: of vectors and of lists of pairs, some 10 to 50 µs; and of what is dearer, a contact or a leaf.
-/// Sums have the bits of their chunks.
+/// Items per chunk, for 10 to 50 µs each: of vectors and lists of pairs; and of more expensive items (contacts,
+/// leaves). Changing them changes the bits of sums.
 inline constexpr std::size_t kGrainSize = 1024, kFineGrainSize = 256;
 
 /// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each. Chunks must write to disjoint
@@ -32,7 +32,7 @@ void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
   }
 }
 
-/// Does both, at the same time where there are threads; they must not depend on each other.
+/// Calls both, at the same time if there are threads; they must not depend on each other.
 template <class One, class Other>
 void parallel_invoke(const One& one, const Other& other) {
   if (thread_count() == 1) {
@@ -43,7 +43,7 @@ void parallel_invoke(const One& one, const Other& other) {
   }
 }
 
-/// Sum over [0, count) of body(begin, end) per chunk, numbers or vectors of them; the additions happen in chunk order.
+/// Sum of body(begin, end) over the chunks of [0, count), of numbers or vectors; added in the order of chunks.
 template <class Body>
 auto parallel_sum(std::size_t count, std::size_t chunk, const Body& body) {
   using Sum = decltype(body(std::size_t{0}, count));

@@ -1,4 +1,4 @@
-// Deterministic parallel loops that list what they find, or look for the largest.
+// Deterministic parallel loops that append to lists, or find a maximum.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,9 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Calls body(begin, end, list) for consecutive chunks of [0, count), `chunk` items each: it appends to the list what
-/// it finds, and `out` receives all of it in the order of the items. append(out, list) puts one list behind another.
+/// Calls body(begin, end, list) for consecutive chunks of [0, count) with `chunk` items each. The body appends its
+/// results to `list`; `out` receives all of them in the order of items. append(out, list) must append one list to
+/// another.
 template <class List, class Body>
 void parallel_append(std::size_t count, std::size_t chunk, List& out, const Body& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
@@ -25,13 +26,13 @@ void parallel_append(std::size_t count, std::size_t chunk, List& out, const Body
   for (const List& list : found) append(out, list);
 }
 
-/// The largest of body(begin, end) over chunks of [0, count), or `least` where that is larger.
+/// The maximum of `lower_bound` and body(begin, end) over the chunks of [0, count).
 template <class Number, class Body>
-Number parallel_max(std::size_t count, std::size_t chunk, Number least, const Body& body) {
-  std::vector<Number> largest((count + chunk - 1) / chunk, least);
+Number parallel_max(std::size_t count, std::size_t chunk, Number lower_bound, const Body& body) {
+  std::vector<Number> largest((count + chunk - 1) / chunk, lower_bound);
   parallel_for(count, chunk, [&](std::size_t begin, std::size_t end) { largest[begin / chunk] = body(begin, end); });
-  for (const Number& number : largest) least = std::max(least, number);
-  return least;
+  for (const Number& number : largest) lower_bound = std::max(lower_bound, number);
+  return lower_bound;
 }
 
 }  // namespace weft

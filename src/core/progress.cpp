@@ -16,8 +16,8 @@
 namespace weft {
 namespace {
 
-constexpr double kPaceWindow = 30;                      // [s] long enough to be steady, short enough to follow contacts
-constexpr std::chrono::milliseconds kBarInterval{200};  // smooth for the eye
+constexpr double kPaceWindow = 30;  // [s]; long enough to be steady, short enough to follow contacts
+constexpr std::chrono::milliseconds kBarInterval{200};         // smooth for the eye
 constexpr std::chrono::milliseconds kHeartbeatInterval{5000};  // a log of one hour stays below a thousand lines
 
 constexpr auto kSimulate = static_cast<std::size_t>(Stage::simulate);
@@ -58,10 +58,10 @@ std::optional<double> RemainingTime::seconds() const {
   std::optional<double> slowest;
   for (std::size_t stage = 0; stage < kStages; ++stage) {
     const int left = totals_[stage] - last.done[stage];
-    const int moved = last.done[stage] - first.done[stage];
-    // A stage that stood still, such as drawing before the first wanted frame, shows no pace.
-    if (moved <= 0 && left > 0) continue;
-    slowest = std::max(slowest.value_or(0.0), left > 0 ? left * span / moved : 0.0);
+    const int advanced = last.done[stage] - first.done[stage];
+    // A stage without progress, such as drawing before the first wanted frame, shows no pace.
+    if (advanced <= 0 && left > 0) continue;
+    slowest = std::max(slowest.value_or(0.0), left > 0 ? left * span / advanced : 0.0);
   }
   return slowest;
 }
@@ -70,17 +70,17 @@ std::string progress_bar(const StageCounts& done, const StageCounts& totals, std
                          int columns) {
   // Each frame of each stage counts the same: the bar moves from the start and is full only when all is written.
   const int all = std::max(1, totals[kSimulate] + totals[kDraw] + totals[kWrite]);
-  const double share = static_cast<double>(done[kSimulate] + done[kDraw] + done[kWrite]) / all;
+  const double fraction = static_cast<double>(done[kSimulate] + done[kDraw] + done[kWrite]) / all;
   constexpr int kCells = 12;
-  const int filled = std::clamp(static_cast<int>(share * kCells), 0, kCells);
+  const int filled = std::clamp(static_cast<int>(fraction * kCells), 0, kCells);
   std::string line =
-      fmt::format("[{:#>{}}{:->{}}] {:3.0f} %", "", filled, "", kCells - filled, std::floor(100 * share));
-  // Before the counts: it is what people look for, and a narrow terminal cuts the end.
+      fmt::format("[{:#>{}}{:->{}}] {:3.0f} %", "", filled, "", kCells - filled, std::floor(100 * fraction));
+  // Before the counts, because it matters most, and a narrow terminal cuts the end.
   if (seconds_left) line += fmt::format("  {} left", format_duration(*seconds_left));
   if (totals[kSimulate] > 0) line += fmt::format("  sim {}", done[kSimulate]);
   if (totals[kWrite] > 0) line += fmt::format("  drawn {}  written {}", done[kDraw], done[kWrite]);
   line += fmt::format(" of {}", totals[totals[kWrite] > 0 ? kWrite : kSimulate]);
-  // One column less than there are: a full line would wrap and could not be redrawn in place.
+  // One column less than available: a full line would wrap and could not be redrawn in place.
   if (columns > 0 && line.size() >= static_cast<std::size_t>(columns))
     line.resize(static_cast<std::size_t>(columns - 1));
   return line;

@@ -1,4 +1,4 @@
-// How far a run is and how long it will take: a bar on terminals, plain lines elsewhere, never silence for long.
+// Progress and remaining time of a run: a bar on terminals, otherwise regular lines.
 #pragma once
 
 #include <array>
@@ -22,15 +22,15 @@ using StageCounts = std::array<int, kStages>;
 /// "48 s", "3:07 min", "1:02:45 h".
 std::string format_duration(double seconds);
 
-/// Estimates the time left from the pace of the last half minute, because cloth gets slower as layers touch.
+/// Estimates the remaining time from the last half minute, because cloth becomes slower as layers touch.
 class RemainingTime {
  public:
   explicit RemainingTime(StageCounts totals) : totals_(totals) {}
 
-  /// Notes that `done` frames were finished `seconds` after the start; times must not decrease.
+  /// Records that `done` frames were finished `seconds` after the start. Times must not decrease.
   void sample(double seconds, const StageCounts& done);
 
-  /// Seconds left: the stages overlap, so the slowest decides. Nothing until two samples show a pace.
+  /// Seconds left, those of the slowest stage, as stages overlap. Nothing until two samples show a pace.
   std::optional<double> seconds() const;
 
  private:
@@ -42,7 +42,7 @@ class RemainingTime {
   std::deque<Sample> samples_;
 };
 
-/// `[######------]  50 %  12 s left  sim 60  drawn 57  written 55 of 120`, cut to `columns`.
+/// `[######------]  50 %  12 s left  sim 60  drawn 57  written 55 of 120`, truncated to `columns`.
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,
                          int columns);
 
@@ -50,18 +50,18 @@ std::string progress_bar(const StageCounts& done, const StageCounts& totals, std
 std::string progress_line(const StageCounts& done, const StageCounts& totals, double seconds,
                           std::optional<double> seconds_left);
 
-/// Shows progress from a thread of its own until it is destroyed.
+/// Shows progress from its own thread until it is destroyed.
 class Progress {
  public:
   enum class Style { automatic, bar, plain, none };
 
-  /// `totals`: frames that each stage will handle. Automatic: a bar if standard error is a terminal, else lines.
+  /// `totals`: frames of each stage. Automatic: a bar if standard error is a terminal, else lines.
   Progress(Style style, StageCounts totals);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// One more frame went through `stage`; one that has none to handle counts none. Safe from all threads.
+  /// Counts one more frame of `stage`; does nothing if the stage has no frames. Safe from all threads.
   void advance(Stage stage) {
     const auto s = static_cast<std::size_t>(stage);
     if (totals_[s] > 0) done_[s].fetch_add(1, std::memory_order_relaxed);
@@ -77,7 +77,7 @@ class Progress {
   std::mutex mutex_;
   std::condition_variable wake_;
   bool stopping_ = false;
-  std::thread thread_;  // last: starts when all else is there
+  std::thread thread_;  // last member: starts when all others exist
 };
 
 }  // namespace weft

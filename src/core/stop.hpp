@@ -1,4 +1,4 @@
-// A request to stop, as long computations see it.
+// Request to stop, which long computations poll.
 #pragma once
 
 #include <time.h>
@@ -9,22 +9,22 @@
 
 namespace weft {
 
-/// Time of the request on the monotonic clock [ns]; 0: there is none. A signal handler may set it.
+/// Time of the request on the monotonic clock [ns]; 0: no request. A signal handler may set it.
 inline std::atomic<long long> stop_requested_at{0};
 static_assert(std::atomic<long long>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-/// Time that work has from the request on to end by itself [ns]: most frames do, and then nothing of them is lost.
+/// Time after a request in which work may end by itself [ns]: most frames do, and are not lost.
 inline constexpr long long kStopGrace = 3'000'000'000;
 
-/// On the monotonic clock [ns]. Safe in a signal handler.
+/// Time on the monotonic clock [ns]. Safe in a signal handler.
 inline long long monotonic_ns() {
   timespec clock{};
   clock_gettime(CLOCK_MONOTONIC, &clock);
   return clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
 }
 
-/// Throws Error(interrupted) if a stop was requested longer than kStopGrace ago. Loops of a step that may take longer
-/// than that call it in each round.
+/// Throws Error(interrupted) if a stop was requested more than kStopGrace ago. Loops within a step that may take longer
+/// than that call it in each iteration.
 inline void end_if_stopped() {
   const long long requested = stop_requested_at.load(std::memory_order_relaxed);
   if (requested != 0 && monotonic_ns() - requested > kStopGrace)

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the signal handler may read: fixed memory, no locks. 64 is far above the few files a run has open at once.
+// Data that the signal handler reads: fixed memory, no locks. A run has far fewer than 64 files open at once.
 struct Slot {
   enum State : int { free, claimed, active };
   std::atomic<int> state{free};
@@ -53,7 +53,7 @@ std::string reason(int error) {
   throw Error(ExitCode::output_failed, "{}: {}: {}", file.string(), what, why);
 }
 
-bool is_called(const fs::path& path, int descriptor) {
+bool has_name(const fs::path& path, int descriptor) {
   struct stat open {
   }, named{};
   return ::fstat(descriptor, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
@@ -64,17 +64,17 @@ bool lock(int descriptor) {
   return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
 }
 
-// What nobody has locked is of a process that was killed.
+// Removes a temporary file without a lock: its process was killed.
 void remove_abandoned(const fs::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return;
   std::error_code ignored;
-  if (lock(descriptor) && is_called(path, descriptor)) fs::remove_all(path, ignored);
+  if (lock(descriptor) && has_name(path, descriptor)) fs::remove_all(path, ignored);
   ::close(descriptor);
 }
 
-// Makes a folder and removes what killed processes have left in it, once for each folder: somebody who removes it later
-// does not want what is still written there. False, with the reason, where it cannot be made.
+// Creates a folder and removes what killed processes have left in it, once per folder: if somebody removes it later,
+// further output is not wanted there. Returns false, with the reason, if it cannot be created.
 bool prepare_once(const fs::path& folder, std::error_code& error) {
   static std::mutex mutex;
   static std::set<fs::path> prepared;
@@ -90,18 +90,18 @@ bool prepare_once(const fs::path& folder, std::error_code& error) {
 }
 
 std::mutex g_kept_mutex;
-std::set<fs::path> g_kept;  // absolute; see keep_if_made_meanwhile()
+std::set<fs::path> g_kept;  // absolute paths; see keep_if_made_meanwhile()
 
-fs::path plain(const fs::path& file) {
+fs::path normalise(const fs::path& file) {
   std::error_code error;
   return fs::absolute(file, error).lexically_normal();
 }
 
-// Gives a file a name that is free: what has the name stays, with errno EEXIST.
+// Renames a file if the new name is free; otherwise fails with errno EEXIST.
 bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
-  // Such a file system may still have hard links.
+  // Without RENAME_NOREPLACE, the file system may still have hard links.
   if (::link(from.c_str(), to.c_str()) == 0) return ::unlink(from.c_str()) == 0;
   if (errno == EEXIST) return false;
   struct stat status {};
@@ -112,8 +112,8 @@ bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   return std::rename(from.c_str(), to.c_str()) == 0;
 }
 
-// Makes what the name stands for and locks it. A cleaning process may take it away before it is locked: then again.
-int hold(const fs::path& path, TemporaryName::Kind kind) {
+// Creates the file or folder and locks it. Tries again if a process that cleans up removes it before it is locked.
+int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
   constexpr int kAttempts = 10;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (kind == TemporaryName::Kind::folder && ::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) return -1;
@@ -121,8 +121,8 @@ int hold(const fs::path& path, TemporaryName::Kind kind) {
     const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno != ENOENT) return -1;
     if (descriptor < 0) continue;
-    // A file system without locks has no cleaning either.
-    if ((lock(descriptor) || errno != EWOULDBLOCK) && is_called(path, descriptor)) return descriptor;
+    // On a file system without locks, no process cleans up either.
+    if ((lock(descriptor) || errno != EWOULDBLOCK) && has_name(path, descriptor)) return descriptor;
     ::close(descriptor);
     errno = EBUSY;
   }
@@ -132,20 +132,20 @@ int hold(const fs::path& path, TemporaryName::Kind kind) {
 }  // namespace
 
 TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
-  // Absolute, so that the name stays right whatever happens to the working folder.
+  // Absolute, so that the name stays valid if the working folder changes.
   std::error_code error;
   const fs::path absolute = fs::absolute(final_name, error);
   if (error || !prepare_once(absolute.parent_path(), error))
     fail(final_name, "cannot make the folder", error.message());
   path_ = absolute.parent_path() / fmt::format(".{}.weft-{}.tmp", absolute.filename().string(), ::getpid());
-  descriptor_ = hold(path_, kind);
+  descriptor_ = create_and_lock(path_, kind);
   if (descriptor_ < 0) fail(final_name, "cannot be written", reason(errno));
   if (kind == Kind::file) slot_ = claim_slot(path_.string());
 }
 
 TemporaryName::~TemporaryName() {
   const fs::path path = path_;
-  // A file goes without a descriptor, of which there may be none left, a folder with that of its lock.
+  // A file is removed without its descriptor, as there may be none left; a folder after its lock is released.
   const bool removed = path.empty() || ::unlink(path.c_str()) == 0;
   release();
   std::error_code ignored;
@@ -161,8 +161,8 @@ void TemporaryName::release() {
 
 namespace {
 
-// A rename onto a folder would fail after all the work, and one onto /dev/null would replace the device.
-const fs::path& checked(const fs::path& final_name) {
+// Renaming onto a folder would fail after all the work, and onto /dev/null would replace the device.
+const fs::path& require_file_name(const fs::path& final_name) {
   std::error_code ignored;
   const auto status = fs::status(final_name, ignored);
   if (!final_name.has_filename() || (fs::exists(status) && !fs::is_regular_file(status)))
@@ -174,11 +174,11 @@ const fs::path& checked(const fs::path& final_name) {
 }  // namespace
 
 TemporaryFile::TemporaryFile(fs::path final_name)
-    : final_name_(std::move(final_name)), temporary_(checked(final_name_), TemporaryName::Kind::file) {}
+    : final_name_(std::move(final_name)), temporary_(require_file_name(final_name_), TemporaryName::Kind::file) {}
 
 void TemporaryFile::commit(Flush flush) {
   const bool replaces = may_replace(final_name_);
-  // Without the flush a crash of the machine soon after the rename can leave an empty file under the final name.
+  // Without the flush, a crash of the machine soon after the rename can leave an empty file under the final name.
   const bool good =
       (flush == Flush::no || ::fsync(temporary_.descriptor()) == 0 || errno == EINVAL) &&
       (replaces ? std::rename(path().c_str(), final_name_.c_str()) == 0 : rename_to_free_name(path(), final_name_));
@@ -190,17 +190,17 @@ void TemporaryFile::commit(Flush flush) {
   if (!good) fail(final_name_, "cannot be written", reason(errno));
   temporary_.release();
   const std::lock_guard lock(g_kept_mutex);
-  g_kept.erase(plain(final_name_));
+  g_kept.erase(normalise(final_name_));
 }
 
 void keep_if_made_meanwhile(const fs::path& file) {
   const std::lock_guard lock(g_kept_mutex);
-  g_kept.insert(plain(file));
+  g_kept.insert(normalise(file));
 }
 
 bool may_replace(const fs::path& file) {
   const std::lock_guard lock(g_kept_mutex);
-  return !g_kept.contains(plain(file));
+  return !g_kept.contains(normalise(file));
 }
 
 std::string_view final_name_of(std::string_view name) {
@@ -236,7 +236,7 @@ void write_file(const fs::path& file, std::string_view content, Flush flush) {
   try {
     temporary.commit(flush);
   } catch (const Error&) {
-    if (!is_there()) throw;  // else another machine was first
+    if (!is_there()) throw;  // otherwise another machine was first
   }
 }
 

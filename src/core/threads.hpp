@@ -1,9 +1,9 @@
-// How the threads of a cloth lie, as it is drawn.
+// Structure of the threads of a cloth, as it is drawn.
 #pragma once
 
 namespace weft {
 
-/// In the order of shaders/weave.glsl. `denim`: a twill whose weft is undyed. `none`: pressed fibres, or hide.
+/// In the order of shaders/weave.glsl. `denim`: a twill with undyed weft. `none`: pressed fibres, or leather.
 enum class Threads { plain, twill, denim, knit, none };
 
 }  // namespace weft

@@ -31,7 +31,7 @@ inline double process_cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// What a stage of the work takes.
+/// Time that a stage of the work takes.
 struct StageTime {
   double wall_s = 0, cpu_s = 0;
 
@@ -47,9 +47,9 @@ struct StageTime {
   }
 };
 
-/// Where nothing but one line of work runs in the process: from here on stages are charged with the CPU time of all
-/// threads, those that help in parallel loops among them. Else with that of the thread that they run in, for beside a
-/// simulation others draw and encode. Call before any stage runs.
+/// Whether stages are charged with the CPU time of all threads, including those that help in parallel loops; correct
+/// only if the process runs nothing else. Otherwise they are charged with that of the calling thread, as other threads
+/// draw and encode beside a simulation. Set it before any stage runs.
 inline bool stages_have_all_threads = false;
 
 /// Adds the wall and CPU time of a scope to those of a stage.
@@ -68,7 +68,7 @@ class Stopwatch {
   double cpu_start_ = cpu_seconds();
 };
 
-/// What `work` takes.
+/// Time that `work` takes.
 template <class Work>
 StageTime timed(const Work& work) {
   StageTime stage;

@@ -1,4 +1,4 @@
-// The one way to TOML from text.
+// Parses TOML.
 #pragma once
 
 #include <toml++/toml.h>
@@ -9,7 +9,7 @@
 
 namespace weft {
 
-/// Throws toml::parse_error, also for what nests too deep. `source`: that nodes tell as the path of their file.
+/// Throws toml::parse_error, also if the text nests too deep. `source`: file path that the nodes report.
 inline toml::table parse_toml(std::string_view text, std::string_view source = {}) {
   if (nests_too_deep(text))
     throw toml::parse_error("expected at most 128 levels of lists, tables and dotted keys, got more",

@@ -20,12 +20,12 @@ using Box3 = Eigen::AlignedBox3d;
 /// Index of a particle, a vertex or a face.
 using Index = std::int32_t;
 
-/// An index, never negative, as the place of an element.
+/// Converts an index, which must not be negative, to a container position.
 inline std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Ratios and lengths [m] far above rounding, and far below any that matters.
+/// Tolerance for ratios and lengths [m]: far above rounding, far below any relevant size.
 inline constexpr double kRoundoff = 1e-9;
 
 inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]

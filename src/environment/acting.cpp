@@ -31,28 +31,28 @@
 namespace weft::environment {
 namespace {
 
-/// Clips with fewer or more keys a second than this are sampled at these rates [1/s].
-constexpr double kLeastRate = 10, kMostRate = 120;
+/// Bounds of the rate of key frames that follows from the rate of a clip [1/s].
+constexpr double kMinKeyRate = 10, kMaxKeyRate = 120;
 
-/// A body that grows or lowers its arms takes at least so many keys a second.
+/// Smallest rate of key frames of a body that grows or lowers its arms [1/s].
 constexpr double kDressingRate = 25;
 
-/// Key frames of one character [bytes]; more than that, and somebody has mistyped a rate.
-constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
+/// Largest size of the key frames of one character [bytes]; a larger one suggests a mistyped rate.
+constexpr std::size_t kMaxKeyFrameBytes = std::size_t{8} << 30;
 
-/// Ends of a clip that are further apart do not close to the eye [m].
-constexpr double kGap = 1e-3;
+/// Largest distance between the ends of a clip that is not visible [m].
+constexpr double kMaxInvisibleGap = 1e-3;
 
-/// Feet that miss the speed of the body by more slide by more than 5 cm a step of 0.7 m [1].
-constexpr double kFeetMiss = 0.07;
+/// Largest relative difference of the speeds of feet and body that is not reported: 5 cm of sliding in a step of 0.7 m.
+constexpr double kMaxFootSlide = 0.07;
 
-/// A trunk that points up, in the mean over a motion, by more than this stands [1].
-constexpr double kStands = 0.7;
+/// Smallest vertical component of the trunk's direction, averaged over a motion, of a body that stands.
+constexpr double kMinUprightness = 0.7;
 
-/// A body whose soles at rest are further from the origin of its file has that elsewhere, such as in its middle [m].
-constexpr double kOffFloor = 0.05;
+/// Largest distance of the soles at rest from the origin of a file whose origin is on the floor, not in the body [m].
+constexpr double kMaxSoleOffset = 0.05;
 
-/// The clip that the scene names, or the first.
+/// The clip that the scene names, or else the first one.
 const character::Clip& choose_clip(const Cast& cast, const std::optional<std::string>& name,
                                    const std::vector<character::Clip>& clips, const std::string& source) {
   if (!name) return clips.front();
@@ -76,7 +76,7 @@ void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::v
                                  source, fmt::join(names, "\", \"")));
 }
 
-/// Formats that do not say which axis is up: of these y is, as is usual, unless the bodies in the file stand along z.
+/// Loads a motion file. If its format does not say which axis is up (BVH), y is up, unless bodies in it stand along z.
 assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acting,
                                      std::vector<std::string>& warnings) {
   const auto load = [&](scene::FileUp up) {
@@ -90,7 +90,7 @@ assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acti
   const Vec3 trunk = character::mean_trunk({motion.character, joints}, clip);
   const Mat3 from_y = assets::turn_up(1, cast.scene.up), from_z = assets::turn_up(2, cast.scene.up);
   const double along_y = trunk.dot(cast.up()), along_z = (from_z * from_y.transpose() * trunk).dot(cast.up());
-  if (along_z < kStands || along_y > along_z) return motion;
+  if (along_z < kMinUprightness || along_y > along_z) return motion;
   warnings.push_back(
       fmt::format("{}: motion file {}: bodies stand along z, which is taken to be up; if y is, write "
                   "motion_up = \"y\"",
@@ -103,7 +103,7 @@ double leg_length(const character::Rig& rig) {
   return skeleton.leg_length(skeleton.at(character::rest_pose(rig.character)));
 }
 
-/// The clip with the way that the scene asks for. `size`: of the body by that of the skeleton whose clip it is.
+/// The clip with the travel that the scene asks for. `size`: of the body, relative to the skeleton of the clip.
 character::Clip travel(const Cast& cast, const scene::Acting& acting, const character::Rig& rig,
                        const character::Clip& clip, double size, std::vector<std::string>& warnings) {
   if (acting.travel.kind == scene::Travel::Kind::file || clip.duration <= 0) return clip;
@@ -114,7 +114,7 @@ character::Clip travel(const Cast& cast, const scene::Acting& acting, const char
   if (feet == 0) {
     warnings.push_back(
         fmt::format("{}: travel: clip \"{}\" takes no steps: feet slide at {:g} m/s", cast.where, clip.name, speed));
-  } else if (std::abs(feet - speed) > kFeetMiss * feet) {
+  } else if (std::abs(feet - speed) > kMaxFootSlide * feet) {
     warnings.push_back(
         fmt::format("{}: travel: feet of clip \"{}\" go at {:.3g} m/s and slide at {:g} m/s; speed = {:.3g} would make "
                     "them fit",
@@ -123,13 +123,13 @@ character::Clip travel(const Cast& cast, const scene::Acting& acting, const char
   return std::move(traveled.clip);
 }
 
-/// Puts the soles of a body at the origin of its file, so that a motion of another walks on the floor.
+/// Moves the soles of a body to the origin of its file, so that a motion from another file walks on the floor.
 void put_on_floor(const Cast& cast, Body& body) {
   const Vec3 up = cast.up();
   std::vector<Vec3> x(body.character.mesh.positions.size());
   character::skin(body.character, character::rest_pose(body.character), x);
   const double soles = up.dot(std::ranges::min(x, {}, [&](const Vec3& v) { return up.dot(v); }));
-  if (std::abs(soles) < kOffFloor) return;
+  if (std::abs(soles) < kMaxSoleOffset) return;
   for (character::Node& node : body.character.nodes)
     if (node.parent < 0) node.local.pretranslate(-soles * up);
   body.warnings.push_back(
@@ -137,8 +137,8 @@ void put_on_floor(const Cast& cast, Body& body) {
                   body.source, std::abs(soles), soles < 0 ? "below" : "above"));
 }
 
-/// The clip of another skeleton, on this one.
-character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& body) {
+/// Retargets the clip of a motion file to the body.
+character::Clip retarget_motion(const Cast& cast, const scene::Acting& acting, Body& body) {
   const std::string file = acting.motion->string();
   assets::LoadedCharacter motion = load_upright(cast, acting, body.warnings);
   body.warnings.insert(body.warnings.end(), motion.warnings.begin(), motion.warnings.end());
@@ -163,7 +163,7 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
   return std::move(result.clip);
 }
 
-/// What cloths of the scene are in the same file: that is no part of the body.
+/// Objects of the file that cloths of the scene use, and that are therefore no part of the body.
 std::vector<std::string> taken_by_cloths(const Cast& cast, const std::filesystem::path& file) {
   std::vector<std::string> taken;
   std::error_code ignored;
@@ -174,7 +174,7 @@ std::vector<std::string> taken_by_cloths(const Cast& cast, const std::filesystem
   return taken;
 }
 
-/// The body as its file has it, without what cloths take from that.
+/// The body in a file, without the objects that cloths use.
 Body make_body(const Cast& cast, const scene::CharacterFile& source) {
   assets::LoadedCharacter loaded = assets::load_character(
       source.path, cast.axes(), cast.where, {source.meshes, source.without, taken_by_cloths(cast, source.path)});
@@ -191,18 +191,18 @@ Body make_body(const Cast& cast, const scene::Mannequin& source) {
     body.character.clips.push_back(character::make_walk(
         body.character,
         {.speed = source.pace, .distance = source.walk, .turn_back = source.turn_back, .arms_out = source.arms_out}));
-  // Shapes with their axis along z are turned the same way.
+  // Shapes with their axis along z are turned in the same way.
   const Mat3 z_to_y{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
   if (cast.scene.up == scene::UpAxis::y) assets::transform(body.character, 1, z_to_y);
   return body;
 }
 
-/// The body with the clip that it plays, if it plays one.
+/// The body, with the clip that it plays if it plays one.
 template <class Source>
-Body cast_body(const Cast& cast, const Source& source) {
+Body make_playing_body(const Cast& cast, const Source& source) {
   Body body = make_body(cast, source);
   if (source.motion) {
-    body.clip = take_over(cast, source, body);
+    body.clip = retarget_motion(cast, source, body);
   } else if (source.clip || !body.character.clips.empty()) {
     const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
     body.clip = travel(cast, source, {body.character, joints},
@@ -217,9 +217,9 @@ Body cast_body(const Cast& cast, const Source& source) {
   return body;
 }
 
-/// Adds what goes with a pin to the vertices of the body, of which it has `vertices` itself.
-void follow(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& parts, const character::Pose& start,
-            std::size_t vertices, character::Character& body) {
+/// Adds the particles of a pin to the vertices of the body. `vertices`: number of vertices that the body has itself.
+void add_following_pin(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& parts,
+                       const character::Pose& start, std::size_t vertices, character::Character& body) {
   character::VertexMask mask(vertices, 1);
   if (!pin.part.empty()) mask = std::ranges::find(parts, pin.part, &Part::name)->vertices;
   const scene::Pose& pose = cast.settings.pose;
@@ -228,14 +228,14 @@ void follow(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& 
   character::add_followers(body, start, mask, places);
 }
 
-/// When a run begins [s].
+/// Start of the run [s].
 double begin_of(const scene::Scene& scene) {
   return -scene.preroll_frames() / scene.time.fps;
 }
 
-/// Which key frames a character needs, k / rate for k from first on.
+/// Times of the key frames of a character: k / rate, for `count` numbers k from `first` on.
 struct KeyTimes {
-  double rate = kLeastRate;  // [1/s]
+  double rate = kMinKeyRate;  // [1/s]
   long first = 0;
   std::size_t count = 1;
 
@@ -245,17 +245,17 @@ struct KeyTimes {
   }
 };
 
-/// `clip_rate`: keys a second of what is sampled; 0 if it does not move.
+/// `clip_rate`: key frames per second of the motion that is sampled; 0 if it does not move.
 KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   const scene::Character& settings = cast.settings;
   KeyTimes times;
   const double duration = cast.scene.time.duration, begin = begin_of(cast.scene);
-  const bool grows = settings.grow > 0, moves = (clip_rate > 0 || changes_stance) && duration > cast.leaves();
+  const bool grows = settings.grow > 0, moves = (clip_rate > 0 || changes_stance) && duration > cast.motion_start();
   if (!grows && !moves) return times;
-  times.rate = settings.keys_per_second.value_or(std::clamp(clip_rate * settings.speed, kLeastRate, kMostRate));
+  times.rate = settings.keys_per_second.value_or(std::clamp(clip_rate * settings.speed, kMinKeyRate, kMaxKeyRate));
   if (!settings.keys_per_second && (grows || changes_stance)) times.rate = std::max(times.rate, kDressingRate);
-  times.first = static_cast<long>(std::floor((grows ? begin : cast.leaves()) * times.rate));
-  // One key past the end, so that the last moment still has its velocity.
+  times.first = static_cast<long>(std::floor((grows ? begin : cast.motion_start()) * times.rate));
+  // Add a key past the end, so that the velocity at the end is defined.
   const double end = moves ? duration : begin + settings.grow;
   times.count = static_cast<std::size_t>(static_cast<long>(std::ceil(end * times.rate)) + 2 - times.first);
   return times;
@@ -263,12 +263,12 @@ KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
 
 void check_memory(const Cast& cast, const KeyTimes& times, std::size_t vertices) {
   const std::size_t bytes = times.bytes(vertices, cast.settings.interpolation);
-  if (bytes > kMaxBytes)
+  if (bytes > kMaxKeyFrameBytes)
     cast.fail("keys_per_second", fmt::format("expected at most {} bytes of key frames, got {}: {} of {} vertices",
-                                             kMaxBytes, bytes, times.count, vertices));
+                                             kMaxKeyFrameBytes, bytes, times.count, vertices));
 }
 
-/// Samples a body: `vertices_at` writes where its vertices are at a time of the scene.
+/// Samples a body at the times of its key frames. `vertices_at` writes its vertices at a time of the scene.
 KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
                  const std::function<void(double, std::vector<Vec3>&)>& vertices_at) {
   check_memory(cast, times, vertices);
@@ -290,7 +290,7 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
           cast.settings.dressing > 0};
 }
 
-/// Warns of a body whose file must have meant another unit.
+/// Warns of a body whose size suggests that its file has another unit.
 void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body) {
   std::vector<Vec3> x(body.character.mesh.positions.size());
   character::skin(body.character, character::rest_pose(body.character), x);
@@ -300,7 +300,7 @@ void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body
 
 void check_size(const Cast&, const scene::Mannequin&, Body&) {}
 
-/// The body and the clip must outlive it.
+/// The motion that a body performs. The body and the clip must outlive it.
 template <class Source>
 character::Performance performance_of(const Cast& cast, const Source& source, const Body& body,
                                       const character::Clip& clip) {
@@ -315,14 +315,14 @@ character::Performance performance_of(const Cast& cast, const Source& source, co
 }
 
 template <class Source>
-Standing stand_as(const Cast& cast, const Source& source, const std::string& /*where*/) {
-  const Body body = cast_body(cast, source);
+StandingBody make_standing(const Cast& cast, const Source& source, const std::string& /*where*/) {
+  const Body body = make_playing_body(cast, source);
   const character::Character& character = body.character;
   const character::Clip still;
   const character::Pose pose =
       performance_of(cast, source, body, body.clip ? *body.clip : still).at(begin_of(cast.scene));
   const scene::Pose& placed = cast.settings.pose;
-  Standing standing;
+  StandingBody standing;
   standing.mesh = character.mesh;
   character::skin(character, pose, standing.mesh.positions);
   for (Vec3& x : standing.mesh.positions) x = placed.position + placed.rotation * x;
@@ -336,19 +336,19 @@ Standing stand_as(const Cast& cast, const Source& source, const std::string& /*w
   return standing;
 }
 
-Standing stand_as(const Cast& cast, const scene::MeshSequence& /*source*/, const std::string& where) {
+StandingBody make_standing(const Cast& cast, const scene::MeshSequence& /*source*/, const std::string& where) {
   throw Error(ExitCode::scene_invalid,
               "{}: expected a wearer with bones for a pattern with panels around its parts, got '{}', a sequence of "
               "meshes",
               where, cast.settings.name);
 }
 
-/// Room for cloth between its limbs and under it, if cloth is there.
+/// Space for cloth between the limbs and under the body; none if no cloth is near.
 template <class Source>
 std::optional<character::Room> room_of(const Cast& cast, const Source& source, const Body& body,
                                        const character::Performance& performance, const std::vector<Part>& parts,
                                        std::span<const ClothAtStart> cloths) {
-  const double room = room_between_limbs(cast);
+  const double room = clearance_between_limbs(cast);
   if (room == 0 || !body.clip) return std::nullopt;
   std::vector<float> near_cloth = nearness_of_cloths(cast, body.character, performance, cloths);
   if (std::ranges::all_of(near_cloth, [](float near) { return near <= 0; })) return std::nullopt;
@@ -360,8 +360,8 @@ std::optional<character::Room> room_of(const Cast& cast, const Source& source, c
   return character::Room({body.character, joints}, touched, std::move(near_cloth), room, grounds_below(cast));
 }
 
-/// Where and how far the skin of a body gave way most, over its keys.
-struct MostMoved {
+/// The largest displacement of the skin over all keys, with its time and place.
+struct MaxDisplacement {
   character::Moved moved;
   double time = 0;  // [s]
   Vec3 place{0, 0, 0};
@@ -372,11 +372,11 @@ struct MostMoved {
   }
 };
 
-/// Displacements of skin that nobody sees are not reported [m].
-constexpr double kReportedMove = 1e-3;
+/// Smallest displacement of skin that is reported [m]; smaller ones are not visible.
+constexpr double kMinReportedDisplacement = 1e-3;
 
-std::optional<std::string> describe(const Cast& cast, const MostMoved& most) {
-  if (most.moved.distance < kReportedMove) return std::nullopt;
+std::optional<std::string> describe(const Cast& cast, const MaxDisplacement& most) {
+  if (most.moved.distance < kMinReportedDisplacement) return std::nullopt;
   const Vec3 x = cast.settings.pose.position + cast.settings.pose.rotation * most.place;
   return fmt::format(
       "{}: room: skin of the {} moves by up to {:.3g} mm, at ({:.3g}, {:.3g}, {:.3g}) m and {:.3g} s, to leave cloth "
@@ -387,12 +387,12 @@ std::optional<std::string> describe(const Cast& cast, const MostMoved& most) {
 template <class Source>
 Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> following,
           std::span<const ClothAtStart> cloths) {
-  Body body = cast_body(cast, source);
+  Body body = make_playing_body(cast, source);
   check_size(cast, source, body);
   const character::Clip still;
   const character::Clip& clip = body.clip ? *body.clip : still;
   const character::Performance performance = performance_of(cast, source, body, clip);
-  if (const double gap = performance.gap(); gap > kGap)
+  if (const double gap = performance.gap(); gap > kMaxInvisibleGap)
     body.warnings.push_back(
         fmt::format("{}: clip \"{}\" does not close: its end and its beginning are {:.3g} m apart; "
                     "a crossfade would join them",
@@ -400,19 +400,19 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   std::vector<Part> parts = parts_of(cast, source, following, body);
   const std::size_t vertices = body.character.mesh.positions.size();
   const std::optional<character::Room> room = room_of(cast, source, body, performance, parts, cloths);
-  MostMoved moved;
+  MaxDisplacement moved;
   std::vector<Index> limbs;
   for (const character::Limb limb : character::limbs_of(
            body.character, joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source)))
     limbs.push_back(static_cast<Index>(limb));
   const character::Pose start = performance.at(begin_of(cast.scene));
-  for (const FollowingPin& pin : following) follow(cast, pin, parts, start, vertices, body.character);
+  for (const FollowingPin& pin : following) add_following_pin(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
-  std::vector<Vec3> bones;  // of the vertices, not of what follows
+  std::vector<Vec3> bones;  // without particles of following pins
   if (cast.settings.grow > 0) bones = character::places_on_bones(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
   const std::vector<character::Ground> grounds = grounds_below(cast);
-  std::vector<double> lowest;  // over the floor, at each key
+  std::vector<double> lowest;  // height of the lowest vertex over the floor at each key [m]
   KeyFrames keys = sample(cast, times, body.character.mesh.positions.size(), [&](double t, std::vector<Vec3>& x) {
     const character::Pose pose = performance.at(t);
     character::skin(body.character, pose, x);
@@ -461,7 +461,7 @@ KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertice
 
 template <class Source>
 KeyFrameCount count(const Cast& cast, const Source& source) {
-  Body body = cast_body(cast, source);
+  Body body = make_playing_body(cast, source);
   KeyFrameCount counted =
       count(cast, key_times(cast, body.clip ? character::key_rate(*body.clip) : 0, source.stance_arms.has_value()),
             body.character.mesh.positions.size());
@@ -484,9 +484,10 @@ Actor make_actor(const scene::Scene& scene, const scene::Character& character, s
   return std::visit([&](const auto& source) { return act(cast, source, following, cloths); }, character.source);
 }
 
-Standing stand(const scene::Scene& scene, const scene::Character& character, const std::string& where) {
+StandingBody make_standing_body(const scene::Scene& scene, const scene::Character& character,
+                                const std::string& where) {
   const Cast cast = make_cast(scene, character);
-  return std::visit([&](const auto& source) { return stand_as(cast, source, where); }, character.source);
+  return std::visit([&](const auto& source) { return make_standing(cast, source, where); }, character.source);
 }
 
 KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character) {

@@ -10,7 +10,7 @@
 namespace weft::environment {
 namespace {
 
-/// Finds the vertices of a part of the scene, or one that is known by its name alone.
+/// Finds the vertices of a part that the scene describes, or that is known by its name alone.
 class PartFinder {
  public:
   PartFinder(const Cast& cast, const scene::Acting& acting, const Body& body)
@@ -18,7 +18,7 @@ class PartFinder {
         body_(body),
         joints_(joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source)) {}
 
-  /// `key`: what messages name.
+  /// `key`: of the part, for messages.
   character::VertexMask find(const scene::BodyPart& part, const std::string& key) const {
     character::VertexMask mask = vertices_of(part, key);
     const auto holds = [&](const auto& t) { return mask[t[0]] + mask[t[1]] + mask[t[2]] >= 2; };
@@ -55,8 +55,8 @@ class PartFinder {
   std::vector<Index> joints_;
 };
 
-/// Whether the scene has its own say on a hand.
-bool says_hands(const std::vector<scene::BodyPart>& parts) {
+/// Whether the scene has settings for a hand.
+bool has_hand_settings(const std::vector<scene::BodyPart>& parts) {
   const std::vector<Index> hands = character::joints_of_part("hands");
   return std::ranges::any_of(parts, [&](const scene::BodyPart& part) {
     const std::vector<Index> joints = character::joints_of_part(part.name);
@@ -77,7 +77,7 @@ std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::s
                            Body& body) {
   const PartFinder finder(cast, acting, body);
   std::vector<scene::BodyPart> wanted = cast.settings.parts;
-  if (!says_hands(wanted) && cast.settings.collide && finder.has_fingers()) {
+  if (!has_hand_settings(wanted) && cast.settings.collide && finder.has_fingers()) {
     wanted.push_back(part_named("hands"));
     wanted.back().collide = false;
     body.warnings.push_back(

@@ -1,4 +1,4 @@
-// Parts of a character: those of the scene, those that its pins follow, and hands that are left out by themselves.
+// Parts of a character: those of the scene, those that pins follow, and hands that are left out by default.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace weft::environment {
 
-/// Finds their vertices; says in the warnings of the body where hands are left out. Throws Error(scene_invalid) for
-/// parts that hold no triangle, and for what is neither part, joint, bone nor material of it.
+/// Finds the vertices of each part; warns in the body if it leaves out hands by default. Throws Error(scene_invalid)
+/// for a part that holds no triangle, and for a name that is no part, joint, bone or material of the body.
 std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::span<const FollowingPin> following,
                            Body& body);
 

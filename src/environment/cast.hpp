@@ -1,4 +1,4 @@
-// A character of the scene with its file, how messages name it, and which nodes of its skeleton are which joints.
+// A character of the scene with its file, its name in messages, and the nodes of its skeleton that are joints.
 #pragma once
 
 #include <optional>
@@ -12,16 +12,16 @@
 
 namespace weft::environment {
 
-/// What there is to be sampled.
+/// A body with what is needed to sample its motion.
 struct Body {
-  std::string source;  ///< for messages: the file it is from
+  std::string source;  ///< file that it comes from, for messages
   character::Character character;
   std::optional<character::Clip> clip;
   std::vector<std::string> warnings;
-  double scale = 1;  ///< metres per unit of the file, as it or the scene says
+  double scale = 1;  ///< metres per unit of the file, from the file or the scene
 };
 
-/// A character of the scene, and how messages name it.
+/// A character of the scene, and its name in messages.
 struct Cast {
   const scene::Scene& scene;
   const scene::Character& settings;
@@ -29,25 +29,25 @@ struct Cast {
 
   Vec3 up() const { return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY(); }
   assets::FileAxes axes() const { return {settings.scale, settings.up, scene.up}; }
-  /// When it begins to move [s].
-  double leaves() const { return settings.dressing - scene.preroll_frames() / scene.time.fps; }
-  character::Timing timing() const { return {leaves(), settings.blend, settings.start, settings.speed}; }
+  /// Time at which it begins to move [s].
+  double motion_start() const { return settings.dressing - scene.preroll_frames() / scene.time.fps; }
+  character::Timing timing() const { return {motion_start(), settings.blend, settings.start, settings.speed}; }
 
-  /// Throws Error(scene_invalid) for a key of it.
+  /// Throws Error(scene_invalid) for one of its keys.
   [[noreturn]] void fail(const std::string& key, const std::string& why) const;
 };
 
 Cast make_cast(const scene::Scene& scene, const scene::Character& settings);
 
-/// "; did you mean ...?", or nothing.
+/// "; did you mean ...?", or an empty text.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known);
 
-/// The node of a file that a [[character.joint]] names. Throws Error(scene_invalid) where there is none.
+/// The node of a file that a [[character.joint]] names. Throws Error(scene_invalid) if there is none.
 Index named_node(const Cast& cast, const std::string& key, const std::string& name,
                  const std::vector<character::Node>& nodes, const std::string& source);
 
-/// The nodes of a skeleton that have the parts of joint_names(), found by their names or as the scene says; −1 for
-/// those that are not found. Throws Error(scene_invalid) for names that are none.
+/// The nodes of a skeleton that are the joints of joint_names(), found by their usual names or as the scene says; −1
+/// for a joint that is not found. Throws Error(scene_invalid) for names of the scene that do not exist.
 std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
                              std::optional<std::string> scene::JointNames::*name, const character::Character& character,
                              const std::string& source);

@@ -18,13 +18,13 @@
 namespace weft::environment {
 namespace {
 
-// A share below this is that of no particle: half a level of a picture.
-constexpr double kLeastShare = 0.5 / 255;
-// What is held is held whole, with a share from this on.
-constexpr double kHeld = 0.5;
+// Smallest fraction that counts: half a level of an 8-bit picture.
+constexpr double kMinFraction = 0.5 / 255;
+// Smallest fraction at which a pin without a strength holds a particle; it then holds it fully.
+constexpr double kMinHeldFraction = 0.5;
 
-/// Grey of a picture at (u, v), v upward, from 0 to 1, times its opacity; linear between the middles of its pixels, and
-/// outside of them that of the nearest.
+/// Grey value in [0, 1] of a picture at (u, v), with v upward, times its opacity. Interpolates linearly between the
+/// centres of pixels; outside them, uses the nearest pixel.
 double grey_at(const image::Picture& picture, const Vec2& uv) {
   const auto pixel = [&](int x, int y) {
     x = std::clamp(x, 0, picture.width - 1);
@@ -41,50 +41,50 @@ double grey_at(const image::Picture& picture, const Vec2& uv) {
          t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
 }
 
-/// Finds the particles of the parts of one cloth.
-class Chooser {
+/// Finds the particles of regions of one cloth.
+class ParticleFinder {
  public:
-  Chooser(const scene::Cloth& cloth, const assets::LoadedMesh& file, const ClothObject& object)
+  ParticleFinder(const scene::Cloth& cloth, const assets::LoadedMesh& file, const ClothObject& object)
       : from_file_(cloth.shape == scene::ClothShape::mesh), file_(file), object_(object) {}
 
-  /// `key`: of the part, for messages.
+  /// Particles of a region, with their fractions. `key`: of the region, for messages.
   std::vector<Chosen> part(const scene::ClothPart& part, const std::string& key) const {
-    std::vector<double> shares(object_.fractions.size());
+    std::vector<double> fractions(object_.fractions.size());
     if (part.at) {
-      along_rope(*part.at, shares);
+      along_rope(*part.at, fractions);
     } else if (!part.panel.empty()) {
-      on_panel(part, key, shares);
+      on_panel(part, key, fractions);
     } else {
-      for (std::size_t i = 0; i < shares.size(); ++i)
-        shares[i] = part.holds(object_.fractions[i].x(), object_.fractions[i].y()) ? 1 : 0;
-      if (part.mask) under_mask(image::read_picture(*part.mask), key, shares);
+      for (std::size_t i = 0; i < fractions.size(); ++i)
+        fractions[i] = part.holds(object_.fractions[i].x(), object_.fractions[i].y()) ? 1 : 0;
+      if (part.mask) under_mask(image::read_picture(*part.mask), key, fractions);
     }
-    if (!part.edge.empty()) on_edge(part.edge, key, shares);
-    if (part.vertex_color != scene::VertexColor::none) by_color(part.vertex_color, key, shares);
-    if (!part.vertex_group.empty()) by_group(part.vertex_group, key, shares);
+    if (!part.edge.empty()) on_edge(part.edge, key, fractions);
+    if (part.vertex_color != scene::VertexColor::none) by_color(part.vertex_color, key, fractions);
+    if (!part.vertex_group.empty()) by_group(part.vertex_group, key, fractions);
     std::vector<Chosen> chosen;
-    for (std::size_t i = 0; i < shares.size(); ++i)
-      if (shares[i] > 0) chosen.push_back({static_cast<Index>(i), std::min(1.0, shares[i])});
+    for (std::size_t i = 0; i < fractions.size(); ++i)
+      if (fractions[i] > 0) chosen.push_back({static_cast<Index>(i), std::min(1.0, fractions[i])});
     return chosen;
   }
 
  private:
-  void on_edge(const std::string& name, const std::string& key, std::vector<double>& shares) const {
+  void on_edge(const std::string& name, const std::string& key, std::vector<double>& fractions) const {
     const std::vector<Index>& edge = named(object_.edges, name, key, "edge", "an edge of its pattern");
-    std::vector<double> on(shares.size());
+    std::vector<double> on(fractions.size());
     for (const Index i : edge) on[static_cast<std::size_t>(i)] = 1;
-    multiply(on, shares);
+    multiply(on, fractions);
   }
 
-  // The particles nearest to both ends, and those between.
-  void along_rope(const Vec2& at, std::vector<double>& shares) const {
+  // The particles nearest to both ends, and all particles between.
+  void along_rope(const Vec2& at, std::vector<double>& fractions) const {
     const auto pieces = static_cast<double>(object_.lengths.size());
     const auto nearest = [&](double fraction) { return static_cast<std::size_t>(std::lround(fraction * pieces)); };
-    for (std::size_t i = nearest(at.x()); i <= nearest(at.y()); ++i) shares[i % shares.size()] = 1;
+    for (std::size_t i = nearest(at.x()); i <= nearest(at.y()); ++i) fractions[i % fractions.size()] = 1;
   }
 
-  // Between low and high and under the mask of one panel. Where its own edges meet in a dart, the largest share.
-  void on_panel(const scene::ClothPart& part, const std::string& key, std::vector<double>& shares) const {
+  // Particles of one panel within the bounds and the mask. Where its edges meet in a dart, the largest fraction counts.
+  void on_panel(const scene::ClothPart& part, const std::string& key, std::vector<double>& fractions) const {
     const auto found = std::ranges::find(object_.panels, part.panel);
     if (found == object_.panels.end()) refuse_name(part.panel, object_.panels, key, "panel", "a panel of its pattern");
     const auto number = found - object_.panels.begin();
@@ -92,20 +92,20 @@ class Chooser {
     const auto each_corner = [&](const auto& visit) {
       for (std::size_t t = 0; t < object_.panel_of.size(); ++t)
         for (std::size_t k = 0; k < 3 && object_.panel_of[t] == number; ++k)
-          visit(object_.paint_uv[t][k], shares[static_cast<std::size_t>(object_.mesh.topology.triangles[t][k])]);
+          visit(object_.paint_uv[t][k], fractions[static_cast<std::size_t>(object_.mesh.topology.triangles[t][k])]);
     };
     each_corner([&](const Vec2& uv, double&) { low = low.cwiseMin(uv), high = high.cwiseMax(uv); });
     std::optional<image::Picture> mask;
     if (part.mask) mask = image::read_picture(*part.mask);
-    each_corner([&](const Vec2& uv, double& share) {
+    each_corner([&](const Vec2& uv, double& fraction) {
       const Vec2 at = (uv - low).cwiseQuotient(high - low);
-      if (part.holds(at.x(), at.y())) share = std::max(share, mask ? grey_at(*mask, at) : 1.0);
+      if (part.holds(at.x(), at.y())) fraction = std::max(fraction, mask ? grey_at(*mask, at) : 1.0);
     });
   }
 
-  // Where islands of UVs meet, the largest share.
-  void under_mask(const image::Picture& picture, const std::string& key, std::vector<double>& shares) const {
-    std::vector<double> greys(shares.size());
+  // Where islands of UVs meet, the largest fraction counts.
+  void under_mask(const image::Picture& picture, const std::string& key, std::vector<double>& fractions) const {
+    std::vector<double> greys(fractions.size());
     if (!from_file_) {
       for (std::size_t i = 0; i < greys.size(); ++i) greys[i] = grey_at(picture, object_.fractions[i]);
     } else {
@@ -116,22 +116,22 @@ class Chooser {
           if (file_.uv[t][k].allFinite()) grey = std::max(grey, grey_at(picture, file_.uv[t][k]));
         }
     }
-    multiply(greys, shares);
+    multiply(greys, fractions);
   }
 
-  void by_color(scene::VertexColor channel, const std::string& key, std::vector<double>& shares) const {
+  void by_color(scene::VertexColor channel, const std::string& key, std::vector<double>& fractions) const {
     if (file_.colors.empty()) refuse(key, "vertex_color", "a mesh whose vertices have colours, got none");
-    for (std::size_t i = 0; i < shares.size(); ++i) {
+    for (std::size_t i = 0; i < fractions.size(); ++i) {
       const Vec3& color = file_.colors[i];
-      shares[i] *= channel == scene::VertexColor::brightness
-                       ? color.mean()
-                       : color[static_cast<int>(channel) - static_cast<int>(scene::VertexColor::red)];
+      fractions[i] *= channel == scene::VertexColor::brightness
+                          ? color.mean()
+                          : color[static_cast<int>(channel) - static_cast<int>(scene::VertexColor::red)];
     }
   }
 
-  void by_group(const std::string& name, const std::string& key, std::vector<double>& shares) const {
+  void by_group(const std::string& name, const std::string& key, std::vector<double>& fractions) const {
     if (file_.groups.empty()) refuse(key, "vertex_group", "a mesh with groups of vertices, or bones, got one without");
-    multiply(named(file_.groups, name, key, "vertex_group", "a group of its vertices"), shares);
+    multiply(named(file_.groups, name, key, "vertex_group", "a group of its vertices"), fractions);
   }
 
   template <class Map>
@@ -149,8 +149,8 @@ class Chooser {
            fmt::format("{}, such as {}, got \"{}\"{}", kind, names.front(), name,
                        nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
   }
-  static void multiply(const std::vector<double>& factors, std::vector<double>& shares) {
-    for (std::size_t i = 0; i < shares.size(); ++i) shares[i] *= factors[i];
+  static void multiply(const std::vector<double>& factors, std::vector<double>& fractions) {
+    for (std::size_t i = 0; i < fractions.size(); ++i) fractions[i] *= factors[i];
   }
   [[noreturn]] static void refuse(const std::string& key, const char* field, const std::string& why) {
     throw Error(ExitCode::scene_invalid, "{}.{}: expected {}", key, field, why);
@@ -161,15 +161,15 @@ class Chooser {
   const ClothObject& object_;
 };
 
-/// Ways along a cloth at rest: along the edges of triangles; of quads also across.
-class Ways {
+/// Distances along a cloth at rest: along edges of triangles; of quads, along diagonals too.
+class RestDistances {
  public:
-  explicit Ways(const ClothObject& cloth) : to_(cloth.fractions.size()) {
+  explicit RestDistances(const ClothObject& cloth) : neighbours_(cloth.fractions.size()) {
     const auto join = [&](Index a, Index b, double length) {
-      to_[static_cast<std::size_t>(a)].emplace_back(b, length);
-      to_[static_cast<std::size_t>(b)].emplace_back(a, length);
+      neighbours_[static_cast<std::size_t>(a)].emplace_back(b, length);
+      neighbours_[static_cast<std::size_t>(b)].emplace_back(a, length);
     };
-    // A quad's diagonals come of its corners, an inner edge of two triangles twice, which does no harm.
+    // Joins all corners of a quad, so also along its diagonals. Inner edges are joined twice, which does no harm.
     for (const mesh::Quad& q : cloth.mesh.topology.quads)
       for (std::size_t a = 0; a < 4; ++a)
         for (std::size_t b = a + 1; b < 4; ++b)
@@ -182,44 +182,45 @@ class Ways {
       }
   }
 
-  /// Appends to a part what is nearer to it than `fade` [m]; shares fall to nothing there with no kink at either end,
-  /// from that of the nearest particle of the part (E. W. Dijkstra, "A note on two problems in connexion with graphs",
-  /// 1959).
+  /// Appends the particles that are nearer to a region than `fade` [m]. Their fractions fall to 0 at that distance,
+  /// with zero slope at both ends, from the fraction of the nearest particle of the region. Shortest paths: E. W.
+  /// Dijkstra, "A note on two problems in connexion with graphs", 1959.
   void fade(double fade, std::vector<Chosen>& part) const {
-    struct Reached {
+    struct FrontParticle {
       double distance;
       Index particle;
-      double share;  // of the particle of the part that it is reached from
-      bool operator>(const Reached& other) const {
+      double fraction;  // of the nearest particle of the region
+      bool operator>(const FrontParticle& other) const {
         return std::pair(distance, particle) > std::pair(other.distance, other.particle);
       }
     };
-    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
-    std::vector<double> nearest(to_.size(), std::numeric_limits<double>::infinity());
-    std::vector<char> done(to_.size());
-    const auto reach = [&](const Reached& reached) {
-      double& distance = nearest[static_cast<std::size_t>(reached.particle)];
-      if (reached.distance >= fade || reached.distance >= distance) return;
-      distance = reached.distance;
-      front.push(reached);
+    std::priority_queue<FrontParticle, std::vector<FrontParticle>, std::greater<>> front;
+    std::vector<double> nearest(neighbours_.size(), std::numeric_limits<double>::infinity());
+    std::vector<char> done(neighbours_.size());
+    const auto visit = [&](const FrontParticle& candidate) {
+      double& distance = nearest[static_cast<std::size_t>(candidate.particle)];
+      if (candidate.distance >= fade || candidate.distance >= distance) return;
+      distance = candidate.distance;
+      front.push(candidate);
     };
-    for (const Chosen& chosen : part) reach({0, chosen.particle, chosen.share});
+    for (const Chosen& chosen : part) visit({0, chosen.particle, chosen.share});
     while (!front.empty()) {
-      const Reached here = front.top();
+      const FrontParticle here = front.top();
       front.pop();
       const auto i = static_cast<std::size_t>(here.particle);
       if (std::exchange(done[i], 1) != 0) continue;
       const double s = 1 - here.distance / fade;
-      if (here.distance > 0) part.push_back({here.particle, here.share * s * s * (3 - 2 * s), true});
-      for (const auto& [next, length] : to_[i]) reach({here.distance + length, next, here.share});
+      if (here.distance > 0) part.push_back({here.particle, here.fraction * s * s * (3 - 2 * s), true});
+      for (const auto& [next, length] : neighbours_[i]) visit({here.distance + length, next, here.fraction});
     }
   }
 
  private:
-  std::vector<std::vector<std::pair<Index, double>>> to_;  // per particle: others, and how far they are [m]
+  std::vector<std::vector<std::pair<Index, double>>>
+      neighbours_;  // per particle: its neighbours and their distances [m]
 };
 
-/// What to write instead of bounds that lie between two rows of particles; nothing of parts that are given otherwise.
+/// Text that proposes other bounds for a region between two rows of particles; empty for regions not given by bounds.
 std::string nearest_row(const scene::ClothPart& part, const ClothObject& object) {
   if (!part.panel.empty() || !part.edge.empty() || part.mask || part.vertex_color != scene::VertexColor::none ||
       !part.vertex_group.empty() || object.fractions.empty())
@@ -239,30 +240,31 @@ std::string nearest_row(const scene::ClothPart& part, const ClothObject& object)
 
 void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,
                       const std::string& where, ClothObject& object) {
-  const Chooser choose(cloth, file, object);
-  const auto part_at = [&](const scene::ClothPart& part, const std::string& key, double least) {
-    std::vector<Chosen> chosen = choose.part(part, key);
-    std::erase_if(chosen, [&](const Chosen& one) { return one.share < least; });
+  const ParticleFinder finder(cloth, file, object);
+  const auto part_at = [&](const scene::ClothPart& part, const std::string& key, double min_fraction) {
+    std::vector<Chosen> chosen = finder.part(part, key);
+    std::erase_if(chosen, [&](const Chosen& one) { return one.share < min_fraction; });
     if (chosen.empty())
       throw Error(ExitCode::scene_invalid,
                   "{}: expected a part that holds at least one particle, got one that holds none{}", key,
                   nearest_row(part, object));
     return chosen;
   };
-  const auto part_of = [&](const scene::ClothPart& part, const char* kind, std::size_t number, double least) {
-    return part_at(part, fmt::format("{}.{}.{}", where, kind, number), least);
+  const auto part_of = [&](const scene::ClothPart& part, const char* kind, std::size_t number, double min_fraction) {
+    return part_at(part, fmt::format("{}.{}.{}", where, kind, number), min_fraction);
   };
   for (std::size_t p = 0; p < cloth.pins.size(); ++p) {
     const scene::Pin& pin = cloth.pins[p];
-    std::vector<Chosen>& chosen = object.pins.emplace_back(part_of(pin, "pin", p, pin.strength ? kLeastShare : kHeld));
-    if (pin.fade > 0) Ways(object).fade(pin.fade, chosen);
+    std::vector<Chosen>& chosen =
+        object.pins.emplace_back(part_of(pin, "pin", p, pin.strength ? kMinFraction : kMinHeldFraction));
+    if (pin.fade > 0) RestDistances(object).fade(pin.fade, chosen);
   }
   for (std::size_t w = 0; w < cloth.weights.size(); ++w)
-    object.weights.push_back(part_of(cloth.weights[w], "weight", w, kLeastShare));
+    object.weights.push_back(part_of(cloth.weights[w], "weight", w, kMinFraction));
   for (const scene::Attachment& attachment : scene.attachments)
     if (attachment.cloth == cloth.name)
       object.attachments.push_back(
-          part_at(attachment, fmt::format("{}: attach.{}", scene.file.string(), attachment.name), kLeastShare));
+          part_at(attachment, fmt::format("{}: attach.{}", scene.file.string(), attachment.name), kMinFraction));
 }
 
 }  // namespace weft::environment

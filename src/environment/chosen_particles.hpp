@@ -1,4 +1,4 @@
-// Which particles of a cloth its pins and weights take, and which share of each.
+// Finds the particles of a cloth to which its pins, weights and attachments apply, with a fraction for each.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace weft::environment {
 
-/// Fills `pins`, `weights` and `attachments` of a cloth whose shape at rest is made. `file`: what the file of a mesh
-/// says of its vertices; of other cloth it is empty. Throws Error(scene_invalid) after `where` for parts that hold no
-/// particle, and for what the cloth has not: an edge, UVs, colours, a group.
+/// Fills in `pins`, `weights` and `attachments` of a cloth whose rest shape is made. `file`: data of the vertices in
+/// the mesh file; empty for other cloth. Throws Error(scene_invalid) that begins with `where` for a region that holds
+/// no particle, and for an edge, UVs, colours or a group that the cloth does not have.
 void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,
                       const std::string& where, ClothObject& object);
 

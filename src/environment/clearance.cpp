@@ -13,28 +13,28 @@
 namespace weft::environment {
 namespace {
 
-/// Layers of cloth for which there is room between two limbs: two folds, as of a shirt that an arm comes down on. For
-/// four, frames of such a shirt were pinched (13 of 51).
-constexpr double kLayers = 8;
+/// Layers of cloth that must fit between two limbs: two folds, as in a shirt under an arm that comes down (measured:
+/// with 4 layers, 13 of 51 frames of such a shirt were pinched).
+constexpr double kLayersBetweenLimbs = 8;
 
-/// Skin that is farther from cloth does not move [m].
+/// Largest distance from cloth at which skin moves [m].
 constexpr double kNearCloth = 0.05;
 
-/// Cloth is sampled at places that are at most so far apart [m].
-constexpr double kSampling = 0.02;
+/// Largest distance between samples on cloth [m].
+constexpr double kSampleDistance = 0.02;
 
-/// Samples along an edge of a triangle at most: sheets of few large triangles stay cheap.
-constexpr int kMostSamples = 64;
+/// Largest number of samples along an edge of a triangle: keeps sheets of few large triangles cheap.
+constexpr int kMaxEdgeSamples = 64;
 
-/// Vertices looked at by one task.
+/// Vertices per task.
 constexpr std::size_t kNearnessGrain = 512;
 
-/// Places sorted into cubes, to be asked for the nearest within the edge of one.
-class Places {
+/// Points sorted into cubes with side kNearCloth, for finding the nearest point within this distance.
+class PointCubes {
  public:
   void add(const Vec3& x) { cells_[key(cell_of(x))].push_back(x); }
 
-  /// Squared distance to the nearest place; infinite where none is within kNearCloth.
+  /// Squared distance to the nearest point [m²]; infinite, or more than kNearCloth², if no point is within kNearCloth.
   double nearest_sq(const Vec3& x) const {
     const std::array<std::int64_t, 3> middle = cell_of(x);
     double least = std::numeric_limits<double>::infinity();
@@ -52,7 +52,7 @@ class Places {
     for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(x[k] / kNearCloth));
     return cell;
   }
-  /// 21 bits for each axis: what is 50 km away may share a list, and is not near.
+  /// 21 bits per axis: points about 100 km apart may share a list, but are not near.
   static std::uint64_t key(const std::array<std::int64_t, 3>& cell) {
     constexpr std::uint64_t kMask = (1U << 21) - 1;
     return (static_cast<std::uint64_t>(cell[0]) & kMask) << 42 | (static_cast<std::uint64_t>(cell[1]) & kMask) << 21 |
@@ -62,10 +62,10 @@ class Places {
   std::unordered_map<std::uint64_t, std::vector<Vec3>> cells_;
 };
 
-void add_samples(const std::array<Vec3, 3>& corners, Places& places) {
+void add_samples(const std::array<Vec3, 3>& corners, PointCubes& places) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, (corners[(k + 1) % 3] - corners[k]).norm());
-  const int count = static_cast<int>(std::clamp(std::ceil(longest / kSampling), 1.0, double{kMostSamples}));
+  const int count = static_cast<int>(std::clamp(std::ceil(longest / kSampleDistance), 1.0, double{kMaxEdgeSamples}));
   for (int i = 0; i <= count; ++i)
     for (int j = 0; i + j <= count; ++j)
       places.add(corners[0] + (i * (corners[1] - corners[0]) + j * (corners[2] - corners[0])) / count);
@@ -93,17 +93,17 @@ double height_over(const character::Ground& ground, std::span<const Vec3> x) {
   return least;
 }
 
-double room_between_limbs(const Cast& cast) {
+double clearance_between_limbs(const Cast& cast) {
   if (cast.settings.room) return *cast.settings.room;
   const auto* mannequin = std::get_if<scene::Mannequin>(&cast.settings.source);
   if (!cast.settings.collide || (mannequin != nullptr && !mannequin->motion)) return 0;
   double thickest = 0;
   for (const scene::Cloth& cloth : cast.scene.cloths) thickest = std::max(thickest, cloth.material.thickness);
-  return kLayers * thickest;
+  return kLayersBetweenLimbs * thickest;
 }
 
 std::vector<float> nearness_of_cloth(std::span<const Vec3> skin, const ClothAtStart& cloth) {
-  Places places;
+  PointCubes places;
   for (const Vec3& x : cloth.x) places.add(x);
   for (const mesh::Triangle& t : cloth.triangles) add_samples({cloth.x[t[0]], cloth.x[t[1]], cloth.x[t[2]]}, places);
   std::vector<float> nearness(skin.size());

@@ -1,4 +1,4 @@
-// Where the skin of a character has to leave cloth room: what it lies on, and which of it is near cloth.
+// Where the skin of a character must leave space for cloth: the ground, and skin near cloth.
 #pragma once
 
 #include <span>
@@ -10,21 +10,20 @@
 
 namespace weft::environment {
 
-/// What a body can lie on: planes without end that stand still, as the body has them.
+/// The grounds on which a body can lie: infinite planes that stand still, in the body's coordinates.
 std::vector<character::Ground> grounds_below(const Cast& cast);
 
-/// Of the lowest of some vertices [m].
+/// Height of the lowest of these points over the ground [m].
 double height_over(const character::Ground& ground, std::span<const Vec3> x);
 
-/// What the scene says, else what its cloths need [m]. The walk of the mannequin keeps its arms off by itself.
-double room_between_limbs(const Cast& cast);
+/// Space between limbs as set in the scene, or else as its cloths need it [m]. If not set, it is 0 for characters that
+/// do not collide, and for the mannequin without a motion file, whose walk keeps its arms off its body.
+double clearance_between_limbs(const Cast& cast);
 
-/// How near cloth lies to each of some places: 1 up to half of 5 cm, then less, 0 from 5 cm on. Of bodies whose
-/// vertices are skin, in the world [m].
+/// Nearness of cloth to points of the skin in the world [m]: 1 up to 2.5 cm, then falling linearly to 0 at 5 cm.
 std::vector<float> nearness_of_cloth(std::span<const Vec3> skin, const ClothAtStart& cloth);
 
-/// How near any cloth of the scene lies to each vertex when it is put on. `performance`: of the body, which has so many
-/// `vertices`.
+/// Largest nearness of any cloth to each vertex when that cloth is put on. `performance`: motion of the body.
 std::vector<float> nearness_of_cloths(const Cast& cast, const character::Character& body,
                                       const character::Performance& performance, std::span<const ClothAtStart> cloths);
 

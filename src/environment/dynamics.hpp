@@ -1,4 +1,4 @@
-// What makes an obstacle a body that forces move.
+// Properties of an obstacle that forces move.
 #pragma once
 
 #include <memory>
@@ -14,11 +14,11 @@ struct Dynamics {
   mesh::RigidFrame frame;
   double mass = 0;                 ///< [kg]
   Vec3 velocity{0, 0, 0};          ///< at the start [m/s]
-  Vec3 angular_velocity{0, 0, 0};  ///< likewise [rad/s]
-  double release = 0;              ///< until then its keys move it; minus infinity: never [s]
+  Vec3 angular_velocity{0, 0, 0};  ///< at the start [rad/s]
+  double release = 0;              ///< until then its keys move it; minus infinity: it is free from the start [s]
 };
 
-/// Of an obstacle with a mass, whose mesh this is. Throws Error(scene_invalid) where the mesh encloses nothing.
+/// For an obstacle with a mass; `mesh`: its mesh. Throws Error(scene_invalid) if the mesh encloses no volume.
 std::shared_ptr<const Dynamics> make_dynamics(const scene::Scene& scene, const scene::Obstacle& obstacle,
                                               const mesh::Mesh& mesh);
 

@@ -31,10 +31,10 @@
 namespace weft::environment {
 namespace {
 
-/// Vertices moved by one task; a task then takes some ten microseconds.
+/// Vertices per task; a task takes some ten microseconds.
 constexpr std::size_t kPlacedPerTask = 4096;
 
-// A number in [−1, 1) that is the same for the same argument on every machine: the mixing function of splitmix64
+// A pseudorandom number in [−1, 1), the same for the same argument on every machine: the mixing function of splitmix64
 // (Steele, Lea & Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
 double noise(std::uint64_t z) {
   z = (z + 1) * 0x9E3779B97F4A7C15U;
@@ -44,7 +44,7 @@ double noise(std::uint64_t z) {
   return static_cast<double>(z >> 11) * 0x1p-52 - 1;
 }
 
-// Where the particles are at time 0: the rest shape, scaled about its middle and shaken.
+// Positions of the particles at the start: the rest shape, scaled about its middle, with noise.
 std::vector<Vec3> start_positions(const scene::Cloth& cloth, const mesh::Mesh& rest) {
   std::vector<Vec3> x = rest.positions;
   if (cloth.start_scale == Vec2(1, 1) && cloth.start_noise == 0) return x;
@@ -83,15 +83,15 @@ void use_triangles(mesh::Mesh mesh, ClothObject& object) {
   object.mesh = std::move(mesh);
 }
 
-/// Shapes are made with their axis along z. Where y is up they are turned by -90° about x: z becomes y, x stays.
+/// Shapes are made with their axis along z. If y is up, turns them by −90° about x: z becomes y, x stays.
 mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
   if (up == scene::UpAxis::y)
     for (Vec3& x : mesh.positions) x = Vec3(x.x(), x.z(), -x.y());
   return mesh;
 }
 
-/// Garments stand upright along z, like shapes, those of panels around parts of a wearer where it stands. Parts of them
-/// are in fractions across and up.
+/// Makes cloth from a pattern. Garments stand upright along z, like shapes; those with panels around parts of a wearer
+/// are made where the wearer stands. Their regions are given in fractions of width and height.
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
                  ClothObject& object) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
@@ -115,8 +115,8 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);
   const Box3 box = mesh::bounding_box(garment.sheet.rest);
   for (const Vec3& x : garment.sheet.rest) {
-    const Vec3 share = (x - box.min()).cwiseQuotient(box.sizes());
-    object.fractions.emplace_back(share.x(), share.z());
+    const Vec3 fraction = (x - box.min()).cwiseQuotient(box.sizes());
+    object.fractions.emplace_back(fraction.x(), fraction.z());
   }
   object.mesh.topology.triangles = garment.sheet.triangles;
   object.mesh.positions = garment.sheet.rest;
@@ -137,12 +137,12 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
     }
 }
 
-// How many times the least height of a cloth's triangles, or the least spacing of its quads, the longest edge may be
-// where it meets obstacles. A row of needles in an even sheet that falls on a ball, at default settings: with 71 all of
-// nine runs but one were solved, with 141 none of nine; of rectangles, graded by 50 all, by 100 none.
-constexpr double kLargestUnevenness = 80;
+// Largest ratio of a cloth's longest edge to the smallest height of its triangles, or smallest spacing of its quads, if
+// it touches obstacles. Measured with a row of needles in an even sheet that falls on a ball, at default settings: at
+// 71, eight of nine runs were solved, at 141 none; rectangles graded by 50: all, by 100: none.
+constexpr double kMaxUnevenness = 80;
 
-/// The axes of a mesh file. One that a character comes from too has its axes, also where the file does not say them.
+/// The axes of a mesh file. If a character has the same file, its axes, even if the file does not name them.
 assets::MeshAxes axes_of(const scene::Scene& scene, const std::filesystem::path& file, double scale, scene::FileUp up) {
   assets::MeshAxes axes{scale, up, scene.up};
   std::error_code ignored;
@@ -155,7 +155,7 @@ assets::MeshAxes axes_of(const scene::Scene& scene, const std::filesystem::path&
   return axes;
 }
 
-/// The triangles of a cloth's file, made a sheet where they are none. Throws Error(asset_unreadable) where that fails.
+/// Loads the triangles of a cloth's file and mends them to a sheet. Throws Error(asset_unreadable) if that fails.
 assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
                               ClothObject& object) {
   assets::LoadedMesh loaded =
@@ -167,7 +167,7 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
         fmt::format("{}: mesh file {}: {} of {} vertices are in no triangle that has an area; faces there cross "
                     "themselves or have all corners on a line",
                     where, cloth.file.string(), loaded.lost_vertices, mesh.positions.size()));
-  if (const assets::Mended mended = assets::mend_sheet(loaded, 1 / kLargestUnevenness); mended.any())
+  if (const assets::Mended mended = assets::mend_sheet(loaded, 1 / kMaxUnevenness); mended.any())
     object.warnings.push_back(
         fmt::format("{}: mesh file {}: made a sheet: {}", where, cloth.file.string(), mended.describe()));
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
@@ -180,10 +180,10 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
   return loaded;
 }
 
-/// Whether panels that UVs are make a cloth; says what is chosen and why, warns of what does not fit, and refuses what
-/// the scene asks for where there is no such thing.
-bool takes_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::string& where, ClothObject& object) {
-  constexpr double kMostUnusable = 0.1;  // share of the area
+/// Whether the panels given by UVs are the rest shape of a cloth. Notes the choice and its reason, warns of UVs that do
+/// not fit, and throws Error(asset_unreadable) if the scene asks for UVs that are missing or unusable.
+bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::string& where, ClothObject& object) {
+  constexpr double kMaxUnusableArea = 0.1;  // fraction of the area
   const std::string in_file = fmt::format("{}: mesh file {}", where, cloth.file.string());
   const bool asked = cloth.rest == scene::ClothRest::uv;
   if (rest.islands == 0) {
@@ -193,7 +193,7 @@ bool takes_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std:
     object.rest_from = "the mesh: it has no UVs";
     return false;
   }
-  if (asked && rest.unusable_area > kMostUnusable)
+  if (asked && rest.unusable_area > kMaxUnusableArea)
     throw Error(ExitCode::asset_unreadable,
                 "{}: expected UVs in which triangles have an area, for rest = \"uv\", got {} of {} without, {:.0f} % "
                 "of the surface",
@@ -205,12 +205,12 @@ bool takes_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std:
                                                                            : ", which its UVs do not fit as panels do",
                                  rest.describe());
   if (!takes) return false;
-  constexpr double kFarOff = 0.25;  // cloth that was draped is off its panels by less
+  constexpr double kMaxDrapeStretch = 0.25;  // draped cloth is stretched less, relative to its panels
   if (!rest.like_panels())
     object.warnings.push_back(
         fmt::format("{}: its UVs may not be the pattern that it was sewn from: {}; rest = \"mesh\" takes its own shape",
                     in_file, rest.describe()));
-  else if (rest.most_stretch > kFarOff && cloth.sewing == 0)
+  else if (rest.most_stretch > kMaxDrapeStretch && cloth.sewing == 0)
     object.warnings.push_back(fmt::format("{}: it is far off its UVs: {}; sewing = 1 lets it go there in a second",
                                           in_file, rest.describe()));
   if (rest.unusable > 0)
@@ -219,19 +219,19 @@ bool takes_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std:
   return true;
 }
 
-/// Cloth from a file: its start is the mesh, its shape at rest that too, or the flat panels that its UVs are. Returns
-/// what else the file says of its vertices.
+/// Makes cloth from a file. It starts as the mesh; its rest shape is the mesh, or the flat panels given by its UVs.
+/// Returns the other data of the vertices in the file.
 assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
                                  ClothObject& object) {
   assets::LoadedMesh loaded = load_sheet(scene, cloth, where, object);
   garment::UvRest rest;
   if (cloth.rest != scene::ClothRest::mesh)
-    rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / kLargestUnevenness);
+    rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / kMaxUnevenness);
   if (cloth.rest == scene::ClothRest::mesh) object.rest_from = "the mesh: the scene says so";
-  const bool panels = cloth.rest != scene::ClothRest::mesh && takes_uv(cloth, rest, where, object);
+  const bool panels = cloth.rest != scene::ClothRest::mesh && uses_uv(cloth, rest, where, object);
   if (panels) {
-    constexpr double kWelded = 0.1;  // of the edges there: what programs leave between the sides of a seam is less
-    if (const assets::Welded welded = assets::weld_borders(loaded, kWelded); welded.vertices > 0)
+    constexpr double kMaxSeamGap = 0.1;  // relative to edges there; programs leave less between the sides of a seam
+    if (const assets::Welded welded = assets::weld_borders(loaded, kMaxSeamGap); welded.vertices > 0)
       object.rest_from += fmt::format("; {} vertices of its borders are joined to others, at most {:.2g} mm away",
                                       welded.vertices, 1e3 * welded.widest);
   }
@@ -255,12 +255,12 @@ bool meets_obstacles(const scene::Scene& scene) {
           std::ranges::any_of(scene.characters, [](const scene::Character& c) { return c.collide; }));
 }
 
-/// Names the flattest triangle where it is too flat, and how many are.
+/// Throws Error(scene_invalid) if triangles are too flat, with their number and the flattest one.
 void check_triangles(const mesh::Sheet& sheet, const std::string& where) {
   double longest = 0;
   for (const auto& m : sheet.material)
     for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, (m[(k + 1) % 3] - m[k]).norm());
-  const double least_allowed = longest / kLargestUnevenness;
+  const double least_allowed = longest / kMaxUnevenness;
   std::size_t flattest = 0, flat = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
@@ -275,7 +275,7 @@ void check_triangles(const mesh::Sheet& sheet, const std::string& where) {
       "{}: expected triangles at least {:.3g} mm high, a {:g}th of the longest edge ({:.4g} mm), where cloth "
       "meets obstacles; got {} flatter, the flattest number {} at ({:.4g}, {:.4g}, {:.4g}) with {:.3g} mm; mesh "
       "it evenly or merge vertices that are closer",
-      where, 1e3 * least_allowed, kLargestUnevenness, 1e3 * longest, flat, flattest + 1, at.x(), at.y(), at.z(),
+      where, 1e3 * least_allowed, kMaxUnevenness, 1e3 * longest, flat, flattest + 1, at.x(), at.y(), at.z(),
       1e3 * least);
 }
 
@@ -285,12 +285,12 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth) {
   if (!meets_obstacles(scene) || scene::rectangle_particles(cloth) == 0) return;
   const mesh::Grid grid = grid_of(cloth);
   const double longest = std::max({grid.du(0), grid.du(grid.nu - 2), grid.dv(0), grid.dv(grid.nv - 2)});
-  if (longest <= kLargestUnevenness * grid.least_spacing()) return;
+  if (longest <= kMaxUnevenness * grid.least_spacing()) return;
   throw Error(ExitCode::scene_invalid,
               "{}:{}:{}: cloth.{}: expected cells at least a {:g}th as long as the longest ({:.4g} mm), where cloth "
               "meets obstacles; got {:.3g} mm; choose a grading closer to 1, or particles that are as far apart along "
               "weft as along warp",
-              scene.file.string(), cloth.line, cloth.column, cloth.name, kLargestUnevenness, 1e3 * longest,
+              scene.file.string(), cloth.line, cloth.column, cloth.name, kMaxUnevenness, 1e3 * longest,
               1e3 * grid.least_spacing());
 }
 
@@ -332,8 +332,8 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wea
 
 namespace {
 
-/// Makes the mesh of any shape in the body's own coordinates. A box has its sizes along the scene's axes and a file its
-/// own orientation; the others follow the up axis.
+/// Makes the mesh of a shape in the body's own coordinates. Boxes have their sizes along the scene's axes, and files
+/// their own orientation; other shapes follow the up axis.
 struct MakeMesh {
   const scene::Scene& scene;
   const scene::Obstacle& obstacle;
@@ -378,7 +378,7 @@ BodyObject make_obstacle(const scene::Scene& scene, const scene::Obstacle& obsta
   return object;
 }
 
-/// Writes where the vertices of a body are that one thing or the other moves.
+/// Writes the positions of the vertices of a body, for each kind of motion.
 struct Place {
   const std::vector<Vec3>& mesh;
   double t;
@@ -393,9 +393,9 @@ struct Place {
   void operator()(const KeyFrames& keys) const { keys.at(t, positions); }
 };
 
-/// Finds the triangles of parts that are left out, and closes the others; of what collides whole or not at all there
-/// are none of either.
-void leave_out_parts(BodyObject& body) {
+/// Lists the triangles that do not collide, and closes the surface of the others; lists none if all collide. A body
+/// without any triangle that collides does not collide.
+void list_colliding_triangles(BodyObject& body) {
   if (std::ranges::all_of(body.parts, &Part::collide)) return;
   std::vector<std::uint8_t> collides(body.mesh.positions.size(), 1);
   for (const Part& part : body.parts)
@@ -407,7 +407,6 @@ void leave_out_parts(BodyObject& body) {
     if (!left_out) body.colliding.push_back(t);
   }
   mesh::close_cuts(body.mesh.topology.triangles, body.mesh.positions, body.colliding);
-  // What is left out whole does not collide.
   if (body.colliding.empty()) body.collide = false;
 }
 
@@ -423,7 +422,7 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
   object.parts = actor.parts;
   object.limbs = actor.limbs;
   object.coloring = actor.coloring;
-  leave_out_parts(object);
+  list_colliding_triangles(object);
   return object;
 }
 

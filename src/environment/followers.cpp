@@ -9,7 +9,7 @@ FollowingPin frame_at(const std::string& part, const Vec3& origin) {
   return frame;
 }
 
-/// Where an obstacle is at its first key, or stands.
+/// Position of an obstacle at its first key, or, without keys, where it stands.
 const Vec3& place_of(const scene::Obstacle& obstacle) {
   return obstacle.motion.keys.empty() ? obstacle.pose.position : obstacle.motion.keys.front().pose.position;
 }

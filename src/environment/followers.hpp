@@ -1,4 +1,4 @@
-// What follows a character: pins of cloth, and obstacles and cameras that a part of it carries.
+// What follows a character: pins of cloth, and obstacles and cameras attached to a part of it.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,13 @@ namespace weft::environment {
 /// An obstacle or camera that follows a part of a character.
 struct PartFollower {
   bool camera = false;
-  std::size_t number = 0;  ///< of the obstacle or camera
-  std::size_t first = 0;   ///< of its four points among all that follow the character
+  std::size_t number = 0;  ///< number of the obstacle or camera
+  std::size_t first = 0;   ///< index of its four points among all that follow the character
 };
 
 struct Followers {
-  std::vector<FollowingPin> points;        ///< of the pins, then of the others: a frame on the skin
-  std::vector<BodyObject::Follower> pins;  ///< first_vertex: counted from the first point
+  std::vector<FollowingPin> points;        ///< of the pins, then four points on the skin for each obstacle or camera
+  std::vector<BodyObject::Follower> pins;  ///< first_vertex: index among all points
   std::vector<PartFollower> rigid;
 };
 

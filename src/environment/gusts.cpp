@@ -7,17 +7,17 @@
 namespace weft::environment {
 namespace {
 
-// Shells of wave numbers, each so many times the one before, about k_e: from eddies of some sizes down to a thirtieth
-// of the size, finer than meshes of cloth are. A tenth of the spectrum's energy is below.
+// Shells of wave numbers, each kRatio times the one below, around k_e: from eddies of several integral lengths down to
+// a thirtieth of it, finer than meshes of cloth. A tenth of the spectrum's energy is below them.
 constexpr int kShells = 13;
 constexpr double kRatio = 1.5;
 constexpr int kShellsBelow = 3;
-// k_e times the integral length: of the whole spectrum 0.747, of these shells, π/2 Σ E/k over 2/3 Σ E, this.
-constexpr double kLength = 0.837;
-// Of the rate at which eddies turn over (Fung et al., 1992, Section 2).
+// k_e times the integral length: π/2 Σ E/k over 2/3 Σ E of these shells (0.747 for the whole spectrum).
+constexpr double kLengthFactor = 0.837;
+// Rate at which waves change, relative to the turnover rate of eddies (Fung et al., 1992, Section 2).
 constexpr double kUnsteadiness = 0.5;
 
-// Of von Kármán, but for a factor, at a wave number in shares of k_e.
+// Von Kármán's spectrum up to a factor; `k`: wave number relative to k_e.
 double spectrum(double k) {
   return std::pow(k, 4) / std::pow(1 + k * k, 17.0 / 6);
 }
@@ -25,23 +25,24 @@ double spectrum(double k) {
 }  // namespace
 
 Gusts::Gusts(const scene::Gusts& gusts, const Vec3& wind) {
-  const double k_e = kLength / gusts.size;
+  const double k_e = kLengthFactor / gusts.size;
   std::vector<double> wave_numbers, energies;
   double sum = 0;
   for (int shell = 0; shell < kShells; ++shell) {
     wave_numbers.push_back(std::pow(kRatio, shell - kShellsBelow));
-    energies.push_back(spectrum(wave_numbers.back()) * wave_numbers.back());  // shells are as wide as they are far out
+    // the width of a shell is proportional to its wave number
+    energies.push_back(spectrum(wave_numbers.back()) * wave_numbers.back());
     sum += energies.back();
   }
-  // The generator is the same everywhere; what the library makes of it as distributions is not.
+  // The generator gives the same numbers everywhere; distributions of the standard library do not.
   std::mt19937_64 generator(static_cast<std::uint64_t>(gusts.seed));
-  const auto random = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };  // from 0 to 1
+  const auto random = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };  // in [0, 1)
   for (int shell = 0; shell < kShells; ++shell) {
     const double k = wave_numbers[shell] * k_e;
-    // E(k) itself, whose integral is 3/2 speed²; the width of a shell is k ln(ratio).
+    // E(k), whose integral is 3/2 speed²; the width of a shell is k ln(kRatio).
     const double energy = 1.5 * gusts.speed * gusts.speed * energies[shell] / sum / (k * std::log(kRatio));
     const double turnover = std::sqrt(k * k * k * energy);
-    // Three waves along axes of their own, each across the next axis: the mean square is the same in all directions.
+    // Three waves along perpendicular axes, each with its amplitude along the next axis: the mean square is isotropic.
     const double a = 2 * std::numbers::pi * random(), b = 2 * std::numbers::pi * random(), c = random();
     const Mat3 axes = Quat(std::sqrt(1 - c) * std::sin(a), std::sqrt(1 - c) * std::cos(a), std::sqrt(c) * std::sin(b),
                            std::sqrt(c) * std::cos(b))

@@ -10,7 +10,7 @@
 namespace weft::environment {
 namespace {
 
-/// Vertices moved by one task; a task then takes some ten microseconds.
+/// Vertices per task; a task takes some ten microseconds.
 constexpr std::size_t kVerticesPerTask = 4096;
 
 }  // namespace
@@ -18,17 +18,18 @@ constexpr std::size_t kVerticesPerTask = 4096;
 KeyFrames::KeyFrames(scene::Interpolation interpolation, double first_time, double interval,
                      std::vector<std::vector<Vec3>> keys, bool from_rest)
     : first_time_(first_time), interval_(interval), keys_(std::move(keys)) {
-  if (interpolation == scene::Interpolation::cubic && moving()) bend(from_rest);
+  if (interpolation == scene::Interpolation::cubic && moving()) compute_second_derivatives(from_rest);
 }
 
-/// The tridiagonal system of natural_second_derivatives (spline.hpp) for equal lengths h, divided by h:
+/// Second derivatives at the keys. The system of natural_second_derivatives() (spline.hpp) for equal segment lengths h,
+/// divided by h:
 ///   m[i-1] + 4 m[i] + m[i+1] = 6 (x[i-1] - 2 x[i] + x[i+1]) / h²
-/// with m = 0 at the end, and at the start m = 0, or for no velocity there 2 m[0] + m[1] = 6 (x[1] - x[0]) / h².
-void KeyFrames::bend(bool from_rest) {
+/// with m = 0 at the end. At the start, m = 0, or for zero velocity 2 m[0] + m[1] = 6 (x[1] - x[0]) / h².
+void KeyFrames::compute_second_derivatives(bool from_rest) {
   const std::size_t n = keys_.size(), vertices = keys_.front().size();
   const double factor = 6 / (interval_ * interval_);
-  bends_.assign(n, std::vector<Vec3>(vertices, Vec3::Zero()));
-  // The same elimination for every vertex: row i says m[i] = rest - upper[i] m[i+1].
+  second_derivatives_.assign(n, std::vector<Vec3>(vertices, Vec3::Zero()));
+  // The elimination is the same for all vertices: row i gives m[i] = (right side) - upper[i] m[i+1].
   std::vector<double> upper(n, 0.0), pivot(n, 1.0);
   if (from_rest) {
     pivot[0] = 2;
@@ -40,16 +41,18 @@ void KeyFrames::bend(bool from_rest) {
   }
   parallel_for(vertices, kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
     if (from_rest)
-      for (std::size_t v = begin; v < end; ++v) bends_[0][v] = factor * (keys_[1][v] - keys_[0][v]) / pivot[0];
+      for (std::size_t v = begin; v < end; ++v)
+        second_derivatives_[0][v] = factor * (keys_[1][v] - keys_[0][v]) / pivot[0];
     for (std::size_t i = 1; i + 1 < n; ++i)
       for (std::size_t v = begin; v < end; ++v)
-        bends_[i][v] = (factor * (keys_[i - 1][v] - 2 * keys_[i][v] + keys_[i + 1][v]) - bends_[i - 1][v]) / pivot[i];
+        second_derivatives_[i][v] =
+            (factor * (keys_[i - 1][v] - 2 * keys_[i][v] + keys_[i + 1][v]) - second_derivatives_[i - 1][v]) / pivot[i];
     for (std::size_t i = n - 1; i-- > 0;)
-      for (std::size_t v = begin; v < end; ++v) bends_[i][v] -= upper[i] * bends_[i + 1][v];
+      for (std::size_t v = begin; v < end; ++v) second_derivatives_[i][v] -= upper[i] * second_derivatives_[i + 1][v];
   });
 }
 
-KeyFrames::Piece KeyFrames::piece(double t) const {
+KeyFrames::Piece KeyFrames::find_piece(double t) const {
   const double place = (t - first_time_) / interval_;
   const auto last = static_cast<double>(keys_.size() - 1);
   const bool stands = !(place >= 0) || place >= last;
@@ -62,17 +65,17 @@ VertexMotion KeyFrames::at(const Piece& piece, std::size_t v) const {
   if (stands) return {keys_[i][v], Vec3::Zero(), Vec3::Zero()};
   const double h = interval_;
   Vec3 slope = (keys_[i + 1][v] - keys_[i][v]) / h, bend = Vec3::Zero(), jerk = Vec3::Zero();
-  if (!bends_.empty()) {
-    bend = bends_[i][v];
-    jerk = (bends_[i + 1][v] - bend) / h;
-    slope -= h / 6 * (2 * bend + bends_[i + 1][v]);
+  if (!second_derivatives_.empty()) {
+    bend = second_derivatives_[i][v];
+    jerk = (second_derivatives_[i + 1][v] - bend) / h;
+    slope -= h / 6 * (2 * bend + second_derivatives_[i + 1][v]);
   }
   return {keys_[i][v] + s * (slope + s * (bend / 2 + s / 6 * jerk)), slope + s * (bend + s / 2 * jerk),
           bend + s * jerk};
 }
 
 void KeyFrames::at(double t, std::span<Vec3> positions) const {
-  const Piece now = piece(t);
+  const Piece now = find_piece(t);
   parallel_for(positions.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) positions[v] = at(now, v).position;
   });
@@ -85,7 +88,7 @@ std::vector<double> KeyFrames::times() const {
 }
 
 std::size_t KeyFrames::bytes() const {
-  return (keys_.size() + bends_.size()) * keys_.front().size() * sizeof(Vec3);
+  return (keys_.size() + second_derivatives_.size()) * keys_.front().size() * sizeof(Vec3);
 }
 
 }  // namespace weft::environment

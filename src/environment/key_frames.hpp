@@ -15,39 +15,39 @@ struct VertexMotion {
   Vec3 position, velocity, acceleration;
 };
 
-/// Vertices through equally spaced key frames, as Spline does it: along straight lines, or along cubic splines that are
-/// twice continuously differentiable. Before the first key the body stands, after the last one it stands again.
+/// Interpolates vertices between equally spaced key frames as Spline does: linearly, or by natural cubic splines, whose
+/// second derivative is continuous. Before the first key and after the last one, the body stands still.
 class KeyFrames {
  public:
-  /// `from_rest`: it stands before the first key, so the spline starts with no velocity there; else with no
-  /// acceleration, as it ends. At least one key; `interval` [s] is positive.
+  /// `from_rest`: the spline starts with zero velocity, because the body stands still before the first key; otherwise
+  /// it starts with zero acceleration, as it ends. Needs at least one key and a positive `interval` [s].
   KeyFrames(scene::Interpolation interpolation, double first_time, double interval, std::vector<std::vector<Vec3>> keys,
             bool from_rest);
 
-  /// Writes the positions of all vertices. Parallel over them, allocates nothing.
+  /// Writes the positions of all vertices at t [s], in parallel; allocates nothing.
   void at(double t, std::span<Vec3> positions) const;
 
-  /// A single vertex with its exact derivatives; at a corner of linear motion those of the later piece.
-  VertexMotion at(double t, std::size_t vertex) const { return at(piece(t), vertex); }
+  /// One vertex with its exact derivatives; at a key of a linear motion, those of the later segment.
+  VertexMotion at(double t, std::size_t vertex) const { return at(find_piece(t), vertex); }
 
   bool moving() const { return keys_.size() > 1; }
   std::vector<double> times() const;  ///< of the keys [s]
   std::size_t bytes() const;
 
  private:
-  /// Where a time is among the keys: `s` [s] after key i; standing before the first and after the last.
+  /// Position of a time among the keys: `s` [s] after key i; `stands` before the first and after the last key.
   struct Piece {
     std::size_t i;
     double s;
     bool stands;
   };
-  Piece piece(double t) const;
+  Piece find_piece(double t) const;
   VertexMotion at(const Piece& piece, std::size_t vertex) const;
-  void bend(bool from_rest);
+  void compute_second_derivatives(bool from_rest);
 
   double first_time_, interval_;  // [s]
   std::vector<std::vector<Vec3>> keys_;
-  std::vector<std::vector<Vec3>> bends_;  // second derivatives at the keys [m/s²]; none for linear motion
+  std::vector<std::vector<Vec3>> second_derivatives_;  // second derivatives at the keys [m/s²]; empty for linear motion
 };
 
 }  // namespace weft::environment

@@ -10,13 +10,13 @@
 namespace weft::environment {
 namespace {
 
-/// The rotation nearest to a matrix that is nearly one: of its polar decomposition.
+/// The rotation nearest to a matrix that is almost a rotation, from the polar decomposition.
 Quat nearest_rotation(const Mat3& matrix) {
   const Eigen::JacobiSVD<Mat3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return Quat(Mat3(svd.matrixU() * svd.matrixV().transpose()));
 }
 
-/// The obstacle that a `follow` names; nothing where it names a part of a character, or is empty.
+/// The obstacle that `follow` names; none if it names a part of a character, or is empty.
 Parent parent_of(const scene::Scene& scene, const std::string& follow) {
   const auto found = std::ranges::find(scene.obstacles, follow, &scene::Obstacle::name);
   if (follow.empty() || found == scene.obstacles.end()) return {};
@@ -52,7 +52,7 @@ std::shared_ptr<const Track> track_of_frame(const KeyFrames& keys, std::size_t f
   return std::make_shared<const Track>(track);
 }
 
-// At the start all stand where their own poses say, also those that follow something themselves.
+// At the start, every object has the pose of its own keys, even if it follows something.
 void Environment::add_parents(const scene::Scene& scene) {
   const auto parents_of = [&](const auto& list) {
     std::vector<Parent> parents;

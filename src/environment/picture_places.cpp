@@ -14,44 +14,44 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Corners of a triangle where z is up [m], and its normal, of any length.
+/// Corners of a triangle with z up [m], and its normal (not of unit length).
 struct Corners {
   std::array<Vec3, 3> x;
   Vec3 normal;
   Vec3 middle() const { return (x[0] + x[1] + x[2]) / 3; }
 };
 
-/// From lengths on a surface to pictures. Along what closes, the picture fits a whole number of times.
+/// Converts lengths on a surface to numbers of pictures. Around a closed shape, the number is whole.
 struct Tiling {
   std::optional<Vec2> tile;  // [m]
 
-  /// Pictures over a length [m].
+  /// Number of pictures along a length [m]; 1 if the picture is not repeated.
   double count(double length, int axis) const { return tile ? length / (*tile)[axis] : 1; }
   double whole_count(double length, int axis) const { return std::max(1.0, std::round(count(length, axis))); }
 };
 
-/// The angle of (y over x) in turns, 0 along −y and growing toward +x; `near`: within half a turn of this.
-double turns(double x, double y, double near) {
+/// Angle of (x, y) in turns: 0 along −y, and growing toward +x. Returns the value within half a turn of `near`.
+double angle_in_turns(double x, double y, double near) {
   const double turn = std::atan2(x, -y) / (2 * kPi);
   return turn + std::round(near - turn);
 }
 
-/// Turns of the corners around the z axis, without a jump in the triangle; on the axis that of its middle.
-std::array<double, 3> turns_around(const Corners& corners, double reach) {
+/// Turns of the corners around the z axis, without a jump in the triangle; on the axis, that of the triangle's middle.
+std::array<double, 3> turns_around(const Corners& corners, double radius) {
   const Vec3 middle = corners.middle();
-  const double at_middle = turns(middle.x(), middle.y(), 0);
+  const double at_middle = angle_in_turns(middle.x(), middle.y(), 0);
   std::array<double, 3> around{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& x = corners.x[k];
-    const bool on_axis = std::hypot(x.x(), x.y()) < 1e-9 * reach;
-    around[k] = on_axis ? at_middle : turns(x.x(), x.y(), at_middle);
+    const bool on_axis = std::hypot(x.x(), x.y()) < 1e-9 * radius;
+    around[k] = on_axis ? at_middle : angle_in_turns(x.x(), x.y(), at_middle);
   }
   return around;
 }
 
-/// Flat on the side of a box of this size that the normal points to most: upright on the walls, with its top to the
-/// back on what points up, and to the front on what points down.
-std::array<Vec2, 3> on_side(const Corners& corners, const Vec3& size, const Tiling& tiling) {
+/// Coordinates on the side of a box of this size to which the normal points most. Pictures are upright on walls; their
+/// top is toward the back on sides that face up, and toward the front on sides that face down.
+std::array<Vec2, 3> place_on_side(const Corners& corners, const Vec3& size, const Tiling& tiling) {
   Eigen::Index axis = 0;
   corners.normal.cwiseAbs().maxCoeff(&axis);
   const bool positive = corners.normal[axis] > 0;
@@ -65,15 +65,15 @@ std::array<Vec2, 3> on_side(const Corners& corners, const Vec3& size, const Tili
   return places;
 }
 
-/// Places of one triangle, for each shape.
+/// Coordinates of one triangle, for each shape.
 struct PlaceOnShape {
   const Corners& corners;
   const Tiling& tiling;
-  bool y_up;  ///< sizes of boxes are those of the scene's axes
+  bool y_up;  ///< whether y is up in the scene, along whose axes the sizes of boxes are given
 
   using Places = std::array<Vec2, 3>;
 
-  /// Around the z axis at `radius`, and upward by `height` of a corner, from 0 to 1 over `length`.
+  /// Across: around the z axis at `radius`. Upward: by `height` of a corner, from 0 to 1 over `length`.
   template <class Height>
   Places around(double radius, double length, Height height) const {
     const double across = tiling.whole_count(2 * kPi * radius, 0), upward = tiling.count(length, 1);
@@ -92,33 +92,34 @@ struct PlaceOnShape {
                   [&](const Vec3& x) { return 0.5 + std::asin(std::clamp(x.z() / s.radius, -1.0, 1.0)) / kPi; });
   }
   Places operator()(const scene::BoxShape& s) const {
-    return on_side(corners, y_up ? Vec3(s.size.x(), s.size.z(), s.size.y()) : s.size, tiling);
+    return place_on_side(corners, y_up ? Vec3(s.size.x(), s.size.z(), s.size.y()) : s.size, tiling);
   }
   Places operator()(const scene::Cylinder& s) const {
-    if (is_level()) return on_side(corners, {2 * s.radius, 2 * s.radius, s.height}, tiling);
+    if (is_level()) return place_on_side(corners, {2 * s.radius, 2 * s.radius, s.height}, tiling);
     return around(s.radius, s.height, [&](const Vec3& x) { return 0.5 + x.z() / s.height; });
   }
   Places operator()(const scene::Cone& s) const {
-    if (is_level()) return on_side(corners, {2 * s.radius, 2 * s.radius, s.height}, tiling);
+    if (is_level()) return place_on_side(corners, {2 * s.radius, 2 * s.radius, s.height}, tiling);
     return around(s.radius, std::hypot(s.radius, s.height), [&](const Vec3& x) { return 0.5 + x.z() / s.height; });
   }
-  /// Upward along the tube from its inner side over the bottom, so that the middle of the picture is outside.
+  /// Upward around the tube, from its inner side over the bottom, so that the middle of the picture is on the outside.
   Places operator()(const scene::Torus& s) const {
     const auto turn_of = [&](const Vec3& x, double near) {
-      return turns(x.z(), -(std::hypot(x.x(), x.y()) - s.radius), near);
+      return angle_in_turns(x.z(), -(std::hypot(x.x(), x.y()) - s.radius), near);
     };
     const double at_middle = turn_of(corners.middle(), 0);
     const double upward = tiling.whole_count(2 * kPi * s.tube_radius, 1) / tiling.count(2 * kPi * s.tube_radius, 1);
     return around(s.radius, 2 * kPi * s.tube_radius,
                   [&](const Vec3& x) { return (0.5 + turn_of(x, at_middle)) * upward; });
   }
-  /// Along the pipe, and around it, inside from its front rim to the back one; its ends as the sides of a box.
+  /// Across: along the pipe. Upward: around it, inside from the front to the back rim. Its ends are like sides of a
+  /// box.
   Places operator()(const scene::HalfPipe& s) const {
     const Vec3 middle = corners.middle();
     const double outside = s.radius + s.thickness,
                  radial = Vec2(middle.y(), middle.z()).dot(Vec2(corners.normal.y(), corners.normal.z()));
     const bool is_wall = std::abs(radial) > 0.5 * Vec2(middle.y(), middle.z()).norm() * corners.normal.norm();
-    if (!is_wall) return on_side(corners, {s.length, 2 * outside, 2 * outside}, tiling);
+    if (!is_wall) return place_on_side(corners, {s.length, 2 * outside, 2 * outside}, tiling);
     const double backward = radial < 0 ? 1 : -1;
     Places places;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -128,12 +129,12 @@ struct PlaceOnShape {
     }
     return places;
   }
-  Places operator()(const scene::Plane& s) const { return on_side(corners, {s.size.x(), s.size.y(), 1}, tiling); }
+  Places operator()(const scene::Plane& s) const { return place_on_side(corners, {s.size.x(), s.size.y(), 1}, tiling); }
   Places operator()(const scene::MeshFile&) const { return {}; }
 };
 
-/// Metres of a unit of the UVs, as the mean over the surface.
-double unit_of(const assets::LoadedMesh& shape) {
+/// Metres per unit of the UVs, averaged over the surface.
+double metres_per_uv(const assets::LoadedMesh& shape) {
   double area = 0, uv_area = 0;
   for (std::size_t t = 0; t < shape.uv.size(); ++t) {
     const auto& [a, b, c] = shape.mesh.topology.triangles[t];
@@ -147,8 +148,8 @@ double unit_of(const assets::LoadedMesh& shape) {
   return uv_area > 0 ? std::sqrt(area / uv_area) : 1;
 }
 
-PicturePlaces by_uv(const assets::LoadedMesh& shape, const std::optional<Vec2>& tile) {
-  const double unit = tile ? unit_of(shape) : 1;
+PicturePlaces place_by_uv(const assets::LoadedMesh& shape, const std::optional<Vec2>& tile) {
+  const double unit = tile ? metres_per_uv(shape) : 1;
   const Vec2 scale = tile ? Vec2(unit / tile->x(), unit / tile->y()) : Vec2(1, 1);
   PicturePlaces places;
   for (const std::array<Vec2, 3>& corners : shape.uv) {
@@ -164,7 +165,7 @@ PicturePlaces by_uv(const assets::LoadedMesh& shape, const std::optional<Vec2>& 
 PicturePlaces picture_places(const scene::Scene& scene, const scene::Obstacle& obstacle,
                              const assets::LoadedMesh& shape, const std::optional<Vec2>& tile) {
   if (const auto* file = std::get_if<scene::MeshFile>(&obstacle.shape)) {
-    if (!shape.uv.empty()) return by_uv(shape, tile);
+    if (!shape.uv.empty()) return place_by_uv(shape, tile);
     throw Error(ExitCode::asset_unreadable,
                 "{}:{}:{}: obstacle.{}: expected UVs in {}, by which look.image lies on it, got none",
                 scene.file.string(), obstacle.line, obstacle.column, obstacle.name, file->path.string());

@@ -8,14 +8,14 @@
 namespace weft::environment {
 namespace {
 
-// Bodies of people and their toys are this tall [m]; a file in centimetres is a hundred times taller.
-constexpr double kLeastHeight = 0.3, kMostHeight = 3, kUsualHeight = 1.7;
-// A clip that turns more nodes than these moves limbs: a head or a camera alone may be beside the body.
-constexpr int kNodesOfLimbs = 3;
-// People do not go faster [m/s]: the mean of a sprint over 100 m is 10, of a run 3 to 6.
-constexpr double kMostSpeed = 9;
-// By how much feet may miss the floor [m]: people who look at a body see it from there on.
-constexpr double kMissedFloor = 0.05;
+// Heights of people and toy figures, and a usual one [m]; a file in centimetres is a hundred times taller.
+constexpr double kMinHeight = 0.3, kMaxHeight = 3, kUsualHeight = 1.7;
+// Largest number of turning nodes without skin that is not reported: a head or a camera may be beside the body.
+constexpr int kMaxIdleNodes = 3;
+// Largest plausible speed of a body [m/s]: the mean of a sprint over 100 m is 10, of a run 3 to 6.
+constexpr double kMaxSpeed = 9;
+// Largest distance of feet from the floor that is not visible [m].
+constexpr double kMaxFloorDistance = 0.05;
 
 }  // namespace
 
@@ -23,11 +23,11 @@ std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& 
   const auto [low, high] = std::ranges::minmax(x, {}, [&](const Vec3& v) { return up.dot(v); });
   const double height = up.dot(high - low);
   const double more = said ? 10 : 1;
-  if (height >= kLeastHeight / more && height <= kMostHeight * more) return std::nullopt;
+  if (height >= kMinHeight / more && height <= kMaxHeight * more) return std::nullopt;
   return fmt::format(
       "is {:.3g} m tall, where {:g} to {:g} m are expected; scale says how many metres a unit of the file has: with "
       "scale = {:.2g} it is {:g} m",
-      height, kLeastHeight, kMostHeight, scale * kUsualHeight / height, kUsualHeight);
+      height, kMinHeight, kMaxHeight, scale * kUsualHeight / height, kUsualHeight);
 }
 
 std::optional<std::string> doubt_of_skin(const character::Character& body, const character::Clip& clip) {
@@ -35,7 +35,7 @@ std::optional<std::string> doubt_of_skin(const character::Character& body, const
   const Index holder = body.bones[body.influences.front().bone].node;
   for (const character::Influence& influence : body.influences)
     if (influence.weight > 0 && body.bones[influence.bone].node != holder) return std::nullopt;
-  std::vector<Index> carrying;  // the node itself, and those that it hangs from
+  std::vector<Index> carrying;  // the node itself and its ancestors
   for (Index node = holder; node >= 0; node = body.nodes[node].parent) carrying.push_back(node);
   int idle = 0;
   for (const character::Channel& channel : clip.channels) {
@@ -43,7 +43,7 @@ std::optional<std::string> doubt_of_skin(const character::Character& body, const
     const bool moves = std::ranges::any_of(turns, [&](const Quat& q) { return q.coeffs() != turns.front().coeffs(); });
     idle += moves && std::ranges::find(carrying, channel.node) == carrying.end() ? 1 : 0;
   }
-  if (idle <= kNodesOfLimbs) return std::nullopt;
+  if (idle <= kMaxIdleNodes) return std::nullopt;
   return fmt::format(
       "has no skin on its bones: node \"{}\" holds all of it, and {} nodes that the motion turns move nothing of it; "
       "bind the mesh to the skeleton in the program that it is from",
@@ -66,19 +66,19 @@ std::optional<std::string> doubt_of_speed(const KeyFrames& keys, double begin, d
     fastest = std::max(fastest, (now - before).norm() * rate);
     before = now;
   }
-  if (fastest <= kMostSpeed) return std::nullopt;
-  return fmt::format("it moves at up to {:.3g} m/s; people who run reach {:g} m/s", fastest, kMostSpeed);
+  if (fastest <= kMaxSpeed) return std::nullopt;
+  return fmt::format("it moves at up to {:.3g} m/s; people who run reach {:g} m/s", fastest, kMaxSpeed);
 }
 
-// Who jumps is on the floor at times, who rolls over it is in it at times.
+// Bodies that jump touch the floor at times, and bodies that roll sink into it at times: uses minimum and median.
 std::optional<std::string> doubt_of_floor(std::vector<double> lowest, bool alone) {
   if (lowest.empty()) return std::nullopt;
   std::ranges::sort(lowest);
   const double least = lowest.front(), median = lowest[lowest.size() / 2];
-  if (median < -kMissedFloor)
+  if (median < -kMaxFloorDistance)
     return fmt::format(
         "its lowest point is {:.3g} m below the floor in half of its motion or more; position puts it higher", -median);
-  if (alone && least > kMissedFloor)
+  if (alone && least > kMaxFloorDistance)
     return fmt::format("it comes no nearer to the floor than {:.3g} m; position puts it lower", least);
   return std::nullopt;
 }

@@ -1,4 +1,4 @@
-// What bodies of people and animals do not do: sizes and speeds that must come of another unit or rate.
+// Warns of sizes and speeds that no body of a person or animal has: they suggest a wrong unit or rate.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,19 @@
 
 namespace weft::environment {
 
-/// What is wrong with a body that is as high along `up` as these places [m]. `scale`: metres per unit of its file;
-/// `said`: by the scene, which may want giants, but none of ten times that.
+/// Warns of an implausible height of a body along `up`. `x`: its vertices [m]; `scale`: metres per unit of its file;
+/// `said`: the scene gives the scale, and may want giants or dwarfs up to ten times beyond the limits.
 std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said);
 
-/// What is wrong with a body of which a clip moves limbs, where no limb has a skin.
+/// Warns of a body whose clip moves limbs although no limb has skin bound to it.
 std::optional<std::string> doubt_of_skin(const character::Character& body, const character::Clip& clip);
 
-/// What is wrong with a body that moves so: `count` key frames of `vertices` places from `begin` [s] on, `rate` a
-/// second.
+/// Warns of an implausible speed: `count` key frames of `vertices` points from `begin` [s] on, `rate` per second.
 std::optional<std::string> doubt_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
                                           std::size_t vertices);
 
-/// What is wrong with a body whose lowest vertex is as high over the one floor there is, at each of its key frames [m].
-/// `alone`: there is nothing else to stand on.
+/// Warns of a body in or above the only floor. `lowest`: height of its lowest vertex over the floor at each key frame
+/// [m]; `alone`: there is no other obstacle to stand on.
 std::optional<std::string> doubt_of_floor(std::vector<double> lowest, bool alone);
 
 }  // namespace weft::environment

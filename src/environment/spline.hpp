@@ -13,8 +13,8 @@
 
 namespace weft::environment {
 
-/// Second derivatives at the keys of the natural cubic spline (zero at both ends) with the given segment lengths `h`
-/// and slopes `d` (difference of values by length). Standard tridiagonal system, for inner keys i:
+/// Second derivatives at the keys of the natural cubic spline (zero at both ends); `h`: segment lengths, `d`: slopes of
+/// the segments (difference of values over length). Standard tridiagonal system, for inner keys i:
 ///   h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (d[i] - d[i-1])
 template <class Value>
 std::vector<Value> natural_second_derivatives(std::span<const double> h, std::span<const Value> d) {
@@ -31,11 +31,11 @@ std::vector<Value> natural_second_derivatives(std::span<const double> h, std::sp
   return m;
 }
 
-/// Slopes at the keys of that spline, each component no steeper than keeps it between the values of any two
-/// neighbouring keys: none where the chords beside a key differ in sign, at most three times the flatter one else
-/// (Fritsch & Carlson, "Monotone piecewise cubic interpolation", SIAM J. Numer. Anal. 17, 1980; of a spline's slopes
-/// Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). A natural spline alone swings back before a thing that stands begins to
-/// move.
+/// Slopes at the keys of the natural cubic spline, limited per component so that the curve stays between the values of
+/// neighbouring keys. If the chords on both sides of a key differ in sign, the slope is 0; otherwise it is at most
+/// three times the flatter chord (Fritsch & Carlson, "Monotone piecewise cubic interpolation", SIAM J. Numer. Anal. 17,
+/// 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). Without the limit, an object swings back
+/// before it begins to move.
 template <class Value>
 std::vector<Value> slopes_between_keys(std::span<const double> h, std::span<const Value> d) {
   const std::size_t n = h.size();
@@ -52,15 +52,14 @@ std::vector<Value> slopes_between_keys(std::span<const double> h, std::span<cons
   return slopes;
 }
 
-/// Segment of strictly increasing key times that holds t; the one to the right of a key. Call with
-/// times.front() <= t < times.back().
+/// Index of the segment that holds t; at a key, the one to its right. Requires times.front() <= t < times.back().
 inline std::size_t find_segment(std::span<const double> times, double t) {
   return static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), t) - times.begin()) - 1;
 }
 
-/// A vector-valued function of time through keys. Cubic: the natural cubic spline, whose slopes are limited where it
-/// would leave the range of two neighbouring keys; its first derivative is continuous, and so is its second where
-/// nothing is limited. Outside of the keys the end value holds and derivatives vanish.
+/// A vector-valued function of time through keys: piecewise linear, or cubic with limited slopes
+/// (slopes_between_keys()). The cubic has a continuous first derivative, and a continuous second derivative where no
+/// slope is limited. Outside the keys, the end value holds and derivatives are zero.
 template <int Dim>
 class Spline {
  public:
@@ -68,11 +67,11 @@ class Spline {
 
   struct Sample {
     Value value;                              ///< in the unit of the keys
-    Value first_derivative = Value::Zero();   ///< per s; at a corner of a linear track that of the later segment
+    Value first_derivative = Value::Zero();   ///< per s; at a key of a linear track, of the later segment
     Value second_derivative = Value::Zero();  ///< per s²
   };
 
-  /// At least one key; times [s] strictly increasing, as many as values.
+  /// Needs at least one key, as many values as times, and strictly increasing times [s].
   Spline(scene::Interpolation interpolation, std::vector<double> times, std::vector<Value> values)
       : times_(std::move(times)), values_(std::move(values)) {
     for (std::size_t i = 0; i + 1 < times_.size(); ++i) {
@@ -82,7 +81,7 @@ class Spline {
     if (interpolation == scene::Interpolation::cubic) slopes_ = slopes_between_keys<Value>(lengths_, chords_);
   }
 
-  /// Time O(log keys); allocates nothing.
+  /// Takes time O(log keys); allocates nothing.
   Sample at(double t) const {
     if (t < times_.front() || times_.size() == 1) return {values_.front()};
     if (t >= times_.back()) return {values_.back()};
@@ -99,8 +98,8 @@ class Spline {
   std::vector<double> times_;
   std::vector<Value> values_;
   std::vector<double> lengths_;  ///< of the segments [s]
-  std::vector<Value> chords_;    ///< their slopes
-  std::vector<Value> slopes_;    ///< at the keys; none for linear tracks
+  std::vector<Value> chords_;    ///< slopes of the segments
+  std::vector<Value> slopes_;    ///< at the keys; empty for linear tracks
 };
 
 }  // namespace weft::environment

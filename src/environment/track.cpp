@@ -10,12 +10,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Half turns are recognised up to this angle [rad]: well above rounding of quaternions, far below what one sees.
+/// Tolerance for half turns [rad]: far above the rounding of quaternions, far below what is visible.
 constexpr double kHalfTurnTolerance = 1e-6;
 
 Quat exp(const Vec3& w) {
   const double angle = w.norm();
-  // sin(a/2)/a, by its series where the quotient loses digits.
+  // sin(a/2)/a; by its series for small angles, where the quotient loses digits.
   const double factor = angle > 1e-4 ? std::sin(0.5 * angle) / angle : 0.5 - angle * angle / 48;
   return Quat(std::cos(0.5 * angle), factor * w.x(), factor * w.y(), factor * w.z());
 }
@@ -28,20 +28,20 @@ Vec3 log(const Quat& q) {
   return 2 * std::atan2(sine, std::abs(q.w())) / sine * v;
 }
 
-/// The rotation vector of q, of the many that differ by whole turns, that comes nearest to `guess`.
+/// Of all rotation vectors of q, which differ by whole turns, the one closest to `guess`.
 Vec3 log_near(const Quat& q, const Vec3& guess) {
   const Vec3 w = log(q);
   const double angle = w.norm();
-  // Without a turn of its own, q says nothing about the axis of whole turns.
+  // If q does not turn, it does not give the axis of whole turns.
   const Vec3 axis = angle > 1e-9 ? Vec3(w / angle) : Vec3(guess.stableNormalized());
   return w + 2 * kPi * std::round((guess.dot(axis) - angle) / (2 * kPi)) * axis;
 }
 
-/// The turn of a change of one angle alone [rad], by all that it says; nothing where more than one changes.
+/// Rotation vector of a change of at most one angle [rad], including whole turns; none if several angles change.
 std::optional<Vec3> turn_of_one_angle(const scene::Pose& from, const scene::Pose& to) {
   const std::optional<Vec3> change = scene::change_of_angles(from, to);
   if (!change || (change->array() != 0).count() > 1) return std::nullopt;
-  // The turn about x comes first and is turned by those about y and z, that about y by the one about z.
+  // The rotation about x comes first, so those about y and z turn its axis; the rotation about z turns the axis of y.
   const Vec3 angles = kPi / 180 * to.angles.value_or(Vec3::Zero());
   Vec3 axis = Vec3::UnitZ();
   if (change->x() != 0) axis = Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) * Vec3::UnitX();
@@ -49,8 +49,8 @@ std::optional<Vec3> turn_of_one_angle(const scene::Pose& from, const scene::Pose
   return Vec3(kPi / 180 * change->sum() * (Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * axis));
 }
 
-/// Turns from key to key [rad].
-std::vector<Vec3> turns_between(const std::vector<scene::Pose>& poses) {
+/// Rotation vectors from key to key [rad].
+std::vector<Vec3> rotation_vectors_between(const std::vector<scene::Pose>& poses) {
   std::vector<Vec3> turns;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     if (const auto turn = turn_of_one_angle(poses[i], poses[i + 1])) {
@@ -58,7 +58,7 @@ std::vector<Vec3> turns_between(const std::vector<scene::Pose>& poses) {
       continue;
     }
     Vec3 turn = log(poses[i + 1].rotation * poses[i].rotation.conjugate());
-    // The sign of a half turn's axis is noise: go on turning the way we did.
+    // The sign of a half turn's axis is rounding noise: continue in the direction of the turn before.
     if (!turns.empty() && kPi - turn.norm() < kHalfTurnTolerance && turn.dot(turns.back()) < 0)
       turn -= 2 * kPi * turn.normalized();
     turns.push_back(turn);
@@ -66,9 +66,9 @@ std::vector<Vec3> turns_between(const std::vector<scene::Pose>& poses) {
   return turns;
 }
 
-/// Composes exp(b w) onto a rotation whose angular velocity and acceleration are known; db, ddb: derivatives of b by
-/// time. For q = e p: omega = db w + R_e omega_p, and its derivative.
-void turn_further(RotationSpline::Sample& p, const Vec3& w, double b, double db, double ddb) {
+/// Multiplies a rotation with known angular velocity and acceleration by exp(b w) from the left; db, ddb: time
+/// derivatives of b. For q = e p: omega = db w + R_e omega_p, and its derivative.
+void rotate_sample(RotationSpline::Sample& p, const Vec3& w, double b, double db, double ddb) {
   const Quat e = exp(b * w);
   const Vec3 carried = e * p.angular_velocity;
   p.angular_acceleration = ddb * w + e * p.angular_acceleration + (db * w).cross(carried);
@@ -103,7 +103,7 @@ RotationSpline::RotationSpline(scene::Interpolation interpolation, std::vector<d
     pose.rotation.normalize();
     rotations_.push_back(pose.rotation);
   }
-  const std::vector<Vec3> turns = turns_between(poses);
+  const std::vector<Vec3> turns = rotation_vectors_between(poses);
   std::vector<double> lengths;
   std::vector<Vec3> chords;
   for (std::size_t i = 0; i < turns.size(); ++i) {
@@ -115,7 +115,7 @@ RotationSpline::RotationSpline(scene::Interpolation interpolation, std::vector<d
     const double h = lengths[i];
     Segment segment{times_[i], h, rotations_[i], Vec3::Zero(), turns[i], Vec3::Zero()};
     if (interpolation_ == scene::Interpolation::cubic) {
-      // Angular velocities at both keys, times h/3: the arms of the Bézier curve; the middle takes up the rest.
+      // Angular velocities at both keys, times h/3, are the tangents of the Bézier curve; the middle takes the rest.
       segment.w1 = h / 3 * slopes[i];
       segment.w3 = h / 3 * slopes[i + 1];
       const Quat middle = exp(-segment.w3) * rotations_[i + 1] * rotations_[i].conjugate() * exp(-segment.w1);
@@ -132,11 +132,11 @@ RotationSpline::Sample RotationSpline::at(double t) const {
   const double h = s.length, u = (t - s.start) / h, v = 1 - u;
   Sample sample{s.q0};
   if (interpolation_ == scene::Interpolation::linear) {
-    turn_further(sample, s.w2, u, 1 / h, 0);
+    rotate_sample(sample, s.w2, u, 1 / h, 0);
   } else {
-    turn_further(sample, s.w1, 1 - v * v * v, 3 * v * v / h, -6 * v / (h * h));
-    turn_further(sample, s.w2, u * u * (3 - 2 * u), 6 * u * v / h, 6 * (v - u) / (h * h));
-    turn_further(sample, s.w3, u * u * u, 3 * u * u / h, 6 * u / (h * h));
+    rotate_sample(sample, s.w1, 1 - v * v * v, 3 * v * v / h, -6 * v / (h * h));
+    rotate_sample(sample, s.w2, u * u * (3 - 2 * u), 6 * u * v / h, 6 * (v - u) / (h * h));
+    rotate_sample(sample, s.w3, u * u * u, 3 * u * u / h, 6 * u / (h * h));
   }
   sample.rotation.normalize();
   return sample;
@@ -148,8 +148,8 @@ Track::Track(const scene::PoseTrack& track, const scene::Pose& rest)
       rotation_(track.interpolation, times_of(track), poses_of(track, rest)),
       moving_(track.keys.size() > 1) {}
 
-// A time that is a key's but for rounding counts as the key's: beside it a track that stops there and one that goes on
-// would differ by roundings, which contacts of cloth make millimetres of.
+// A time that differs from a key's only by rounding counts as the key's. Otherwise a track that stops there would
+// differ by rounding from one that continues, and contacts of cloth amplify this to millimetres.
 PoseSample Track::at(double t) const {
   constexpr double kRounding = 1e-12;  // [s]
   const auto key = std::ranges::lower_bound(times_, t - kRounding);

@@ -1,4 +1,4 @@
-// Key-framed motion of rigid bodies, pins and whatever else has a pose.
+// Key-framed motion of rigid bodies and pins.
 #pragma once
 
 #include <vector>
@@ -26,12 +26,12 @@ struct PoseSample {
   }
 };
 
-/// Rotations through keys: where one angle alone changes, by as much as it does, whole turns and all; else along the
-/// shortest way between neighbours, and a half turn goes on in the direction of the one before. Linear: constant
-/// angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit quaternions (Kim, Kim & Shin,
-/// "A general construction scheme for unit quaternion curves with simple high order derivatives", SIGGRAPH 1995), which
-/// has closed derivatives; angular velocity is continuous. Its values at the keys come from the spline (spline.hpp)
-/// over the turns between keys, so that motion about one axis is exactly that of the angle.
+/// Interpolates rotations through keys. If exactly one angle changes between two keys, the rotation turns by that
+/// change, including whole turns. Otherwise it takes the shortest way; a half turn continues the direction of the turn
+/// before it. Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit
+/// quaternions with derivatives in closed form (Kim, Kim & Shin, "A general construction scheme for unit quaternion
+/// curves with simple high order derivatives", SIGGRAPH 1995); angular velocity is continuous. Its values at the keys
+/// come from the spline (spline.hpp) over the turns between keys, so motion about one axis is the spline of the angle.
 class RotationSpline {
  public:
   struct Sample {
@@ -40,14 +40,14 @@ class RotationSpline {
     Vec3 angular_acceleration{0, 0, 0};  ///< [rad/s²], world
   };
 
-  /// At least one key; times [s] strictly increasing, as many as poses.
+  /// Needs at least one key, as many poses as times, and strictly increasing times [s].
   RotationSpline(scene::Interpolation interpolation, std::vector<double> times, std::vector<scene::Pose> poses);
 
   Sample at(double t) const;
 
  private:
-  /// One stretch between two keys: q(u) = exp(b3(u) w3) exp(b2(u) w2) exp(b1(u) w1) q0 with u from 0 to 1, and the
-  /// cumulative Bernstein basis b1 = 1 - (1-u)³, b2 = 3u² - 2u³, b3 = u³; linear: w2 alone, with b2 = u.
+  /// One segment between two keys: q(u) = exp(b3(u) w3) exp(b2(u) w2) exp(b1(u) w1) q0 with u from 0 to 1 and the
+  /// cumulative Bernstein basis b1 = 1 - (1-u)³, b2 = 3u² - 2u³, b3 = u³. Linear: only w2, with b2 = u.
   struct Segment {
     double start, length;  // [s]
     Quat q0;
@@ -60,17 +60,17 @@ class RotationSpline {
   std::vector<Segment> segments_;
 };
 
-/// The pose of a track at any time. Before the first and after the last key the body rests; at the first key it already
-/// moves, at the last it no longer does.
+/// The pose of a track at any time. Before the first key and after the last one the body rests; at the first key it has
+/// its velocity, at the last key it rests.
 class Track {
  public:
-  /// `rest`: the pose that holds where the track has no keys.
+  /// `rest`: the pose of a track without keys.
   explicit Track(const scene::PoseTrack& track, const scene::Pose& rest = {});
 
-  /// Time O(log keys); allocates nothing.
+  /// Takes time O(log keys); allocates nothing.
   PoseSample at(double t) const;
 
-  /// False if the pose is the same at all times, by the number of keys.
+  /// Whether the track has more than one key.
   bool moving() const { return moving_; }
 
  private:

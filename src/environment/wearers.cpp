@@ -16,8 +16,8 @@ const std::optional<Vec3>& joint(const Joints& joints, const std::string& name) 
   return joints[character::joint_number(name)];
 }
 
-/// Upright, with the hips above its origin; left goes by the legs, or by the arms.
-Eigen::Isometry3d axes_of(const Standing& standing, const Vec3& up, const std::string& where) {
+/// Axes of a wearer: x to its left, z up, origin on the floor below the middle of its legs, or of its arms.
+Eigen::Isometry3d axes_of(const StandingBody& standing, const Vec3& up, const std::string& where) {
   for (const char* name : {"UpperLeg", "UpperArm"}) {
     const auto &left = joint(standing.joints, std::string("Left") + name),
                &right = joint(standing.joints, std::string("Right") + name);
@@ -40,7 +40,7 @@ Eigen::Isometry3d axes_of(const Standing& standing, const Vec3& up, const std::s
               where);
 }
 
-garment::Wearer make_wearer(const Standing& standing, const Vec3& up, const std::string& where) {
+garment::Wearer make_wearer(const StandingBody& standing, const Vec3& up, const std::string& where) {
   garment::Wearer wearer;
   wearer.to_world = axes_of(standing, up, where);
   const Eigen::Isometry3d to_own = wearer.to_world.inverse();
@@ -74,10 +74,10 @@ garment::Wearer make_wearer(const Standing& standing, const Vec3& up, const std:
   constexpr std::array kArm{"UpperArm", "LowerArm", "Hand"}, kLeg{"UpperLeg", "LowerLeg", "Foot"};
   wearer.left_arm = limb("Left", kArm), wearer.right_arm = limb("Right", kArm);
   wearer.left_leg = limb("Left", kLeg), wearer.right_leg = limb("Right", kLeg);
-  // Without a neck the shoulders tell, without them the crown.
+  // If the neck joint is unknown, estimates its height from the top of the head.
   double crown = 0;
   for (const Vec3& x : wearer.skin) crown = std::max(crown, x.z());
-  constexpr double kNeck = 0.83;  // of the height of a person
+  constexpr double kNeck = 0.83;  // neck height over body height
   wearer.neck = kNeck * crown;
   if (const auto& neck = joint(standing.joints, "Neck")) wearer.neck = (to_own * *neck).z();
   return wearer;
@@ -99,7 +99,7 @@ const garment::Wearer& Wearers::of(const scene::Cloth& cloth, const std::string&
   const auto known = made_.find(found->name);
   if (known != made_.end()) return known->second;
   const Vec3 up = scene_.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
-  return made_.emplace(found->name, make_wearer(stand(scene_, *found, where), up, where)).first->second;
+  return made_.emplace(found->name, make_wearer(make_standing_body(scene_, *found, where), up, where)).first->second;
 }
 
 }  // namespace weft::environment

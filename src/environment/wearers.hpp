@@ -1,4 +1,4 @@
-// Which character wears a garment, and its body for that.
+// Finds the character that wears a garment, and prepares its body for the garment.
 #pragma once
 
 #include <map>
@@ -9,13 +9,13 @@
 
 namespace weft::environment {
 
-/// The bodies of a scene that garments are put on, each made when it is first asked for.
+/// The wearers of garments in a scene, each made when it is first needed.
 class Wearers {
  public:
   explicit Wearers(const scene::Scene& scene) : scene_(scene) {}
 
-  /// Throws Error(scene_invalid) after `where` if the cloth names no wearer and there is not just one character, or if
-  /// that has no bones.
+  /// The wearer of a cloth. Throws Error(scene_invalid) that begins with `where` if there is no character, if the cloth
+  /// names no wearer and there are several, or if the wearer has no bones.
   const garment::Wearer& of(const scene::Cloth& cloth, const std::string& where);
 
  private:

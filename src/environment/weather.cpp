@@ -11,7 +11,7 @@ bool air_acts(const scene::Scene& scene) {
          std::ranges::any_of(scene.cloths, [](const scene::Cloth& cloth) { return cloth.material.drag > 0; });
 }
 
-bool blows_in_gusts(const scene::Scene& scene) {
+bool has_gusts(const scene::Scene& scene) {
   return scene.physics.gusts.speed > 0 && air_acts(scene);
 }
 
@@ -26,8 +26,8 @@ Weather::Weather(const scene::Scene& scene) : gravity_(scene.physics.gravity), w
     keys_.emplace(scene.physics.interpolation, std::move(times), std::move(values));
   }
   if (!air_acts(scene)) return;
-  // Keyed wind carries gusts along as it blows at first.
-  if (blows_in_gusts(scene)) gusts_.emplace(scene.physics.gusts, scene.physics.wind);
+  // Keyed wind carries the gusts with its velocity at the start.
+  if (has_gusts(scene)) gusts_.emplace(scene.physics.gusts, scene.physics.wind);
   for (const scene::Fan& fan : scene.fans) {
     std::vector<double> times;
     std::vector<Spline<7>::Value> values;

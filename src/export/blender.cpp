@@ -42,7 +42,7 @@ const char* extension(const Material& material) {
   return "REPEAT";
 }
 
-// By material: its picture and how it is laid, which MTL cannot say of all.
+// By material: its picture with the mapping, as MTL cannot express every mapping.
 Json pictures_json(const frame::Surface& surface) {
   Json result = Json::object();
   const Materials materials = materials_of(surface);
@@ -59,7 +59,7 @@ Json pictures_json(const frame::Surface& surface) {
   return result;
 }
 
-// By material: linear colour of its back, where cloth shows another one there.
+// By material: linear colour of the back, if cloth has another colour there.
 Json backs_json(const frame::Surface& surface) {
   Json result = Json::object();
   if (surface.kind != frame::ObjectKind::cloth) return result;
@@ -114,7 +114,7 @@ void BlenderScript::add(int frame, const std::vector<View>& views) {
 }
 
 std::string BlenderScript::text() const {
-  // JSON in ASCII has no three quotes in a row, so it ends where it should.
+  // ASCII JSON never contains three consecutive quotes, so the Python literal ends only at its end.
   const std::string data = json_text(film_, -1, JsonLetters::ascii);
   std::string text = fmt::format("# {}, by Weft {}.\nFILM_TEXT = r\"\"\"{}\"\"\"\n\n",
                                  json_text(film_["name"], -1, JsonLetters::ascii), kVersion, data);

@@ -10,17 +10,17 @@
 
 namespace weft::exporter {
 
-/// What the script sets beside the meshes, which it reads from files of their names.
+/// Data that the script sets in addition to the meshes, which it reads from files named after the objects.
 class BlenderScript {
  public:
   /// `width`, `height`: of the pictures [pixels].
   BlenderScript(const frame::FrameSnapshot& first, const Lighting& lighting, std::string name, double fps, int width,
                 int height);
 
-  /// The next frame, the first too.
+  /// Adds the next frame, starting with the first.
   void add(int frame, const std::vector<View>& views);
 
-  /// For Blender from 3.4 on; it needs no module that is not Blender's.
+  /// Runs in Blender 3.4 or later without additional modules.
   std::string text() const;
 
  private:

@@ -41,7 +41,7 @@ Path gltf_file(const Request& request) {
 Path usd_file(const Request& request) {
   return request.folder / (request.name + (request.format == Format::usdz ? ".usdz" : ".usda"));
 }
-// Formats whose materials and pictures lie beside the meshes.
+// Formats with materials and pictures beside the meshes.
 bool has_materials_beside(Format format) {
   return format == Format::obj || format == Format::pc2 || format == Format::blender;
 }
@@ -49,7 +49,7 @@ Path script_file(const Request& request) {
   return request.folder / (request.name + ".py");
 }
 
-// As OBJ files are read where nothing else is said, by Blender too: y up, the front towards z.
+// The axes that OBJ readers such as Blender assume by default: y up, front towards z.
 std::vector<Vec3> with_y_up(const frame::FrameSnapshot& snapshot, std::size_t surface) {
   std::vector<Vec3> positions = snapshot.states[surface].positions;
   if (snapshot.stage->up.z() > 0.5)
@@ -90,7 +90,7 @@ void write_meshes(const Request& request, const frame::FrameSnapshot& snapshot) 
   }
 }
 
-/// Takes the frames one after the other.
+/// Receives the frames in order and writes them in the requested format.
 class Sink {
  public:
   explicit Sink(const Request& request) : request_(request) {}
@@ -155,7 +155,7 @@ class Sink {
   }
 
   const Request& request_;
-  std::vector<std::unique_ptr<PointCache>> caches_;  // by object
+  std::vector<std::unique_ptr<PointCache>> caches_;  // one per object
   std::optional<GltfFile> gltf_;
   std::optional<UsdFile> usd_;
   std::optional<BlenderScript> script_;

@@ -1,4 +1,4 @@
-// Frames as files for other programs.
+// Export of frames to files for other programs.
 #pragma once
 
 #include <filesystem>
@@ -12,40 +12,40 @@
 namespace weft::exporter {
 
 enum class Format {
-  ply,      ///< a file for each object and frame: triangles, positions as double, weft and warp; cut where panels meet
-  obj,      ///< likewise: faces as simulated, with weft and warp, normals, materials (MTL) and pictures
-  pc2,      ///< a point cache for each object, and the object in the first frame as OBJ, which it applies to; y is up
-  gltf,     ///< one file with all visible objects, their colours, pictures and motion, and cameras
-  usd,      ///< likewise, as text; in the axes of the scene
-  usdz,     ///< the same, packed
+  ply,   ///< per object and frame: triangles, positions in double precision, weft and warp; cut open at seams of panels
+  obj,   ///< per object and frame: simulated faces, weft and warp, normals, materials (MTL) and pictures
+  pc2,   ///< per object: a point cache, and the OBJ of the first frame to which it applies; y is up
+  gltf,  ///< one file with all visible objects, their colours, pictures and motion, and cameras
+  usd,   ///< likewise, as text; with the axes of the scene
+  usdz,  ///< the same, packed
   blender,  ///< pc2, and a script that loads all of it with cameras and lights
 };
 
 struct Request {
   Format format = Format::gltf;
   std::filesystem::path folder;
-  std::string name;                ///< of the scene, which names the file of all objects
+  std::string name;                ///< of the scene; names files that contain all objects
   double fps = 25;                 ///< of the scene
-  std::vector<int> frames;         ///< ascending, at least one, all as far apart
-  int width = 1280, height = 720;  ///< of its pictures
-  /// Of a frame, the first that which pictures show; of gltf, usd, usdz and blender, and asked once for each frame, in
-  /// order.
+  std::vector<int> frames;         ///< ascending, equally spaced, at least one
+  int width = 1280, height = 720;  ///< of the pictures
+  /// Returns the cameras of a frame, that of the pictures first. Used by gltf, usd, usdz and blender; called once per
+  /// frame, in order.
   std::function<std::vector<View>(const frame::FrameSnapshot&)> views = nullptr;
-  Lighting lighting = {};  ///< of blender
+  Lighting lighting = {};  ///< for blender
 };
 
-/// All files that will be written but for shared_files(); `first` is the first frame asked for.
+/// All files that will be written except shared_files(); `first` is the first requested frame.
 std::vector<std::filesystem::path> files(const Request& request, const frame::FrameSnapshot& first);
 
-/// Materials and pictures beside them, which are the same for all parts of a film.
+/// Materials, and pictures beside them, which are the same for all parts of a film.
 struct SharedFile {
   std::filesystem::path file;
   std::string content;
 };
 std::vector<SharedFile> shared_files(const Request& request, const frame::FrameSnapshot& first);
 
-/// Reads each frame once, in order, and asks `stop` before each; returns whether all were written. Each file appears
-/// under its name when it is whole. Throws Error(output_failed), and what `read` throws.
+/// Reads each frame once, in order, and calls `stop` before each. Returns whether all frames were written. Each file
+/// gets its name only when it is complete. Throws Error(output_failed), and what `read` throws.
 bool write(
     const Request& request, const std::function<frame::SnapshotPtr(int)>& read,
     const std::function<bool()>& stop = [] { return false; });

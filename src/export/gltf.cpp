@@ -23,12 +23,12 @@
 namespace weft::exporter {
 namespace {
 
-// Numbers are copied as they lie in memory.
+// Numbers are copied with their byte order in memory.
 static_assert(std::endian::native == std::endian::little);
 
 using nlohmann::json;
 
-// Numbers that the specification gives to things.
+// Constants of the glTF specification.
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963, kTriangles = 4;
 
 constexpr int kRepeat = 10497, kMirror = 33648, kClamp = 33071, kLinear = 9729, kLinearOfSizes = 9987;
@@ -46,7 +46,7 @@ int wrap_number(frame::Paint::Wrap wrap) {
   return kRepeat;
 }
 
-// Gives each place of its own to what lies on either side of a crease; returns the group of each place.
+// Duplicates places on creases, so that each has one normal group; returns the group of each place.
 std::vector<Index> cut_at_creases(CutSurface& cut, const NormalGroups& groups) {
   std::vector<Index> group_of(cut.vertex_of.size(), -1);
   std::map<std::pair<Index, Index>, Index> copies;  // by place and group
@@ -78,7 +78,7 @@ void append_number(std::string& bytes, std::uint32_t number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-// Chunks are filled up to a multiple of four bytes.
+// Chunks are padded to a multiple of four bytes.
 void append_chunk(std::string& bytes, const char* kind, std::string_view content, char filler) {
   const std::size_t fillers = (4 - content.size() % 4) % 4;
   append_number(bytes, static_cast<std::uint32_t>(content.size() + fillers));
@@ -128,12 +128,12 @@ std::vector<float> GltfFile::normals(const Object& object, const frame::FrameSna
   std::vector<Index> places;
   for (const Index group : object.group_of) {
     places.push_back(static_cast<Index>(of_place.size()));
-    of_place.push_back(group < 0 ? Vec3(0, 0, 1) : all[static_cast<std::size_t>(group)]);  // −1: of no triangle
+    of_place.push_back(group < 0 ? Vec3(0, 0, 1) : all[static_cast<std::size_t>(group)]);  // −1: not in any triangle
   }
   return turned(of_place, places);
 }
 
-// Returns the number of the view.
+// Returns the index of the buffer view.
 int GltfFile::append(const void* data, std::size_t size, int target) {
   json view{{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}};
   if (target != 0) view["target"] = target;
@@ -142,7 +142,7 @@ int GltfFile::append(const void* data, std::size_t size, int target) {
   return static_cast<int>(document_["bufferViews"].size()) - 1;
 }
 
-// Returns the number of the accessor, as the others do.
+// Returns the index of the accessor, as the next functions do.
 int GltfFile::add_vectors(const std::vector<float>& vectors) {
   std::array<float, 3> low, high;
   low.fill(std::numeric_limits<float>::max());
@@ -176,7 +176,7 @@ int GltfFile::add_values(const std::vector<float>& values, const char* type, boo
 
 int GltfFile::add_places(const std::vector<Vec2>& places) {
   std::vector<float> uv;
-  for (const Vec2& place : places) {  // v goes down there
+  for (const Vec2& place : places) {  // v points down in glTF
     uv.push_back(static_cast<float>(place.x()));
     uv.push_back(static_cast<float>(1 - place.y()));
   }
@@ -187,7 +187,7 @@ int GltfFile::add_places(const std::vector<Vec2>& places) {
   return static_cast<int>(document_["accessors"].size()) - 1;
 }
 
-// Returns its number: one for each picture and way of going on beyond its edges. `images`: numbers of the pictures.
+// Returns the index of the texture for this picture and these wrap modes. `images`: indices of images already written.
 json GltfFile::texture(const Materials& materials, const Material& material, std::vector<int>& images) {
   if (images.empty()) images.assign(materials.pictures.size(), -1);
   int& image = images[material.picture];
@@ -197,7 +197,7 @@ json GltfFile::texture(const Materials& materials, const Material& material, std
     image = static_cast<int>(document_["images"].size());
     document_["images"].push_back(
         {{"name", picture.name}, {"mimeType", "image/png"}, {"bufferView", append(png.data(), png.size(), 0)}});
-    bytes_.append((4 - bytes_.size() % 4) % 4, '\0');  // numbers that follow start at multiples of four
+    bytes_.append((4 - bytes_.size() % 4) % 4, '\0');  // keeps later numbers aligned to four bytes
   }
   const json sampler{{"wrapS", wrap_number(material.wrap_u)},
                      {"wrapT", wrap_number(material.wrap_v)},
@@ -213,7 +213,7 @@ json GltfFile::texture(const Materials& materials, const Material& material, std
   return number_of("textures", {{"source", image}, {"sampler", number_of("samplers", sampler)}});
 }
 
-// A primitive for each look; all share vertices and so the frames.
+// One primitive per look; all share vertices and therefore morph targets.
 json GltfFile::primitives(const CutSurface& cut, const Object& object, const frame::Surface& surface,
                           const Materials& materials) {
   json attributes{{"POSITION", add_vectors(object.start)}, {"NORMAL", add_vectors(object.start_normals)}};
@@ -265,7 +265,7 @@ void GltfFile::add(const frame::FrameSnapshot& snapshot, double time) {
 }
 
 void GltfFile::add_targets(Object& object, json& mesh) {
-  int still = -1;  // one for all frames that are as the first
+  int still = -1;  // shared by all frames that equal the first
   json targets = json::array(), names = json::array();
   for (std::size_t k = 0; k < object.targets.size(); ++k) {
     const auto [positions, normals] = object.targets[k];
@@ -278,7 +278,7 @@ void GltfFile::add_targets(Object& object, json& mesh) {
   mesh["extras"] = {{"targetNames", std::move(names)}};
 }
 
-// All that moves shares its times and weights.
+// One sampler of times and weights for all moving objects.
 json GltfFile::animation(const std::vector<int>& nodes) {
   json result{{"samplers", json::array()}, {"channels", json::array()}};
   if (nodes.empty()) return result;
@@ -301,14 +301,14 @@ void GltfFile::see(const std::vector<View>& views) {
     const Vec3 position = turned * views[c].world_from_view.topRightCorner<3, 1>();
     Eigen::Vector4f turn =
         Quat(Eigen::Matrix3d(turned * views[c].world_from_view.topLeftCorner<3, 3>())).coeffs().cast<float>();
-    // Of the two quaternions of a turn that near to the one before, so that readers go the short way.
+    // Chooses the sign of the quaternion nearest to the previous one, so that readers interpolate the shorter way.
     if (!eye.turns.empty() && turn.dot(Eigen::Map<const Eigen::Vector4f>(&*(eye.turns.end() - 4))) < 0) turn = -turn;
     for (int axis = 0; axis < 3; ++axis) eye.positions.push_back(static_cast<float>(position[axis]));
     for (int part = 0; part < 4; ++part) eye.turns.push_back(turn[part]);
   }
 }
 
-// As nodes behind those of the objects.
+// Adds cameras as nodes after those of the objects.
 void GltfFile::add_cameras(json& animation, double aspect) {
   for (const Eye& eye : eyes_) {
     const std::size_t node = document_["nodes"].size();
@@ -326,7 +326,7 @@ void GltfFile::add_cameras(json& animation, double aspect) {
     for (const auto& [path, type, values] :
          {std::tuple("translation", "VEC3", &eye.positions), std::tuple("rotation", "VEC4", &eye.turns)}) {
       const std::ptrdiff_t each = type[3] - '0';
-      if (std::equal(values->begin() + each, values->end(), values->begin())) continue;  // all are as the one before
+      if (std::equal(values->begin() + each, values->end(), values->begin())) continue;  // the camera does not move
       const int input = animation["samplers"].empty() ? add_values(times_, "SCALAR", true)
                                                       : animation["samplers"][0]["input"].get<int>();
       animation["channels"].push_back(
@@ -360,15 +360,15 @@ void GltfFile::write(const std::filesystem::path& file, const std::string& anima
   document_["buffers"] = {{{"byteLength", bytes_.size()}}};
 
   const std::string text = sorted_json_text(document_);
-  const std::size_t most = text.size() + bytes_.size() + 64;  // with heads and fillers
-  if (most > std::numeric_limits<std::uint32_t>::max())
+  const std::size_t max_size = text.size() + bytes_.size() + 64;  // upper bound, with headers and padding
+  if (max_size > std::numeric_limits<std::uint32_t>::max())
     throw Error(ExitCode::output_failed,
                 "{}: glTF files end at 4 GiB, and this would be one of {:.3g} GB; export fewer frames with --frames",
                 file.string(), 1e-9 * static_cast<double>(bytes_.size()));
   std::string whole = "glTF";
-  whole.reserve(most);
+  whole.reserve(max_size);
   append_number(whole, 2);
-  append_number(whole, 0);  // the length of it all, once it is known
+  append_number(whole, 0);  // total length, set below
   append_chunk(whole, "JSON", text, ' ');
   append_chunk(whole, "BIN", bytes_, '\0');
   const auto length = static_cast<std::uint32_t>(whole.size());

@@ -1,4 +1,4 @@
-// Animated glTF 2.0 in one binary file (Khronos Group, "glTF 2.0 Specification", 2021).
+// Animated glTF 2.0 as one binary file (Khronos Group, "glTF 2.0 Specification", 2021).
 #pragma once
 
 #include <filesystem>
@@ -14,47 +14,48 @@
 
 namespace weft::exporter {
 
-/// Every object is a mesh whose vertices are those of the first frame, with one morph target for each later frame. At
-/// the time of frame k the weight of its target is 1 and all others are 0, and between frames they go over linearly:
-/// positions do then too. That is the one way of moving vertices at will that the standard has, and readers know it
-/// (assimp, Blender, three.js). Objects that never move have no targets.
+/// Each object is a mesh with the vertices of the first frame, and one morph target per later frame. At the time of
+/// frame k, the weight of its target is 1 and all others are 0; between frames, weights and thus positions are
+/// interpolated linearly. Morph targets are the standard's only way to move vertices freely, and common readers support
+/// them (assimp, Blender, three.js). Objects that never move have no targets.
 ///
-/// y is up in glTF: where z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender turns back. Normals have
-/// targets as positions have: those of the first frame would be wrong in all others. Texture coordinates are weft and
-/// warp [m]; where panels meet at a seam each has vertices of its own. A second pair lays pictures, which are inside of
-/// the file; parts that look otherwise are primitives of their own over the same vertices.
+/// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender reverses. Normals have targets
+/// as well, since those of the first frame would be wrong in all others. Texture coordinates are weft and warp [m];
+/// vertices on a seam occur once for each panel. A second pair of coordinates places pictures, which are embedded.
+/// Parts with their own materials are separate primitives over the same vertices.
 class GltfFile {
  public:
-  /// Of the visible objects of the first frame.
+  /// Adds the visible objects of the first frame.
   explicit GltfFile(const frame::FrameSnapshot& first);
 
-  /// The next frame, at `time` [s] from the first.
+  /// Adds the next frame, at `time` [s] after the first.
   void add(const frame::FrameSnapshot& snapshot, double time);
 
-  /// Cameras of the next frame, the first too. The standard's cameras keep their angle: that of the first frame.
+  /// Adds the cameras of the next frame, starting with the first. glTF cameras cannot change their field of view; that
+  /// of the first frame is used.
   void see(const std::vector<View>& views);
 
-  /// `aspect`: width over height of the pictures. Throws Error(output_failed), also where it would be more than the
-  /// format can hold.
+  /// `aspect`: width over height of the pictures. Throws Error(output_failed), also if the file would exceed the limit
+  /// of the format.
   void write(const std::filesystem::path& file, const std::string& animation_name, double aspect);
 
  private:
   struct Target {
-    int positions = -1, normals = -1;  // accessors; −1 where all is as in the first frame
+    int positions = -1, normals = -1;  // indices of accessors; −1 if the frame equals the first
   };
   struct Object {
     std::size_t surface = 0;
     NormalGroups groups = {};
     std::vector<float> start = {};  // as written
     std::vector<float> start_normals = {};
-    std::vector<Index> vertex_of = {};  // of the surface, for each that is written
-    std::vector<Index> group_of = {};   // of normals, likewise; −1: of none
+    std::vector<Index> vertex_of = {};  // index in the surface, per written vertex
+    std::vector<Index> group_of = {};   // index of the normal group, per written vertex; −1: none
     std::vector<Target> targets = {};   // one per later frame
   };
   struct Eye {
     std::string name = {};
     double field_of_view = 35;                      // vertical [degrees]
-    std::vector<float> positions = {}, turns = {};  // of each frame: x, y, z; and w after them
+    std::vector<float> positions = {}, turns = {};  // per frame: x, y, z; and quaternion x, y, z, w
   };
   int append(const void* data, std::size_t size, int target);
   int add_vectors(const std::vector<float>& vectors);

@@ -33,7 +33,7 @@ std::uint8_t byte_of(double share) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
 }
 
-// Light adds up in linear colours, as where surfaces are drawn.
+// Colours are combined in linear space, as in the renderer.
 void lay_texel(const PictureFile& picture, const std::uint8_t* texel, std::uint8_t* laid) {
   const double opacity = texel[3] / 255.0;
   for (int c = 0; c < 3; ++c) {
@@ -59,7 +59,7 @@ std::size_t add_picture(std::vector<PictureFile>& pictures, PictureFile picture,
   return pictures.size() - 1;
 }
 
-// Along one axis: beyond a picture that is laid once its rim goes on.
+// Along one axis: a picture that is laid once becomes a clamped one with a transparent rim.
 void widen(Wrap& wrap, bool& rim, int pixels, Eigen::Ref<Eigen::RowVector3d> row) {
   rim = wrap == Wrap::once;
   if (!rim) return;

@@ -11,7 +11,7 @@
 namespace weft::exporter {
 namespace {
 
-// Twice the area long.
+// Normal with twice the area as its length.
 Vec3 front_of(const std::array<Index, 3>& t, const std::vector<Vec3>& x) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(t[k])]; };
   return (corner(1) - corner(0)).cross(corner(2) - corner(0));
@@ -32,10 +32,10 @@ NormalGroups group_normals(const frame::Surface& surface, const std::vector<Vec3
     std::iota(groups.vertex_of.begin(), groups.vertex_of.end(), 0);
     return groups;
   }
-  // Corners at both ends of a smooth edge belong together. A corner is 3 × triangle + k.
+  // Joins the corners at both ends of each smooth edge. A corner is 3 × triangle + k.
   DisjointSets corners(3 * triangles.size());
-  const double least = std::cos(surface.crease_angle * std::numbers::pi / 180);
-  std::map<std::pair<Index, Index>, std::size_t> edges;  // from vertex to vertex: the corner at the first of them
+  const double min_cosine = std::cos(surface.crease_angle * std::numbers::pi / 180);
+  std::map<std::pair<Index, Index>, std::size_t> edges;  // by directed edge: the corner at its start
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) edges[{triangles[t][k], triangles[t][(k + 1) % 3]}] = 3 * t + k;
   for (const auto& [edge, corner] : edges) {
@@ -43,7 +43,7 @@ NormalGroups group_normals(const frame::Surface& surface, const std::vector<Vec3
     if (other == edges.end()) continue;
     const std::size_t t = corner / 3, u = other->second / 3;
     const Vec3 a = front_of(triangles[t], positions), b = front_of(triangles[u], positions);
-    if (a.dot(b) < least * a.norm() * b.norm()) continue;
+    if (a.dot(b) < min_cosine * a.norm() * b.norm()) continue;
     corners.join(index(corner), index(3 * u + (other->second + 1) % 3));
     corners.join(index(3 * t + (corner + 1) % 3), index(other->second));
   }

@@ -1,4 +1,4 @@
-// Normals as surfaces are drawn: smooth, but not over edges that are sharper than the crease angle.
+// Normals of drawn surfaces: smooth, except across edges that are sharper than the crease angle.
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace weft::exporter {
 
-/// Which corners of triangles share a normal: all of a vertex, or those on one side of its creases.
+/// Groups of triangle corners that share a normal: all corners of a vertex, or those between its creases.
 struct NormalGroups {
-  std::vector<std::array<Index, 3>> of_corner;  ///< per triangle
-  std::vector<Index> vertex_of;                 ///< per group
+  std::vector<std::array<Index, 3>> of_corner;  ///< group, per triangle
+  std::vector<Index> vertex_of;                 ///< vertex, per group
 };
 
-/// By the edges as they are at `positions`.
+/// Finds creases at `positions`.
 NormalGroups group_normals(const frame::Surface& surface, const std::vector<Vec3>& positions);
 
-/// Of unit length, per group, triangles weighted by area; upward (0, 0, 1) where a group has no area.
+/// Unit normals per group, weighted by triangle area; (0, 0, 1) if a group has no area.
 std::vector<Vec3> normals_of(const NormalGroups& groups, const frame::Surface& surface,
                              const std::vector<Vec3>& positions);
 

@@ -18,13 +18,13 @@
 namespace weft::exporter {
 namespace {
 
-// Of the highlight, for what is as a mirror: readers such as Blender take roughness for 1 - sqrt(Ns / 1000).
-constexpr double kLargestExponent = 1000;
+// Largest specular exponent: readers such as Blender compute the roughness as 1 - sqrt(Ns / 1000).
+constexpr double kMaxSpecularExponent = 1000;
 
-// A face by its corners, each that of a triangle.
+// A face, whose corners refer to corners of triangles.
 struct Face {
-  std::size_t material = 0;                                  // that looks as its own
-  std::vector<std::pair<std::size_t, std::size_t>> corners;  // triangle, and which of its corners
+  std::size_t material = 0;                                  // first one with the same look
+  std::vector<std::pair<std::size_t, std::size_t>> corners;  // triangle, and corner in it
 };
 
 std::vector<Face> triangles_of(const frame::Surface& surface) {
@@ -33,9 +33,9 @@ std::vector<Face> triangles_of(const frame::Surface& surface) {
   return faces;
 }
 
-// A corner of a quad is that of a triangle that is a part of the quad: both have an edge in common.
+// Each corner of a quad is a corner of the triangle that shares the following edge of the quad.
 std::vector<Face> quads_of(const frame::Surface& surface) {
-  std::map<std::pair<Index, Index>, std::size_t> triangles;  // by edge, from vertex to vertex
+  std::map<std::pair<Index, Index>, std::size_t> triangles;  // by directed edge
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) triangles[{surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]}] = t;
   std::vector<Face> faces;
@@ -50,7 +50,7 @@ std::vector<Face> quads_of(const frame::Surface& surface) {
   return faces;
 }
 
-// In the order of their materials.
+// Faces in the order of their materials.
 std::vector<Face> faces_of(const frame::Surface& surface, const Materials& materials) {
   std::vector<Face> faces = surface.quads.empty() ? triangles_of(surface) : quads_of(surface);
   for (Face& face : faces) face.material = materials.all[materials.of_triangle(surface, face.corners[0].first)].alike;
@@ -58,7 +58,7 @@ std::vector<Face> faces_of(const frame::Surface& surface, const Materials& mater
   return faces;
 }
 
-// Corners as `v//vn` or `v/vt/vn`, counted from 1.
+// Writes corners as `v//vn` or `v/vt/vn`, counted from 1.
 void append_faces(const std::vector<Face>& faces, const Materials& materials, const CutSurface& cut,
                   const NormalGroups& groups, std::string& text) {
   const auto out = std::back_inserter(text);
@@ -78,7 +78,7 @@ void append_faces(const std::vector<Face>& faces, const Materials& materials, co
   }
 }
 
-// A picture's place and size; empty where it is turned, for which there are no words.
+// Options for offset and scale of a picture; nullopt if it is rotated, which MTL cannot express.
 std::optional<std::string> map_options(const Material& material) {
   const auto& map = material.picture_from_uv;
   if (map(0, 1) != 0 || map(1, 0) != 0) return std::nullopt;
@@ -117,7 +117,7 @@ std::string mtl_text(const frame::Surface& surface) {
     const Vec3 color = options ? Vec3(1, 1, 1) : material.color;
     const double glossy = 1 - material.roughness;
     fmt::format_to(out, "newmtl {}\nKd {:.6f} {:.6f} {:.6f}\nKs 0.5 0.5 0.5\nNs {:.3f}\nPr {}\nd 1\nillum 2\n",
-                   material.name, color.x(), color.y(), color.z(), kLargestExponent * glossy * glossy,
+                   material.name, color.x(), color.y(), color.z(), kMaxSpecularExponent * glossy * glossy,
                    material.roughness);
     if (!material.has_picture()) continue;
     const std::string& file = materials.pictures[material.picture].name;

@@ -9,12 +9,12 @@
 
 namespace weft::exporter {
 
-/// Faces as simulated; positions [m] and weft and warp [m], as texture coordinates, of each panel by itself, such that
-/// reading gives the same doubles; normals to six digits; the material of `<object>.mtl`. The axes are those of the
-/// positions. Throws Error(output_failed).
+/// Writes the simulated faces, positions [m], weft and warp [m] of each panel as texture coordinates (doubles that read
+/// back exactly), normals to six digits, and the material of `<object>.mtl`. The axes are those of `positions`. Throws
+/// Error(output_failed).
 void write_obj(const std::filesystem::path& file, const frame::Surface& surface, const std::vector<Vec3>& positions);
 
-/// The text of its material file: colour in linear light and roughness, as Blender reads them.
+/// The text of the material file, with linear colour and roughness as Blender reads them.
 std::string mtl_text(const frame::Surface& surface);
 
 }  // namespace weft::exporter

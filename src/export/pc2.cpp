@@ -9,7 +9,7 @@
 
 namespace weft::exporter {
 
-// Numbers are copied as they lie in memory.
+// Numbers are copied with their byte order in memory.
 static_assert(std::endian::native == std::endian::little);
 
 PointCache::PointCache(const std::filesystem::path& file, std::size_t points, int first_frame, int step,
@@ -29,11 +29,11 @@ void PointCache::put(const void* data, std::size_t size) {
 
 void PointCache::add(const std::vector<Vec3>& positions) {
   for (int k = 1; k < step_ && !before_.empty(); ++k) {
-    const double share = static_cast<double>(k) / step_;
+    const double fraction = static_cast<double>(k) / step_;
     std::vector<Vec3> between;
     between.reserve(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i)
-      between.emplace_back(before_[i] + share * (positions[i] - before_[i]));
+      between.emplace_back(before_[i] + fraction * (positions[i] - before_[i]));
     put(between);
   }
   put(positions);

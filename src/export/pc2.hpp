@@ -1,11 +1,11 @@
-// Point caches of the form PC2 (3ds Max, Maya, Blender): the same points again and again. Little endian:
+// Point caches in PC2 format (3ds Max, Maya, Blender): positions of a fixed set of points over time. Little endian:
 //
-//   offset  size  what
+//   offset  size  content
 //        0    12  "POINTCACHE2" and a zero
 //       12     4  i32 version, 1
 //       16     4  i32 points
 //       20     4  f32 frame of the first sample
-//       24     4  f32 frames from sample to sample, 1
+//       24     4  f32 frames between samples, 1
 //       28     4  i32 samples
 //       32     -  per sample, per point: three f32
 #pragma once
@@ -19,15 +19,15 @@
 
 namespace weft::exporter {
 
-/// One sample for each frame, those between given ones on straight lines: Blender's modifier counts samples, whatever
-/// the file says of the distance between them.
+/// Writes one sample per frame, linearly interpolated between given frames, as Blender's modifier ignores the sample
+/// distance in the file.
 class PointCache {
  public:
-  /// Of `given` frames, `step` apart. Throws Error(output_failed), as the others do.
+  /// `given`: number of frames that will be added, `step` apart. All functions throw Error(output_failed).
   PointCache(const std::filesystem::path& file, std::size_t points, int first_frame, int step, std::size_t given);
 
   void add(const std::vector<Vec3>& positions);
-  /// After the last sample: gives the file its name.
+  /// Call it after the last sample: gives the file its name.
   void commit();
 
  private:
@@ -38,7 +38,7 @@ class PointCache {
   TemporaryFile file_;
   std::ofstream out_;
   int step_;
-  std::vector<Vec3> before_;  // the positions that were given last
+  std::vector<Vec3> before_;  // positions of the last added frame
 };
 
 }  // namespace weft::exporter

@@ -11,12 +11,12 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
-/// The places of each vertex, the first of which has its number.
+/// The places of each vertex; the first one has the index of the vertex.
 class Places {
  public:
   explicit Places(std::size_t vertices) : places_(vertices), next_(vertices, kNone), taken_(vertices, 0) {}
 
-  /// Returns the number of the place, and appends to `vertex_of` where it is a new one.
+  /// Returns the index of the place; appends to `vertex_of` if it is new.
   Index of(Index vertex, const Place& place, std::vector<Index>& vertex_of) {
     Index at = vertex;
     if (taken_[index(at)] == 0) {
@@ -43,11 +43,11 @@ class Places {
   static constexpr Index kNone = -1;
   static std::size_t index(Index i) { return static_cast<std::size_t>(i); }
   std::vector<Place> places_;
-  std::vector<Index> next_;  // of the same vertex
-  std::vector<char> taken_;  // per vertex
+  std::vector<Index> next_;  // next place of the same vertex
+  std::vector<char> taken_;  // whether the first place is set, per vertex
 };
 
-// Where all pictures are laid by the coordinates as they are these need not be written twice.
+// Whether picture coordinates differ from `uv` for any material, and must be written separately.
 bool needs_own_coordinates(const Materials& materials) {
   return std::ranges::any_of(materials.all, [](const Material& material) {
     return material.has_picture() && material.picture_from_uv != Eigen::Matrix<double, 2, 3>::Identity();

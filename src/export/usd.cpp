@@ -21,11 +21,11 @@
 namespace weft::exporter {
 namespace {
 
-// Width of the film, as that of a 35 mm camera; only its ratio to the focal length counts here. USD has both in tenths
-// of the stage's unit, which is a metre.
+// Film width of a 35 mm camera; only its ratio to the focal length matters. USD gives both in tenths of the stage's
+// unit, which is a metre.
 constexpr double kFilmWidth = 0.36;
 
-// Names of primitives: letters, digits and underscores, no digit first.
+// A valid name of a primitive: letters, digits and underscores, no leading digit.
 std::string prim_name(const std::string& name) {
   std::string prim;
   for (const char c : name) prim += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
@@ -33,7 +33,7 @@ std::string prim_name(const std::string& name) {
   return prim;
 }
 
-// What single precision holds, with as many digits as it needs.
+// Vectors in single precision, in the shortest exact form.
 template <class Vectors>
 std::string tuples(const Vectors& vectors) {
   std::string text = "[";
@@ -47,7 +47,7 @@ std::string tuples(const Vectors& vectors) {
   return text += ']';
 }
 
-// Directions, to a thousandth of a degree.
+// Directions, exact to a thousandth of a degree.
 std::string directions(const std::vector<Vec3>& vectors) {
   std::string text = "[";
   for (const Vec3& v : vectors)
@@ -70,7 +70,7 @@ std::string box_of(const std::vector<Vec3>& positions) {
   return tuples(std::array{Vec3(box.min()), Vec3(box.max())});
 }
 
-// Rows are the images of the axes: USD multiplies rows from the left.
+// USD multiplies row vectors from the left, so the rows are the images of the axes.
 std::string matrix_text(const Eigen::Matrix4d& matrix) {
   std::string text = "( ";
   for (int column = 0; column < 4; ++column)
@@ -135,7 +135,7 @@ void write_material(std::ostream& out, const std::string& prim, const std::strin
   out << "        }\n";
 }
 
-// Names of the materials of the parts, none twice.
+// Unique names of the materials of the parts.
 std::vector<std::string> part_prims(const frame::Surface& surface, const std::string& prim) {
   std::vector<std::string> names;
   for (std::size_t p = 0; p < surface.parts.size(); ++p)
@@ -154,7 +154,7 @@ bool UsdFile::Samples::add(int frame, std::string value) {
   const bool changed = value != last_;
   if (changed && text_.empty()) {
     text_ = fmt::format("            {}: {},\n", first_frame_, first_);
-    // Still until now: samples between are on straight lines.
+    // It was constant until now: repeats the value at the last frame, as samples are interpolated linearly.
     if (last_frame_ != first_frame_) text_ += fmt::format("            {}: {},\n", last_frame_, first_);
   }
   if (!text_.empty()) text_ += fmt::format("            {}: {},\n", frame, value);
@@ -164,7 +164,7 @@ bool UsdFile::Samples::add(int frame, std::string value) {
 }
 
 void UsdFile::Samples::write(std::ostream& out, std::string_view name, std::string_view metadata) const {
-  // The value beside the samples is for readers that look at no time.
+  // The value beside the samples is the default for readers that ignore time.
   fmt::print(out, "        {} = {}{}\n", name, first_, metadata);
   if (!text_.empty()) fmt::print(out, "        {}.timeSamples = {{\n{}        }}\n", name, text_);
 }
@@ -235,7 +235,7 @@ void UsdFile::write_materials(std::ostream& out) const {
   out << "    }\n";
 }
 
-// `st` lays pictures; without any it is weft and warp.
+// `st` places pictures; without a picture mapping it is weft and warp.
 void UsdFile::write_places(std::ostream& out, const frame::Surface& surface, const Object& object) {
   const CutSurface cut = cut_at_seams(surface, object.materials, object.vertices);
   if (cut.uv.empty()) return;

@@ -13,18 +13,18 @@
 
 namespace weft::exporter {
 
-/// One stage with all visible objects as meshes, whose points [m] and normals have a sample at each frame, and cameras.
-/// Time codes are frames of the scene; the stage says how many are in a second, and which axis is up, as in the scene.
-/// What never changes has a value and no samples. Primitives of a mesh are the triangles that are drawn.
+/// A stage with cameras and all visible objects as meshes, whose points [m] and normals are sampled at each frame. Time
+/// codes are frames of the scene; the frame rate and the up axis are those of the scene. An attribute that never
+/// changes has a value and no samples. The faces are the drawn triangles.
 class UsdFile {
  public:
-  /// Of the visible objects of the first frame. `aspect`: width over height of the pictures.
+  /// Adds the visible objects of the first frame. `aspect`: width over height of the pictures.
   UsdFile(const frame::FrameSnapshot& first, const std::string& name, double fps, double aspect);
 
-  /// The next frame, the first too.
+  /// Adds the next frame, starting with the first.
   void add(const frame::FrameSnapshot& snapshot, const std::vector<View>& views);
 
-  /// As .usda with its pictures beside it, or packed with them as .usdz, by the ending of the name. Throws
+  /// Writes .usda with its pictures beside it, or .usdz with its pictures inside, depending on the extension. Throws
   /// Error(output_failed).
   void write(const std::filesystem::path& file) const;
 
@@ -32,20 +32,20 @@ class UsdFile {
   /// Values of an attribute over time.
   class Samples {
    public:
-    /// Returns whether the value is another one than in the frame before.
+    /// Returns whether the value differs from that of the previous frame.
     bool add(int frame, std::string value);
-    /// As it stands in a file, after `name`, such as `point3f[] points`; `metadata` may be empty.
+    /// Writes the attribute; `name` includes its type, such as `point3f[] points`; `metadata` may be empty.
     void write(std::ostream& out, std::string_view name, std::string_view metadata = "") const;
 
    private:
-    std::string first_, last_, text_;  // text: empty while nothing has changed
+    std::string first_, last_, text_;  // text_ is empty until the value changes
     int first_frame_ = 0, last_frame_ = 0;
   };
   struct Object {
     std::size_t surface = 0;
     std::string prim = {};  // its name in the file
     NormalGroups groups = {};
-    bool smooth = false;  // a normal for each vertex, else for each corner
+    bool smooth = false;  // one normal per vertex, else one per corner
     std::size_t vertices = 0;
     Materials materials = {};
     Samples points = {}, normals = {}, extent = {};
@@ -66,7 +66,7 @@ class UsdFile {
   bool z_up_;
   int first_frame_, last_frame_;
   std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
-  std::vector<std::string> prims_;  // taken
+  std::vector<std::string> prims_;  // names in use
   std::vector<Object> objects_;
   std::vector<Camera> cameras_;
 };

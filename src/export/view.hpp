@@ -1,4 +1,4 @@
-// Cameras of a frame as other programs place them.
+// Cameras and lights of a frame for other programs.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace weft::exporter {
 
-/// Clipping planes of exported cameras, before and behind all that is seen [m].
+/// Clipping planes of exported cameras [m].
 inline constexpr double kNearPlane = 0.01, kFarPlane = 1000;
 
-/// A camera that stands somewhere, whether the scene placed it there or it was found.
+/// A camera with a definite pose, placed by the scene or found.
 struct View {
   std::string name;
   Eigen::Matrix4d world_from_view = Eigen::Matrix4d::Identity();  ///< columns: right, up, backward; position [m]
-  double field_of_view = 35;                                      ///< vertical, degrees
+  double field_of_view = 35;                                      ///< vertical [degrees]
 };
 
-/// What lights a film, as its pictures show it.
+/// The lighting of a film, as in its pictures.
 struct Lighting {
   std::vector<frame::Light> lights = {};
   Vec3 sky_color = Vec3::Ones();  ///< linear
-  double sky_share = 0.45;        ///< of all light; the lights give the rest
+  double sky_share = 0.45;        ///< fraction of all light; the lights provide the rest
 };
 
 }  // namespace weft::exporter

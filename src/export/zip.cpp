@@ -13,13 +13,13 @@ extern "C" {
 namespace weft::exporter {
 namespace {
 
-constexpr std::size_t kLocalHeader = 30, kAlignment = 64;  // bytes
-constexpr std::uint16_t kVersion = 10;                     // 1.0: files that are stored
+constexpr std::size_t kLocalHeader = 30, kAlignment = 64;  // [bytes]
+constexpr std::uint16_t kVersion = 10;                     // 1.0: uncompressed files
 constexpr std::uint16_t kUtf8Names = 0x0800;
-constexpr std::uint16_t kFirstDay = 0x0021;  // 1980-01-01, the first that there is
+constexpr std::uint16_t kFirstDay = 0x0021;  // 1980-01-01, the earliest date
 constexpr std::uint16_t kPaddingId = 0x1986;
 
-// Least byte first; the rest of a larger size is 0.
+// Appends the lowest `size` bytes of a number, little endian; bytes beyond its own size are 0.
 void append(std::string& bytes, std::uint64_t number, int size) {
   for (int i = 0; i < size; ++i, number >>= 8) bytes += static_cast<char>(number & 0xff);
 }
@@ -30,12 +30,12 @@ std::uint32_t crc32(const std::string& bytes) {
   return ~av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), kAllBits, data, bytes.size());
 }
 
-// What the local header of a file and the directory share.
+// Fields shared by the local header of a file and the directory.
 std::string entry_of(const StoredFile& file) {
   std::string entry;
   append(entry, kVersion, 2);
   append(entry, kUtf8Names, 2);
-  append(entry, 0, 2);  // stored
+  append(entry, 0, 2);  // uncompressed
   append(entry, 0, 2);  // time of day
   append(entry, kFirstDay, 2);
   append(entry, crc32(file.content), 4);
@@ -46,7 +46,7 @@ std::string entry_of(const StoredFile& file) {
 }
 
 void append_file(std::string& bytes, const StoredFile& file, const std::string& entry) {
-  // An extra field fills up to the alignment; it has a head of four bytes itself.
+  // An extra field pads to the alignment; its own header takes four bytes.
   std::size_t padding = (kAlignment - (bytes.size() + kLocalHeader + file.name.size()) % kAlignment) % kAlignment;
   if (padding > 0 && padding < 4) padding += kAlignment;
   bytes += "PK\x03\x04" + entry;

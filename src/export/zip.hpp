@@ -1,4 +1,4 @@
-// An archive of files that are stored as they are: what a packed USD file is (Pixar, "Usdz File Format Specification").
+// An archive of uncompressed files, as packed USD requires (Pixar, "Usdz File Format Specification").
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@ struct StoredFile {
   std::string name, content;
 };
 
-/// Writes the files, uncompressed, each from a multiple of 64 bytes on, so that readers may map it. The same content
-/// gives the same bytes. Throws Error(output_failed), also for what is larger than such files can be.
+/// Writes the files uncompressed, each aligned to 64 bytes, so that readers may map it. The same content gives the same
+/// bytes. Throws Error(output_failed), also if the archive would exceed 4 GiB.
 void write_stored(const std::filesystem::path& file, const std::vector<StoredFile>& files);
 
 }  // namespace weft::exporter

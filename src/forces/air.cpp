@@ -24,9 +24,9 @@ template <std::size_t Corners>
 std::vector<Air::Faces<Corners>> Air::pack(const std::vector<std::array<Index, Corners>>& faces) {
   std::vector<Faces<Corners>> packs(packs_of(faces.size()));
   for (std::size_t p = 0; p < packs.size(); ++p)
-    for_each_lane(faces.size(), p, [&](std::size_t f, std::size_t lane, bool counts) {
+    for_each_lane(faces.size(), p, [&](std::size_t f, std::size_t lane, bool is_used) {
       for (std::size_t k = 0; k < Corners; ++k) packs[p].corners[k][lane] = faces[f][k];
-      packs[p].counts[lane] = counts ? 1 : 0;
+      packs[p].is_used[lane] = is_used ? 1 : 0;
     });
   return packs;
 }
@@ -39,13 +39,13 @@ void Air::cut(std::span<const Index> bounds) {
 }
 
 void Air::add(const Evaluation& at) const {
-  ranges_of_cells_.for_each(at.range, cells_.size(), [&](std::size_t p) { push(cells_[p], at); });
-  ranges_of_triangles_.for_each(at.range, triangles_.size(), [&](std::size_t p) { push(triangles_[p], at); });
+  ranges_of_cells_.for_each(at.range, cells_.size(), [&](std::size_t p) { add_drag(cells_[p], at); });
+  ranges_of_triangles_.for_each(at.range, triangles_.size(), [&](std::size_t p) { add_drag(triangles_[p], at); });
 }
 
-// Drag on faces.
+// Adds the drag on four faces.
 template <std::size_t Corners>
-void Air::push(const Faces<Corners>& faces, const Evaluation& at) const {
+void Air::add_drag(const Faces<Corners>& faces, const Evaluation& at) const {
   // Area vector of a quad, planar or not: half the cross product of its diagonals.
   const VecLanes origin = gather(at.x, faces.corners[0]);
   VecLanes one = gather(at.x, faces.corners[Corners == 4 ? 2 : 1]) - origin,
@@ -60,11 +60,11 @@ void Air::push(const Faces<Corners>& faces, const Evaluation& at) const {
     for (const Four& corner : faces.corners) velocity = velocity - gather(at.air, corner);
   const VecLanes wind = lanes_of(at.air.empty() ? wind_ : Vec3(Vec3::Zero()));
   const Lanes speed = dot(n, lanes_of(1.0 / Corners) * velocity - wind);
-  const Lanes of_speed = coefficient_ / Corners * faces.counts * size * abs(speed);  // of one corner [kg/s]
-  const VecLanes drag = of_speed * speed * n;
+  const Lanes drag_per_speed = coefficient_ / Corners * faces.is_used * size * abs(speed);  // per corner [kg/s]
+  const VecLanes drag = drag_per_speed * speed * n;
   for (const Four& corner : faces.corners) subtract(at.force, corner, drag);
   if (!at.assembly) return;
-  const auto damping = packed(outer(2 * at.rate * of_speed * n, n));
+  const auto damping = packed(outer(2 * at.rate * drag_per_speed * n, n));
   for (const Four& corner : faces.corners)
     for (std::size_t l = 0; l < 4; ++l) at.assembly.add_to_own(corner[l], damping[l]);
 }

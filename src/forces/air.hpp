@@ -1,4 +1,4 @@
-// Air resistance of cloth.
+// Air drag on cloth.
 #pragma once
 
 #include <array>
@@ -12,17 +12,16 @@ namespace weft::forces {
 
 struct AirParameters {
   double density = 1.2;      ///< of the air [kg/m³]
-  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s], unless an evaluation brings its own
-  double drag = 1.0;         ///< coefficient of the motion along the normal
+  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s], unless an evaluation provides its own
+  double drag = 1.0;         ///< coefficient of drag along the normal
 };
 
-/// Quadratic drag of the motion along the normal of each cell or triangle: f = −½ ρ c A ‖v_n‖ v_n, shared by its
-/// corners.
+/// Quadratic drag along the normal of each cell or triangle, divided among its corners: f = −½ ρ c A ‖v_n‖ v_n.
 ///
-/// Inside of the implicit stage, though it is not stiff: taken once a step outside of it (seed, "Time integration"), at
-/// the velocity of the start, it made terminal velocities and the folds of cloth in steady wind depend on the step.
-/// The matrix gets what the velocities change, summed up on the diagonal: no less than the whole, and exact where the
-/// corners of a face change their velocity together. That normals and areas turn with the cloth is left out.
+/// The drag is implicit although it is not stiff: evaluated once per step at the initial velocity (seed, "Time
+/// integration"), terminal velocities and folds in steady wind depend on the step size. The matrix takes the derivative
+/// with respect to velocities, lumped on the diagonal: an upper bound of the full derivative, exact if the corners of a
+/// face change velocity together. The derivatives of normals and areas are neglected.
 class Air final : public Force {
  public:
   Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);
@@ -35,16 +34,16 @@ class Air final : public Force {
   double energy(std::span<const Vec3> /*x*/) const override { return 0; }
 
  private:
-  /// Four cells or triangles; those that do not count are none.
+  /// Four cells or triangles; unused lanes have `is_used` = 0.
   template <std::size_t Corners>
   struct Faces {
     std::array<Four, Corners> corners{};
-    Lanes counts{};
+    Lanes is_used{};
   };
   template <std::size_t Corners>
   static std::vector<Faces<Corners>> pack(const std::vector<std::array<Index, Corners>>& faces);
   template <std::size_t Corners>
-  void push(const Faces<Corners>& faces, const Evaluation& at) const;
+  void add_drag(const Faces<Corners>& faces, const Evaluation& at) const;
 
   Vec3 wind_;
   double coefficient_;           // ½ ρ c [kg/m³]

@@ -23,8 +23,9 @@ Bands::Bands(const mesh::Sheet& sheet, Index first, double stretch) {
     for (std::size_t k = 0; stiffness > 0 && k < band.lengths.size(); ++k) {
       const Index a = band.vertices[k], b = band.vertices[k + 1];
       const double start = (sheet.rest[at_index(a)] - sheet.rest[at_index(b)]).norm();
-      const double own = band.ratio * band.lengths[k];
-      pieces_.push_back({{first + a, first + b}, stiffness, sheet.sewn ? start : own, own, own});
+      const double pattern_rest = band.ratio * band.lengths[k];
+      pieces_.push_back(
+          {{first + a, first + b}, stiffness, sheet.sewn ? start : pattern_rest, pattern_rest, pattern_rest});
     }
     for (std::size_t k = 1; band.bend > 0 && k < band.lengths.size(); ++k) {
       const double before = band.lengths[k - 1], after = band.lengths[k], length = 0.5 * (before + after);
@@ -36,8 +37,9 @@ Bands::Bands(const mesh::Sheet& sheet, Index first, double stretch) {
   }
 }
 
-void Bands::rest_between_start_and_pattern(double share) {
-  for (Piece& piece : pieces_) piece.rest = share == 1 ? piece.own : (1 - share) * piece.start + share * piece.own;
+void Bands::rest_between_start_and_pattern(double progress) {
+  for (Piece& piece : pieces_)
+    piece.rest = progress == 1 ? piece.pattern_rest : (1 - progress) * piece.start + progress * piece.pattern_rest;
 }
 
 void Bands::couple(std::vector<std::pair<Index, Index>>& pairs) const {
@@ -61,7 +63,7 @@ void Bands::add(const Evaluation& at) const {
     const auto a = at_index(piece.particles[0]), b = at_index(piece.particles[1]);
     const Vec3 along = solver::vec3_of(at.x[b] - at.x[a]);
     const double length = along.norm();
-    if (length == 0) continue;  // points nowhere
+    if (length == 0) continue;  // no direction
     const auto pull = solver::quad_of<double>(piece.stiffness * (1 / piece.rest - 1 / length) * along);
     at.force.add(piece.particles[0], pull);
     at.force.subtract(piece.particles[1], pull);
@@ -74,7 +76,7 @@ void Bands::add(const Evaluation& at) const {
   }
 }
 
-// Between the ends of a piece that lies along a vector; `lateral`: 1 − rest / length, or what stands for it.
+// Stiffness of a piece with this difference vector. `lateral`: 1 − rest / length, or its definite form.
 Mat3 Bands::stiffness(const Piece& piece, const Vec3& along, double lateral) {
   const Vec3 n = along.normalized();
   return piece.stiffness / piece.rest * ((1 - lateral) * n * n.transpose() + lateral * Mat3::Identity());

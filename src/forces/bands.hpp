@@ -1,4 +1,4 @@
-// Elastic bands and hems along edges of cloth.
+// Elastic bands, hems, and seam allowances along edges of cloth.
 #pragma once
 
 #include <array>
@@ -8,34 +8,35 @@
 
 namespace weft::forces {
 
-/// The bands of a sheet. A piece of length l, rest length r, between two particles of an elastic band of stiffness k
-/// [N] has the energy ½ k r (l / r − 1)². A hem has the bending energy ½ E l ‖s''‖² at each particle between two
-/// pieces, with s'' the change of the unit tangent at rest by length, and is straight at rest: a hem that is curved in
-/// its panel with a radius R is pulled by E / R² [N], which is nothing beside the cloth's own stiffness.
-/// The allowance of a seam is an elastic band as stiff as a strip of the cloth of that width.
+/// The bands of a sheet. A piece of an elastic band between two particles, of length l, rest length r and stiffness k
+/// [N], has the energy ½ k r (l / r − 1)². A hem has the bending energy ½ E l ‖s''‖² at each particle between two
+/// pieces, where s'' is the change of the unit tangent per rest length. A hem is straight at rest: if its edge is
+/// curved in the pattern with radius R, the hem pulls with E / R² [N], which is negligible beside the stiffness of
+/// cloth. A seam allowance is an elastic band as stiff as a strip of cloth of its width.
 class Bands final : public Force {
  public:
-  /// `stretch` [N/m]: stiffness of the cloth.
+  /// `stretch`: stiffness of the cloth [N/m].
   Bands(const mesh::Sheet& sheet, Index first, double stretch);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> /*bounds*/) override {}  // few
+  void cut(std::span<const Index> /*bounds*/) override {}  // few elements
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
   void add_constant_stiffness(solver::Assembly& assembly) const override;
 
-  /// Of a sewn sheet: rest lengths of elastic bands between those of the start, at share 0, and their own, at 1.
-  void rest_between_start_and_pattern(double share);
+  /// For sewn sheets: interpolates the rest lengths of elastic bands between those of the start (progress 0) and those
+  /// of the pattern (progress 1).
+  void rest_between_start_and_pattern(double progress);
 
  private:
   struct Piece {
     std::array<Index, 2> particles;
-    double stiffness;   // [N]
-    double start, own;  // rest lengths [m]
-    double rest;        // the one now [m]
+    double stiffness;            // [N]
+    double start, pattern_rest;  // rest lengths [m]
+    double rest;                 // current rest length [m]
     Index block = 0;
   };
   struct Bend {

@@ -3,7 +3,7 @@
 namespace weft::forces {
 namespace {
 
-// In line: as a call its twelve numbers go through memory.
+// Inlined, as a call would pass its twelve numbers through memory.
 template <class Differences, class Points>
 [[gnu::always_inline]] inline VecLanes weighted_sum(const Differences& d, Points x) {
   VecLanes sum = d.weights[0] * gather(x, d.particles[0]);
@@ -25,15 +25,15 @@ void add_pairs(const Differences& d, const Lanes& size, const solver::AssemblyRo
 
 Bend::Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters)
     : grid_(grid), first_(first), rigidity_(parameters.rigidity), damping_(parameters) {
-  lay_out({});
+  create_differences({});
 }
 
 void Bend::hold(std::span<const char> held) {
-  lay_out(held);
+  create_differences(held);
 }
 
-// The same differences in the same order, whatever is held.
-void Bend::lay_out(std::span<const char> held) {
+// Creates the same differences in the same order, whatever is held.
+void Bend::create_differences(std::span<const char> held) {
   lines_.size = cells_.size = 0;
   const mesh::Grid& grid = grid_;
   const auto at = [&](int i, int j) { return first_ + grid.index(i, j); };
@@ -58,16 +58,16 @@ void Bend::List<Count>::add(const std::array<Index, Count>& particles, const std
   const std::size_t lane = size++ % 4;
   if (packs.size() < packs_of(size)) packs.emplace_back();
   Differences<Count>& pack = packs[packs_of(size) - 1];
-  // Those that may be missing behind are as this one, and stand for nothing.
+  // Following lanes may stay unused: they repeat this one, with area 0.
   for (std::size_t l = lane; l < 4; ++l) {
     for (std::size_t k = 0; k < Count; ++k) pack.particles[k][l] = particles[k], pack.weights[k][l] = weights[k];
     pack.area[l] = l == lane ? area : 0;
   }
 }
 
-// Second derivative at the middle one of three places from their spacings, exact for parabolas: the turn from one side
-// to the other over the length that it takes, half of both spacings, or of the one that is free. The weights add up to
-// exactly zero, so that a motion of all of them leaves no rounding behind.
+// Adds the second derivative at the middle of three particles, from their spacings; exact for parabolas. It is the turn
+// divided by the length over which it happens: half of both spacings, or half of the free one. The weights sum to
+// exactly zero, so that a translation leaves no rounding.
 void Bend::add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                     std::span<const char> held) {
   const auto is_held = [&](std::size_t k) { return !held.empty() && held[particles[k]]; };
@@ -92,15 +92,15 @@ void Bend::couple(std::vector<std::pair<Index, Index>>& pairs) const {
 }
 
 void Bend::attach(const solver::Assembly& assembly) {
-  const auto look_up = [&](auto& packs) {
+  const auto find_scalars = [&](auto& packs) {
     for (auto& d : packs)
       for (std::size_t a = 0, pair = 0; a < d.particles.size(); ++a)
         for (std::size_t b = a + 1; b < d.particles.size(); ++b, ++pair)
           for (std::size_t l = 0; l < 4; ++l)
             d.scalars[pair][l] = assembly.scalar(d.particles[a][l], d.particles[b][l]);
   };
-  look_up(lines_.packs);
-  look_up(cells_.packs);
+  find_scalars(lines_.packs);
+  find_scalars(cells_.packs);
 }
 
 void Bend::cut(std::span<const Index> bounds) {
@@ -115,8 +115,8 @@ void Bend::add(const Evaluation& at) const {
   cells_.ranges.for_each(at.range, cells_.packs.size(), [&](std::size_t p) { add(cells_.packs[p], at); });
 }
 
-// The definite form of damping is a stiffness c cᵀ, here ‖c‖² I: curvature points along the normal, where that is the
-// same, and across it the membrane is much stiffer still. All of bending is numbers in place of blocks then.
+// The definite form of damping would be a stiffness c cᵀ; ‖c‖² I is used instead. Curvature points along the normal,
+// where both are equal; across it the membrane is far stiffer. So all of bending needs scalars only, no blocks.
 template <std::size_t Count>
 void Bend::add(const Differences<Count>& d, const Evaluation& at) const {
   const VecLanes curvature = weighted_sum(d, at.x);

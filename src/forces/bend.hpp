@@ -1,4 +1,4 @@
-// Bending of the sheet as a plate: elastic, viscous, and with the dry friction of yarn on yarn.
+// Bending of the sheet as a plate: elasticity, viscosity, and dry friction between yarns.
 #pragma once
 
 #include <array>
@@ -9,19 +9,18 @@
 
 namespace weft::forces {
 
-/// Seed "Elastic Model", bending f = −B Δ² along the normal (restoring sign): a plate with ν = 0, energy density
-/// ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), by central differences on lines and in cells; free edges come out of the
-/// energy.
+/// Seed "Elastic Model", bending f = −B Δ² along the normal (restoring sign): a plate with ν = 0 and energy density ½ B
+/// (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), by central differences on lines and in cells. Free edges follow from the energy.
 ///
-/// The full second differences are used, not their part along N: on an inextensible sheet they are equal, and the
+/// The full second differences are used, not their component along N. On an inextensible sheet both are equal, and the
 /// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,
-/// "A Quadratic Bending Model for Inextensible Surfaces", 2006). What is added in the plane is B/l² against k: for
-/// cotton at l = 1 cm, 0.5 N/m against 1000 N/m.
+/// "A Quadratic Bending Model for Inextensible Surfaces", 2006). The in-plane components add B/l² to k: for cotton at l
+/// = 1 cm, 0.5 N/m to 1000 N/m.
 ///
-/// A difference stands for half a spacing to either side of its middle. Where the middle and one end are held, that
-/// side keeps its direction, and all of the turn happens in the half spacing that is free: the clamp acts at the last
-/// held particle. Counted over both halves, as if nothing were held, it acts half a spacing behind, an error of first
-/// order. Viscosity and friction: see BendDamping.
+/// A difference covers half a spacing on either side of its middle particle. If the middle and one end are held, that
+/// side keeps its direction, and the whole turn happens in the free half spacing: the clamp acts at the last held
+/// particle. If both halves counted, it would act half a spacing behind, an error of first order. For viscosity and
+/// friction see BendDamping.
 class Bend final : public Force {
  public:
   Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters);
@@ -35,12 +34,12 @@ class Bend final : public Force {
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  /// All of the elastic part.
+  /// Assembles the whole elastic stiffness.
   void add_constant_stiffness(solver::Assembly& assembly) const override;
   void hold(std::span<const char> held) override;
 
  private:
-  /// Second differences Σ w_k x_k [1/m²·m], each standing for `area`; four of them.
+  /// Four second differences Σ w_k x_k [1/m], each with the area that it covers.
   template <std::size_t Count>
   struct Differences {
     std::array<Four, Count> particles{};
@@ -48,7 +47,7 @@ class Bend final : public Force {
     Lanes area{};                                       // [m²]
     std::array<Four, Count*(Count - 1) / 2> scalars{};  // of their pairs, 01, 02, ...
   };
-  /// All of a kind: along lines, or across cells.
+  /// All differences of one kind: along lines, or in cells.
   template <std::size_t Count>
   struct List {
     std::vector<Differences<Count>> packs;
@@ -57,7 +56,7 @@ class Bend final : public Force {
 
     void add(const std::array<Index, Count>& particles, const std::array<double, Count>& weights, double area);
   };
-  void lay_out(std::span<const char> held);
+  void create_differences(std::span<const char> held);
   void add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                 std::span<const char> held);
   template <std::size_t Count>

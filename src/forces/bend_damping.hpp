@@ -1,4 +1,4 @@
-// What takes energy out of bending, the same for every mesh.
+// Dissipation of bending, the same for every mesh.
 #pragma once
 
 #include <cmath>
@@ -10,33 +10,33 @@ namespace weft::forces {
 struct BendParameters {
   double rigidity = 0;   ///< B [N·m]
   double viscosity = 0;  ///< moment per rate of curvature [N·m·s]
-  double friction = 0;   ///< moment per width that a change of curvature must overcome [N]; half of KES' 2HB
+  double friction = 0;   ///< moment per width that a change of curvature must overcome [N]; half of 2HB of KES
 };
 
-/// Viscosity and friction act on the rate of ‖s_uu‖ and so on, along the unit vector of the curvature itself, so that a
-/// curved piece may turn rigidly without loss. Friction is that of Kawabata's hysteresis of bending ("The
-/// Standardization and Analysis of Hand Evaluation", 1980): a moment of constant size against the change, smooth below
-/// a rate of kStickRate. Without it the hem of a draped sheet tips over at a few centimetres a second for seconds on
-/// end; with it the sheet lies still.
+/// Viscosity and friction act on the rate of ‖s_uu‖, ‖s_uv‖ and ‖s_vv‖, along the unit vector of the curvature itself,
+/// so that a curved piece turns rigidly without loss. Friction models Kawabata's bending hysteresis ("The
+/// Standardization and Analysis of Hand Evaluation", 1980): a moment of constant magnitude against the change, smoothed
+/// below a rate of kStickRate. It brings cloth to rest: without it the hem of a draped sheet keeps tipping at
+/// centimetres per second.
 ///
-/// Moment per area [N/m] against the rate of curvature κ̇ along c:
+/// Moment per area [N/m] at the rate of curvature κ̇ along c:
 ///
 ///     η (c·κ̇) c / (‖c‖² + flat²)  +  τ (c·κ̇) c / (D √((c·κ̇)² + ε² D²)),  D² = ‖c‖² + kept².
 ///
-/// c is the curvature at x̂, where the step began (x − v / rate; of BDF2 a third of a step later): the same in all of
-/// the step, so that the moment is the gradient of a convex function of κ̇. With the direction at the iterate, which
-/// where cloth is nearly flat turns with every ripple, Newton's method went to and fro without end: a strip pulled over
-/// a rod, solved to a hundredth of its error, took 6,650 iterations and 68 steps that were rejected, and takes 631 and
-/// none. With that of unchanged velocity a draped sheet with steps of 40 ms trembled by 1 to 10 mm/s.
+/// c is the curvature at x̂, the start of the step (x − v / rate; for BDF2 a third of a step later). It is constant
+/// during a step, so that the moment is the gradient of a convex function of κ̇. The direction at the iterate would
+/// turn with every ripple of nearly flat cloth, and Newton's method would oscillate (measured: a strip pulled over a
+/// rod, at a hundredth of its error, took 6,650 iterations and 68 rejected steps instead of 631 and none). With the
+/// curvature at unchanged velocity, a draped sheet with steps of 40 ms trembles at 1 to 10 mm/s.
 ///
-/// The direction fades where the sheet is flat: for viscosity below kFlatCurvature, for friction below the curvature
-/// that it can keep, where a moment of full size about an axis that turns with every ripple would be stiffer than the
-/// bending itself.
+/// The direction fades out if the sheet is flat: for viscosity below kFlatCurvature, for friction below the curvature
+/// that friction can keep. A full moment about an axis that turns with every ripple would be stiffer than the bending
+/// itself.
 class BendDamping {
-  // Curvature below which its direction is too uncertain to damp along [1/m]: a radius of 10 m is flat to the eye.
+  // Curvature below which its direction is too uncertain for damping [1/m]: a radius of 10 m looks flat.
   static constexpr double kFlatCurvature = 0.1;
-  // Rate of curvature at which friction has reached most of its size [1/(m·s)]: a fold of 10 cm then moves at 5 mm/s.
-  // Smaller holds better and makes the system stiffer: friction / kStickRate acts like a viscosity.
+  // Rate of curvature at which friction has most of its magnitude [1/(m·s)]: a fold of 10 cm then moves at 5 mm/s.
+  // Smaller values hold better and make the system stiffer: friction / kStickRate acts like a viscosity.
   static constexpr double kStickRate = 0.5;
 
  public:
@@ -44,9 +44,9 @@ class BendDamping {
 
   bool any() const { return viscosity_ > 0 || friction_ > 0; }
 
-  /// The moment is this times (c·κ̇) c, from ‖c‖² and c·κ̇; `Scalar`: double, or Lanes. Newton's matrix takes it too:
-  /// with the tangent, definite as well, it jumps to and fro over the kink of friction at rest and takes half as many
-  /// iterations more.
+  /// The moment is secant(‖c‖², c·κ̇) (c·κ̇) c. `Scalar`: double, or Lanes. Newton's matrix uses the secant, too: with
+  /// the tangent, definite as well, Newton's method oscillates at the kink of friction at rest and takes 1.5 times the
+  /// iterations.
   template <class Scalar>
   Scalar secant(const Scalar& c_sq, const Scalar& rate) const {
     using forces::sqrt, std::sqrt;
@@ -54,12 +54,12 @@ class BendDamping {
     const Scalar smooth_sq = rate * rate + kStickRate * kStickRate * residual_sq;
     return viscosity_ / (c_sq + kFlatCurvature * kFlatCurvature) + friction_ / sqrt(residual_sq * smooth_sq);
   }
-  /// And its derivative with respect to κ̇ this times c cᵀ.
+  /// The derivative of the moment with respect to κ̇ is this times c cᵀ.
   double tangent(double c_sq, double rate) const;
 
  private:
   double viscosity_, friction_;
-  double residual_curvature_;  // below which friction fades [1/m]
+  double residual_curvature_;  // friction fades below [1/m]
 };
 
 }  // namespace weft::forces

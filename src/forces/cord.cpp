@@ -6,8 +6,9 @@
 namespace weft::forces {
 namespace {
 
-// Two particles at one place have no direction; the tiny length keeps the matrix finite.
-constexpr double kNoPieceLength = 1e-12;
+// Smallest length of a piece, relative to its rest length. Coinciding particles have no direction; the tiny length
+// keeps the matrix finite.
+constexpr double kMinPieceStretch = 1e-12;
 
 std::size_t slot(Index i) {
   return static_cast<std::size_t>(i);
@@ -46,12 +47,12 @@ Cord::Cord(std::span<const double> lengths, bool closed, Index first, const Cord
   for (Index p = 0; p < (closed ? pieces : pieces - 1); ++p) {
     turns_.push_back(
         {{particle(p), particle(p + 1), particle(p + 2)}, lengths[slot(p)], lengths[slot((p + 1) % pieces)], {}, 0});
-    weigh(turns_.back(), {});
+    compute_weights(turns_.back(), {});
   }
 }
 
-// Where the middle and one end are held, all of the turn happens in the half piece that is free, as in Bend.
-void Cord::weigh(Turn& turn, std::span<const char> held) const {
+// If the middle and one end are held, the whole turn happens in the free half piece; see Bend.
+void Cord::compute_weights(Turn& turn, std::span<const char> held) const {
   const auto is_held = [&](std::size_t k) { return !held.empty() && held[slot(turn.particles[k])] != 0; };
   turn.length = 0.5 * (turn.before + turn.after);
   if (is_held(1) && is_held(0) != is_held(2)) turn.length = 0.5 * (is_held(0) ? turn.after : turn.before);
@@ -60,12 +61,12 @@ void Cord::weigh(Turn& turn, std::span<const char> held) const {
 }
 
 void Cord::hold(std::span<const char> held) {
-  for (Turn& turn : turns_) weigh(turn, held);
+  for (Turn& turn : turns_) compute_weights(turn, held);
 }
 
 void Cord::use_length_ratio(double ratio) {
   for (Piece& piece : pieces_) {
-    piece.rest = ratio * piece.own;
+    piece.rest = ratio * piece.initial_length;
     piece.elasticity = parameters_.stretch / piece.rest;
     piece.viscosity = parameters_.stretch_viscosity / piece.rest;
   }
@@ -89,10 +90,10 @@ void Cord::attach(const solver::Assembly& assembly) {
 }
 
 void Cord::add(const Evaluation& at) const {
-  const bool meets_air = parameters_.air_density > 0 && parameters_.drag > 0;
+  const bool has_air = parameters_.air_density > 0 && parameters_.drag > 0;
   for (const Piece& piece : pieces_) {
     add_stretch(piece, at);
-    if (meets_air) add_air(piece, at);
+    if (has_air) add_air(piece, at);
   }
   for (const Turn& turn : turns_) add_turn(turn, at);
 }
@@ -100,7 +101,7 @@ void Cord::add(const Evaluation& at) const {
 void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
   const Index a = piece.particles[0], b = piece.particles[1];
   const Vec3 d = vec_at(at.x, b) - vec_at(at.x, a);
-  const double length = std::max(d.norm(), kNoPieceLength * piece.rest);
+  const double length = std::max(d.norm(), kMinPieceStretch * piece.rest);
   const Vec3 n = d / length;
   double tension = piece.elasticity * (length - piece.rest);
   if (piece.viscosity > 0)
@@ -111,7 +112,7 @@ void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
   at.force.add(a, pull);
   at.force.subtract(b, pull);
   if (!at.assembly) return;
-  // As in Stretch.
+  // See Stretch.
   const double ratio = 1 - piece.rest / length;
   const double lateral =
       piece.elasticity *
@@ -130,13 +131,13 @@ void Cord::add_air(const Piece& piece, const Evaluation& at) const {
   const Vec3 n = d / length, across = v - n.dot(v) * n;
   const double speed = across.norm();
   if (!(speed > 0)) return;
-  // Of one end [kg/m].
+  // per end [kg/m]
   const double coefficient = 0.25 * parameters_.air_density * parameters_.drag * parameters_.diameter * length;
   const auto drag = solver::quad_of<double>(coefficient * speed * across);
   at.force.subtract(a, drag);
   at.force.subtract(b, drag);
   if (!at.assembly) return;
-  // What the velocities change, summed up on the diagonal, as in Air.
+  // Derivative with respect to velocities, lumped on the diagonal; see Air.
   const auto damping = packed_block(
       at.rate * coefficient * (speed * (Mat3::Identity() - n * n.transpose()) + across * across.transpose() / speed));
   at.assembly.add_to_own(a, damping);
@@ -173,7 +174,7 @@ void Cord::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double
   for (const Piece& piece : pieces_) {
     const auto [a, b] = piece.particles;
     const Vec3 d = x[slot(b)] - x[slot(a)], w = v[slot(b)] - v[slot(a)];
-    const double length = std::max(d.norm(), kNoPieceLength * piece.rest);
+    const double length = std::max(d.norm(), kMinPieceStretch * piece.rest);
     const Vec3 n = d / length;
     const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
     const Mat3 k = (piece.elasticity + rate * piece.viscosity) * along +

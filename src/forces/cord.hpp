@@ -1,4 +1,4 @@
-// Ropes and cords: chains of particles that resist stretch and bending, and are slowed by air.
+// Ropes and cords: chains of particles with stretch and bending stiffness and air drag.
 #pragma once
 
 #include <array>
@@ -14,26 +14,26 @@ struct CordParameters {
   double bend = 0;               ///< bending stiffness, EI [N·m²]
   double bend_viscosity = 0;     ///< moment per rate of curvature [N·m²·s]
   double air_density = 0;        ///< [kg/m³]; 0: no air
-  Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], unless an evaluation brings its own
-  double drag = 0;               ///< coefficient of the motion across the cord
-  double diameter = 0;           ///< that the air meets [m]
+  Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], unless an evaluation provides its own
+  double drag = 0;               ///< drag coefficient across the cord
+  double diameter = 0;           ///< for drag [m]
 };
 
 /// The forces within one chain.
 ///
-/// Stretch: the energy ½ EA r (l / r − 1)² of a piece of length l, at rest r, and the tension η d/dt (l / r) of its
-/// viscosity. Bending: ½ EI L ‖s''‖² at each particle between two pieces, with s'' the second difference of the
-/// positions by rest lengths, and L half of both pieces (Bend has the same on the lines of a sheet). It is straight at
-/// rest. Viscosity of bending: see BendDamping. Air: −½ ρ c d l ‖v_n‖ v_n on a piece, v_n the part of its motion
-/// through the air that is across it, half at either end.
+/// Stretch: a piece of length l and rest length r has the energy ½ EA r (l / r − 1)² and the viscous tension η d/dt (l
+/// / r). Bending: energy ½ EI L ‖s''‖² at each particle between two pieces, where s'' is the second difference of the
+/// positions by rest lengths and L half of both pieces (as Bend on the lines of a sheet); straight at rest. For
+/// viscosity of bending see BendDamping. Air: −½ ρ c d l ‖v_n‖ v_n on a piece, half at either end, where v_n is the
+/// component across the piece of its velocity relative to the air.
 class Cord final : public Membrane {
  public:
-  /// `lengths`: of the pieces at rest [m]; `closed`: the last one joins the last particle to the first.
+  /// `lengths`: rest lengths of the pieces [m]; `closed`: the last piece connects the last particle to the first.
   Cord(std::span<const double> lengths, bool closed, Index first, const CordParameters& parameters);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> /*bounds*/) override {}  // few
+  void cut(std::span<const Index> /*bounds*/) override {}  // few elements
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -41,7 +41,7 @@ class Cord final : public Membrane {
   void add_constant_stiffness(solver::Assembly& assembly) const override;
   void hold(std::span<const char> held) override;
 
-  /// From now on pieces are at rest at this ratio of the lengths that they were made with.
+  /// Sets the rest lengths to this ratio of the initial ones.
   void use_length_ratio(double ratio);
 
   double max_strain(std::span<const Vec3> x) const override;
@@ -50,15 +50,15 @@ class Cord final : public Membrane {
  private:
   struct Piece {
     std::array<Index, 2> particles;
-    double own;         // length that it was made with [m]
-    double rest;        // that it is at rest [m]
-    double elasticity;  // EA / r [N/m]
-    double viscosity;   // η / r [N·s/m]
+    double initial_length;  // rest length at construction [m]
+    double rest;            // current rest length [m]
+    double elasticity;      // EA / r [N/m]
+    double viscosity;       // η / r [N·s/m]
     Index block = 0;
   };
   struct Turn {
     std::array<Index, 3> particles;
-    double before, after;                      // lengths of its pieces [m]
+    double before, after;                      // rest lengths of its pieces [m]
     std::array<double, 3> weights;             // of s'' [1/m²]
     double length;                             // L [m]
     std::array<Index, 3> scalars{}, blocks{};  // of the pairs 01, 12, 20
@@ -66,7 +66,7 @@ class Cord final : public Membrane {
   void add_stretch(const Piece& piece, const Evaluation& at) const;
   void add_air(const Piece& piece, const Evaluation& at) const;
   void add_turn(const Turn& turn, const Evaluation& at) const;
-  void weigh(Turn& turn, std::span<const char> held) const;
+  void compute_weights(Turn& turn, std::span<const char> held) const;
 
   Index first_;
   CordParameters parameters_;
@@ -75,7 +75,7 @@ class Cord final : public Membrane {
   std::vector<Turn> turns_;
 };
 
-/// Half of the mass of each piece at either end, [kg] of `mass` [kg/m].
+/// Lumped masses [kg]: half of each piece at either end. `mass`: [kg/m].
 std::vector<double> lumped_masses(std::span<const double> lengths, bool closed, double mass);
 
 }  // namespace weft::forces

@@ -11,26 +11,27 @@ using solver::PackedBlock;
 
 namespace {
 
-// As of TriangleMembrane.
+// See TriangleMembrane.
 constexpr double kCollapsed = 1e-12;
-// Share of ⟨g²⟩ that counts. With all of it a cell that bends along one direction gets narrower along the other, which
-// its neighbours and clamps do not: at 1e4, 1e5, 1e6 N/m a cantilever of 16 cells then is off by −0.7, −3.5, −8.1 %,
-// with a quarter by 0.1, −0.5, −2.8, with a tenth by 0.2, 0.1, −0.8 %. With less, tension holds middles up less.
-constexpr double kBulge = 0.1;
-// Share of its size below which a cell is folded up so far that the normal of its diagonals tells less and less where
-// its middle belongs: it turns by 1 / size. A corner of leather that a pin tears took steps down to a microsecond for a
-// cell that was at a tenth.
-constexpr double kFoldedUp = 0.5;
+// θ: fraction of ⟨g²⟩ that counts. At 1, a cell that bends along one direction becomes narrower along the other, while
+// its neighbours and clamps do not (measured: errors of a cantilever of 16 cells at 1e4, 1e5 and 1e6 N/m are −0.7, −3.5
+// and −8.1 % at 1; 0.1, −0.5 and −2.8 % at a quarter; 0.2, 0.1 and −0.8 % at a tenth). Smaller values flatten cells
+// less under tension.
+constexpr double kHeightFraction = 0.1;
+// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. For a smaller cell the normal of the diagonals is a bad reference for
+// the middle, as it turns by 1 / size (measured: at a tenth, a corner of leather pulled by a pin reduced steps to 1
+// µs).
+constexpr double kFoldedSize = 0.5;
 
-// Which of a cell's five particles are the corners of its triangle k.
+// Indices of the corners of triangle k among the five particles of a cell.
 std::array<std::size_t, 3> corners_of(std::size_t k) {
   return {k, (k + 1) % 4, 4};
 }
 
-// How a corner counts in the twist; the middle does not.
+// Weights of the corners in the twist; the middle has none.
 constexpr std::array<double, 5> kTwist{1, -1, 1, -1, 0};
 
-// What tension does across a thread as it is, and definite in two ways: see Stretch.
+// Stiffness of tension across a thread: exact, and in two definite forms; see Stretch.
 double exact_lateral(double length) {
   return 1 - 1 / length;
 }
@@ -52,8 +53,8 @@ CrossedMembrane::CrossedMembrane(const mesh::Sheet& sheet, Index first, const St
     for (std::size_t k = 0; k < 4; ++k) {
       cell.particles[k] = triangles[t + k].particles[0];
       const Vec2& of_middle = triangles[t + k].gradients[2];
-      cell.bulge += kBulge * 0.25 * of_middle.cwiseAbs2();
-      cell.least_size += 2 * kFoldedUp * triangles[t + k].area;
+      cell.height_weight += kHeightFraction * 0.25 * of_middle.cwiseAbs2();
+      cell.min_size += 2 * kFoldedSize * triangles[t + k].area;
     }
     cell.particles[4] = triangles[t].particles[2];
     cells_.push_back(cell);
@@ -93,28 +94,28 @@ CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const Five& p
   state.flat = positions;
   const auto& [a, b, c, d, middle] = state.flat;
   state.diagonals = {c - a, d - b};
-  // By differences, so that only they are rounded.
-  state.lean = (middle - a) - 0.25 * ((b - a) + (c - a) + (d - a));
+  // From differences, so that only these are rounded.
+  state.middle_offset = (middle - a) - 0.25 * ((b - a) + (c - a) + (d - a));
   const Vec3 product = state.diagonals[0].cross(state.diagonals[1]);
-  const double size = product.norm(), least = cell.least_size;
-  const bool folded_up = size < least;
-  state.size = folded_up ? 0.5 * (size * size / least + least) : size;
+  const double size = product.norm(), min_size = cell.min_size;
+  const bool is_folded = size < min_size;
+  state.size = is_folded ? 0.5 * (size * size / min_size + min_size) : size;
   state.normal = product / state.size;
   if (size > 0) state.direction = product / size;
-  state.kept = folded_up ? 1 - size * size / (least * state.size) : 0;
-  state.height = state.normal.dot(state.lean);
+  state.kept_change = is_folded ? 1 - size * size / (min_size * state.size) : 0;
+  state.height = state.normal.dot(state.middle_offset);
   state.flat[4] -= state.height * state.normal;
   state.twist = (a - b) + (c - d);
   state.skew = state.normal.squaredNorm() * state.twist.squaredNorm();
   return state;
 }
 
-// δn = (I − (1 − κ) e eᵀ) δ(D₁ × D₂) / S, which is its own transpose.
-Vec3 CrossedMembrane::turned(const State& state, const Vec3& product) {
-  return (product - (1 - state.kept) * state.direction.dot(product) * state.direction) / state.size;
+// δn = (I − (1 − κ) e eᵀ) δ(D₁ × D₂) / S. The matrix is symmetric.
+Vec3 CrossedMembrane::normal_change(const State& state, const Vec3& product) {
+  return (product - (1 - state.kept_change) * state.direction.dot(product) * state.direction) / state.size;
 }
 
-// From forces on the flat cell, along its height and on its skew q to those on the particles:
+// Converts forces on the flat cell, along its height and on its skew q, to forces on the particles:
 //
 //     δm' = δm − n δw − w δn,   δw = n·δd + d·δn,   δq = 2 ‖n‖² t·δt + 2 ‖t‖² n·δn,
 //     δ(D₁ × D₂) = δD₁ × D₂ + D₁ × δD₂.
@@ -122,24 +123,25 @@ void CrossedMembrane::pull_back(const State& state, Five& force, double along_he
   const auto& [d1, d2] = state.diagonals;
   const Vec3 &n = state.normal, &t = state.twist;
   const double along = along_height - force[4].dot(n);
-  const Vec3 turn = turned(state, along * state.lean - state.height * force[4] + 2 * along_skew * t.squaredNorm() * n);
-  const Vec3 on_d1 = d2.cross(turn), on_d2 = turn.cross(d1), share = 0.25 * along * n;
+  const Vec3 turn = normal_change(
+      state, along * state.middle_offset - state.height * force[4] + 2 * along_skew * t.squaredNorm() * n);
+  const Vec3 on_d1 = d2.cross(turn), on_d2 = turn.cross(d1), corner_share = 0.25 * along * n;
   const Vec3 on_twist = 2 * along_skew * n.squaredNorm() * t;
-  force[0] -= on_d1 + share - on_twist;
-  force[1] -= on_d2 + share + on_twist;
-  force[2] += on_d1 - share + on_twist;
-  force[3] += on_d2 - share - on_twist;
+  force[0] -= on_d1 + corner_share - on_twist;
+  force[1] -= on_d2 + corner_share + on_twist;
+  force[2] += on_d1 - corner_share + on_twist;
+  force[3] += on_d2 - corner_share - on_twist;
   force[4] += along * n;
 }
 
-// The other way: how the flat cell, its height and its skew change with the velocities.
+// The transpose: converts velocities of the particles to rates of the flat cell, its height and its skew.
 void CrossedMembrane::push_forward(const State& state, Five& flat, double& height, double& skew) {
-  const Vec3 lean = flat[4] - 0.25 * (flat[0] + flat[1] + flat[2] + flat[3]);
+  const Vec3 middle_offset = flat[4] - 0.25 * (flat[0] + flat[1] + flat[2] + flat[3]);
   const Vec3 twist = (flat[0] - flat[1]) + (flat[2] - flat[3]);
   const auto& [d1, d2] = state.diagonals;
   const Vec3 &n = state.normal, &t = state.twist;
-  const Vec3 turn = turned(state, (flat[2] - flat[0]).cross(d2) + d1.cross(flat[3] - flat[1]));
-  height = n.dot(lean) + turn.dot(state.lean);
+  const Vec3 turn = normal_change(state, (flat[2] - flat[0]).cross(d2) + d1.cross(flat[3] - flat[1]));
+  height = n.dot(middle_offset) + turn.dot(state.middle_offset);
   skew = 2 * (n.squaredNorm() * t.dot(twist) + t.squaredNorm() * n.dot(turn));
   flat[4] -= height * n + state.height * turn;
 }
@@ -165,9 +167,10 @@ void CrossedMembrane::add(const Evaluation& at) const {
     for (std::size_t k = 0; k < 4; ++k) {
       const Element& element = elements()[4 * c + k];
       const Gradient s = gradient_of(element, state.flat, k), s_rate = gradient_of(element, rate, k);
-      const Bulge bulge = bulge_of(cell, element);
-      const Vec2 length = lengths_of(s, bulge, state);
-      const Vec2 added_rate = state.height * height_rate * bulge.of_height + 0.5 * skew_rate * bulge.of_skew;
+      const CellWeights cell_weights = cell_weights_of(cell, element);
+      const Vec2 length = lengths_of(s, cell_weights, state);
+      const Vec2 added_rate =
+          state.height * height_rate * cell_weights.of_height + 0.5 * skew_rate * cell_weights.of_skew;
       const double u = length.x(), v = length.y();
       Vec3 strain_rate = Vec3::Zero();
       if (viscous)
@@ -185,8 +188,8 @@ void CrossedMembrane::add(const Evaluation& at) const {
       const Vec3 along_v = element.area * (warp * s.v + stress * s.u);
       for (std::size_t i = 0; i < 3; ++i)
         force[corners_of(k)[i]] -= element.gradients[i].x() * along_u + element.gradients[i].y() * along_v;
-      along_height -= element.area * state.height * bulge.of_height.dot(Vec2(weft, warp));
-      along_skew -= element.area * 0.5 * bulge.of_skew.dot(Vec2(weft, warp));
+      along_height -= element.area * state.height * cell_weights.of_height.dot(Vec2(weft, warp));
+      along_skew -= element.area * 0.5 * cell_weights.of_skew.dot(Vec2(weft, warp));
     }
     pull_back(state, force, along_height, along_skew);
     for (std::size_t i = 0; i < 5; ++i) at.force.add(cell.particles[i], solver::quad_of<double>(force[i]));
@@ -215,31 +218,31 @@ TriangleMembrane::Gradient CrossedMembrane::gradient_of(const Element& element, 
   return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
 }
 
-CrossedMembrane::Bulge CrossedMembrane::bulge_of(const Cell& cell, const Element& element) {
-  return {cell.bulge, element.gradients[2].cwiseAbs2() / 16};
+CrossedMembrane::CellWeights CrossedMembrane::cell_weights_of(const Cell& cell, const Element& element) {
+  return {cell.height_weight, element.gradients[2].cwiseAbs2() / 16};
 }
 
-// Of the threads of a triangle, with what its cell's height and skew add.
-Vec2 CrossedMembrane::lengths_of(const Gradient& s, const Bulge& bulge, const State& state) {
-  const Vec2 added = state.height * state.height * bulge.of_height + state.skew * bulge.of_skew;
+// Relative lengths of a triangle's threads, including the cell's height and skew.
+Vec2 CrossedMembrane::lengths_of(const Gradient& s, const CellWeights& cell_weights, const State& state) {
+  const Vec2 added = state.height * state.height * cell_weights.of_height + state.skew * cell_weights.of_skew;
   return (Vec2(s.u.squaredNorm(), s.v.squaredNorm()) + added).cwiseSqrt().cwiseMax(kCollapsed);
 }
 
 Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& state) const {
   const Element& element = elements()[4 * c + k];
   const Gradient s = gradient_of(element, state.flat, k);
-  const Vec2 length = lengths_of(s, bulge_of(cells_[c], element), state);
+  const Vec2 length = lengths_of(s, cell_weights_of(cells_[c], element), state);
   return {length.x(), length.y(), s.u.dot(s.v)};
 }
 
-// k (1 − lateral) ∂L ∂Lᵀ of each length L, and the like of the shear. Then what the stresses pull straight: across n
-// the slopes between corners and middle, along n those between corners with the middle of them, and the height; the
-// twist in all directions.
+// Sums k (1 − lateral) ∂L ∂Lᵀ over the lengths L, and likewise for shear. Then adds the stiffness of the stresses:
+// across n on the slopes between corners and middle; along n on the slopes between corners, with the middle at their
+// mean, and on the height; in all directions on the twist.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];
   const Vec3& n = state.normal;
-  const double w = state.height, flattened = n.squaredNorm();
+  const double w = state.height, n_sq = n.squaredNorm();
   Blocks sum;
   sum.fill(packed_scalar(0));
   std::array<double, 25> across{}, along{};
@@ -254,14 +257,14 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
   for (std::size_t k = 0; k < 4; ++k) {
     const Element& element = elements()[4 * c + k];
     const Gradient s = gradient_of(element, state.flat, k);
-    const Bulge bulge = bulge_of(cell, element);
-    const Vec2 length = lengths_of(s, bulge, state);
+    const CellWeights cell_weights = cell_weights_of(cell, element);
+    const Vec2 length = lengths_of(s, cell_weights, state);
     const double u = length.x(), v = length.y();
     const double lateral_u = lateral_of(u), lateral_v = lateral_of(v);
     Five of_u, of_v, of_shear;
     of_u.fill(Vec3::Zero()), of_v = of_shear = of_u;
-    std::array<Vec2, 5> flat{}, level{};
-    flat.fill(Vec2::Zero()), level.fill(Vec2::Zero());
+    std::array<Vec2, 5> flat{}, normal_gradients{};
+    flat.fill(Vec2::Zero()), normal_gradients.fill(Vec2::Zero());
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec2& g = element.gradients[i];
       const std::size_t p = corners_of(k)[i];
@@ -269,15 +272,15 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
       of_v[p] = g.y() / v * s.v;
       of_shear[p] = g.x() * s.v + g.y() * s.u;
       flat[p] = g;
-      if (i < 2) level[p] += g;
+      if (i < 2) normal_gradients[p] += g;
     }
-    for (std::size_t i = 0; i < 4; ++i) level[i] += 0.25 * flattened * element.gradients[2];
-    level[4] = (1 - flattened) * element.gradients[2];
+    for (std::size_t i = 0; i < 4; ++i) normal_gradients[i] += 0.25 * n_sq * element.gradients[2];
+    normal_gradients[4] = (1 - n_sq) * element.gradients[2];
     const double viscous = rate * stretch_.viscosity;
-    add_outer(element.area * (stretch_.weft * (1 - lateral_u) + viscous), of_u, w * bulge.of_height.x() / u,
-              0.5 * bulge.of_skew.x() / u);
-    add_outer(element.area * (stretch_.warp * (1 - lateral_v) + viscous), of_v, w * bulge.of_height.y() / v,
-              0.5 * bulge.of_skew.y() / v);
+    add_outer(element.area * (stretch_.weft * (1 - lateral_u) + viscous), of_u, w * cell_weights.of_height.x() / u,
+              0.5 * cell_weights.of_skew.x() / u);
+    add_outer(element.area * (stretch_.warp * (1 - lateral_v) + viscous), of_v, w * cell_weights.of_height.y() / v,
+              0.5 * cell_weights.of_skew.y() / v);
     add_outer(element.area * 0.5 * (shear_.modulus + rate * shear_.viscosity), of_shear, 0, 0);
     const double weft = element.area * stretch_.weft * lateral_u, warp = element.area * stretch_.warp * lateral_v;
     const double stress = element.area * 0.5 * shear_.modulus * s.u.dot(s.v);
@@ -288,10 +291,10 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
     for (std::size_t a = 0; a < 5; ++a)
       for (std::size_t b = 0; b < 5; ++b) {
         across[5 * a + b] += stiffness(flat[a], flat[b]);
-        along[5 * a + b] += stiffness(level[a], level[b]);
+        along[5 * a + b] += stiffness(normal_gradients[a], normal_gradients[b]);
       }
-    of_height += bulge.of_height.dot(Vec2(weft, warp));
-    of_twist += flattened * bulge.of_skew.dot(Vec2(weft, warp));
+    of_height += cell_weights.of_height.dot(Vec2(weft, warp));
+    of_twist += n_sq * cell_weights.of_skew.dot(Vec2(weft, warp));
   }
   for (std::size_t a = 0; a < 5; ++a)
     for (std::size_t b = 0; b < 5; ++b) {
@@ -307,7 +310,7 @@ double CrossedMembrane::strain(std::size_t triangle, std::span<const Vec3> x) co
   const Cell& cell = cells_[triangle / 4];
   const Element& element = elements()[triangle];
   const State state = state_of(cell, vectors_of(cell, x));
-  const Vec2 length = lengths_of(gradient_of(element, state.flat, triangle % 4), bulge_of(cell, element), state);
+  const Vec2 length = lengths_of(gradient_of(element, state.flat, triangle % 4), cell_weights_of(cell, element), state);
   return (length - Vec2::Ones()).cwiseAbs().maxCoeff();
 }
 
@@ -318,7 +321,7 @@ double CrossedMembrane::energy(std::span<const Vec3> x) const {
     for (std::size_t k = 0; k < 4; ++k) {
       const Element& element = elements()[4 * c + k];
       const Gradient s = gradient_of(element, state.flat, k);
-      const Vec2 stretched = lengths_of(s, bulge_of(cells_[c], element), state) - Vec2::Ones();
+      const Vec2 stretched = lengths_of(s, cell_weights_of(cells_[c], element), state) - Vec2::Ones();
       const double shear = s.u.dot(s.v);
       sum += element.area * (0.5 * Vec2(stretch_.weft, stretch_.warp).dot(stretched.cwiseAbs2()) +
                              0.25 * shear_.modulus * shear * shear);

@@ -10,17 +10,16 @@
 namespace weft::forces {
 namespace {
 
-// Volume below which a surface counts as flat, in units of its area to the power 3/2 (a sphere has 0.09). Rounding is
-// 1e-16.
-constexpr double kFlat = 1e-9;
+// Volume up to which a surface counts as flat, relative to its area to the power 3/2 (sphere: 0.09, rounding: 1e-16).
+constexpr double kFlatVolume = 1e-9;
 
 std::size_t index_of(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-// Loops of border edges, each against the direction in which its triangles run along it.
+// Loops of border edges, each opposite to the direction in its triangle.
 std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> triangles) {
-  // An edge that one triangle runs along one way has no other that runs along it the other way.
+  // A border edge is one whose reverse is in no triangle.
   std::map<std::array<Index, 2>, int> runs;
   for (const mesh::Triangle& t : triangles)
     for (std::size_t k = 0; k < 3; ++k) ++runs[{t[k], t[(k + 1) % 3]}];
@@ -35,7 +34,7 @@ std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> tri
       loop.push_back(edge->second);
       next.erase(edge);
     }
-    loop.pop_back();  // the first once more
+    loop.pop_back();  // repeats the first
   }
   return loops;
 }
@@ -60,7 +59,7 @@ EnclosedVolume::EnclosedVolume(std::span<const mesh::Triangle> triangles, std::s
   for (const mesh::Triangle& t : closed)
     for (std::size_t k = 0; k < 3; ++k) star_[index_of(filled[index_of(t[k])]++)] = {t[(k + 1) % 3], t[(k + 2) % 3]};
 
-  flat_ = kFlat * std::pow(mesh::surface_area(triangles, start), 1.5);
+  flat_ = kFlatVolume * std::pow(mesh::surface_area(triangles, start), 1.5);
   std::vector<Vec3> gradient(start.size());
   if (evaluate(start, gradient) < -flat_) sign_ = -1;
 }
@@ -74,7 +73,7 @@ double EnclosedVolume::evaluate(std::span<const Vec3> x, std::span<Vec3> gradien
   const auto place = [&](Index i) -> const Vec3& {
     return index_of(i) < x.size() ? x[index_of(i)] : middles[index_of(i) - x.size()];
   };
-  // Differences to the vertex itself: their products stay exact far from the origin.
+  // Differences to the vertex itself keep the products accurate far from the origin.
   const auto derivative = [&](std::size_t i) {
     const Vec3& own = place(static_cast<Index>(i));
     Vec3 sum = Vec3::Zero();

@@ -10,31 +10,30 @@
 
 namespace weft::forces {
 
-/// The volume inside a triangle surface. The fan of triangles from the middle of its border (the mean of the border's
-/// particles) closes each opening; so the volume does not depend on the origin. If pieces of the surface are separate,
-/// their volumes are added.
+/// The volume inside a triangle surface. Each opening is closed by a fan of triangles around the mean of the border's
+/// particles, so that the volume does not depend on the origin. Volumes of separate surfaces are added.
 ///
 /// V = 1/3 Σ x_i · ∂V/∂x_i and ∂V/∂x_i = 1/6 Σ x_j × x_k over the triangles (i, j, k) of the vertex star of i: a third
-/// of the area vectors there.
+/// of their area vectors.
 class EnclosedVolume {
  public:
-  /// `triangles`: manifold, oriented alike, of particles 0 to start.size() − 1. The volume at `start` [m] counts as
-  /// positive; if it is zero, the triangles' front is outside.
+  /// `triangles`: manifold, consistently oriented, over particles 0 to start.size() − 1. The sign is chosen so that the
+  /// volume at `start` [m] is positive; if that is zero, the front of the triangles is outside.
   EnclosedVolume(std::span<const mesh::Triangle> triangles, std::span<const Vec3> start);
 
-  /// Volume [m³] at x [m], one position per particle. Writes ∂V/∂x [m²] of each particle into `gradient`, which has the
-  /// same size; the entries sum to zero.
+  /// Returns the volume [m³] at x [m], one position per particle. Writes ∂V/∂x [m²] into `gradient`, which has the same
+  /// size; its entries sum to zero.
   double evaluate(std::span<const Vec3> x, std::span<Vec3> gradient) const;
 
-  /// Whether a volume is that of a flat surface, but for rounding.
+  /// Whether this volume is zero up to rounding.
   bool is_flat(double volume) const { return volume <= flat_; }
 
   std::size_t openings() const { return borders_.size(); }
 
  private:
   std::vector<Index> star_begin_;            // per vertex, and the end
-  std::vector<std::array<Index, 2>> star_;   // the other corners of its triangles
-  std::vector<std::vector<Index>> borders_;  // particles of each; its middle is a vertex behind the particles
+  std::vector<std::array<Index, 2>> star_;   // the two other corners of each triangle of the vertex star
+  std::vector<std::vector<Index>> borders_;  // particles of each border; its mean is a vertex behind the particles
   double sign_ = 1;
   double flat_ = 0;  // [m³]
 };

@@ -1,4 +1,4 @@
-// What every force of the cloth shares.
+// Interface and data of all forces of the cloth.
 #pragma once
 
 #include <limits>
@@ -18,15 +18,15 @@ namespace weft::forces {
 /// How the part of the Jacobian that is indefinite under compression is made definite.
 enum class Linearisation {
   definite,       ///< clamped to zero term by term
-  abs_projected,  ///< by absolute values where edges are compressed: shorter steps, where clamped they overshoot
+  abs_projected,  ///< absolute values where edges are compressed: shorter steps where clamping overshoots
 };
 
-/// The forces on particles [begin, end); what is added to others is left out.
+/// The forces on particles [begin, end); what is added to others is ignored.
 class ForceRows {
  public:
   ForceRows(std::span<solver::Quad<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
   ForceRows(std::vector<solver::Quad<double>>& all) : ForceRows(std::span(all)) {}
-  /// `all`: of all particles.
+  /// `all`: forces of all particles.
   ForceRows(std::span<solver::Quad<double>> all, Index begin, Index end) : all_(all), begin_(begin), end_(end) {}
 
   void add(Index particle, const solver::Quad<double>& force) const {
@@ -43,29 +43,29 @@ class ForceRows {
 
 struct LockLag;
 
-/// One evaluation of the forces at (x, v). Quads are three numbers and zero.
+/// One evaluation of the forces at (x, v). A Quad holds three numbers and a zero.
 struct Evaluation {
   std::span<const solver::Quad<double>> x;  ///< positions [m]
   std::span<const solver::Quad<double>> v;  ///< velocities [m/s]
   ForceRows force;                          ///< receives += f [N]
-  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m], made symmetric and positive semidefinite term by term: what conjugate
-  /// gradients and descent need. Of none: forces only.
+  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m], made symmetric and positive semidefinite term by term, as conjugate
+  /// gradients and line search require. Empty: forces only.
   solver::AssemblyRows assembly = {};
   double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂) [1/s]; 0: none
-  /// What v is taken from; of none: rates are those of v at x.
+  /// Earlier positions from which v is computed. Empty: rates follow from v at x.
   std::span<const Past> past = {};
   Linearisation linearisation = Linearisation::definite;
-  /// Which of the ranges that the force was cut into this is for; kAll: all in one go.
+  /// Range of Force::cut() to evaluate; kAll: everything.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   std::size_t range = kAll;
-  /// Velocity of the air at each particle [m/s], where it is not the same everywhere; else none.
+  /// Velocity of the air at each particle [m/s]; empty: the same everywhere.
   std::span<const solver::Quad<double>> air = {};
-  /// Where the locks of a cloth's threads are linearised; without, at x.
+  /// Linearisation points of the locks of the threads; null: linearise at x.
   const LockLag* locks = nullptr;
 
-  /// Rate of a quantity of the positions, which is `now` at x; where there is no past, that of v, `by_velocity()`.
-  /// Viscosity goes by it: with ∂q/∂x v implicit Euler takes what turns by θ in a step for longer by 1 − cos θ, stiff
-  /// viscosity then shortens it by that, step by step, and the work of the threads' compression came from nowhere.
+  /// Rate of a quantity of the positions whose value at x is `now`; without past, `by_velocity()`. Viscosity uses it:
+  /// with ∂q/∂x v, implicit Euler sees an edge that turns by θ in a step lengthen by 1 − cos θ. Stiff viscosity would
+  /// then shorten it by that amount in every step, and create energy.
   template <class Quantity, class OfPlaces, class ByVelocity>
   Quantity rate_of(const Quantity& now, const OfPlaces& of_places, const ByVelocity& by_velocity) const {
     if (past.empty()) return by_velocity();
@@ -75,50 +75,50 @@ struct Evaluation {
   }
 };
 
-/// A force on the particles of one cloth. `first` is the cloth's first particle in the global numbering.
+/// A force on the particles of one cloth. `first`: the cloth's first particle in the global numbering.
 class Force {
  public:
   virtual ~Force() = default;
 
-  /// Pairs of particles that the Jacobian couples.
+  /// Appends the pairs of particles that the Jacobian couples.
   virtual void couple(std::vector<std::pair<Index, Index>>& pairs) const = 0;
-  /// Whether what is added to an Assembly are multiples of the unit matrix.
+  /// Whether everything added to an Assembly is a multiple of the identity.
   virtual bool isotropic() const { return false; }
-  /// Looks up where the blocks are; once, after the pattern is known.
+  /// Looks up the blocks of the pairs. Call once, when the pattern is known.
   virtual void attach(const solver::Assembly& assembly) = 0;
 
-  /// Cuts the particles into ranges between these bounds, which may be added to at the same time. After attach().
+  /// Divides the particles at these bounds into ranges that threads may evaluate at the same time. Call after attach().
   virtual void cut(std::span<const Index> bounds) = 0;
 
   virtual void add(const Evaluation& at) const = 0;
   /// Elastic energy [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
-  /// Adds the part of −∂f/∂x that only hold() changes, if there is one; `add` leaves it out.
+  /// Adds the part of −∂f/∂x that only hold() changes, if there is one; `add` does not add it.
   virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
 
-  /// Adds all of −(∂f/∂x + rate ∂f/∂v) itself, indefinite under compression and unsymmetric with viscosity. For
-  /// vibrations and for tests, element by element; not for air.
+  /// Adds the exact −(∂f/∂x + rate ∂f/∂v), element by element: indefinite under compression, unsymmetric with
+  /// viscosity. For vibrations and tests; air adds nothing.
   virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
                             solver::BlockMatrix& /*jacobian*/) const {}
 
-  /// Which particles of all cloths are held in place or moved from now on: what they leave free may resist otherwise.
+  /// Sets which particles of all cloths are held or moved from now on, as clamps change the resistance of free ones.
   /// The pattern of the Jacobian stays.
   virtual void hold(std::span<const char> /*held*/) {}
 };
 
-/// What resists motion within the sheet, and knows how far it is stretched.
+/// A force that resists deformation within the sheet, and measures its strain.
 class Membrane : public Force {
  public:
   /// Largest relative change of length of a piece of weft or warp.
   virtual double max_strain(std::span<const Vec3> x) const = 0;
-  /// Raises heat[particle − first] to the largest strain next to it.
+  /// Raises heat[particle − first] to the largest strain next to the particle.
   virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const = 0;
 };
 
-/// Lumped masses of a grid [kg], ρ times the area of each particle (ρ in kg/m²).
+/// Lumped masses of a grid [kg]: ρ times the area of each particle. `density`: ρ [kg/m²].
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
-/// And of triangles, a third of each to each of its corners, with those of bands.
+/// Lumped masses of triangles [kg], a third at each corner, and those of bands.
 std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density);
 
 }  // namespace weft::forces

@@ -1,4 +1,4 @@
-// Forces on four elements at a time (edges, cells, triangles), one in each lane of a register.
+// Forces on four elements at a time (edges, cells, triangles), one per lane of a register.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +14,9 @@
 
 namespace weft::forces {
 
-/// One number of each of four elements.
+/// One number per element.
 using Lanes = solver::Quad<double>;
-/// Particles, blocks and so on of four elements.
+/// One index per element: of a particle, a block, ...
 using Four = std::array<Index, 4>;
 
 inline Lanes lanes_of(double value) {
@@ -38,7 +38,7 @@ inline Lanes min(const Lanes& a, const Lanes& b) {
   return b < a ? b : a;
 }
 
-/// A vector of each of four elements.
+/// One vector per element.
 struct VecLanes {
   Lanes x{}, y{}, z{};
 
@@ -71,7 +71,7 @@ inline VecLanes gather(std::span<const Vec3> of, const Four& i) {
   return {Lanes{a[0], b[0], c[0], d[0]}, Lanes{a[1], b[1], c[1], d[1]}, Lanes{a[2], b[2], c[2], d[2]}};
 }
 
-/// What stands in a row for each number becomes what stands there for each element.
+/// Transposes four rows of four numbers.
 inline std::array<Lanes, 4> transposed(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d) {
   const Lanes ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
   const Lanes cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
@@ -79,7 +79,7 @@ inline std::array<Lanes, 4> transposed(const Lanes& a, const Lanes& b, const Lan
           __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7), __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7)};
 }
 
-/// Adds a vector of each element to the entry of a particle, one element after the other.
+/// Adds the vector of each element to the entry of its particle, in the order of elements.
 inline void add(const ForceRows& to, const Four& i, const VecLanes& value) {
   const auto of = transposed(value.x, value.y, value.z, Lanes{0, 0, 0, 0});
   for (std::size_t l = 0; l < 4; ++l) to.add(i[l], of[l]);
@@ -89,7 +89,7 @@ inline void subtract(const ForceRows& from, const Four& i, const VecLanes& value
   for (std::size_t l = 0; l < 4; ++l) from.subtract(i[l], of[l]);
 }
 
-/// A 3×3 block of each element, its entries column by column.
+/// One 3×3 block per element, its entries column by column.
 using BlockLanes = std::array<Lanes, 9>;
 
 inline BlockLanes operator+(const BlockLanes& a, const BlockLanes& b) {
@@ -102,12 +102,12 @@ inline BlockLanes operator*(const Lanes& s, const BlockLanes& a) {
   for (std::size_t k = 0; k < 9; ++k) product[k] = s * a[k];
   return product;
 }
-/// a bᵀ + s I.
+/// a bᵀ + s I
 inline BlockLanes outer(const VecLanes& a, const VecLanes& b, const Lanes& s = Lanes{0, 0, 0, 0}) {
   return {a.x * b.x + s, a.y * b.x, a.z * b.x, a.x * b.y,    a.y * b.y + s,
           a.z * b.y,     a.x * b.z, a.y * b.z, a.z * b.z + s};
 }
-/// The block of each element, packed as the matrix takes it.
+/// The block of each element, packed as in the matrix.
 inline std::array<solver::PackedBlock, 4> packed(const BlockLanes& m) {
   const auto low = transposed(m[0], m[1], m[2], m[3]), high = transposed(m[4], m[5], m[6], m[7]);
   std::array<solver::PackedBlock, 4> blocks;
@@ -122,18 +122,18 @@ inline void add_scalars(const solver::AssemblyRows& assembly, const Four& scalar
   for (std::size_t l = 0; l < 4; ++l) assembly.add_scalar(scalar[l], value[l]);
 }
 
-/// Calls body(index, lane, counts) for four elements after the other of `count`; those that are missing behind the last
-/// repeat it, and do not count.
+/// Calls body(index, lane, is_used) for the four lanes of a pack of `count` elements. Lanes behind the last element
+/// repeat it, with is_used false.
 template <class Body>
 void for_each_lane(std::size_t count, std::size_t pack, const Body& body) {
   for (std::size_t l = 0; l < 4; ++l) body(std::min(4 * pack + l, count - 1), l, 4 * pack + l < count);
 }
-/// Packs of four that `count` elements make.
+/// Number of packs of four for `count` elements.
 inline std::size_t packs_of(std::size_t count) {
   return (count + 3) / 4;
 }
 
-/// As Ranges::cut(), for packs whose particles are all_of(pack), several times four.
+/// Ranges::cut() for packs of four elements; all_of(pack) lists their particles.
 template <class Pack, class AllOf>
 void cut_packs(std::span<const Index> bounds, const std::vector<Pack>& packs, const AllOf& all_of, Ranges& ranges) {
   ranges.cut(bounds, packs.size(), [&](std::size_t p, const auto& visit) {

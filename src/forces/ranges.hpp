@@ -1,4 +1,4 @@
-// Elements by the ranges of particles that they touch, so that threads can add forces to ranges at the same time.
+// Elements by the particle ranges that they touch, so that threads can add forces to ranges at the same time.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 
 namespace weft::forces {
 
-/// Which elements of a list (packs of them, say) each range of particles needs: those that touch a particle in it.
-/// Elements at a border are in two ranges, each of which adds its own part only (ForceRows, AssemblyRows).
+/// For each range of particles, the elements (or packs of elements) of a list that touch a particle in it. Elements at
+/// a border are in two ranges; each adds only its own particles (ForceRows, AssemblyRows).
 class Ranges {
  public:
-  /// `bounds`: as of Force::cut(). touch(element, visit) calls visit(particle) for all that the element adds to.
+  /// `bounds`: see Force::cut(). touch(element, visit) must call visit(particle) for all particles of an element.
   template <class Touch>
   void cut(std::span<const Index> bounds, std::size_t count, const Touch& touch) {
     runs_.assign(bounds.size() - 1, {});
@@ -29,7 +29,7 @@ class Ranges {
       });
   }
 
-  /// Calls body(element) for those of a range, or all `count` of Evaluation::kAll, in their order.
+  /// Calls body(element) for the elements of a range, or for all `count` if the range is Evaluation::kAll, in order.
   template <class Body>
   void for_each(std::size_t range, std::size_t count, const Body& body) const {
     if (range == Evaluation::kAll) {

@@ -20,7 +20,7 @@ void Rigidity::attach(const solver::Assembly& assembly) {
     blocks_[p] = assembly.block(first_ + static_cast<Index>(kPairs[p][0]), first_ + static_cast<Index>(kPairs[p][1]));
 }
 
-// B, with the positions of the particles.
+// B from the positions of the particles.
 template <class Position>
 Mat3 Rigidity::shape_of(const Position& position) const {
   Mat3 shape = Mat3::Zero();
@@ -38,24 +38,25 @@ Mat3 Rigidity::strain_of(const Mat3& shape) const {
 void Rigidity::add(const Evaluation& at) const {
   const auto stage = [&](std::size_t i) { return solver::vec3_of(at.x[i]); };
   const Mat3 shape = shape_of(stage);
-  // With the midpoint rule, which has no past, the step ends half a step later.
-  const double later = at.past.empty() && at.rate > 0 ? 1 / at.rate : 0;
+  // With the midpoint rule, which has no past, the step ends half a step after the stage.
+  const double time_to_end = at.past.empty() && at.rate > 0 ? 1 / at.rate : 0;
   const Mat3 strain =
-      strain_of(shape_of([&](std::size_t i) { return Vec3(stage(i) + later * solver::vec3_of(at.v[i])); }));
+      strain_of(shape_of([&](std::size_t i) { return Vec3(stage(i) + time_to_end * solver::vec3_of(at.v[i])); }));
   const Vec3 root = deviations_.cwiseSqrt().cwiseInverse();
   const Mat3 stress = 0.5 * modulus_ * shape * root.asDiagonal() * strain * root.asDiagonal();
   for (std::size_t k = 0; k < kParticles; ++k)
     at.force.add(first_ + static_cast<Index>(k),
                  solver::quad_of<double>(Vec3(-0.25 * stress * mesh::RigidFrame::corner(k))));
   if (!at.assembly) return;
-  // Without the part of the strain that is there, which is small, as it may be indefinite.
-  const Mat3 turned = shape * deviations_.cwiseInverse().asDiagonal();  // A
-  const Mat3 stretched = turned * shape.transpose();
-  const double change_of_end = later > 0 ? 2 : 1;
+  // Without the stiffness of the existing stress, which is small but may be indefinite.
+  const Mat3 affine_map = shape * deviations_.cwiseInverse().asDiagonal();  // A
+  const Mat3 affine_shape = affine_map * shape.transpose();
+  const double end_rate = time_to_end > 0 ? 2 : 1;
   for (std::size_t p = 0; p < kPairs.size(); ++p) {
     const Vec3 t = mesh::RigidFrame::corner(kPairs[p][0]), u = mesh::RigidFrame::corner(kPairs[p][1]);
-    const Mat3 block = t.dot(u.cwiseQuotient(deviations_)) * stretched + (turned * u) * (turned * t).transpose();
-    at.assembly.add(blocks_[p], Mat3(change_of_end * modulus_ / 32 * block));
+    const Mat3 block =
+        t.dot(u.cwiseQuotient(deviations_)) * affine_shape + (affine_map * u) * (affine_map * t).transpose();
+    at.assembly.add(blocks_[p], Mat3(end_rate * modulus_ / 32 * block));
   }
 }
 

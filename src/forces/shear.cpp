@@ -80,7 +80,7 @@ void Shear::add(const Evaluation& at) const {
     const Lanes c = dot(s.su, s.sv);
     Lanes stress = cells.elasticity * c;
     if (viscous_) {
-      const auto then = [&](std::span<const Vec3> x) {
+      const auto strain_at = [&](std::span<const Vec3> x) {
         const StrainLanes of_then = strain(cells, x);
         return dot(of_then.su, of_then.sv);
       };
@@ -88,7 +88,7 @@ void Shear::add(const Evaluation& at) const {
         const StrainLanes rate = strain(cells, at.v);
         return dot(rate.su, s.sv) + dot(s.su, rate.sv);
       };
-      stress += cells.viscosity * at.rate_of(c, then, by_velocity);
+      stress += cells.viscosity * at.rate_of(c, strain_at, by_velocity);
     }
     // ∂c/∂x_k; opposite corners get opposite signs, so two vectors serve all four.
     const VecLanes u_part = stress * cells.half_u * s.sv, v_part = stress * cells.half_v * s.su;
@@ -101,12 +101,12 @@ void Shear::add(const Evaluation& at) const {
   });
 }
 
-// Of the second derivative, ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), the definite form keeps the half whose sign agrees
-// with the stress. Opposite corners have opposite derivatives, so four blocks, with signs, serve all pairs.
+// The second derivative is ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²); the definite form keeps the half whose sign agrees with
+// the stress. Opposite corners have opposite derivatives, so four blocks, with signs, serve all pairs.
 void Shear::add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at) {
   const Lanes sign = c < 0 ? lanes_of(-1) : lanes_of(1), curvature = 0.5 * cells.elasticity * abs(c);
   const Lanes size = cells.elasticity + at.rate * cells.viscosity;
-  // ∂c/∂x of corners 3 and 1; that of 0 is minus the first, that of 2 minus the second. And so for the half kept.
+  // ∂c/∂x of corners 3 and 1; those of 0 and 2 are the negatives. The kept half has the same symmetry.
   const VecLanes u_part = cells.half_u * s.sv, v_part = cells.half_v * s.su;
   const VecLanes main = u_part + v_part, cross = u_part - v_part;
   const Lanes main_half = cells.half_u + sign * cells.half_v, cross_half = cells.half_u - sign * cells.half_v;

@@ -16,10 +16,10 @@ struct ShearParameters {
 /// Seed Eq. (1), entry 12: ½ μ ⟨s_u, s_v⟩ [N/m], from the energy density ¼ μ ⟨s_u, s_v⟩².
 ///
 /// s_u and s_v are central differences in the middle of each cell, each the mean of the cell's two edges, O(l²). The
-/// seed takes central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / 2l, with the same four particles per
-/// term; to those, whatever repeats at every second particle is invisible in each direction by itself. Here only the
-/// checkerboard is, and that stretches the edges. Where the seed prints O(l³) for its difference, a test measures the
-/// slope 2 of ours.
+/// seed uses central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / 2l, with the same four particles per term;
+/// these do not see a pattern that repeats at every second particle in one direction. The differences here miss only
+/// the checkerboard, which stretches the edges. The seed prints O(l³) for its difference; a test measures slope 2 for
+/// this one.
 class Shear final : public Force {
  public:
   Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters);
@@ -62,8 +62,8 @@ class Shear final : public Force {
 
   bool viscous_;
   std::vector<Cell> cells_;
-  std::vector<Cells> packs_;  // the same
-  Ranges ranges_;             // of packs
+  std::vector<Cells> packs_;
+  Ranges ranges_;  // of packs
 };
 
 }  // namespace weft::forces

@@ -16,9 +16,9 @@ struct StretchParameters {
 
 /// Tension along the grid lines: seed Eq. (1), entries 11 and 22, with the spring formula of "Elastic Model".
 ///
-/// Energy of an edge d = x_j − x_i of rest length l that stands for the area A: ½ k A (‖d‖/l − 1)². The force density
-/// of the seed, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], is that on x_j; times A it is the force here.
-/// Viscosity: dissipation ½ η A (d/dt ‖d‖/l)², the same form on the strain rate.
+/// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)². The seed's force
+/// density, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force here. Viscosity:
+/// dissipation ½ η A (d/dt ‖d‖/l)², the same form on the strain rate.
 class Stretch final : public Membrane {
  public:
   Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);
@@ -33,7 +33,7 @@ class Stretch final : public Membrane {
 
   /// Largest |‖d‖/l − 1| of all edges.
   double max_strain(std::span<const Vec3> x) const override;
-  /// Raises heat[particle − first] to the largest strain of the edges that meet there.
+  /// Raises heat[particle − first] to the largest strain of its edges.
   void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
 
  private:
@@ -43,7 +43,7 @@ class Stretch final : public Membrane {
     double elasticity;   // k A / l² [N/m]
     double viscosity;    // η A / l² [N·s/m]
   };
-  /// Four of them.
+  /// Four edges.
   struct Edges {
     Four i{}, j{}, block{};
     Lanes rest_length{}, elasticity{}, viscosity{};
@@ -52,8 +52,8 @@ class Stretch final : public Membrane {
   Index first_;
   bool viscous_;
   std::vector<Edge> edges_;
-  std::vector<Edges> packs_;  // the same
-  Ranges ranges_;             // of packs
+  std::vector<Edges> packs_;
+  Ranges ranges_;  // of packs
 };
 
 }  // namespace weft::forces

@@ -7,24 +7,25 @@
 namespace weft::forces {
 namespace {
 
-// Below the onset a piece has to have some stiffness, for its tension to tell where it is; any leads to the same end.
-StretchParameters some(StretchParameters below) {
-  constexpr double kLeast = 1;  // [N/m]
-  below.weft = std::max(below.weft, kLeast), below.warp = std::max(below.warp, kLeast);
+// A piece needs some stiffness below the onset, so that its tension determines its extension. The
+// solution does not depend on the value.
+StretchParameters with_min_stiffness(StretchParameters below) {
+  constexpr double kMinStiffness = 1;  // [N/m]
+  below.weft = std::max(below.weft, kMinStiffness), below.warp = std::max(below.warp, kMinStiffness);
   return below;
 }
 
-// Of the search for an extension by its tension, and what of that it may leave.
-constexpr int kExtensionIterations = 20;
-constexpr double kExtensionExactness = 1e-3;
+// Bounds of Newton's method in find_extension: iterations, and residual relative to the tension.
+constexpr int kMaxExtensionIterations = 20;
+constexpr double kExtensionTolerance = 1e-3;
 
-// The extension with this tension [N/m], from one that has no less. The law is convex: Newton's method comes from
-// above.
-double extension_with(const Lock& lock, double stiffness, double tension, double e) {
+// Extension with this tension [N/m], starting from an extension `e` with at least this tension. The law is convex, so
+// Newton's method converges from above.
+double find_extension(const Lock& lock, double stiffness, double tension, double e) {
   if (tension <= stiffness * lock.onset()) return tension / stiffness;
-  for (int k = 0; k < kExtensionIterations; ++k) {
+  for (int k = 0; k < kMaxExtensionIterations; ++k) {
     const double excess = stiffness * e + lock.stress(e) - tension;
-    if (excess <= kExtensionExactness * tension) break;
+    if (excess <= kExtensionTolerance * tension) break;
     e -= excess / (stiffness + lock.stiffness(e));
   }
   return e;
@@ -34,7 +35,7 @@ double extension_with(const Lock& lock, double stiffness, double tension, double
 
 StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch,
                            double shear)
-    : below_(some(below)), stretch_(stretch), shear_(shear) {
+    : below_(with_min_stiffness(below)), stretch_(stretch), shear_(shear) {
   const bool limited = !std::isinf(stretch);
   const auto add_thread = [&](Index i, Index j, double length, double width, double stiffness) {
     threads_.push_back({2, {first + i, first + j}, {-1 / length, 1 / length}, width * length, stiffness});
@@ -55,7 +56,7 @@ StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, const StretchPar
 
 StretchLimit::StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch,
                            double shear)
-    : below_(some(below)), stretch_(stretch), shear_(shear) {
+    : below_(with_min_stiffness(below)), stretch_(stretch), shear_(shear) {
   follow(membrane);
 }
 
@@ -98,23 +99,25 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::s
   return solver::vec3_of(s);
 }
 
-// Calls body(piece, pulls, block_of) for each that locks.
+// Calls body(piece, corner_forces, block_of) for each piece that locks; block_of(a, b) is a block of its Jacobian.
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLag* lag, const Body& body) const {
-  // Of nearly all pieces the squared length tells that they are below the onset.
+  // For nearly all pieces the squared length shows that they are below the onset.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
   ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
     const Vec3 s = derivative(threads_[t], threads_[t].along, x);
     const double* at = lag != nullptr ? &lag->extensions[t] : nullptr;
     if (s.squaredNorm() <= onset_sq && (at == nullptr || *at <= onset - 1)) return;
-    lock(threads_[t], s, at, [&](const Pulls& pulls, const auto& block_of) { body(threads_[t], pulls, block_of); });
+    lock(threads_[t], s, at,
+         [&](const CornerForces& corner_forces, const auto& block_of) { body(threads_[t], corner_forces, block_of); });
   });
   const double shear_onset = Lock(shear_).onset();
   ranges_of_crossings_.for_each(range, crossings_.size(), [&](std::size_t c) {
     const Crossing& crossing = crossings_[c];
     const Vec3 s_u = derivative(crossing, crossing.weft, x), s_v = derivative(crossing, crossing.warp, x);
     if (!(std::abs(s_u.dot(s_v)) > shear_onset)) return;
-    lock(crossing, s_u, s_v, exact, [&](const Pulls& pulls, const auto& block_of) { body(crossing, pulls, block_of); });
+    lock(crossing, s_u, s_v, exact,
+         [&](const CornerForces& corner_forces, const auto& block_of) { body(crossing, corner_forces, block_of); });
   });
 }
 
@@ -130,9 +133,9 @@ void StretchLimit::cut(std::span<const Index> bounds) {
 
 void StretchLimit::add(const Evaluation& at) const {
   for_each_lock(at.x, at.range, false, at.assembly ? at.locks : nullptr,
-                [&](const auto& piece, const Pulls& pulls, const auto& block_of) {
+                [&](const auto& piece, const CornerForces& corner_forces, const auto& block_of) {
                   for (std::size_t k = 0; k < piece.corners; ++k)
-                    at.force.subtract(piece.particles[k], solver::quad_of<double>(pulls[k]));
+                    at.force.subtract(piece.particles[k], solver::quad_of<double>(corner_forces[k]));
                   if (!at.assembly) return;
                   for (std::size_t a = 0; a < piece.corners; ++a)
                     for (std::size_t b = 0; b < piece.corners; ++b)
@@ -143,7 +146,7 @@ void StretchLimit::add(const Evaluation& at) const {
 
 void StretchLimit::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
                                 solver::BlockMatrix& jacobian) const {
-  for_each_lock(x, Evaluation::kAll, true, nullptr, [&](const auto& piece, const Pulls&, const auto& block_of) {
+  for_each_lock(x, Evaluation::kAll, true, nullptr, [&](const auto& piece, const CornerForces&, const auto& block_of) {
     for (std::size_t a = 0; a < piece.corners; ++a)
       for (std::size_t b = 0; b < piece.corners; ++b)
         jacobian.add(jacobian.slot(piece.particles[a], piece.particles[b]), block_of(a, b));
@@ -156,17 +159,17 @@ StretchLimit::Tangent StretchLimit::tangent(double lag, double e) const {
   return stress > 0 ? Tangent{stress, stiffness} : Tangent{0, 0};
 }
 
-// A thread pulls, so that the derivative is definite as it is.
+// The thread is in tension, so the derivative is definite.
 template <class Body>
 void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const {
   const double length = s.norm(), e = length - 1, stress = piece.area * Lock(stretch_).stress(e);
   const Tangent linear = tangent(lag != nullptr ? *lag : e, e);
-  if (stress == 0 && linear.stress == 0) return;  // and perhaps no length
+  if (stress == 0 && linear.stress == 0) return;  // the length may be zero
   const Vec3 n = s / length;
-  Pulls pulls{};
-  for (std::size_t k = 0; k < piece.corners; ++k) pulls[k] = stress * piece.along[k] * n;
+  CornerForces corner_forces{};
+  for (std::size_t k = 0; k < piece.corners; ++k) corner_forces[k] = stress * piece.along[k] * n;
   const double lateral = piece.area * linear.stress / length, axial = piece.area * linear.stiffness;
-  body(pulls, [&](std::size_t a, std::size_t b) -> Mat3 {
+  body(corner_forces, [&](std::size_t a, std::size_t b) -> Mat3 {
     return piece.along[a] * piece.along[b] * ((axial - lateral) * n * n.transpose() + lateral * Mat3::Identity());
   });
 }
@@ -192,7 +195,7 @@ void StretchLimit::update(std::span<const Vec3> x, bool first, LockLag& lag) con
       if (first) continue;
       const double e = std::sqrt(length_sq) - 1;
       const double tension = threads_[t].stiffness * e + tangent(at, e).stress;
-      at = extension_with(lock, threads_[t].stiffness, tension, std::max(e, at));
+      at = find_extension(lock, threads_[t].stiffness, tension, std::max(e, at));
     }
   });
 }
@@ -203,29 +206,30 @@ void StretchLimit::add_lag(std::span<const Vec3> x, const LockLag& lag, std::spa
     const Thread& thread = threads_[t];
     const Vec3 s = derivative(thread, thread.along, x);
     const double length = s.norm(), e = length - 1;
-    const double more = thread.area * (tangent(lag.extensions[t], e).stress - lock.stress(e));
-    if (more == 0) continue;
-    for (std::size_t k = 0; k < thread.corners; ++k) force[thread.particles[k]] -= more / length * thread.along[k] * s;
+    const double difference = thread.area * (tangent(lag.extensions[t], e).stress - lock.stress(e));
+    if (difference == 0) continue;
+    for (std::size_t k = 0; k < thread.corners; ++k)
+      force[thread.particles[k]] -= difference / length * thread.along[k] * s;
   }
 }
 
-// As Shear: exactly, or of the second derivative the half whose sign agrees with the stress.
+// As in Shear: the exact second derivative, or the half whose sign agrees with the stress.
 template <class Body>
 void StretchLimit::lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const {
   const Lock lock(shear_);
   const double sine = s_u.dot(s_v), sign = sine < 0 ? -1 : 1;
   const double stress = piece.area * lock.stress(std::abs(sine)),
                stiffness = piece.area * lock.stiffness(std::abs(sine));
-  Pulls gradient{}, pulls{};  // ∂|c|/∂x_k
+  CornerForces gradient{}, corner_forces{};  // ∂|c|/∂x_k
   for (std::size_t k = 0; k < piece.corners; ++k) {
     gradient[k] = sign * (piece.weft[k] * s_v + piece.warp[k] * s_u);
-    pulls[k] = stress * gradient[k];
+    corner_forces[k] = stress * gradient[k];
   }
   const auto second = [&](std::size_t a, std::size_t b) {
     if (exact) return sign * (piece.weft[a] * piece.warp[b] + piece.warp[a] * piece.weft[b]);
     return 0.5 * (piece.weft[a] + sign * piece.warp[a]) * (piece.weft[b] + sign * piece.warp[b]);
   };
-  body(pulls, [&](std::size_t a, std::size_t b) -> Mat3 {
+  body(corner_forces, [&](std::size_t a, std::size_t b) -> Mat3 {
     return stiffness * gradient[a] * gradient[b].transpose() + stress * second(a, b) * Mat3::Identity();
   });
 }
@@ -241,14 +245,14 @@ double StretchLimit::energy(std::span<const Vec3> x) const {
 }
 
 StretchLimit::Worst StretchLimit::worst(std::span<const Vec3> x) const {
-  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², and minus the number: of several the first
+  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², and minus the index: the first of several counts
   const Longest none{1, 1},
       longest = parallel_max(threads_.size(), kGrainSize, none, [&](std::size_t begin, std::size_t end) {
-        Longest most = none;
+        Longest longest_in_range = none;
         for (std::size_t t = begin; t < end; ++t)
-          most = std::max(
-              most, {derivative(threads_[t], threads_[t].along, x).squaredNorm(), -static_cast<std::ptrdiff_t>(t)});
-        return most;
+          longest_in_range = std::max(longest_in_range, {derivative(threads_[t], threads_[t].along, x).squaredNorm(),
+                                                         -static_cast<std::ptrdiff_t>(t)});
+        return longest_in_range;
       });
   Worst worst;
   if (longest == none) return worst;

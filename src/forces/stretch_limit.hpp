@@ -1,4 +1,4 @@
-// Where woven threads lock: a limit to stretch and to shear.
+// Limits of stretch and shear: locking of woven threads.
 #pragma once
 
 #include <algorithm>
@@ -10,23 +10,23 @@
 
 namespace weft::forces {
 
-/// Stress against a strain e that comes near its limit, and its integral and derivative:
+/// Stress over a strain e near its limit; energy() is its integral, stiffness() its derivative:
 ///
 ///     σ = 0                                e ≤ onset = kOnset limit
 ///     σ = kTension u³,                     u = (e − onset) / (limit − onset)
 ///     σ = kTension U² (U + 3 (u − U))      u ≥ U = kStraight
 ///
-/// Twice differentiable as an energy, convex, and straight far beyond the limit, so that Newton's method comes back
-/// from any strain in a few steps.
+/// The energy is convex and twice differentiable, and the stress linear far beyond the limit, so that Newton's method
+/// returns from any strain in a few iterations.
 class Lock {
  public:
-  /// Share of the limit from which threads begin to lock. Below it nothing is added, to the bit.
+  /// Strain relative to the limit at which threads begin to lock. Below it nothing is added, to the bit.
   static constexpr double kOnset = 0.7;
-  /// Stress at the limit [N/m]; a tenth beyond it is 9,500. A ball at 100 m/s pulls by ρ v² / (2 √e), 3,500 to 9,000
+  /// Stress at the limit [N/m]; a tenth beyond it is 9,500. A ball at 100 m/s pulls with ρ v² / (2 √e), 3,500 to 9,000
   /// N/m in the fabrics of [scene] (a transverse wave along a thread of strain e; Smith, McCrackin & Schiefer,
-  /// "Stress-Strain Relationships in Yarns Subjected to Rapid Impact Loading", 1958). With 2e4 and straight from the
-  /// limit on Newton's method crossed the corner again and again: multi_sheet with a limit of 0.1 took 2,033 iterations
-  /// for 1,710 (1,503 without limit), a ball at 100 m/s 1,500 for 1,269 and the same strain.
+  /// "Stress-Strain Relationships in Yarns Subjected to Rapid Impact Loading", 1958). Measured with 2e4 and linear from
+  /// the limit on: Newton's method oscillates at the corner, multi_sheet with a limit of 0.1 took 2,033 instead of
+  /// 1,710 iterations (1,503 without limit), a ball at 100 m/s 1,500 instead of 1,269 with the same strain.
   static constexpr double kTension = 4e3;
   static constexpr double kStraight = 1.5;
 
@@ -42,33 +42,34 @@ class Lock {
     return 3 * kTension / span_ * u * u;
   }
   double energy(double e) const {
-    const double u = (e - onset_) / span_, c = std::clamp(u, 0.0, kStraight), more = std::max(0.0, u - kStraight);
-    return kTension * span_ * c * c * (0.25 * c * c + more * (c + 1.5 * more));
+    const double u = (e - onset_) / span_, c = std::clamp(u, 0.0, kStraight), beyond = std::max(0.0, u - kStraight);
+    return kTension * span_ * c * c * (0.25 * c * c + beyond * (c + 1.5 * beyond));
   }
 
  private:
   double onset_, span_;
 };
 
-/// Where Newton's method linearises the locks of a cloth's threads: not at the extension that an iterate has, but at
-/// the one at which a piece has the tension that the last linearisation foresaw (a dual unknown, as contacts have one).
-/// Linearised where they are, pieces come back by a third of what they are beyond their onset at a time.
+/// Extensions at which Newton's method linearises the locks of a cloth's threads: not the extension of the iterate, but
+/// that at which a piece has the tension that the last linearisation predicted (a dual unknown, as for contacts).
+/// Linearised at the iterate, a piece loses only a third of its excess over the onset per iteration.
 struct LockLag {
   std::vector<double> extensions;   ///< per piece
-  std::vector<std::uint32_t> near;  ///< pieces that are beyond their onset, there or where they are
+  std::vector<std::uint32_t> near;  ///< pieces beyond their onset, at this extension or at the iterate
 };
 
-/// The energy A ∫ Lock of each piece of weft and warp, by its extension ‖s‖ − 1, and of each cell or triangle by its
-/// shear |⟨s_u, s_v⟩|, the sine of the angle by which weft and warp are off square. Pieces, cells and their derivatives
-/// s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
+/// The energy A ∫ Lock of each piece of weft and warp at its extension ‖s‖ − 1, and of each cell or triangle at its
+/// shear
+/// |⟨s_u, s_v⟩|, the sine of the deviation of weft and warp from a right angle. Pieces, cells and their derivatives s
+/// are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
 class StretchLimit final : public Force {
  public:
-  /// `stretch`: largest extension; `shear`: largest sine, infinite: none.
+  /// `stretch`: largest extension; `shear`: largest sine. Infinite: no limit. `below`: stiffness below the onset.
   StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch, double shear);
   StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
-  /// Few pieces lock at a time: these look their blocks up then.
+  /// Does nothing: few pieces lock at a time, and look up their blocks then.
   void attach(const solver::Assembly& /*assembly*/) override {}
   void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
@@ -76,47 +77,47 @@ class StretchLimit final : public Force {
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  /// Before the first iteration of a step, which starts at x.
+  /// Initialises `lag` before the first iteration of a step, which starts at x.
   void begin(std::span<const Vec3> x, LockLag& lag) const;
-  /// Before the linearisation at x; `first`: of a step, where nothing was foreseen.
+  /// Updates `lag` before the linearisation at x. `first`: first iteration of a step, without a predicted tension.
   void update(std::span<const Vec3> x, bool first, LockLag& lag) const;
-  /// Adds what the linearised force is more than the force, at any x.
+  /// Adds the linearised force minus the force, at any x.
   void add_lag(std::span<const Vec3> x, const LockLag& lag, std::span<Vec3> force) const;
 
-  /// Takes over the rest shape of the membrane that it was made for.
+  /// Copies the rest shape of the membrane that it was constructed with.
   void follow(const TriangleMembrane& membrane);
 
-  /// What is stretched most.
+  /// The piece with the largest extension.
   struct Worst {
     double extension = 0;       ///< ‖s‖ − 1
-    Vec3 place = Vec3::Zero();  ///< [m]
+    Vec3 place = Vec3::Zero();  ///< position of the piece [m]
   };
   Worst worst(std::span<const Vec3> x) const;
   double limit() const { return stretch_; }
 
  private:
-  static constexpr std::size_t kMost = 4;
-  using Corners = std::array<Index, kMost>;
-  using Weights = std::array<double, kMost>;  // of the corners, in a derivative [1/m]
-  /// A piece of a thread, s = Σ along[k] x_k over the corners that it has.
+  static constexpr std::size_t kMaxCorners = 4;
+  using Corners = std::array<Index, kMaxCorners>;
+  using Weights = std::array<double, kMaxCorners>;  // of the corners, in a derivative [1/m]
+  /// A piece of a thread, s = Σ along[k] x_k over its corners.
   struct Thread {
     std::size_t corners;
     Corners particles;
     Weights along;
-    double area;       // that it stands for [m²]
+    double area;       // covered area [m²]
     double stiffness;  // below the onset [N/m]
   };
-  /// Where threads cross, s_u = Σ weft[k] x_k and s_v = Σ warp[k] x_k.
+  /// A crossing of threads, s_u = Σ weft[k] x_k and s_v = Σ warp[k] x_k.
   struct Crossing {
     std::size_t corners;
     Corners particles;
     Weights weft, warp;
     double area;  // [m²]
   };
-  /// How one piece pulls at its corners, and block (a, b) of its Jacobian.
-  using Pulls = std::array<Vec3, kMost>;
+  /// Forces of one piece on its corners.
+  using CornerForces = std::array<Vec3, kMaxCorners>;
 
-  /// Stress and stiffness of the tangent at one extension, at another [N/m].
+  /// Stress and stiffness of the tangent [N/m].
   struct Tangent {
     double stress, stiffness;
   };
@@ -136,7 +137,7 @@ class StretchLimit final : public Force {
   StretchParameters below_;
   double stretch_, shear_;
   std::vector<Thread> threads_;
-  std::vector<Crossing> crossings_;  // none without a limit to shear
+  std::vector<Crossing> crossings_;  // empty without a limit of shear
   Ranges ranges_of_threads_, ranges_of_crossings_;
 };
 

@@ -10,12 +10,12 @@ std::size_t at_index(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-// How far a tie is closed at time t: what happened last counts, before that the other of what happens first.
-double closed_share(const mesh::Tie& tie, double t) {
+// How far a tie is closed at time t, 0 to 1. A tie may close first and reopen, or start closed, open, and close again.
+double closed_ratio(const mesh::Tie& tie, double t) {
   const bool reopens = tie.closed < tie.open;
   const bool closed = reopens ? t >= tie.closed && t < tie.open : t < tie.open || t >= tie.closed;
   if (!closed) return 0;
-  if (t < tie.closed) return 1;  // from the start on
+  if (t < tie.closed) return 1;  // closed from the start
   const double s = std::clamp((t - tie.closed) / Ties::kClosing, 0.0, 1.0);
   return s * s * (3 - 2 * s);
 }
@@ -29,8 +29,8 @@ Ties::Ties(const mesh::Sheet& sheet, Index first) {
   }
 }
 
-void Ties::use(double t, double share) {
-  for (Piece& piece : pieces_) piece.strength = piece.tie.strength * share * closed_share(piece.tie, t);
+void Ties::use(double t, double progress) {
+  for (Piece& piece : pieces_) piece.strength = piece.tie.strength * progress * closed_ratio(piece.tie, t);
 }
 
 void Ties::couple(std::vector<std::pair<Index, Index>>& pairs) const {
@@ -50,7 +50,7 @@ Ties::Pull Ties::pull(const Piece& piece, double length) {
   return {piece.strength * (length / kRest - 1), piece.strength / kRest};
 }
 
-// Between the ends, of a pull: positive semidefinite as it is.
+// Stiffness between the ends: positive semidefinite, as ties only pull.
 Mat3 Ties::stiffness(const Piece& piece, const Vec3& along) {
   const double length = along.norm();
   const Pull now = pull(piece, length);
@@ -87,9 +87,9 @@ void Ties::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, do
 double Ties::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (const Piece& piece : pieces_) {
-    const double over = (x[at_index(piece.tie.b)] - x[at_index(piece.tie.a)]).norm() / kRest - 1;
-    if (over <= 0) continue;
-    sum += piece.strength * kRest * (over < 1 ? 0.5 * over * over : over - 0.5);
+    const double strain = (x[at_index(piece.tie.b)] - x[at_index(piece.tie.a)]).norm() / kRest - 1;
+    if (strain <= 0) continue;
+    sum += piece.strength * kRest * (strain < 1 ? 0.5 * strain * strain : strain - 0.5);
   }
   return sum;
 }

@@ -1,4 +1,4 @@
-// Buttons and zips: pairs of particles that are drawn together while a closure is closed.
+// Buttons and zips: pairs of particles that pull together while a closure is closed.
 #pragma once
 
 #include "forces/force.hpp"
@@ -6,24 +6,24 @@
 
 namespace weft::forces {
 
-/// The ties of a sheet. Particles a distance l apart pull each other with F min(l / r − 1, 1) where l > r = kRest, and
-/// not at all where they are nearer: contact keeps them apart there. F is the strength [N], in the time of sewing, and
-/// after a tie has closed, rising from nothing.
+/// The ties of a sheet. Particles at a distance l pull each other with F min(l / r − 1, 1) if l > r = kRest. Below that
+/// distance they do not; contact keeps them apart. F is the strength [N]. It grows from zero during sewing, and after a
+/// tie closes.
 class Ties final : public Force {
  public:
-  /// Distance at rest [m]: somewhat above the contact thickness of most fabrics, so that ties do not press.
+  /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press.
   static constexpr double kRest = 0.003;
-  /// Time in which a tie gets to its strength after it has closed [s].
+  /// Time from closing to full strength [s].
   static constexpr double kClosing = 0.4;
 
   Ties(const mesh::Sheet& sheet, Index first);
 
-  /// At time t [s] of the scene, after a share of the sewing.
-  void use(double t, double share);
+  /// Updates strengths at time t [s] of the scene. `progress`: of sewing, 0 to 1.
+  void use(double t, double progress);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> /*bounds*/) override {}  // few
+  void cut(std::span<const Index> /*bounds*/) override {}  // few elements
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -31,11 +31,11 @@ class Ties final : public Force {
 
  private:
   struct Piece {
-    mesh::Tie tie;        // of particles in the global numbering
-    double strength = 0;  // now [N]
+    mesh::Tie tie;        // particles in the global numbering
+    double strength = 0;  // current [N]
     Index block = 0;
   };
-  /// Pull and its derivative by the distance; of the pull across it the pull over the distance.
+  /// Pull and its derivative along the tie. The derivative across the tie is the pull over the distance.
   struct Pull {
     double force = 0, axial = 0;  // [N], [N/m]
   };

@@ -10,21 +10,21 @@ namespace weft::forces {
 namespace {
 
 // 2 ‖s_uv‖²: the mixed derivative counts twice.
-const Vec3 kCount(1, 1, 2);
-// Rest curvature times the size of the triangle below which it is rounding.
-constexpr double kFlatRest = 1e-9;
+const Vec3 kMultiplicity(1, 1, 2);
+// Rest curvature times the size of the triangle; smaller values are rounding.
+constexpr double kMinRestCurvature = 1e-9;
 
-/// The plane of a triangle: its unit normal and the gradients of the corners' weights.
+/// The plane of a triangle: its unit normal, and the gradients of the corners' linear weights.
 struct Plane {
   Vec3 normal;
   std::array<Vec3, 3> gradients;  // [1/m]
 };
 
-Plane plane_of(const std::array<Vec3, 3>& corners) {
+Plane triangle_plane(const std::array<Vec3, 3>& corners) {
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double size = normal.norm();  // twice the area
   Plane plane{Vec3::Zero(), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
-  if (size == 0) return plane;  // a collapsed triangle faces nowhere: it bends as if it were flat at rest
+  if (size == 0) return plane;  // a collapsed triangle has no normal and bends as if flat at rest
   plane.normal = normal / size;
   for (std::size_t k = 0; k < 3; ++k)
     plane.gradients[k] = plane.normal.cross(corners[(k + 2) % 3] - corners[(k + 1) % 3]) / size;
@@ -38,16 +38,15 @@ std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const
   return {solver::vec3_of(x[particles[0]]), solver::vec3_of(x[particles[1]]), solver::vec3_of(x[particles[2]])};
 }
 
-/// Signed curvature of the rest shape of a triangle, s_uu, s_vv and s_uv; what it has in the plane is taken out of the
-/// stencil.
-Vec3 take_rest(CurvatureStencil& stencil, double area, const std::array<Vec2, 3>& material,
-               std::span<const Vec3> rest) {
+/// Returns the signed rest curvature s_uu, s_vv, s_uv; subtracts its in-plane components from the stencil.
+Vec3 extract_rest_curvature(CurvatureStencil& stencil, double area, const std::array<Vec2, 3>& material,
+                            std::span<const Vec3> rest) {
   Mat3 curved = Mat3::Zero();
   for (std::size_t k = 0; k < stencil.vertices.size(); ++k)
     curved += rest[stencil.vertices[k]] * stencil.weights[k].transpose();
-  if (curved.norm() * std::sqrt(area) < kFlatRest) return Vec3::Zero();
+  if (curved.norm() * std::sqrt(area) < kMinRestCurvature) return Vec3::Zero();
   const std::span<const Index> corners(stencil.vertices);
-  const Vec3 normal = plane_of(corners_of(corners, rest)).normal;
+  const Vec3 normal = triangle_plane(corners_of(corners, rest)).normal;
   Eigen::Matrix2d sides;
   sides << material[1] - material[0], material[2] - material[0];
   const Eigen::Matrix2d inverse = sides.inverse();
@@ -68,7 +67,7 @@ TriangleBend::TriangleBend(const mesh::Sheet& sheet, Index first, const BendPara
     : first_(first), rigidity_(parameters.rigidity), damping_(parameters), sheet_(sheet) {
   if (!pinned.empty()) pinned_.assign(pinned.begin() + first, pinned.begin() + first + std::ssize(sheet.rest));
   held_ = pinned_;
-  use_held();
+  rebuild_elements();
   if (std::ranges::count(pinned_, 0) == std::ssize(pinned_)) sheet_ = {};
 }
 
@@ -77,18 +76,18 @@ void TriangleBend::hold(std::span<const char> held) {
   const std::span<const char> own = held.subspan(static_cast<std::size_t>(first_), held_.size());
   if (std::ranges::equal(own, held_)) return;
   held_.assign(own.begin(), own.end());
-  use_held();
+  rebuild_elements();
 }
 
-// The same particles in the same order, whatever is held.
-void TriangleBend::use_held() {
+// Creates the same particles in the same order, whatever is held.
+void TriangleBend::rebuild_elements() {
   elements_.clear(), particles_.clear(), weights_.clear();
   std::size_t pairs = 0;
   std::vector<CurvatureStencil> stencils = curvature_stencils(sheet_, pinned_, held_);
   for (std::size_t t = 0; t < stencils.size(); ++t) {
     double area = mesh::rest_area(sheet_, t);
     Vec3 rest = Vec3::Zero();
-    if (!sheet_.sewn) rest = take_rest(stencils[t], area, sheet_.material[t], sheet_.rest);
+    if (!sheet_.sewn) rest = extract_rest_curvature(stencils[t], area, sheet_.material[t], sheet_.rest);
     if (!sheet_.reinforcements.empty()) area *= sheet_.reinforcements[t].bend;
     const std::size_t begin = particles_.size(), count = stencils[t].vertices.size();
     for (Index vertex : stencils[t].vertices) particles_.push_back(first_ + vertex);
@@ -96,7 +95,7 @@ void TriangleBend::use_held() {
     elements_.push_back({begin, begin + count, pairs, area, rest});
     pairs += count * (count - 1) / 2;
   }
-  weights_.resize(weights_.size() + 3);  // four load at once
+  weights_.resize(weights_.size() + 3);  // weights are loaded four at a time
 }
 
 TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::span<const Quad> x) const {
@@ -117,7 +116,7 @@ Mat3 TriangleBend::curvature(const Element& element, std::span<const Vec3> x) co
   return columns;
 }
 
-// Of `count` elements, four at most.
+// Curvatures of `count` elements, at most four.
 TriangleBend::CurvatureLanes TriangleBend::curvatures(std::size_t first, std::size_t count,
                                                       std::span<const Quad> x) const {
   std::array<Curvature, 4> of_elements{};
@@ -136,7 +135,7 @@ void TriangleBend::couple(std::vector<std::pair<Index, Index>>& pairs) const {
       for (std::size_t b = a + 1; b < element.end; ++b) pairs.emplace_back(particles_[a], particles_[b]);
 }
 
-// But for the moments of rest curvature.
+// True unless a moment of rest curvature needs full blocks.
 bool TriangleBend::isotropic() const {
   return std::ranges::all_of(elements_, [](const Element& element) { return element.rest.isZero(0); });
 }
@@ -171,8 +170,8 @@ void TriangleBend::add(const Evaluation& at) const {
     Lanes area{};
     for (std::size_t l = 0; l < count; ++l) area[l] = elements[l].area;
 
-    // Moments against s_uu, s_vv and s_uv, and what damping adds to the matrix: as Bend, with ‖c‖² I in place of c cᵀ;
-    // the catwalk takes no more iterations.
+    // Moments for s_uu, s_vv and s_uv, and the stiffness of damping: as in Bend, with ‖c‖² I instead of c cᵀ (measured:
+    // the catwalk takes no more iterations).
     std::array<std::array<Quad, 4>, 3> moments;
     std::array<Lanes, 3> stiffness{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -181,9 +180,9 @@ void TriangleBend::add(const Evaluation& at) const {
         const VecLanes c = at.rate > 0 ? curved[k] - lanes_of(1 / at.rate) * velocity[k] : curved[k];
         const Lanes c_sq = dot(c, c), rate = dot(c, velocity[k]), secant = damping_.secant(c_sq, rate);
         moment = moment + secant * rate * c;
-        stiffness[k] = at.rate * kCount[k] * area * secant * c_sq;
+        stiffness[k] = at.rate * kMultiplicity[k] * area * secant * c_sq;
       }
-      moment = kCount[k] * area * moment;
+      moment = kMultiplicity[k] * area * moment;
       moments[k] = transposed(moment.x, moment.y, moment.z, lanes_of(0.0));
     }
     for (std::size_t l = 0; l < count; ++l) {
@@ -225,29 +224,29 @@ void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std:
   }
 }
 
-// The energy −B A n·m, m = Σ κ_ab s_ab = Σ_k c_k x_k: push(k, force), and add_block(a, b, block) for what goes with it
-// into the matrix, for all pairs with a corner.
+// Forces and stiffness of the energy −B A n·m, m = Σ κ_ab s_ab = Σ_k c_k x_k. Calls push(k, force) per particle, and
+// add_block(a, b, block) for all pairs with a corner.
 //
-// With g_k the gradient of corner k's weight in the plane, δn = −Σ_k g_k (n·δx_k) and
-// δg_k = −Σ_j g_j (g_k·δx_j) + n Σ_j (g_k·g_j)(n·δx_j). The definite form is that of Gauss and Newton for
-// ‖s_ab − κ_ab n‖², definite together with the constant part.
+// With g_k the in-plane gradient of corner k's weight, δn = −Σ_k g_k (n·δx_k) and δg_k = −Σ_j g_j (g_k·δx_j) + n Σ_j
+// (g_k·g_j)(n·δx_j). The definite form is the Gauss-Newton matrix of ‖s_ab − κ_ab n‖², which is definite together with
+// the constant part.
 template <class Push, class AddBlock>
 void TriangleBend::rest_moment(const Element& element, const Mat3& curved, const std::array<Vec3, 3>& corners,
                                bool exact, const Push& push, const AddBlock& add_block) const {
-  const auto [n, g] = plane_of(corners);
-  const Vec3 rest = kCount.cwiseProduct(element.rest);
+  const auto [n, g] = triangle_plane(corners);
+  const Vec3 rest = kMultiplicity.cwiseProduct(element.rest);
   const Vec3 m = curved * rest;
   const double size = rigidity_ * element.area;
   const std::size_t count = element.end - element.begin;
-  const auto turned = [&](std::size_t k) { return rest.dot(solver::vec3_of(weights_[element.begin + k])); };
-  for (std::size_t k = 0; k < count; ++k) push(k, Vec3(size * turned(k) * n));
+  const auto rest_weight = [&](std::size_t k) { return rest.dot(solver::vec3_of(weights_[element.begin + k])); };
+  for (std::size_t k = 0; k < count; ++k) push(k, Vec3(size * rest_weight(k) * n));
   for (std::size_t k = 0; k < 3; ++k) push(k, Vec3(-size * m.dot(g[k]) * n));
 
   for (std::size_t k = 0; k < 3; ++k) {
     const Mat3 turn = size * n * g[k].transpose();
     for (std::size_t j = 0; j < count; ++j) {
-      add_block(k, j, Mat3(turned(j) * turn));
-      add_block(j, k, Mat3(turned(j) * turn.transpose()));
+      add_block(k, j, Mat3(rest_weight(j) * turn));
+      add_block(j, k, Mat3(rest_weight(j) * turn.transpose()));
     }
     for (std::size_t j = 0; j < 3; ++j) {
       Mat3 block;
@@ -270,7 +269,7 @@ void TriangleBend::add_rest_moment(const Element& element, const Curvature& curv
   };
   const auto add_block = [&](std::size_t a, std::size_t b, const Mat3& block) {
     if (!at.assembly || particle[a] >= particle[b]) return;
-    // Number of the pair: those before row a, and those before it in the row.
+    // Index of the pair: all pairs of earlier rows, and the earlier ones of this row.
     const std::size_t count = particle.size(), i = std::min(a, b), j = std::max(a, b);
     at.assembly.add(blocks_[element.pairs + i * (2 * count - i - 1) / 2 + (j - i - 1)], block);
   };
@@ -279,7 +278,8 @@ void TriangleBend::add_rest_moment(const Element& element, const Curvature& curv
 
 void TriangleBend::add_constant_stiffness(solver::Assembly& assembly) const {
   std::vector<double> scratch;
-  for (const Element& element : elements_) add_pairs(element, rigidity_ * element.area * kCount, scratch, assembly);
+  for (const Element& element : elements_)
+    add_pairs(element, rigidity_ * element.area * kMultiplicity, scratch, assembly);
 }
 
 void TriangleBend::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
@@ -295,7 +295,7 @@ void TriangleBend::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v
       if (rate > 0) c -= velocity.col(k) / rate;
       const double tangent = damping_.tangent(c.squaredNorm(), c.dot(velocity.col(k)));
       const Mat3 stiffness =
-          element.area * kCount[k] * (rigidity_ * Mat3::Identity() + rate * tangent * c * c.transpose());
+          element.area * kMultiplicity[k] * (rigidity_ * Mat3::Identity() + rate * tangent * c * c.transpose());
       for (std::size_t a = 0; a < particle.size(); ++a)
         for (std::size_t b = 0; b < particle.size(); ++b)
           add_block(a, b, weights_[element.begin + a][k] * weights_[element.begin + b][k] * stiffness);
@@ -311,8 +311,8 @@ double TriangleBend::energy(std::span<const Vec3> x) const {
   for (const Element& element : elements_) {
     Mat3 change = curvature(element, x);
     if (!element.rest.isZero(0))
-      change -= plane_of(corners_of(particles(element), x)).normal * element.rest.transpose();
-    sum += 0.5 * rigidity_ * element.area * kCount.dot(change.colwise().squaredNorm().transpose());
+      change -= triangle_plane(corners_of(particles(element), x)).normal * element.rest.transpose();
+    sum += 0.5 * rigidity_ * element.area * kMultiplicity.dot(change.colwise().squaredNorm().transpose());
   }
   return sum;
 }

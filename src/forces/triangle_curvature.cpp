@@ -13,19 +13,19 @@ namespace {
 
 using Point = std::complex<double>;
 
-// Rings of triangles around an edge, at most, whose vertices make its slope. One is enough for nearly all edges; with
-// the border near or its vertices nearly on a conic it takes two.
+// Largest number of triangle rings around an edge whose vertices define its slope. One suffices for nearly all edges;
+// near a border, or if the vertices are nearly on a conic, two are necessary.
 constexpr int kMaxRings = 3;
-// Size that a correction to the slope between the two opposite vertices may have, relative to it. More, and the slope
-// would be a small difference of large numbers: another ring then makes it better than that.
+// Largest correction of the slope between the two opposite vertices, relative to that slope. A larger one would make
+// the slope a small difference of large numbers; another ring is better.
 constexpr double kMaxCorrection = 1;
 // Rounding of the moments of a stencil whose lengths are about one.
-constexpr double kExact = 1e-9;
+constexpr double kMomentTolerance = 1e-9;
 
-/// Derivative of a function at the middle of an edge, outward from its first triangle [1/m].
+/// Derivative of a function at the middle of an edge, along the outward normal of the edge's first triangle [1/m].
 struct Slope {
   std::vector<std::pair<Index, double>> weights;
-  bool near_pin = false;  ///< whether pins change it
+  bool near_pin = false;  ///< pins may change it
 };
 
 class Slopes {
@@ -37,13 +37,13 @@ class Slopes {
   Slope across(const mesh::Edge& edge) const;
 
  private:
-  /// Triangles around an edge, unfolded into the plane of the first.
+  /// Triangles around an edge, unfolded into the plane of the first one.
   struct Patch {
     std::vector<std::pair<Index, std::array<Point, 3>>> triangles;
     std::vector<std::pair<Index, Point>> vertices;
-    std::size_t last_ring = 0;  // first triangle of it
+    std::size_t last_ring = 0;  // index of its first triangle
   };
-  /// What a slope is made of: places by (1, a, b), d = a along + b over from the middle of the edge.
+  /// Coordinates for slopes: d = a along + b over, from the middle of the edge; operator() returns (a, b).
   struct Axes {
     Point middle, along, over;
 
@@ -54,13 +54,13 @@ class Slopes {
   };
   static double cross(const Point& a, const Point& b) { return (std::conj(a) * b).imag(); }
   /// Whether all corners of a triangle are marked.
-  bool within(std::span<const char> marked, Index triangle) const {
+  bool all_corners_marked(std::span<const char> marked, Index triangle) const {
     return !marked.empty() &&
            std::ranges::all_of(sheet_.triangles[at(triangle)], [&](Index v) { return marked[at(v)] != 0; });
   }
-  Eigen::VectorXd smooth(Patch& patch, const Axes& axes) const;
-  Eigen::VectorXd clamped(const Patch& patch, const Axes& axes) const;
-  Eigen::VectorXd in_front_of_clamp(const Patch& patch, const Axes& axes, const std::array<Point, 2>& clamp) const;
+  Eigen::VectorXd fit_quadratic(Patch& patch, const Axes& axes) const;
+  Eigen::VectorXd fit_clamped(const Patch& patch, const Axes& axes) const;
+  Eigen::VectorXd fit_in_front_of_clamp(const Patch& patch, const Axes& axes, const std::array<Point, 2>& clamp) const;
   void add_ring(Patch& patch) const;
   void add_neighbour(Patch& patch, std::size_t member, std::size_t side) const;
   std::size_t side_of(Index triangle, const mesh::Edge& edge) const;
@@ -74,20 +74,20 @@ class Slopes {
   std::span<const char> pinned_, held_;
 };
 
-// Which side of the triangle an edge is.
+// Index of this edge among the triangle's sides.
 std::size_t Slopes::side_of(Index triangle, const mesh::Edge& edge) const {
   const auto& of = edges_.of_triangle[at(triangle)];
   const auto index = static_cast<Index>(&edge - edges_.edges.data());
   return static_cast<std::size_t>(std::find(of.begin(), of.end(), index) - of.begin());
 }
 
-// Unfolds the triangle beyond one side of a member, if there is one that is not there yet.
+// Unfolds the triangle beyond one side of a member, if there is one and the patch does not contain it.
 void Slopes::add_neighbour(Patch& patch, std::size_t member, std::size_t side) const {
   const auto [triangle, corners] = patch.triangles[member];
   const mesh::Edge& edge = edges_.edges[at(edges_.of_triangle[at(triangle)][side])];
   const Index next = edge.triangles[0] == triangle ? edge.triangles[1] : edge.triangles[0];
   if (next < 0 || std::ranges::any_of(patch.triangles, [&](const auto& t) { return t.first == next; })) return;
-  // Both run counter-clockwise, so the neighbour runs along the side the other way.
+  // Both triangles are counter-clockwise, so the neighbour has the side in reverse.
   const std::size_t m = side_of(next, edge);
   const Point from = corners[(side + 1) % 3], to = corners[side];
   Point turn = (to - from) / (material(next, m + 1) - material(next, m));
@@ -108,28 +108,29 @@ void Slopes::add_ring(Patch& patch) const {
     for (std::size_t side = 0; side < 3; ++side) add_neighbour(patch, member, side);
 }
 
-// The smallest change of these weights, one for each column of moments, after which they have the wanted moments; empty
-// where it is large or none has.
-Eigen::VectorXd corrected(const Eigen::VectorXd& weights, const Eigen::MatrixXd& moments,
-                          const Eigen::VectorXd& wanted) {
-  const Eigen::VectorXd missing = wanted - moments * weights;
-  const Eigen::VectorXd correction = moments.completeOrthogonalDecomposition().solve(missing);
-  if ((moments * correction - missing).norm() < kExact && correction.norm() < kMaxCorrection * std::numbers::sqrt2)
+// Returns the weights after the smallest correction that gives them the wanted moments. `moments` has one column per
+// weight. Returns an empty vector if the correction is too large or none exists.
+Eigen::VectorXd correct_weights(const Eigen::VectorXd& weights, const Eigen::MatrixXd& moments,
+                                const Eigen::VectorXd& wanted) {
+  const Eigen::VectorXd moment_error = wanted - moments * weights;
+  const Eigen::VectorXd correction = moments.completeOrthogonalDecomposition().solve(moment_error);
+  if ((moments * correction - moment_error).norm() < kMomentTolerance &&
+      correction.norm() < kMaxCorrection * std::numbers::sqrt2)
     return weights + correction;
   return {};
 }
 
-// The difference of the two vertices opposite the edge, ∂/∂b of linear functions that do not change along the edge.
+// Difference of the two vertices opposite the edge: ∂/∂b of linear functions that are constant along the edge.
 Eigen::VectorXd across_opposite(std::size_t count) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count));
   weights[3] = 1, weights[2] = -1;
   return weights;
 }
 
-// Starts from the difference of the two vertices opposite the edge, exact for linear functions, and adds the smallest
-// weights that make it exact for quadratic ones. All that is invariant under linear maps of the patch, so that
-// stretched meshes do as well as others.
-Eigen::VectorXd Slopes::smooth(Patch& patch, const Axes& axes) const {
+// Starts from the difference of the two opposite vertices, which is exact for linear functions, and adds the smallest
+// weights that make it exact for quadratic ones. The result is invariant under linear maps of the patch, so that
+// stretched meshes are as accurate as others.
+Eigen::VectorXd Slopes::fit_quadratic(Patch& patch, const Axes& axes) const {
   for (int ring = 1; ring <= kMaxRings; ++ring) {
     add_ring(patch);
     const auto count = static_cast<Eigen::Index>(patch.vertices.size());
@@ -138,18 +139,19 @@ Eigen::VectorXd Slopes::smooth(Patch& patch, const Axes& axes) const {
       const Vec2 d = axes(patch.vertices[k].second);
       moments.col(k) << 1, d.x(), d.y(), d.x() * d.x(), d.x() * d.y(), d.y() * d.y();
     }
-    Eigen::VectorXd weights = corrected(across_opposite(patch.vertices.size()), moments, Eigen::VectorXd::Unit(6, 2));
+    Eigen::VectorXd weights =
+        correct_weights(across_opposite(patch.vertices.size()), moments, Eigen::VectorXd::Unit(6, 2));
     if (weights.size() > 0) return weights;
   }
-  // Too few triangles for quadratics: a mesh of one or two, or a corner of one.
+  // Too few triangles for a quadratic: a mesh of one or two triangles, or a corner of a mesh.
   return across_opposite(patch.vertices.size());
 }
 
-// Where the patch has held triangles; empty where it has none, or too little beside them.
-Eigen::VectorXd Slopes::clamped(const Patch& patch, const Axes& axes) const {
-  // The slope of a held triangle at the edge is that of the linear function through its corners.
+// Slope of a patch with held triangles; empty if it has none, or too few vertices beside them.
+Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const {
+  // At its edge, the slope of a held triangle is that of the linear function through its corners.
   for (std::size_t member : {0, 1}) {
-    if (!within(held_, patch.triangles[member].first)) continue;
+    if (!all_corners_marked(held_, patch.triangles[member].first)) continue;
     const std::size_t apex = 2 + member;
     const Vec2 d = axes(patch.vertices[apex].second);
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(patch.vertices.size()));
@@ -157,34 +159,34 @@ Eigen::VectorXd Slopes::clamped(const Patch& patch, const Axes& axes) const {
     weights[0] = (-0.5 + d.x()) / d.y(), weights[1] = (-0.5 - d.x()) / d.y();
     return weights;
   }
-  // The nearest side at which a held triangle ends.
+  // Finds the nearest side between a held triangle and one that is not held.
   double nearest = std::numeric_limits<double>::infinity();
   std::array<Point, 2> clamp;
   for (const auto& [triangle, corners] : patch.triangles) {
-    if (!within(held_, triangle)) continue;
+    if (!all_corners_marked(held_, triangle)) continue;
     for (std::size_t side = 0; side < 3; ++side) {
       const mesh::Edge& edge = edges_.edges[at(edges_.of_triangle[at(triangle)][side])];
       const Index next = edge.triangles[0] == triangle ? edge.triangles[1] : edge.triangles[0];
       const Point from = corners[side], to = corners[(side + 1) % 3];
       const double distance = std::abs(0.5 * (from + to) - axes.middle);
-      if (next < 0 || within(held_, next) || distance >= nearest) continue;
+      if (next < 0 || all_corners_marked(held_, next) || distance >= nearest) continue;
       nearest = distance;
       clamp = {from, to};
     }
   }
-  return std::isinf(nearest) ? Eigen::VectorXd() : in_front_of_clamp(patch, axes, clamp);
+  return std::isinf(nearest) ? Eigen::VectorXd() : fit_in_front_of_clamp(patch, axes, clamp);
 }
 
-// Exact for linear functions and for s², s the distance from a clamp with the held triangle on its left.
-Eigen::VectorXd Slopes::in_front_of_clamp(const Patch& patch, const Axes& axes,
-                                          const std::array<Point, 2>& clamp) const {
+// Slope that is exact for linear functions and s²; s: distance from a clamp with the held triangle on its left.
+Eigen::VectorXd Slopes::fit_in_front_of_clamp(const Patch& patch, const Axes& axes,
+                                              const std::array<Point, 2>& clamp) const {
   const Point line = clamp[1] - clamp[0];
-  // In units of the clamp's length, as a and b are in those of the edge's.
+  // relative to the length of the clamp, as a and b are to that of the edge
   const auto distance = [&](const Point& at) { return std::max(0.0, cross(at - clamp[0], line) / std::norm(line)); };
   const auto count = static_cast<Eigen::Index>(patch.vertices.size());
   std::vector<char> in_clamp(patch.vertices.size());
   for (const auto& [triangle, corners] : patch.triangles) {
-    if (!within(held_, triangle)) continue;
+    if (!all_corners_marked(held_, triangle)) continue;
     for (std::size_t k = 0; k < in_clamp.size(); ++k)
       for (Index corner : sheet_.triangles[at(triangle)]) in_clamp[k] |= patch.vertices[k].first == corner;
   }
@@ -196,7 +198,7 @@ Eigen::VectorXd Slopes::in_front_of_clamp(const Patch& patch, const Axes& axes,
   }
   const double across = cross(axes.over, line) / std::norm(line);  // ∂s/∂b
   const Eigen::Vector4d wanted(0, 0, 1, 2 * distance(axes.middle) * across);
-  return corrected(across_opposite(patch.vertices.size()), moments, wanted);
+  return correct_weights(across_opposite(patch.vertices.size()), moments, wanted);
 }
 
 Slope Slopes::across(const mesh::Edge& edge) const {
@@ -210,13 +212,14 @@ Slope Slopes::across(const mesh::Edge& edge) const {
 
   const Point p = patch.vertices[0].second, q = patch.vertices[1].second;
   const Axes axes{0.5 * (p + q), q - p, patch.vertices[3].second - patch.vertices[2].second};
-  Eigen::VectorXd best = smooth(patch, axes);
+  Eigen::VectorXd best = fit_quadratic(patch, axes);
   Slope slope;
-  slope.near_pin = std::ranges::any_of(patch.triangles, [&](const auto& t) { return within(pinned_, t.first); });
+  slope.near_pin =
+      std::ranges::any_of(patch.triangles, [&](const auto& t) { return all_corners_marked(pinned_, t.first); });
   if (slope.near_pin)
-    if (const Eigen::VectorXd of_clamp = clamped(patch, axes); of_clamp.size() > 0) best = of_clamp;
+    if (const Eigen::VectorXd of_clamp = fit_clamped(patch, axes); of_clamp.size() > 0) best = of_clamp;
 
-  // From the direction `over` to the outward normal: over = c t + d n.
+  // Converts from the direction `over` to the outward normal: over = c t + d n.
   const double length = std::abs(axes.along), c = (std::conj(axes.along) * axes.over).real() / length,
                d = -cross(axes.along, axes.over) / length;
   best[1] -= c / length;
@@ -225,17 +228,17 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   return slope;
 }
 
-// Matrices as (uu, vv, √2 uv), whose dot product is that of the matrices.
+// A symmetric matrix as (uu, vv, √2 uv): the dot product of these vectors is that of the matrices.
 Vec3 packed(const Eigen::Matrix2d& m) {
   return {m(0, 0), m(1, 1), std::numbers::sqrt2 * 0.5 * (m(0, 1) + m(1, 0))};
 }
 
-// The part of a packed matrix that moments about free borders with these packed n nᵀ leave.
-Mat3 projection(const std::vector<Vec3>& free) {
+// Projection that removes the moments about free borders, given the packed n nᵀ of the borders.
+Mat3 project_out_borders(const std::vector<Vec3>& border_normals) {
   Mat3 p = Mat3::Identity();
-  for (const Vec3& direction : free) {
+  for (const Vec3& direction : border_normals) {
     const Vec3 rest = p * direction;
-    // Two borders in line count once.
+    // Two parallel borders count once.
     if (rest.norm() > 1e-6) p -= rest * rest.transpose() / rest.squaredNorm();
   }
   return p;
@@ -261,32 +264,32 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
     const auto add = [&](Index vertex, const Vec3& weight) {
       weights.try_emplace(vertex, Vec3::Zero()).first->second += weight;
     };
-    std::vector<Vec3> free;
+    std::vector<Vec3> border_normals;
     bool near_pin = false;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2 side = m[(k + 1) % 3] - m[k], along = side.normalized(), outward(along.y(), -along.x());
-      const Vec3 twist = packed(outward * along.transpose()) / area;  // length of the side cancels that of ∂/∂t
+      const Vec3 twist = packed(outward * along.transpose()) / area;  // the side's length cancels that of ∂/∂t
       add(corners[(k + 1) % 3], twist);
       add(corners[k], -twist);
       const Vec3 bend = packed(outward * outward.transpose());
       const auto e = at(edges.of_triangle[t][k]);
-      if (edges.edges[e].triangles[1] < 0) free.push_back(bend);
+      if (edges.edges[e].triangles[1] < 0) border_normals.push_back(bend);
       const double sign = edges.edges[e].triangles[0] == static_cast<Index>(t) ? 1 : -1;
       near_pin |= across[e].near_pin;
       for (const auto& [vertex, slope] : across[e].weights) add(vertex, sign * slope * side.norm() / area * bend);
     }
-    const Mat3 kept = projection(free);
+    const Mat3 border_projection = project_out_borders(border_normals);
     const auto append = [&](Index vertex, Vec3 weight) {
-      weight = kept * weight;
+      weight = border_projection * weight;
       weight.z() /= std::numbers::sqrt2;
       stencils[t].vertices.push_back(vertex);
       stencils[t].weights.push_back(weight);
     };
     for (Index corner : corners) append(corner, weights.at(corner));
-    // What is left of vertices that symmetry cancels is rounding, but for what is held later or no longer.
+    // Weights that cancel by symmetry are only rounding, unless pins may change them.
     for (const auto& [vertex, weight] : weights)
       if (std::find(corners.begin(), corners.end(), vertex) == corners.end() &&
-          (near_pin || weight.norm() * area > kExact))
+          (near_pin || weight.norm() * area > kMomentTolerance))
         append(vertex, weight);
   }
   return stencils;

@@ -8,10 +8,10 @@ namespace weft::forces {
 
 namespace {
 
-// Below this stretch a thread has no direction any more: it pulls nowhere, and the matrix stays finite.
+// Below this stretch a thread has no direction and no pull; the matrix stays finite.
 constexpr double kCollapsed = 1e-12;
 
-// ‖s‖.
+// ‖s‖, at least kCollapsed
 Lanes length_of(const VecLanes& s) {
   return max(sqrt(dot(s, s)), lanes_of(kCollapsed));
 }
@@ -30,7 +30,7 @@ TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const 
     element.area = 0.5 * sides.determinant();
     if (!sheet.reinforcements.empty()) element.area *= sheet.reinforcements[t].stretch;
     const Eigen::Matrix2d inverse = sides.inverse();
-    use_rest(inverse, element);
+    set_rest_shape(inverse, element);
     elements_.push_back(element);
     if (!sheet.sewn) continue;
     Gradient s{Vec3::Zero(), Vec3::Zero()};
@@ -47,7 +47,7 @@ TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const 
 void TriangleMembrane::pack() {
   packs_.resize(packs_of(elements_.size()));
   for (std::size_t p = 0; p < packs_.size(); ++p)
-    for_each_lane(elements_.size(), p, [&](std::size_t e, std::size_t lane, bool counts) {
+    for_each_lane(elements_.size(), p, [&](std::size_t e, std::size_t lane, bool is_used) {
       const Element& element = elements_[e];
       std::array<std::size_t, 3> order{0, 1, 2};
       std::ranges::sort(order, {}, [&](std::size_t k) { return element.particles[k]; });
@@ -56,11 +56,11 @@ void TriangleMembrane::pack() {
         packs_[p].along[k][lane] = element.gradients[order[k]].x();
         packs_[p].across[k][lane] = element.gradients[order[k]].y();
       }
-      packs_[p].area[lane] = counts ? element.area : 0;
+      packs_[p].area[lane] = is_used ? element.area : 0;
     });
 }
 
-// U of the polar decomposition: the square root of the metric, in closed form for 2 × 2.
+// U of the polar decomposition: the square root of the metric tensor, in closed form for 2 × 2.
 Eigen::Matrix2d TriangleMembrane::stretch_of(const Gradient& s) {
   Eigen::Matrix2d metric;
   metric << s.u.dot(s.u), s.u.dot(s.v), s.u.dot(s.v), s.v.dot(s.v);
@@ -68,18 +68,18 @@ Eigen::Matrix2d TriangleMembrane::stretch_of(const Gradient& s) {
   return (metric + area * Eigen::Matrix2d::Identity()) / std::sqrt(metric.trace() + 2 * area);
 }
 
-// From the inverse of the matrix with two sides as columns.
-void TriangleMembrane::use_rest(const Eigen::Matrix2d& inverse, Element& element) {
+// `inverse`: of the matrix with two sides as columns.
+void TriangleMembrane::set_rest_shape(const Eigen::Matrix2d& inverse, Element& element) {
   element.gradients[1] = inverse.row(0);
   element.gradients[2] = inverse.row(1);
   element.gradients[0] = -(element.gradients[1] + element.gradients[2]);
 }
 
-void TriangleMembrane::rest_between_start_and_pattern(double share) {
+void TriangleMembrane::rest_between_start_and_pattern(double progress) {
   for (std::size_t e = 0; e < starts_.size(); ++e) {
     const auto& [inverse, excess] = starts_[e];
-    const Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity() + (1 - share) * excess;
-    use_rest(share == 1 ? inverse : Eigen::Matrix2d(inverse * stretch.inverse()), elements_[e]);
+    const Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity() + (1 - progress) * excess;
+    set_rest_shape(progress == 1 ? inverse : Eigen::Matrix2d(inverse * stretch.inverse()), elements_[e]);
   }
   if (!starts_.empty()) pack();
 }
@@ -98,7 +98,7 @@ void TriangleMembrane::attach(const solver::Assembly& assembly) {
     }
 }
 
-// By differences to the first corner, so that only they are rounded.
+// From differences to the first corner, so that only these are rounded.
 TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
   const auto& [a, b, c] = element.particles;
   const Vec3& origin = x[a];
@@ -130,7 +130,7 @@ void TriangleMembrane::add(const Evaluation& at) const {
     const GradientLanes s = gradient(t, at.x);
     const VecLanes strains = strains_of(s);
     const auto& [length_u, length_v, shear] = strains;
-    // Tensions k (‖s‖ − 1) with viscosity, over ‖s‖, and the shear stress ½ μ ⟨s_u, s_v⟩ with viscosity [N/m].
+    // Tensions k (‖s‖ − 1) and shear stress ½ μ ⟨s_u, s_v⟩, both with viscosity [N/m].
     Lanes tension_u = stretch_.weft * (length_u - 1), tension_v = stretch_.warp * (length_v - 1);
     Lanes stress = 0.5 * shear_.modulus * shear;
     if (viscous) {
@@ -151,8 +151,8 @@ void TriangleMembrane::add(const Evaluation& at) const {
   });
 }
 
-// Blocks Σ gradients[a] gradients[b] ∂²/∂s∂s. Along and across a thread as in Stretch, whose edge of unit length this
-// is, and in shear as in Shear: of the second derivative 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²) the half
+// Blocks Σ gradients[a] gradients[b] ∂²/∂s∂s. Along and across a thread as in Stretch, with an edge of unit rest
+// length. In shear as in Shear: of the second derivative 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), the half
 // whose sign agrees with the stress.
 void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s, const Lanes& length_u,
                                      const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
@@ -162,21 +162,21 @@ void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s,
   };
   const Lanes lateral_u = lateral_of(length_u), lateral_v = lateral_of(length_v);
   const double viscous = at.rate * stretch_.viscosity;
-  const Lanes elastic = 0.5 * shear_.modulus * t.area * shear;
-  // Factors of s_u s_uᵀ in ∂²/∂s_u², of s_v s_vᵀ in ∂²/∂s_v², of the others in s_v s_uᵀ and so on; of the unit matrix.
+  const Lanes shear_stress = 0.5 * shear_.modulus * t.area * shear;
+  // Factors of s_u s_uᵀ in ∂²/∂s_u², of s_v s_vᵀ in ∂²/∂s_v², of the outer products in shear, and of the identity.
   const Lanes axial_u = t.area * (stretch_.weft * (1 - lateral_u) + viscous) / (length_u * length_u);
   const Lanes axial_v = t.area * (stretch_.warp * (1 - lateral_v) + viscous) / (length_v * length_v);
   const Lanes outer_shear = 0.5 * (shear_.modulus + at.rate * shear_.viscosity) * t.area;
-  const Lanes level_u = t.area * stretch_.weft * lateral_u + 0.5 * abs(elastic);
-  const Lanes level_v = t.area * stretch_.warp * lateral_v + 0.5 * abs(elastic);
+  const Lanes identity_u = t.area * stretch_.weft * lateral_u + 0.5 * abs(shear_stress);
+  const Lanes identity_v = t.area * stretch_.warp * lateral_v + 0.5 * abs(shear_stress);
   for (std::size_t a = 0, pair = 0; a < 3; ++a)
     for (std::size_t b = a + 1; b < 3; ++b, ++pair) {
       const Lanes xx = t.along[a] * t.along[b], yy = t.across[a] * t.across[b];
       const Lanes xy = t.along[a] * t.across[b], yx = t.across[a] * t.along[b];
       const VecLanes of_u = (xx * axial_u + yy * outer_shear) * s.u + xy * outer_shear * s.v;
       const VecLanes of_v = (yy * axial_v + xx * outer_shear) * s.v + yx * outer_shear * s.u;
-      const Lanes level = xx * level_u + yy * level_v + 0.5 * (xy + yx) * elastic;
-      forces::add(at.assembly, t.blocks[pair], outer(of_u, s.u, level) + outer(of_v, s.v));
+      const Lanes identity_factor = xx * identity_u + yy * identity_v + 0.5 * (xy + yx) * shear_stress;
+      forces::add(at.assembly, t.blocks[pair], outer(of_u, s.u, identity_factor) + outer(of_v, s.v));
     }
 }
 

@@ -10,13 +10,13 @@
 namespace weft::forces {
 
 /// The continuum of Stretch and Shear on triangles of constant strain: s_u and s_v are the derivatives of the positions
-/// along weft and warp, linear in each triangle (the elements of Baraff & Witkin, "Large Steps in Cloth Simulation",
+/// along weft and warp, constant in each triangle (the elements of Baraff & Witkin, "Large Steps in Cloth Simulation",
 /// 1998, with the energy of the continuum). Energy density
 ///
 ///     ½ k1 (‖s_u‖ − 1)² + ½ k2 (‖s_v‖ − 1)² + ¼ μ ⟨s_u, s_v⟩²
 ///
-/// and the same forms on the rates. Every linear map has exactly the stress of the continuum, however the triangles
-/// lie.
+/// and the same forms on the rates. Every linear map has exactly the stress of the continuum, for any orientation of
+/// the triangles.
 class TriangleMembrane : public Membrane {
  public:
   /// A triangle; s_u and s_v are linear in its corners.
@@ -36,9 +36,10 @@ class TriangleMembrane : public Membrane {
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
-  /// Of a sewn sheet: the rest shape of each triangle, at share 0 that of its start, which then has no stress, at 1
-  /// that of the pattern. Between, the stretch U of the start, in weft and warp, shrinks to (1 − share) U + share 1.
-  void rest_between_start_and_pattern(double share);
+  /// For sewn sheets: interpolates the rest shape of each triangle between that of the start (progress 0), which has no
+  /// stress then, and that of the pattern (progress 1). The stretch U of the start, in weft and warp, is blended with
+  /// the identity.
+  void rest_between_start_and_pattern(double progress);
   std::span<const Element> elements() const { return elements_; }
   double max_strain(std::span<const Vec3> x) const override;
   void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
@@ -48,14 +49,14 @@ class TriangleMembrane : public Membrane {
   struct Gradient {
     Vec3 u, v;
   };
-  /// The larger change of length along weft and warp.
+  /// The larger change of length along weft and warp, in absolute value.
   virtual double strain(std::size_t triangle, std::span<const Vec3> x) const;
 
   StretchParameters stretch_;
   ShearParameters shear_;
 
  private:
-  /// Four of them. Corners are in the order of their numbers.
+  /// Four triangles, with corners in the order of particle numbers.
   struct Triangles {
     std::array<Four, 3> corners{};
     std::array<Four, 3> blocks{};        // of the pairs 01, 02, 12
@@ -65,12 +66,12 @@ class TriangleMembrane : public Membrane {
   struct GradientLanes {
     VecLanes u, v;
   };
-  static void use_rest(const Eigen::Matrix2d& inverse, Element& element);
+  static void set_rest_shape(const Eigen::Matrix2d& inverse, Element& element);
   static Eigen::Matrix2d stretch_of(const Gradient& s);
   static Gradient gradient(const Element& element, std::span<const Vec3> x);
   template <class Points>
   static GradientLanes gradient(const Triangles& triangles, Points x);
-  /// ‖s_u‖, ‖s_v‖ and ⟨s_u, s_v⟩.
+  /// ‖s_u‖, ‖s_v‖ and ⟨s_u, s_v⟩
   static VecLanes strains_of(const GradientLanes& s);
   void pack();
   void add_stiffness(const Triangles& triangles, const GradientLanes& s, const Lanes& length_u, const Lanes& length_v,
@@ -79,13 +80,13 @@ class TriangleMembrane : public Membrane {
 
   Index first_;
   std::vector<Element> elements_;
-  /// Of a sewn sheet: the inverse sides of each triangle in the pattern, and the stretch of its start less 1.
+  /// For sewn sheets: inverse of each triangle's sides in the pattern, and the stretch of its start minus 1.
   struct Start {
     Eigen::Matrix2d inverse, excess;
   };
   std::vector<Start> starts_;
-  std::vector<Triangles> packs_;  // the elements
-  Ranges ranges_;                 // of packs
+  std::vector<Triangles> packs_;
+  Ranges ranges_;  // of packs
 };
 
 }  // namespace weft::forces

@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kStrands = 3;
-constexpr double kGroove = 0.1;  // depth of the furrows between strands, half of it, in radii
+constexpr double kHalfGrooveDepth = 0.1;  // half the depth of the furrows between strands, in radii
 constexpr int kSidesOfStrands = 15, kSidesOfCord = 10;
-constexpr int kRingsPerLay = 8;  // of twisted strands, along one turn of them
-constexpr int kMostRingsPerPiece = 12;
-constexpr std::size_t kMostRings = 8000;  // beyond these strands are too fine to be drawn
+constexpr int kRingsPerStrandTurn = 8;  // of a rope with strands, per turn of the strands
+constexpr int kMaxRingsPerPiece = 12;
+constexpr std::size_t kMaxRings = 8000;  // of a rope with strands; with more, its strands are too fine to be visible
 
 bool is_closed(const Surface& chain) {
   return chain.triangles.back()[1] == chain.triangles.front()[0];
@@ -25,9 +25,10 @@ Vec3 any_normal(const Vec3& tangent) {
   return Quat::FromTwoVectors(Vec3::UnitZ(), tangent) * Vec3::UnitX();
 }
 
-// Carries a direction from one ring to the next without a turn about the chain (W. Wang, B. Jüttler, D. Zheng & Y. Liu,
-// "Computation of Rotation Minimizing Frames", 2008).
-Vec3 carried(const Vec3& normal, const Vec3& x, const Vec3& tangent, const Vec3& next_x, const Vec3& next_tangent) {
+// Transports a normal from one ring to the next without rotation about the chain (W. Wang, B. Jüttler, D. Zheng & Y.
+// Liu, "Computation of Rotation Minimizing Frames", 2008).
+Vec3 transport_normal(const Vec3& normal, const Vec3& x, const Vec3& tangent, const Vec3& next_x,
+                      const Vec3& next_tangent) {
   const Vec3 v = next_x - x;
   const double c = v.squaredNorm();
   if (!(c > 0)) return normal;
@@ -37,7 +38,7 @@ Vec3 carried(const Vec3& normal, const Vec3& x, const Vec3& tangent, const Vec3&
   return d > 0 ? Vec3(n - 2 / d * w.dot(n) * w) : n;
 }
 
-// From ring to ring; the ends of an open tube are closed by a point in their middle.
+// Faces between neighbouring rings. A point in the middle of each end closes an open tube.
 std::vector<std::array<Index, 3>> tube_faces(Index rings, Index sides, bool closed) {
   std::vector<std::array<Index, 3>> faces;
   const auto vertex = [&](Index ring, Index side) { return ring % rings * sides + side % sides; };
@@ -80,9 +81,9 @@ const Cords::Tube& Cords::tube_of(const std::shared_ptr<const Surface>& chain) {
   Tube tube{chain, nullptr, 2, kSidesOfCord, is_closed(*chain)};
   const std::size_t pieces = chain->triangles.size();
   const double lay = chain->appearance.thread_spacing, piece = chain->uv[1].x() - chain->uv[0].x();
-  const double wanted = lay > 0 ? std::ceil(kRingsPerLay * piece / lay) : 0;
-  if (wanted > 0 && wanted * static_cast<double>(pieces) <= kMostRings) {
-    tube.rings_per_piece = std::clamp(static_cast<int>(wanted), 1, kMostRingsPerPiece);
+  const double rings_for_strands = lay > 0 ? std::ceil(kRingsPerStrandTurn * piece / lay) : 0;
+  if (rings_for_strands > 0 && rings_for_strands * static_cast<double>(pieces) <= kMaxRings) {
+    tube.rings_per_piece = std::clamp(static_cast<int>(rings_for_strands), 1, kMaxRingsPerPiece);
     tube.sides = kSidesOfStrands;
   }
   auto surface = std::make_shared<Surface>(*chain);
@@ -116,19 +117,19 @@ SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
     return middles[static_cast<std::size_t>(tube.closed ? (r + rings) % rings : std::clamp(r, 0, rings - 1))];
   };
   for (int r = 0; r < rings; ++r) {
-    const Vec3 way = middle(r + 1) - middle(r - 1);
-    tangents.push_back(way.squaredNorm() > 0 ? Vec3(way.normalized()) : r > 0 ? tangents.back() : Vec3::UnitZ());
+    const Vec3 chord = middle(r + 1) - middle(r - 1);
+    tangents.push_back(chord.squaredNorm() > 0 ? Vec3(chord.normalized()) : r > 0 ? tangents.back() : Vec3::UnitZ());
   }
   std::vector<Vec3> normals{any_normal(tangents[0])};
   for (std::size_t r = 1; r < middles.size(); ++r)
-    normals.push_back(carried(normals[r - 1], middles[r - 1], tangents[r - 1], middles[r], tangents[r]));
+    normals.push_back(transport_normal(normals[r - 1], middles[r - 1], tangents[r - 1], middles[r], tangents[r]));
 
-  // Around a loop the direction comes back turned, and strands come back whole: both are spread over all rings.
+  // On a closed rope, the transported normal comes back rotated, and strands must close: the twist makes up for both.
   const double lay = look.thread_spacing, length = tube.chain->uv[1].x() * pieces;
   const bool has_strands = tube.sides == kSidesOfStrands && lay > 0;
   double turn = has_strands ? kTurn * length / lay : 0;
   if (tube.closed) {
-    const Vec3 back = carried(normals.back(), middles.back(), tangents.back(), middles[0], tangents[0]);
+    const Vec3 back = transport_normal(normals.back(), middles.back(), tangents.back(), middles[0], tangents[0]);
     const double off = std::atan2(tangents[0].dot(back.cross(normals[0])), back.dot(normals[0]));
     turn = std::round(turn / kTurn) * kTurn + off;
   }
@@ -140,7 +141,7 @@ SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
     const double twist = turn * r / (pieces * tube.rings_per_piece);
     for (int k = 0; k < tube.sides; ++k) {
       const double own = kTurn * k / tube.sides, angle = own + twist;
-      const double size = radius * (has_strands ? 1 - kGroove * (1 - std::cos(kStrands * own)) : 1);
+      const double size = radius * (has_strands ? 1 - kHalfGrooveDepth * (1 - std::cos(kStrands * own)) : 1);
       state.positions.emplace_back(middles[i] + size * (std::cos(angle) * n + std::sin(angle) * b));
     }
   }

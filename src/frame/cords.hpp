@@ -1,4 +1,4 @@
-// Ropes as they are seen: tubes in place of the chains of particles that are simulated.
+// Makes what is drawn of ropes: tubes in place of the simulated chains of particles.
 #pragma once
 
 #include <map>
@@ -8,19 +8,18 @@
 
 namespace weft::frame {
 
-/// Whether a surface is the chain of a rope. Its triangles (a, b, b) are its pieces, its appearance has the diameter as
-/// thickness and the lay length of its strands as thread_spacing (0: a round cord without strands).
+/// Whether a surface is the chain of a rope. Its triangles (a, b, b) are the pieces of the rope. Its appearance has the
+/// diameter as thickness, and the lay length of the strands as thread_spacing (0: a round cord without strands).
 inline bool is_chain(const Surface& surface) {
   return surface.kind == ObjectKind::rope && surface.appearance.thickness > 0;
 }
 
-/// Sweeps tubes along the chains of snapshots, along a spline through the particles. Faces are the same in all frames
-/// of a run. Not for several threads at a time.
+/// Sweeps tubes along splines through the particles of chains; faces stay the same over a run. Not thread safe.
 class Cords {
  public:
-  /// The snapshot with tubes for ropes; itself where it has none.
+  /// The snapshot with tubes in place of chains; the same object if it has no chains.
   SnapshotPtr sweep(const SnapshotPtr& snapshot);
-  /// The same as a copy, of a snapshot with ropes.
+  /// A copy of the snapshot with tubes in place of chains.
   FrameSnapshot sweep(const FrameSnapshot& snapshot);
   static bool has_chains(const FrameSnapshot& snapshot);
 

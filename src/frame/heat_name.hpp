@@ -1,4 +1,4 @@
-// What heat is called in files.
+// Names of heat quantities in files.
 #pragma once
 
 #include <string_view>
@@ -7,7 +7,7 @@
 
 namespace weft::frame {
 
-/// The name of the property that files have for it; empty where there is none.
+/// Name of the property in files that holds the heat; empty if there is none.
 inline std::string_view name_of(Stage::Heat heat) {
   constexpr std::string_view kNames[] = {"", "strain", "speed"};
   return kNames[static_cast<std::size_t>(heat)];

@@ -9,34 +9,34 @@
 namespace weft::garment {
 namespace {
 
-// Height of the hip joints of a wearer without legs, in heights of the body.
-constexpr double kHips = 0.52;
-// In heights from hip joints to neck: where the hips begin, the lowest and the highest waist, and armpits. Above them
-// the sections go over shoulders.
+// Height of the hip joints of a wearer without legs, as a fraction of the body height.
+constexpr double kHipHeightRatio = 0.52;
+// Heights, as fractions of the distance from hip joints to neck: lower end of the hips, lowest and highest waist, and
+// armpits. Above the armpits the sections include the shoulders.
 constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kArmpits = 0.75;
-// Apart of sections that are measured [m].
+// Distance between measured sections [m].
 constexpr double kSpacing = 0.01;
-// Least girth of the hips, in waists of a garment, over which it stays up: one of 1.05 fell, 1.16 and more held.
-constexpr double kHolds = 1.1;
+// Minimum ratio of the hips to the waist of a garment that stays up (measured: 1.05 slides down, 1.16 holds).
+constexpr double kMinHipToWaistRatio = 1.1;
 
 }  // namespace
 
 Measures measure(const Wearer& wearer) {
   const Tube torso(wearer, Around::torso);
   const double height = torso.high();
-  double hips = kHips * height;
+  double hips = kHipHeightRatio * height;
   if (wearer.left_leg && wearer.right_leg) hips = 0.5 * ((*wearer.left_leg)[0].z() + (*wearer.right_leg)[0].z());
-  const auto at = [&](double share) { return hips + share * (wearer.neck - hips); };
+  const auto at = [&](double fraction) { return hips + fraction * (wearer.neck - hips); };
   const auto girth = [&](double s) { return torso.girth(s, 0); };
   double waist = at(kLowestWaist);
   for (double s = waist; s <= at(kHighestWaist); s += kSpacing)
     if (girth(s) < girth(waist)) waist = s;
-  const auto widest = [&](double low, double high) {
-    double most = 0;
-    for (double s = low; s <= high; s += kSpacing) most = std::max(most, girth(s));
-    return most;
+  const auto max_girth = [&](double low, double high) {
+    double largest = 0;
+    for (double s = low; s <= high; s += kSpacing) largest = std::max(largest, girth(s));
+    return largest;
   };
-  return {widest(waist, at(kArmpits)), girth(waist), widest(at(kLowestHip), waist), height};
+  return {max_girth(waist, at(kArmpits)), girth(waist), max_girth(at(kLowestHip), waist), height};
 }
 
 Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string& where) {
@@ -58,7 +58,7 @@ std::string doubt_that_hips_hold(const Pattern& pattern, const Vec2& factors, co
   const Measures& drawn = pattern.measures;
   if (!drawn.waist || drawn.chest) return {};
   const double waist = *drawn.waist * factors.x(), hips = *measure(wearer).hip;
-  if (hips >= kHolds * waist) return {};
+  if (hips >= kMinHipToWaistRatio * waist) return {};
   return fmt::format(
       "its waist is {:.2f} m around and the hips of its wearer {:.2f} m, which do not hold it up: pin its waist, as in "
       "pin = [{{ edge = \"{}\", follow = \"WEARER.torso\" }}]",

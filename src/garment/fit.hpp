@@ -1,4 +1,4 @@
-// From the body that a pattern is drawn for to another: how much wider and longer.
+// Fits a pattern to another body: how much wider and taller it must be than the body that the pattern is drawn for.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 
 namespace weft::garment {
 
-/// All measures of a body as it stands: with a tape around its trunk, without the arms. The waist is the narrowest
-/// place between hips and armpits, hip and chest are the widest below and above it.
+/// Measures a body in its pose, with a tape around the trunk and without the arms. The waist is the narrowest section
+/// between hips and armpits; hip and chest are the widest sections below and above the waist.
 Measures measure(const Wearer& wearer);
 
-/// Factors on lengths across and up: across the largest ratio of a girth that both have, so that the garment is nowhere
-/// tighter than drawn; up that of the heights. What is not named on one side of a pattern does not change, and a height
-/// alone counts for both. `where` names what asks for it. Throws Error(scene_invalid) where a pattern names no
-/// measures.
+/// Factors (x: across, y: up) on the lengths of a pattern. Across: the largest ratio of a girth that both body and
+/// pattern have, so that the garment is nowhere tighter than drawn. Up: the ratio of heights; 1 if the pattern has
+/// none. If the pattern names only a height, its ratio counts for both. `where` names the scene entry for messages.
+/// Throws Error(scene_invalid) if the pattern names no measures.
 Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
-/// What is to be told of a garment that hangs from the waist alone, of a wearer whose hips are hardly wider than it is
-/// there with `factors` on its drawing; empty: they hold it.
+/// Warning text for a garment that hangs from the waist alone, if the hips of the wearer are too narrow to hold its
+/// waist, scaled by `factors`; empty if they hold it.
 std::string doubt_that_hips_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer);
 
 }  // namespace weft::garment

@@ -17,13 +17,13 @@
 namespace weft::garment {
 namespace {
 
-// Least distance from the skin at the start, by the gap of the pattern.
-constexpr double kClearance = 0.6;
-// Longest edge that becomes a point, by the spacing.
-constexpr double kPoint = 0.25;
-// Least area of a triangle beside an edge that is turned, by that of a square of the mesh: flatter ones are needles.
-constexpr double kLeastTurnedArea = 0.02;
-// Particles of one garment at most.
+// Minimum distance from the skin at the start, as a fraction of the gap of the pattern.
+constexpr double kClearanceRatio = 0.6;
+// Panel edges shorter than this fraction of the spacing become a point.
+constexpr double kPointEdgeRatio = 0.25;
+// Minimum area of a triangle after an edge flip, as a fraction of a square of the mesh: flatter triangles are needles.
+constexpr double kMinFlippedArea = 0.02;
+// Maximum number of particles of one garment.
 constexpr double kMaxParticles = 1e6;
 
 class Sewing {
@@ -36,7 +36,7 @@ class Sewing {
     count_segments();
     mesh_panels();
     join_seams();
-    part_shared_edges();
+    flip_shared_edges();
     number_vertices();
     make_triangles();
     if (wearer_ != nullptr)
@@ -57,13 +57,12 @@ class Sewing {
   double length(std::size_t panel, std::size_t edge) const {
     return Arclength(pattern_.panels[panel].edges[edge].curves).length();
   }
-  // Edges that are much shorter than those of the mesh become points: slivers beside them would be as stiff as they are
-  // short.
+  // Panel edges that are much shorter than those of the mesh become points: slivers beside them would be very stiff.
   int segments_for(double length) const {
-    return length < kPoint * spacing_ ? 0 : std::max(1, static_cast<int>(std::lround(length / spacing_)));
+    return length < kPointEdgeRatio * spacing_ ? 0 : std::max(1, static_cast<int>(std::lround(length / spacing_)));
   }
 
-  // As many segments on both sides of a seam.
+  // Chooses the number of segments of each edge; both sides of a seam get the same number.
   void count_segments() {
     double area = 0;
     for (std::size_t p = 0; p < pattern_.panels.size(); ++p) {
@@ -92,10 +91,10 @@ class Sewing {
       if (count < 3)
         refuse(fmt::format("panel {}: expected an edge_length that leaves it three sides, got {} m", panel.name,
                            spacing_));
-      first_.push_back(total_);
+      first_point_.push_back(point_count_);
       meshes_.push_back(mesh_of(panel, segments_[p], spacing_));
       if (meshes_.back().triangles.empty()) refuse(fmt::format("panel {}: expected an area, got none", panel.name));
-      total_ += static_cast<Index>(meshes_.back().points.size());
+      point_count_ += static_cast<Index>(meshes_.back().points.size());
     }
   }
 
@@ -105,67 +104,67 @@ class Sewing {
     const Index begin = std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(edge), 0);
     const Index around = std::accumulate(counts.begin(), counts.end(), 0);
     std::vector<Index> points;
-    for (Index k = 0; k <= counts[edge]; ++k) points.push_back(first_[panel] + (begin + k) % around);
+    for (Index k = 0; k <= counts[edge]; ++k) points.push_back(first_point_[panel] + (begin + k) % around);
     return points;
   }
-  // Where a point of a panel starts if nothing is sewn.
-  Vec2 placed(std::size_t panel, const Vec2& p) const {
+  // Start position of a point of a panel if nothing were sewn.
+  Vec2 start_position(std::size_t panel, const Vec2& p) const {
     const Panel& of = pattern_.panels[panel];
     const Eigen::Rotation2Dd turn(of.rotation * std::numbers::pi / 180);
     return of.position.value_or(Vec2(0, 0)) + turn * Vec2(of.scale.cwiseProduct(p));
   }
-  Vec2 placed_point(std::size_t panel, Index point) const {
-    return placed(panel, meshes_[panel].points[at(point - first_[panel])]);
+  Vec2 start_of_point(std::size_t panel, Index point) const {
+    return start_position(panel, meshes_[panel].points[at(point - first_point_[panel])]);
   }
 
-  // Which ends meet shows in where the panels lie; of panels that are bent, in that both have their fronts outside.
+  // Joins the points of both sides of each seam. The start positions determine which ends of flat panels meet; for bent
+  // panels it follows from their fronts, which must both face outward.
   void join_seams() {
-    sewn_together_ = DisjointSets(at(total_));
+    sewn_together_ = DisjointSets(at(point_count_));
     for (const Seam& seam : pattern_.seams) {
       if (seam.closure()) continue;
       const auto [p, e] = pattern_.find(seam.a);
       const auto [q, f] = pattern_.find(seam.b);
       const std::vector<Index> a = chain(p, e);
       std::vector<Index> b = chain(q, f);
-      const auto apart = [&, p = p, q = q] {
-        return (placed_point(p, a.front()) - placed_point(q, b.front())).norm() +
-               (placed_point(p, a.back()) - placed_point(q, b.back())).norm();
+      const auto end_distance = [&, p = p, q = q] {
+        return (start_of_point(p, a.front()) - start_of_point(q, b.front())).norm() +
+               (start_of_point(p, a.back()) - start_of_point(q, b.back())).norm();
       };
-      const double straight = apart();
+      const double straight = end_distance();
       std::ranges::reverse(b);
-      const bool in_line =
-          wearer_ != nullptr ? !seen_alike(pattern_.panels[p], pattern_.panels[q]) : straight < apart();
+      const bool in_line = wearer_ != nullptr ? !are_drawn_from_same_side(pattern_.panels[p], pattern_.panels[q])
+                                              : straight < end_distance();
       if (in_line) std::ranges::reverse(b);
       for (std::size_t k = 0; k < a.size(); ++k) sewn_together_.join(a[k], b[k]);
       garment_.seams.push_back({a, length(p, e), length(q, f)});
     }
   }
 
-  /// An edge inside of a panel, between joined vertices that another edge joins as well: where two panels are sewn
-  /// around a corner, a triangle in the corner of each has such an edge. The edge is turned in the last panel that has
-  /// it so.
-  void part_shared_edges() {
-    constexpr int kMostRounds = 8;  // a turned edge hardly ever meets another; what is left is refused
-    for (int round = 0; round < kMostRounds; ++round) {
+  /// Flips inner edges of a panel whose two joined vertices another edge joins as well: if two panels are sewn around a
+  /// corner, a triangle in the corner of each has such an edge. Changes the last such panel.
+  void flip_shared_edges() {
+    constexpr int kMaxFlipRounds = 8;  // check_surface() refuses the rare edges that remain
+    for (int round = 0; round < kMaxFlipRounds; ++round) {
       std::map<JoinedEdge, int> triangles_at;
       for (std::size_t p = 0; p < meshes_.size(); ++p)
         for (const mesh::Triangle& t : meshes_[p].triangles)
           for (std::size_t k = 0; k < 3; ++k) ++triangles_at[joined_edge(p, t[k], t[(k + 1) % 3])];
       bool turned = false;
-      for (std::size_t p = meshes_.size(); p-- > 0;) turned = turn_shared_edges(p, triangles_at) || turned;
+      for (std::size_t p = meshes_.size(); p-- > 0;) turned = flip_shared_edges_of_panel(p, triangles_at) || turned;
       if (!turned) return;
     }
   }
   using JoinedEdge = std::array<Index, 2>;
   JoinedEdge joined_edge(std::size_t panel, Index a, Index b) {
-    const Index u = sewn_together_.root(first_[panel] + a), v = sewn_together_.root(first_[panel] + b);
+    const Index u = sewn_together_.root(first_point_[panel] + a), v = sewn_together_.root(first_point_[panel] + b);
     return {std::min(u, v), std::max(u, v)};
   }
-  // `triangles_at`: how many triangles of all panels each edge has.
-  bool turn_shared_edges(std::size_t panel, std::map<JoinedEdge, int>& triangles_at) {
+  // `triangles_at`: number of triangles in all panels at each edge.
+  bool flip_shared_edges_of_panel(std::size_t panel, std::map<JoinedEdge, int>& triangles_at) {
     std::vector<mesh::Triangle>& triangles = meshes_[panel].triangles;
     const std::vector<Vec2>& points = meshes_[panel].points;
-    const double least = kLeastTurnedArea * spacing_ * spacing_;
+    const double min_area = kMinFlippedArea * spacing_ * spacing_;
     const auto area = [&](Index a, Index b, Index c) {
       return polygon_area(std::array{points[at(a)], points[at(b)], points[at(c)]});
     };
@@ -181,39 +180,39 @@ class Sewing {
       const auto opposite = [&](const mesh::Triangle& t) {
         return *std::ranges::find_if(t, [&](Index v) { return v != a && v != b; });
       };
-      // Counter-clockwise from, left, to, right, whichever of both triangles came first.
+      // Counter-clockwise: from, right, to, left.
       const mesh::Triangle& one = triangles[first];
       const std::size_t k = at(static_cast<Index>(std::ranges::find(one, opposite(one)) - one.begin()));
       const Index left = one[k], from = one[(k + 1) % 3], to = one[(k + 2) % 3], right = opposite(triangles[second]);
-      int& there = triangles_at[joined_edge(panel, left, right)];
-      if (there > 0 || !(area(from, right, left) > least) || !(area(right, to, left) > least)) continue;
+      int& other_count = triangles_at[joined_edge(panel, left, right)];
+      if (other_count > 0 || !(area(from, right, left) > min_area) || !(area(right, to, left) > min_area)) continue;
       triangles[first] = {from, right, left}, triangles[second] = {right, to, left};
       changed[first] = changed[second] = 1;
-      count -= 2, there += 2;
+      count -= 2, other_count += 2;
       turned = true;
     }
     return turned;
   }
 
   void number_vertices() {
-    number_.assign(at(total_), -1);
-    for (Index v = 0; v < total_; ++v) {
+    vertex_of_point_.assign(at(point_count_), -1);
+    for (Index v = 0; v < point_count_; ++v) {
       const Index root = sewn_together_.root(v);
-      number_[at(v)] = root == v ? vertices_++ : number_[at(root)];
+      vertex_of_point_[at(v)] = root == v ? vertex_count_++ : vertex_of_point_[at(root)];
     }
     for (SewnSeam& seam : garment_.seams)
-      for (Index& v : seam.vertices) v = number_[at(v)];
+      for (Index& v : seam.vertices) v = vertex_of_point_[at(v)];
     for (std::size_t p = 0; p < pattern_.panels.size(); ++p) {
       const Panel& panel = pattern_.panels[p];
       for (std::size_t e = 0; e < panel.edges.size(); ++e) {
         std::vector<Index> vertices = chain(p, e);
-        for (Index& v : vertices) v = number_[at(v)];
+        for (Index& v : vertices) v = vertex_of_point_[at(v)];
         garment_.edges.emplace(panel.name + "." + panel.edges[e].name, std::move(vertices));
       }
     }
   }
 
-  // Triangles of joined vertices, and their shape in the pattern.
+  // Makes the triangles of joined vertices, with their shape in the pattern.
   void make_triangles() {
     const bool reinforced = std::ranges::any_of(
         pattern_.panels, [](const Panel& panel) { return panel.reinforcement != mesh::Reinforcement{}; });
@@ -224,10 +223,10 @@ class Sewing {
         mesh::Triangle joined{};
         std::array<Vec2, 3> material;
         for (std::size_t k = 0; k < 3; ++k) {
-          joined[k] = number_[at(first_[p] + t[k])];
+          joined[k] = vertex_of_point_[at(first_point_[p] + t[k])];
           material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
         }
-        // Seen from where the front of such a panel is, left and right change places.
+        // The panel is drawn from the inside; seen from its front, left and right are exchanged.
         if (inside) {
           std::swap(joined[1], joined[2]);
           std::swap(material[1], material[2]);
@@ -249,10 +248,10 @@ class Sewing {
       for (const mesh::Triangle& t : meshes_[p].triangles) {
         laid.back().triangles.push_back(joined(p, t));
         auto& corners = laid.back().corners.emplace_back();
-        for (std::size_t k = 0; k < 3; ++k) corners[k] = placed(p, meshes_[p].points[at(t[k])]);
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = start_position(p, meshes_[p].points[at(t[k])]);
       }
     }
-    garment_.uv = lay_together(laid, at(vertices_));
+    garment_.uv = lay_together(laid, at(vertex_count_));
     check_plane(laid);
     garment_.sheet.rest = inflate(laid, garment_.uv, pattern_.depth);
   }
@@ -260,7 +259,7 @@ class Sewing {
   void place_around() {
     const auto bent = bend_around(pattern_, meshes_, *wearer_, [this](const std::string& text) { refuse(text); });
     std::vector<std::array<Vec3, 3>> corners;
-    garment_.uv.assign(at(vertices_), Vec2::Zero());
+    garment_.uv.assign(at(vertex_count_), Vec2::Zero());
     for (std::size_t p = meshes_.size(); p-- > 0;)
       for (const mesh::Triangle& t : meshes_[p].triangles)
         for (std::size_t k = 0; k < 3; ++k)
@@ -273,19 +272,20 @@ class Sewing {
       for (std::size_t k = 0; k < 3; ++k) of[k] = bent[p][at(own[k])];
     }
     std::vector<Vec3>& x = garment_.sheet.rest;
-    x = join_in_space(garment_.sheet.triangles, corners, at(vertices_), spacing_);
-    clear_of_skin(*wearer_, garment_.sheet.triangles, kClearance * pattern_.gap, x);
+    x = join_in_space(garment_.sheet.triangles, corners, at(vertex_count_), spacing_);
+    move_out_of_skin(*wearer_, garment_.sheet.triangles, kClearanceRatio * pattern_.gap, x);
     for (Vec3& each : x) each = wearer_->to_world * each;
   }
   mesh::Triangle joined(std::size_t p, const mesh::Triangle& t) const {
-    return {number_[at(first_[p] + t[0])], number_[at(first_[p] + t[1])], number_[at(first_[p] + t[2])]};
+    return {vertex_of_point_[at(first_point_[p] + t[0])], vertex_of_point_[at(first_point_[p] + t[1])],
+            vertex_of_point_[at(first_point_[p] + t[2])]};
   }
   static Vec2 along_grain(const Panel& panel, const Vec2& p) {
     return Eigen::Rotation2Dd(-panel.grain * std::numbers::pi / 180) * p;
   }
 
   void check_surface() const {
-    const mesh::TopologyReport report = mesh::inspect(garment_.sheet.triangles, at(vertices_));
+    const mesh::TopologyReport report = mesh::inspect(garment_.sheet.triangles, at(vertex_count_));
     if (!report.manifold())
       refuse(fmt::format(
           "expected seams that make a surface, got {} edges of more than two triangles, {} whose "
@@ -312,10 +312,10 @@ class Sewing {
       const std::vector<Index> points = chain(p, e);
       mesh::Band band;
       for (std::size_t k = 0; k < points.size(); ++k) {
-        band.vertices.push_back(number_[at(points[k])]);
+        band.vertices.push_back(vertex_of_point_[at(points[k])]);
         if (k == 0) continue;
         const auto& of = meshes_[p].points;
-        band.lengths.push_back((of[at(points[k] - first_[p])] - of[at(points[k - 1] - first_[p])]).norm());
+        band.lengths.push_back((of[at(points[k] - first_point_[p])] - of[at(points[k - 1] - first_point_[p])]).norm());
       }
       return band;
     };
@@ -324,7 +324,7 @@ class Sewing {
       if (seam.closure()) continue;
       const SewnSeam& sewn = garment_.seams[s++];
       if (seam.allowance == 0 || sewn.vertices.size() < 2) continue;
-      // Between the two sides, where one is eased in.
+      // An eased-in seam gets the mean length of its two sides.
       const double mean = 0.5 * (sewn.length_a + sewn.length_b);
       mesh::Band band{.vertices = sewn.vertices, .lengths = {}, .allowance = seam.allowance};
       band.lengths.assign(band.vertices.size() - 1, mean / static_cast<double>(band.vertices.size() - 1));
@@ -342,19 +342,19 @@ class Sewing {
     }
   }
 
-  // Between the points of two edges; which ends meet shows in where they start.
+  // Ties the points of two edges together. Their start positions determine which ends meet.
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {
       if (!seam.closure()) continue;
       const std::vector<Index>& a = garment_.edges.at(seam.a);
       std::vector<Index> b = garment_.edges.at(seam.b);
-      const auto apart = [&] {
+      const auto end_distance = [&] {
         return (x[at(a.front())] - x[at(b.front())]).norm() + (x[at(a.back())] - x[at(b.back())]).norm();
       };
-      const double straight = apart();
+      const double straight = end_distance();
       std::ranges::reverse(b);
-      if (straight < apart()) std::ranges::reverse(b);
+      if (straight < end_distance()) std::ranges::reverse(b);
       const std::size_t last = a.size() - 1;
       const std::size_t count = seam.buttons > 0 ? static_cast<std::size_t>(seam.buttons) : a.size();
       for (std::size_t i = 0; i < count; ++i) {
@@ -380,10 +380,10 @@ class Sewing {
   const Wearer* wearer_;                    // null: panels start flat
   std::vector<std::vector<int>> segments_;  // per panel and edge
   std::vector<FlatMesh> meshes_;            // per panel
-  std::vector<Index> first_;                // point of each panel, numbered through all
-  Index total_ = 0, vertices_ = 0;
+  std::vector<Index> first_point_;          // first point of each panel, numbered through all panels
+  Index point_count_ = 0, vertex_count_ = 0;
   DisjointSets sewn_together_{0};
-  std::vector<Index> number_;  // of the vertex that each point is part of
+  std::vector<Index> vertex_of_point_;  // vertex that each point becomes part of
   Garment garment_;
 };
 

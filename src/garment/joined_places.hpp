@@ -1,4 +1,4 @@
-// Triangles that were laid out one by one, put together.
+// Combines triangles that are laid out one by one into one mesh.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -9,8 +9,8 @@
 
 namespace weft::garment {
 
-/// Places x of vertices, in N dimensions [m], from those p that each triangle has its corners at: they minimise
-/// Σ ‖(x_i − x_j) − (p_i − p_j)‖² over the sides of all triangles and anchor Σ ‖x_i − p_i‖² over their corners.
+/// Positions x of vertices in N dimensions [m] from positions p at which each triangle puts its corners. They minimise
+/// Σ ‖(x_i − x_j) − (p_i − p_j)‖² over the sides of all triangles, plus anchor · Σ ‖x_i − p_i‖² over their corners.
 template <int N>
 class JoinedPlaces {
  public:

@@ -10,11 +10,11 @@
 namespace weft::garment {
 namespace {
 
-// Largest outline that is read; a drawn pattern piece has some twenty curves.
+// Maximum number of curves of an outline; a drawn pattern piece has about twenty.
 constexpr std::size_t kMaxCurves = 10000;
-// Coordinates from here on are taken for damage.
+// Larger coordinates are treated as damaged data.
 constexpr double kMaxCoordinate = 1e6;
-// Pieces that each curve is cut into where its length is measured: a quarter circle is then right to 2e-6.
+// Number of pieces per curve for measuring its length: a quarter circle is then accurate to 2e-6.
 constexpr int kPiecesPerCurve = 256;
 
 Curve quadratic(const Vec2& from, const Vec2& control, const Vec2& to) {
@@ -28,7 +28,7 @@ double angle_between(const Vec2& a, const Vec2& b) {
 /// An elliptic arc by its end points (SVG 1.1, appendix F.6.5).
 struct Arc {
   Vec2 radii;
-  double turn;  // of the ellipse's x axis [rad]
+  double turn;  // angle of the ellipse's x axis [rad]
   bool large, sweep;
 };
 
@@ -39,10 +39,10 @@ void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outli
     outline.push_back(straight(from, to));
     return;
   }
-  // In the frame of the ellipse with its radii as units: a circle of radius 1, larger radii where that is too small.
+  // In the frame of the ellipse, with its radii as units, the arc lies on a unit circle. Radii that are too small grow.
   const Vec2 half = turn.inverse() * Vec2(0.5 * (from - to));
-  const double reach = half.cwiseQuotient(r).norm();
-  if (reach > 1) r *= reach;
+  const double radius_ratio = half.cwiseQuotient(r).norm();
+  if (radius_ratio > 1) r *= radius_ratio;
   const Vec2 p = half.cwiseQuotient(r);
   const double off = std::sqrt(std::max(0.0, 1 / p.squaredNorm() - 1)) * (arc.large == arc.sweep ? -1 : 1);
   const Vec2 centre = off * Vec2(p.y(), -p.x());
@@ -51,7 +51,7 @@ void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outli
   if (arc.sweep && sweep < 0) sweep += 2 * std::numbers::pi;
   if (!arc.sweep && sweep > 0) sweep -= 2 * std::numbers::pi;
   const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / (0.5 * std::numbers::pi) - 1e-9)));
-  const double each = sweep / pieces, reach_out = 4.0 / 3 * std::tan(0.25 * each);
+  const double each = sweep / pieces, handle_length = 4.0 / 3 * std::tan(0.25 * each);
   const Vec2 middle = 0.5 * (from + to) + turn * Vec2(r.cwiseProduct(centre));
   const auto placed = [&](const Vec2& unit) -> Vec2 { return middle + turn * Vec2(r.cwiseProduct(unit)); };
   Vec2 a = begin, at = from;
@@ -59,7 +59,8 @@ void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outli
     const Vec2 b = Eigen::Rotation2Dd(each) * a;
     const Vec2 next = i == pieces ? to : placed(b);
     outline.push_back(
-        {{at, placed(a + reach_out * Vec2(-a.y(), a.x())), placed(b - reach_out * Vec2(-b.y(), b.x())), next}, i > 1});
+        {{at, placed(a + handle_length * Vec2(-a.y(), a.x())), placed(b - handle_length * Vec2(-b.y(), b.x())), next},
+         i > 1});
     a = b, at = next;
   }
 }
@@ -91,7 +92,7 @@ class PathReader {
   }
   static char printable(char c) { return c >= 0x20 && c < 0x7F ? c : '?'; }
 
-  // True if something is left after white space.
+  // Skips white space; returns whether text remains.
   bool skip_space() {
     while (at_ < data_.size() && std::string_view(" \t\r\n").find(data_[at_]) != std::string_view::npos) ++at_;
     return at_ < data_.size();
@@ -159,7 +160,7 @@ class PathReader {
 
   void close() {
     closed_ = true;
-    // An end that misses the start by rounding of its digits is the start.
+    // If rounded digits leave the end slightly off the start, it is the start.
     const double slack = 1e-6 * std::max(1e-9, (farthest_ - nearest_).norm());
     if ((pen_ - first_).norm() > slack) return add(straight(pen_, first_));
     if (!result_.outline.empty()) result_.outline.back().control[3] = first_;
@@ -167,7 +168,7 @@ class PathReader {
 
   void draw(char kind, bool relative) {
     const Vec2 from = pen_;
-    Vec2 handle = from;  // what S and T reflect
+    Vec2 handle = from;  // last control point, which S and T reflect
     if (kind == 'L') {
       add(straight(from, point(relative)));
     } else if (kind == 'H') {
@@ -189,7 +190,7 @@ class PathReader {
       const Vec2 end = point(relative);
       const std::size_t before = result_.outline.size();
       if (result_.mistake.empty() && end != from) append_arc(from, arc, end, result_.outline);
-      for (std::size_t i = before; i < result_.outline.size(); ++i) reach(result_.outline[i]);
+      for (std::size_t i = before; i < result_.outline.size(); ++i) extend_bounds(result_.outline[i]);
       pen_ = end;
     }
     handle_ = handle;
@@ -201,10 +202,10 @@ class PathReader {
   }
   void add(const Curve& curve) {
     result_.outline.push_back(curve);
-    reach(curve);
+    extend_bounds(curve);
     pen_ = curve.end();
   }
-  void reach(const Curve& curve) {
+  void extend_bounds(const Curve& curve) {
     nearest_ = nearest_.cwiseMin(curve.start()).cwiseMin(curve.end());
     farthest_ = farthest_.cwiseMax(curve.start()).cwiseMax(curve.end());
   }
@@ -244,10 +245,10 @@ Arclength::Arclength(const std::vector<Curve>& chain) {
     }
 }
 
-Vec2 Arclength::at(double share) const {
-  if (share <= 0) return points_.front();
-  if (share >= 1) return points_.back();
-  const double s = share * length();
+Vec2 Arclength::at(double fraction) const {
+  if (fraction <= 0) return points_.front();
+  if (fraction >= 1) return points_.back();
+  const double s = fraction * length();
   const auto i = static_cast<std::size_t>(std::upper_bound(sums_.begin(), sums_.end(), s) - sums_.begin());
   const double piece = sums_[i] - sums_[i - 1];
   return points_[i - 1] + (s - sums_[i - 1]) / piece * (points_[i] - points_[i - 1]);

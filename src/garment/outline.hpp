@@ -10,20 +10,20 @@
 
 namespace weft::garment {
 
-/// A cubic Bézier curve by its control points; a straight line has them at thirds.
+/// A cubic Bézier curve by its control points. A straight line has its inner control points at thirds.
 struct Curve {
   std::array<Vec2, 4> control;
-  bool goes_on = false;  ///< with the curve before: both are of one arc
+  bool continues_arc = false;  ///< continues the arc that the preceding curve belongs to
 
   const Vec2& start() const { return control[0]; }
   const Vec2& end() const { return control[3]; }
   Vec2 at(double t) const;
-  Curve reversed() const { return {{control[3], control[2], control[1], control[0]}, goes_on}; }
+  Curve reversed() const { return {{control[3], control[2], control[1], control[0]}, continues_arc}; }
 };
 
 Curve straight(const Vec2& from, const Vec2& to);
 
-/// Each curve starts where the one before ends, the first where the last ends.
+/// Each curve starts at the end of the preceding one, the first at the end of the last.
 using Outline = std::vector<Curve>;
 
 struct ParsedPath {
@@ -31,18 +31,18 @@ struct ParsedPath {
   std::string mistake;  ///< "expected a number, got "x" at character 12"; empty: none
 };
 
-/// One closed outline from the path data of SVG 1.1 (section 8.3), in its own units; arcs become cubic curves, a
-/// quarter turn each at most (off by 3e-4 of the radius). Curves without length are left out.
+/// Reads one closed outline from the path data of SVG 1.1 (section 8.3), in the units of the data. Arcs become cubic
+/// curves of at most a quarter turn each (off by 3e-4 of the radius). Curves of zero length are dropped.
 ParsedPath parse_path(std::string_view data);
 
-/// Lengths along a chain of curves, to place points at equal distances on it.
+/// Arc length along a chain of curves, to place points at equal distances on it.
 class Arclength {
  public:
   explicit Arclength(const std::vector<Curve>& chain);
 
   double length() const { return sums_.back(); }
-  /// The point after this share of the length.
-  Vec2 at(double share) const;
+  /// The point at this fraction of the length.
+  Vec2 at(double fraction) const;
 
  private:
   std::vector<Vec2> points_;

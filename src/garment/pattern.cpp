@@ -26,12 +26,12 @@ using scene::TableBuilder;
 using scene::Type;
 using scene::within;
 
-// Points per curve by which crossings of an outline with itself are looked for.
+// Sample points per curve for finding self-crossings of an outline.
 constexpr int kPointsPerCurve = 16;
-// What is taken for straight, as a share of its length [1]: files round.
-constexpr double kFoldOff = 1e-3;
-// Largest panel [m].
-constexpr double kMaxSize = 100;
+// Maximum deviation of a straight edge from a line, relative to its length [1]; files round coordinates.
+constexpr double kMaxFoldDeviation = 1e-3;
+// Maximum size of a panel [m].
+constexpr double kMaxPanelSize = 100;
 
 const Table& panel_rules() {
   static const Table kFabric =
@@ -98,29 +98,29 @@ const Table& panel_rules() {
   return kTable;
 }
 
-std::vector<Vec2> sampled(const Outline& outline) {
+std::vector<Vec2> sample_points(const Outline& outline) {
   std::vector<Vec2> points;
   for (const Curve& curve : outline)
     for (int i = 0; i < kPointsPerCurve; ++i) points.push_back(curve.at(double(i) / kPointsPerCurve));
   return points;
 }
 
-// Names curve by curve, the pieces of an arc alike, or what is wrong with them.
+// Assigns a name to each curve; the pieces of an arc share one. Returns a description of a mistake, or an empty string.
 std::string name_curves(const std::string& text, const Outline& outline, std::vector<std::string>& names) {
   std::istringstream stream(text);
   std::vector<std::string> words;
   for (std::string word; stream >> word;) words.push_back(word);
-  const auto curves = static_cast<std::size_t>(std::ranges::count(outline, false, &Curve::goes_on));
+  const auto curves = static_cast<std::size_t>(std::ranges::count(outline, false, &Curve::continues_arc));
   if (words.empty())
     for (std::size_t i = 1; i <= curves; ++i) words.push_back(std::to_string(i));
   if (words.size() != curves) return fmt::format("expected {} names, one for each curve, got {}", curves, words.size());
   std::size_t word = 0;
-  for (const Curve& curve : outline) names.push_back(words[curve.goes_on ? word - 1 : word++]);
+  for (const Curve& curve : outline) names.push_back(words[curve.continues_arc ? word - 1 : word++]);
   return {};
 }
 
-// Joins neighbouring curves of one name; the first edge starts where the name changes.
-std::vector<PanelEdge> joined(const Outline& outline, const std::vector<std::string>& names) {
+// Joins neighbouring curves of the same name into edges. The first edge starts where the name changes.
+std::vector<PanelEdge> join_named_curves(const Outline& outline, const std::vector<std::string>& names) {
   const std::size_t n = outline.size();
   std::size_t first = 0;
   while (first < n && names[first] == names[(first + n - 1) % n]) ++first;
@@ -133,8 +133,8 @@ std::vector<PanelEdge> joined(const Outline& outline, const std::vector<std::str
   return edges;
 }
 
-/// What an edge is called on the other side of a fold.
-std::string across_fold(const std::string& name) {
+/// Name of the mirror image of an edge across a fold.
+std::string name_across_fold(const std::string& name) {
   for (const auto& [one, other] : {std::pair{"left", "right"}, std::pair{"right", "left"}})
     if (const std::size_t at = name.find(one); at != std::string::npos)
       return std::string(name).replace(at, std::string_view(one).size(), other);
@@ -143,8 +143,8 @@ std::string across_fold(const std::string& name) {
   return name + "_2";
 }
 
-/// Makes the whole of a half that is cut on the fold: without the edge `fold`, and with its mirror image across that.
-/// Edges that meet the fold go on beyond it. Returns what is wrong, or nothing.
+/// Completes a half that is cut on the fold: removes the edge `fold` and appends the mirror image. Edges that meet the
+/// fold continue beyond it. Returns a description of a mistake, or an empty string.
 std::string unfold(const std::string& fold, Outline& outline, std::vector<std::string>& names) {
   const std::size_t n = outline.size();
   std::size_t first = 0;
@@ -157,7 +157,7 @@ std::string unfold(const std::string& fold, Outline& outline, std::vector<std::s
   const auto off = [&](const Vec2& p) { return along.x() * (p - a).y() - along.y() * (p - a).x(); };
   for (std::size_t i = 0; i < count; ++i)
     for (const Vec2& p : outline[(first + i) % n].control)
-      if (!(std::abs(off(p)) <= kFoldOff * (b - a).norm()))
+      if (!(std::abs(off(p)) <= kMaxFoldDeviation * (b - a).norm()))
         return fmt::format("expected a straight edge, got one that is {:.3g} m off a line", std::abs(off(p)));
   Outline whole;
   std::vector<std::string> named;
@@ -170,15 +170,15 @@ std::string unfold(const std::string& fold, Outline& outline, std::vector<std::s
     Curve other = whole[i].reversed();
     for (Vec2& p : other.control) p -= 2 * off(p) * Vec2(-along.y(), along.x());
     whole.push_back(other);
-    named.push_back(named[i] == at_a || named[i] == at_b ? named[i] : across_fold(named[i]));
+    named.push_back(named[i] == at_a || named[i] == at_b ? named[i] : name_across_fold(named[i]));
   }
   outline = std::move(whole);
   names = std::move(named);
   return {};
 }
 
-/// Takes over what a mirror image does not say itself.
-void mirror(const Panel& from, Panel& panel) {
+/// Copies from the original all properties that the mirror image does not state itself.
+void copy_from_original(const Panel& from, Panel& panel) {
   panel.path = from.path, panel.file = from.file, panel.id = from.id;
   if (panel.edge_names.empty()) panel.edge_names = from.edge_names;
   if (panel.fold.empty()) panel.fold = from.fold;
@@ -194,13 +194,13 @@ void mirror(const Panel& from, Panel& panel) {
   if (!panel.position && from.position) panel.position = Vec2(-from.position->x(), from.position->y());
 }
 
-/// The outline of a panel that is right; else what is wrong goes to the findings, or to the mistakes of drawings.
-std::optional<DrawnPanel> drawn_panel(const Panel& panel, const std::string& path, Findings& findings,
-                                      std::vector<std::string>& in_drawings) {
+/// The outline of a panel; if it has a mistake, reports it, to the findings or as a mistake in a drawing.
+std::optional<DrawnPanel> read_outline(const Panel& panel, const std::string& path, Findings& findings,
+                                       std::vector<std::string>& in_drawings) {
   if (panel.path.empty()) try {
       return load_svg_panel(panel.file, panel.id);
     } catch (const Error& error) {
-      // Panels of one drawing that cannot be read all say the same.
+      // All panels of an unreadable drawing give the same message: keep it once.
       if (std::ranges::find(in_drawings, error.what()) == in_drawings.end()) in_drawings.emplace_back(error.what());
       return std::nullopt;
     }
@@ -210,8 +210,8 @@ std::optional<DrawnPanel> drawn_panel(const Panel& panel, const std::string& pat
   return std::nullopt;
 }
 
-/// A mirror image gets what it is the image of.
-void find_original(std::vector<Panel>& panels, std::size_t i, Findings& findings) {
+/// Completes a mirror image from its original.
+void complete_mirror_image(std::vector<Panel>& panels, std::size_t i, Findings& findings) {
   Panel& panel = panels[i];
   if (panel.mirror_of.empty()) return;
   const std::string key = findings.entry("panel", i) + ".mirror_of";
@@ -220,23 +220,23 @@ void find_original(std::vector<Panel>& panels, std::size_t i, Findings& findings
   std::vector<std::string> known;
   for (std::size_t k = 0; k < i; ++k) {
     if (!panels[k].mirror_of.empty()) continue;
-    if (panels[k].name == panel.mirror_of) return mirror(panels[k], panel);
+    if (panels[k].name == panel.mirror_of) return copy_from_original(panels[k], panel);
     known.push_back(panels[k].name);
   }
   findings.report(key, fmt::format("expected a panel before it that has an outline, got {}{}",
                                    scene::in_quotes(panel.mirror_of), scene::suggestion(panel.mirror_of, known)));
 }
 
-/// Finds the edges of a panel from its outline, and what is wrong with it.
-void draw_panel(Panel& panel, const std::string& path, Findings& findings, std::vector<std::string>& in_drawings) {
+/// Derives the edges of a panel from its outline, and reports mistakes in it.
+void derive_edges(Panel& panel, const std::string& path, Findings& findings, std::vector<std::string>& in_drawings) {
   if (panel.path.empty() == panel.file.empty()) {
-    if (!panel.mirror_of.empty()) return;  // of one that has none, or that is not there
+    if (!panel.mirror_of.empty()) return;  // its original has no outline or does not exist, which has been reported
     if (!findings.faulty(path + ".path") && !findings.faulty(path + ".file"))
       findings.report(path, "expected an outline, as path, as file and id or as mirror_of, got none");
     return;
   }
   const std::string key = panel.path.empty() ? path + ".file" : path + ".path";
-  std::optional<DrawnPanel> drawn = drawn_panel(panel, path, findings, in_drawings);
+  std::optional<DrawnPanel> drawn = read_outline(panel, path, findings, in_drawings);
   if (!drawn) return;
   auto& [outline, names] = *drawn;
   if (!panel.mirror_of.empty())
@@ -250,12 +250,12 @@ void draw_panel(Panel& panel, const std::string& path, Findings& findings, std::
   if (!panel.fold.empty())
     if (const std::string mistake = unfold(panel.fold, outline, names); !mistake.empty())
       return findings.report(path + ".fold", mistake);
-  const std::vector<Vec2> points = sampled(outline);
+  const std::vector<Vec2> points = sample_points(outline);
   Vec2 low = points[0], high = points[0];
   for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  if ((high - low).maxCoeff() > kMaxSize)
-    return findings.report(
-        key, fmt::format("expected a panel of at most {} m, got one of {:.4g} m", kMaxSize, (high - low).maxCoeff()));
+  if ((high - low).maxCoeff() > kMaxPanelSize)
+    return findings.report(key, fmt::format("expected a panel of at most {} m, got one of {:.4g} m", kMaxPanelSize,
+                                            (high - low).maxCoeff()));
   if (const auto crossing = self_crossing(points))
     return findings.report(key,
                            fmt::format("expected an outline that does not cross itself, got a crossing near "
@@ -267,7 +267,7 @@ void draw_panel(Panel& panel, const std::string& path, Findings& findings, std::
     std::ranges::reverse(names);
     for (Curve& curve : outline) curve = curve.reversed();
   }
-  panel.edges = joined(outline, names);
+  panel.edges = join_named_curves(outline, names);
   std::set<std::string> seen;
   for (const PanelEdge& edge : panel.edges)
     if (!seen.insert(edge.name).second)
@@ -275,18 +275,18 @@ void draw_panel(Panel& panel, const std::string& path, Findings& findings, std::
                                                    scene::in_quotes(edge.name)));
 }
 
-/// Holds names of edges against those of the panels.
+/// Checks names of edges against those of the panels.
 class EdgeNames {
  public:
   EdgeNames(const Pattern& pattern, Findings& findings) : findings_(findings) {
     for (const Panel& panel : pattern.panels) {
-      undrawn_ |= panel.edges.empty();
+      has_invalid_panel_ |= panel.edges.empty();
       for (const PanelEdge& edge : panel.edges) known_.push_back(panel.name + "." + edge.name);
     }
   }
   void check(const std::string& name, const std::string& key) {
-    // Panels that could not be drawn have no edges; their own mistake is enough.
-    if (undrawn_ || findings_.faulty(key) || std::ranges::find(known_, name) != known_.end()) return;
+    // Panels without a valid outline have no edges; their own mistake is enough.
+    if (has_invalid_panel_ || findings_.faulty(key) || std::ranges::find(known_, name) != known_.end()) return;
     findings_.report(key, fmt::format("expected an edge such as {}, got {}{}", known_.empty() ? "front.hem" : known_[0],
                                       scene::in_quotes(name), scene::suggestion(name, known_)));
   }
@@ -300,15 +300,15 @@ class EdgeNames {
   Findings& findings_;
   std::vector<std::string> known_;
   std::set<std::string> sewn_;
-  bool undrawn_ = false;
+  bool has_invalid_panel_ = false;
 };
 
 void check(Pattern& pattern, Findings& findings, std::vector<std::string>& in_drawings) {
   if (pattern.panels.empty() && !findings.has("panel"))
     findings.report("", "expected at least one [[panel]], got none");
-  for (std::size_t i = 0; i < pattern.panels.size(); ++i) find_original(pattern.panels, i, findings);
+  for (std::size_t i = 0; i < pattern.panels.size(); ++i) complete_mirror_image(pattern.panels, i, findings);
   for (std::size_t i = 0; i < pattern.panels.size(); ++i)
-    draw_panel(pattern.panels[i], findings.entry("panel", i), findings, in_drawings);
+    derive_edges(pattern.panels[i], findings.entry("panel", i), findings, in_drawings);
   EdgeNames names(pattern, findings);
   for (std::size_t i = 0; i < pattern.seams.size(); ++i) {
     names.check_sewn_once(pattern.seams[i].a, findings.entry("seam", i) + ".a");
@@ -406,7 +406,7 @@ std::pair<std::size_t, std::size_t> Pattern::find(const std::string& name) const
 
 namespace {
 
-ReadPattern read_mistakes(const std::filesystem::path& file) {
+ReadPattern read_and_check(const std::filesystem::path& file) {
   Findings findings;
   ReadPattern read;
   std::vector<std::string> in_drawings;
@@ -434,7 +434,7 @@ ReadPattern read_mistakes(const std::filesystem::path& file) {
 }  // namespace
 
 ReadPattern read_pattern(const std::filesystem::path& file) {
-  return read_checked(file, [&] { return read_mistakes(file); });
+  return read_checked(file, [&] { return read_and_check(file); });
 }
 
 Pattern load_pattern(const std::filesystem::path& file, const std::string& where) {

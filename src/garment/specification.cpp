@@ -22,20 +22,20 @@ namespace {
 using nlohmann::json;
 using scene::Findings;
 
-// Coordinates from here on are damage.
-constexpr double kFarthest = 1e5;
-constexpr double kDefaultUnits = 100;  // to the metre
-// Height of the origin of the forerunner's body, between pelvis and chest, above its floor [m].
-constexpr double kOldOrigin = 1.12;
-// The body that the dataset's patterns are drawn for [m].
+// Larger coordinates are treated as damaged data.
+constexpr double kMaxSpecCoordinate = 1e5;
+constexpr double kDefaultUnitsPerMetre = 100;  // units per metre
+// Height above its floor of the origin of the predecessor's body, between pelvis and chest [m].
+constexpr double kPredecessorOrigin = 1.12;
+// Measures of the body that the dataset's patterns are drawn for [m].
 constexpr double kChest = 0.998, kWaist = 0.843, kHip = 1.035, kHeight = 1.72;
-// Lowest panel of a pattern that is measured from the floor [m]: trousers end below the heel before they are worn.
-constexpr double kBelowFloor = -0.2;
-// Least height above the floor that they start at [m].
-constexpr double kClear = 0.02;
+// Minimum height of the lowest panel in a pattern measured from the floor [m]: flat trousers end below the heel.
+constexpr double kMinLowestPanel = -0.2;
+// Minimum height above the floor at which such trousers start [m].
+constexpr double kMinStartHeight = 0.02;
 
-/// A value, as messages show it.
-std::string shown(const json& value) {
+/// Text of a value in messages.
+std::string text_of(const json& value) {
   return sorted_json_text(value).substr(0, 40);
 }
 
@@ -52,7 +52,7 @@ class Reader {
       const int line = 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
       findings_.report("", {line, 1, {}}, "expected JSON, got what is none near here");
       return false;
-    } catch (const std::exception& error) {  // of numbers that no double holds, and of depth
+    } catch (const std::exception& error) {  // numbers beyond the range of double, and excessive depth
       findings_.report("", {1, 1, {}}, fmt::format("expected JSON, got what is none: {}", error.what()));
       return false;
     }
@@ -62,22 +62,22 @@ class Reader {
     if (!panels->is_object() || panels->empty()) mistake("pattern.panels", "expected panels by name, got none");
     for (const auto& [name, panel] : panels->items()) read_panel(name, panel);
     read_stitches(root["pattern"]);
-    if (wrong_) return false;
-    for (SpecPanel& panel : panels_) look_at(panel);
-    if (const auto ring = turn_over(panels_, stitches_)) {
+    if (has_mistakes_) return false;
+    for (SpecPanel& panel : panels_) derive_geometry(panel);
+    if (const auto ring = find_turned_panels(panels_, stitches_)) {
       mistake(fmt::format("pattern.stitches.{}", *ring),
               "expected stitches that leave each panel one side outside, got a ring of them that turns it over");
       return false;
     }
-    find_parts();
-    write(pattern);
-    lay_over(pattern);
+    assign_parts();
+    fill_pattern(pattern);
+    place_turned_panels(pattern);
     return true;
   }
 
  private:
   void mistake(const std::string& key, const std::string& text) {
-    wrong_ = true;
+    has_mistakes_ = true;
     findings_.report(key, text);
   }
   const json* member(const json* of, const char* name, const std::string& path) {
@@ -86,14 +86,14 @@ class Reader {
     mistake(path, fmt::format("expected \"{}\" of a specification of GarmentCode, got none", name));
     return nullptr;
   }
-  /// Numbers of a list with so many; nothing, and a mistake, where it is none.
+  /// The numbers of a list of `count` numbers; reports a mistake and returns nothing if `value` is not such a list.
   std::optional<std::vector<double>> numbers(const json& value, std::size_t count, const std::string& key) {
     std::vector<double> list;
     if (value.is_array())
       for (const json& each : value)
-        if (each.is_number() && std::abs(each.get<double>()) < kFarthest) list.push_back(each.get<double>());
+        if (each.is_number() && std::abs(each.get<double>()) < kMaxSpecCoordinate) list.push_back(each.get<double>());
     if (value.is_array() && list.size() == count && value.size() == count) return list;
-    mistake(key, fmt::format("expected {} numbers below {:g}, got {}", count, kFarthest, shown(value)));
+    mistake(key, fmt::format("expected {} numbers below {:g}, got {}", count, kMaxSpecCoordinate, text_of(value)));
     return std::nullopt;
   }
 
@@ -101,14 +101,14 @@ class Reader {
     if (!root.contains("properties") || !root["properties"].is_object()) return;
     const json& properties = root["properties"];
     if (const auto units = properties.find("units_in_meter"); units != properties.end()) {
-      constexpr double kLeast = 1e-3, kMost = 1e6;  // kilometres to micrometres
+      constexpr double kMinUnits = 1e-3, kMaxUnits = 1e6;  // kilometres to micrometres
       const double count = units->is_number() ? units->get<double>() : 0;
-      if (!(count >= kLeast && count <= kMost))
-        return mistake("properties.units_in_meter",
-                       fmt::format("expected a number from {:g} to {:g}, got {}", kLeast, kMost, shown(*units)));
+      if (!(count >= kMinUnits && count <= kMaxUnits))
+        return mistake("properties.units_in_meter", fmt::format("expected a number from {:g} to {:g}, got {}",
+                                                                kMinUnits, kMaxUnits, text_of(*units)));
       unit_ = 1 / units->get<double>();
     }
-    absolute_ = properties.value("curvature_coords", json("relative")) == "absolute";
+    has_absolute_curvature_ = properties.value("curvature_coords", json("relative")) == "absolute";
   }
 
   void read_panel(const std::string& name, const json& panel) {
@@ -133,7 +133,7 @@ class Reader {
     for (std::size_t i = 0; i < vertices->size(); ++i)
       if (const auto p = numbers((*vertices)[i], 2, fmt::format("{}.vertices.{}", path, i)))
         points.emplace_back(unit_ * (*p)[0], unit_ * (*p)[1]);
-    for (std::size_t i = 0; i < edges->size() && !wrong_; ++i)
+    for (std::size_t i = 0; i < edges->size() && !has_mistakes_; ++i)
       read_edge((*edges)[i], points, fmt::format("{}.edges.{}", path, i), result.edges);
     if (panel.contains("translation"))
       if (const auto t = numbers(panel["translation"], 3, path + ".translation"))
@@ -164,21 +164,21 @@ class Reader {
     }
     if (!edges.empty() && edges.back().end != edge.start)
       return mistake(key + ".endpoints", "expected edges one after the other around the panel, got a gap before this");
-    if (value.contains("curvature")) bend(value["curvature"], key + ".curvature", edge);
+    if (value.contains("curvature")) read_curvature(value["curvature"], key + ".curvature", edge);
     edges.push_back(std::move(edge));
   }
 
-  /// A point beside an edge: along it and to its left, both in its lengths.
-  Vec2 beside(const SpecEdge& edge, const std::vector<double>& p) const {
-    if (absolute_) return {unit_ * p[0], unit_ * p[1]};
+  /// A control point: absolute if the file says so, else along an edge and to its left, in units of its length.
+  Vec2 control_point(const SpecEdge& edge, const std::vector<double>& p) const {
+    if (has_absolute_curvature_) return {unit_ * p[0], unit_ * p[1]};
     const Vec2 along = edge.end - edge.start;
     return edge.start + p[0] * along + p[1] * Vec2(-along.y(), along.x());
   }
 
-  void bend(const json& curvature, const std::string& key, SpecEdge& edge) {
-    if (curvature.is_array()) {  // of the forerunner: quadratic
-      old_ = true;
-      if (const auto p = numbers(curvature, 2, key)) edge.control.push_back(beside(edge, *p));
+  void read_curvature(const json& curvature, const std::string& key, SpecEdge& edge) {
+    if (curvature.is_array()) {  // the predecessor's format: quadratic
+      is_predecessor_ = true;
+      if (const auto p = numbers(curvature, 2, key)) edge.control.push_back(control_point(edge, *p));
       return;
     }
     const json *type = member(&curvature, "type", key), *params = member(&curvature, "params", key);
@@ -191,13 +191,13 @@ class Reader {
       edge.large = (*p)[1] != 0, edge.right = (*p)[2] != 0;
       if (!(edge.radius > 0)) mistake(key + ".params", fmt::format("expected a radius > 0, got {:g}", (*p)[0]));
     } else if (count == 0) {
-      mistake(key + ".type", "expected quadratic, cubic or circle, got " + shown(*type));
+      mistake(key + ".type", "expected quadratic, cubic or circle, got " + text_of(*type));
     } else if (!params->is_array() || params->size() != count) {
       mistake(key + ".params",
-              fmt::format("expected {} control point{}, got {}", count, count == 1 ? "" : "s", shown(*params)));
+              fmt::format("expected {} control point{}, got {}", count, count == 1 ? "" : "s", text_of(*params)));
     } else {
       for (const json& each : *params)
-        if (const auto p = numbers(each, 2, key + ".params")) edge.control.push_back(beside(edge, *p));
+        if (const auto p = numbers(each, 2, key + ".params")) edge.control.push_back(control_point(edge, *p));
     }
   }
 
@@ -205,12 +205,12 @@ class Reader {
     if (!pattern.contains("stitches")) return;
     const json& stitches = pattern["stitches"];
     if (!stitches.is_array())
-      return mistake("pattern.stitches", "expected a list of pairs of edges, got " + shown(stitches));
+      return mistake("pattern.stitches", "expected a list of pairs of edges, got " + text_of(stitches));
     for (std::size_t i = 0; i < stitches.size(); ++i) {
       const std::string key = fmt::format("pattern.stitches.{}", i);
       const json& value = stitches[i];
       if (!value.is_array() || value.size() < 2) {
-        mistake(key, "expected two edges, got " + shown(value));
+        mistake(key, "expected two edges, got " + text_of(value));
         continue;
       }
       SpecStitch stitch;
@@ -224,28 +224,28 @@ class Reader {
     const bool named = side.is_object() && side.contains("panel") && side["panel"].is_string() &&
                        side.contains("edge") && side["edge"].is_number_unsigned();
     if (!named) {
-      mistake(key, "expected panel and edge, got " + shown(side));
+      mistake(key, "expected panel and edge, got " + text_of(side));
       return false;
     }
     const auto name = side["panel"].get<std::string>();
     edge = side["edge"].get<std::size_t>();
     panel = static_cast<std::size_t>(std::ranges::find(panels_, name, &SpecPanel::name) - panels_.begin());
     if (panel < panels_.size() && edge < panels_[panel].edges.size()) return true;
-    if (!wrong_) mistake(key, fmt::format("expected an edge of a panel, got {} of \"{}\"", edge, name));
+    if (!has_mistakes_) mistake(key, fmt::format("expected an edge of a panel, got {} of \"{}\"", edge, name));
     return false;
   }
 
-  bool says(const SpecPanel& panel, std::initializer_list<const char*> words) const {
+  bool mentions(const SpecPanel& panel, std::initializer_list<const char*> words) const {
     return std::ranges::any_of(words, [&](const char* w) { return panel.words.find(w) != std::string::npos; });
   }
-  /// A leg's front and back are sewn together at its inside; those of the trunk are not.
+  /// Whether a panel belongs to a leg: front and back of a leg are sewn together at its inside.
   bool has_inseam(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     double inner = std::numeric_limits<double>::infinity(), outer = 0, low = inner, high = -inner;
     for (const auto& points : panel.points)
       for (const Vec2& each : points) {
         const Vec3 x = panel.in_space(each);
-        if (x.x() * panel.middle.x() < -1e-3) return false;  // goes across the middle
+        if (x.x() * panel.middle.x() < -1e-3) return false;  // crosses the middle
         inner = std::min(inner, std::abs(x.x())), outer = std::max(outer, std::abs(x.x()));
         low = std::min(low, x.y()), high = std::max(high, x.y());
       }
@@ -262,40 +262,40 @@ class Reader {
     });
   }
 
-  void find_parts() {
+  void assign_parts() {
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       SpecPanel& panel = panels_[p];
       const bool left = panel.middle.x() > 0;
-      const bool trousers = says(panel, {"pant", "trouser"});
-      if (!trousers && says(panel, {"sleeve", "sl_", " arm", "cuff"}))
+      const bool trousers = mentions(panel, {"pant", "trouser"});
+      if (!trousers && mentions(panel, {"sleeve", "sl_", " arm", "cuff"}))
         panel.around = left ? Around::left_arm : Around::right_arm;
       else if (trousers || has_inseam(p))
         panel.around = left ? Around::left_leg : Around::right_leg;
-      else if (says(panel, {"hood"}))
+      else if (mentions(panel, {"hood"}))
         panel.around = Around::head;
-      else if (says(panel, {"collar", "turtle"}))
+      else if (mentions(panel, {"collar", "turtle"}))
         panel.around = Around::neck;
     }
-    // How far along a limb.
+    // Number of stitches from each limb panel to the trunk.
     for (int step = 0; step < static_cast<int>(panels_.size()); ++step)
       for (const SpecStitch& stitch : stitches_)
         for (const std::size_t k : {0, 1}) {
           SpecPanel& panel = panels_[stitch.panel[k]];
           const SpecPanel& other = panels_[stitch.panel[1 - k]];
-          if (panel.limb() && panel.steps < 0 && (other.limb() ? step > 0 && other.steps == step - 1 : step == 0))
+          if (panel.is_limb() && panel.steps < 0 && (other.is_limb() ? step > 0 && other.steps == step - 1 : step == 0))
             panel.steps = step;
         }
   }
 
-  /// Of an arm: the way to the trunk among the sides of the drawing, which may lie in any way.
-  Vec2 up_arm(std::size_t p) const {
+  /// Direction toward the trunk in the drawing of an arm panel, which may lie in any of four orientations.
+  Vec2 direction_to_trunk(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     Vec2 cap(0, 0);
     double count = 0;
     for (const SpecStitch& stitch : stitches_)
       for (const std::size_t k : {0, 1}) {
         const SpecPanel& other = panels_[stitch.panel[1 - k]];
-        if (stitch.panel[k] != p || (other.limb() && other.steps >= panel.steps)) continue;
+        if (stitch.panel[k] != p || (other.is_limb() && other.steps >= panel.steps)) continue;
         for (const Vec2& x : panel.points[stitch.edge[k]]) cap += x, ++count;
       }
     if (count == 0) return {0, 1};
@@ -303,18 +303,19 @@ class Reader {
     Vec2 low = panel.points[0][0], high = low;
     for (const auto& points : panel.points)
       for (const Vec2& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
-    const Vec2 way = (cap - 0.5 * (low + high)).cwiseQuotient((high - low).cwiseMax(1e-9));
-    return std::abs(way.x()) > std::abs(way.y()) ? Vec2(way.x() > 0 ? 1 : -1, 0) : Vec2(0, way.y() > 0 ? 1 : -1);
+    const Vec2 direction = (cap - 0.5 * (low + high)).cwiseQuotient((high - low).cwiseMax(1e-9));
+    return std::abs(direction.x()) > std::abs(direction.y()) ? Vec2(direction.x() > 0 ? 1 : -1, 0)
+                                                             : Vec2(0, direction.y() > 0 ? 1 : -1);
   }
 
-  /// From a panel's drawing to one as worn, seen from outside.
-  Eigen::Affine2d as_worn(std::size_t p) const {
+  /// Map from a panel's drawing to the panel as worn, seen from outside.
+  Eigen::Affine2d map_to_worn(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     const Vec2 mirror(panel.mirrored ? -1 : 1, 1);
     const bool arm = panel.around == Around::left_arm || panel.around == Around::right_arm;
     Vec2 up(0, 1);
     if (arm)
-      up = up_arm(p).cwiseProduct(mirror);
+      up = direction_to_trunk(p).cwiseProduct(mirror);
     else if (const Vec2 height(mirror.x() * panel.rotation(1, 0), panel.rotation(1, 1)); height.norm() > 0.1)
       up = height.normalized();
     Eigen::Matrix2d turn;
@@ -324,7 +325,7 @@ class Reader {
     return map;
   }
 
-  void write(Pattern& pattern) {
+  void fill_pattern(Pattern& pattern) {
     pattern.measures.chest = kChest;
     pattern.measures.waist = kWaist;
     pattern.measures.hip = kHip;
@@ -333,8 +334,9 @@ class Reader {
     for (const SpecPanel& panel : panels_)
       for (const auto& points : panel.points)
         for (const Vec2& p : points) lowest = std::min(lowest, panel.in_space(p).y());
-    // Trousers that end below the floor hang lower there than they are worn.
-    const double floor = old_ || lowest < kBelowFloor ? -kOldOrigin : std::min(0.0, lowest - kClear);
+    // Trousers that end below the floor are drawn lower than they are worn.
+    const double floor =
+        is_predecessor_ || lowest < kMinLowestPanel ? -kPredecessorOrigin : std::min(0.0, lowest - kMinStartHeight);
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       SpecPanel& of = panels_[p];
       findings_.add_entry("panel", "pattern.panels." + of.name);
@@ -342,17 +344,17 @@ class Reader {
       panel.name = of.name;
       panel.around = of.around;
       const bool arm = of.around == Around::left_arm || of.around == Around::right_arm;
-      // Those of limbs are before and behind.
+      // Panels of limbs lie in front or behind.
       const bool sideways = std::abs(of.outward.z()) < 0.5;
       double angle = std::atan2(of.outward.x(), of.outward.z());
-      if (of.limb() && !sideways) angle = of.outward.z() > 0 ? 0 : std::numbers::pi;
+      if (of.is_limb() && !sideways) angle = of.outward.z() > 0 ? 0 : std::numbers::pi;
       if (std::hypot(of.outward.x(), of.outward.z()) < 0.1) angle = std::atan2(of.middle.x(), of.middle.z());
       panel.angle = std::round(angle / kDegree * 1e6) * 1e-6;
-      Eigen::Affine2d map = as_worn(p);
+      Eigen::Affine2d map = map_to_worn(p);
       const Vec3 across(std::cos(angle), 0, -std::sin(angle));
       panel.position = Vec2(across.dot(of.translation), of.translation.y() - floor);
-      if (of.limb()) {
-        // The middle of a limb's lower end lies along its axis.
+      if (of.is_limb()) {
+        // Centre the lower end of a limb on its axis.
         double low = std::numeric_limits<double>::infinity();
         std::vector<Vec2> points;
         for (const auto& each : of.points)
@@ -363,7 +365,7 @@ class Reader {
         map.pretranslate(Vec2(-0.5 * (left + right), 0));
         panel.position->x() = 0;
       }
-      // Along arms and at the neck bodies differ more than patterns say.
+      // Along arms and at the neck, bodies differ too much from the pattern to use its positions.
       if (arm || of.around == Around::neck) panel.position.reset();
       panel.path = path_of(of, map);
       panel.turned = of.turned;
@@ -383,8 +385,9 @@ class Reader {
     }
   }
 
-  /// Turned panels begin folded over what they are sewn to, a layer above it: both run along the seam in one sense.
-  void lay_over(Pattern& pattern) const {
+  /// Places turned panels folded over the panels that they are sewn to, one layer above, running along the seam in the
+  /// same direction.
+  void place_turned_panels(Pattern& pattern) const {
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       Panel& panel = pattern.panels[p];
       std::vector<Vec2> own, other;
@@ -398,7 +401,7 @@ class Reader {
           for (const Vec2& x : ends_as_worn(q, stitch.edge[1 - k])) other.push_back(*under.position + x);
         }
       if (own.empty()) continue;
-      // Least squares (Kabsch) in the plane.
+      // Rigid motion in the plane by least squares (Kabsch).
       const auto count = static_cast<double>(own.size());
       const Vec2 from = std::accumulate(own.begin(), own.end(), Vec2(0, 0)) / count;
       const Vec2 to = std::accumulate(other.begin(), other.end(), Vec2(0, 0)) / count;
@@ -411,7 +414,7 @@ class Reader {
       panel.position = to - Eigen::Rotation2Dd(panel.rotation * kDegree) * from;
     }
   }
-  /// Ends and middle of an edge.
+  /// Start, middle and end of an edge, as worn.
   std::array<Vec2, 3> ends_as_worn(std::size_t p, std::size_t e) const {
     const auto& points = panels_[p].points;
     const Eigen::Affine2d& worn = panels_[p].worn;
@@ -420,8 +423,8 @@ class Reader {
 
   const std::string& text_;
   Findings& findings_;
-  double unit_ = 1 / kDefaultUnits;  // [m]
-  bool absolute_ = false, old_ = false, wrong_ = false;
+  double unit_ = 1 / kDefaultUnitsPerMetre;  // [m]
+  bool has_absolute_curvature_ = false, is_predecessor_ = false, has_mistakes_ = false;
   std::vector<SpecPanel> panels_;
   std::vector<SpecStitch> stitches_;
 };

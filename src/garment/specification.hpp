@@ -1,6 +1,7 @@
-// Patterns of GarmentCode and of its forerunner, the Garment-Pattern-Generator (Korosteleva & Lee, "Generating Datasets
-// of 3D Garments with Sewing Patterns", 2021; Korosteleva & Sorkine-Hornung, "GarmentCode: Programming Parametric
-// Sewing Patterns", 2023): flat panels, placed around a body that faces z with y up, and stitches between their edges.
+// Patterns of GarmentCode and of its predecessor, the Garment-Pattern-Generator (Korosteleva & Lee, "Generating
+// Datasets of 3D Garments with Sewing Patterns", 2021; Korosteleva & Sorkine-Hornung, "GarmentCode: Programming
+// Parametric Sewing Patterns", 2023): flat panels, placed around a body that faces z with y up, and stitches between
+// their edges.
 #pragma once
 
 #include <string>
@@ -10,9 +11,9 @@
 
 namespace weft::garment {
 
-/// A specification (JSON) as a pattern whose panels are bent around the wearer: heights, angles and turns are those of
-/// its panels, what each goes around follows from labels, names and stitches. Edges are named by their numbers. What is
-/// wrong goes to the findings, and false comes back; outlines and names of edges are left to be checked.
+/// Reads a specification (JSON) as a pattern whose panels are bent around the wearer. Heights, angles and rotations are
+/// those of its panels; labels, names and stitches determine the part that each panel goes around. Edges are named by
+/// their numbers. Reports mistakes to `findings` and then returns false. Outlines and edge names are not checked yet.
 bool read_specification(const std::string& text, scene::Findings& findings, Pattern& pattern);
 
 }  // namespace weft::garment

@@ -8,7 +8,7 @@
 namespace weft::garment {
 namespace {
 
-constexpr int kPointsOfCurve = 8;
+constexpr int kPointsPerSpecCurve = 8;
 
 }  // namespace
 
@@ -32,29 +32,30 @@ std::string path_of(const SpecPanel& panel, const Eigen::Affine2d& map) {
   return path + " Z";
 }
 
-void look_at(SpecPanel& panel) {
+void derive_geometry(SpecPanel& panel) {
   std::vector<Vec2> around;
   for (const SpecEdge& edge : panel.edges) {
     auto& points = panel.points.emplace_back();
     SpecPanel alone;
     alone.edges = {edge, {edge.end, edge.start, {}, 0, false, false}};
     const ParsedPath path = edge.has_length() ? parse_path(path_of(alone, Eigen::Affine2d::Identity())) : ParsedPath{};
-    for (std::size_t c = 0; c + 1 < path.outline.size(); ++c)  // without the way back
-      for (int k = 0; k < kPointsOfCurve; ++k) points.push_back(path.outline[c].at(double(k) / kPointsOfCurve));
+    for (std::size_t c = 0; c + 1 < path.outline.size(); ++c)  // without the closing line
+      for (int k = 0; k < kPointsPerSpecCurve; ++k)
+        points.push_back(path.outline[c].at(double(k) / kPointsPerSpecCurve));
     if (points.empty()) points.push_back(edge.start);
     around.insert(around.end(), points.begin(), points.end());
   }
   panel.mirrored = polygon_area(around) < 0;
   panel.area = std::abs(polygon_area(around));
-  // −0 would be an angle of −180° behind.
+  // Adding zero turns −0 into 0: −0 would give an angle of −180°, behind the wearer.
   panel.outward = panel.rotation.col(2) * (panel.mirrored ? -1 : 1) + Vec3::Zero();
   Vec2 low = around[0], high = around[0];
   for (const Vec2& p : around) low = low.cwiseMin(p), high = high.cwiseMax(p);
   panel.middle = panel.in_space(0.5 * (low + high));
 }
 
-std::optional<std::size_t> turn_over(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches) {
-  std::vector<int> turns(panels.size(), -1);  // 0 or 1, each seen from the first of those sewn together
+std::optional<std::size_t> find_turned_panels(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches) {
+  std::vector<int> turns(panels.size(), -1);  // side, 0 or 1, relative to the first panel of each connected set
   for (std::size_t first = 0; first < panels.size(); ++first) {
     if (turns[first] >= 0) continue;
     std::vector<std::size_t> together{first};

@@ -1,4 +1,4 @@
-// Panels and stitches of a specification of GarmentCode, as they are drawn there.
+// Panels and stitches of a GarmentCode specification, as drawn there.
 #pragma once
 
 #include <array>
@@ -12,49 +12,49 @@
 
 namespace weft::garment {
 
-/// One side of a panel; coordinates are those of the panel [m].
+/// One side of a panel, in the coordinates of the panel [m].
 struct SpecEdge {
   Vec2 start, end;
-  std::vector<Vec2> control;          // of a Bézier curve, if any
-  double radius = 0;                  // of an arc, if not 0
-  bool large = false, right = false;  // as in SVG, y upward
+  std::vector<Vec2> control;          // inner control points of a Bézier curve; empty: none
+  double radius = 0;                  // of a circular arc; 0: no arc
+  bool large = false, right = false;  // flags of an SVG arc, y upward
   bool has_length() const { return (end - start).norm() > 1e-9; }
 };
 
 /// A stitch from one edge to another.
 struct SpecStitch {
   std::array<std::size_t, 2> panel, edge;
-  bool right_wrong = false;  // the right side of one is continued by the wrong side of the other
+  bool right_wrong = false;  // the right side of one panel continues the wrong side of the other
 };
 
 struct SpecPanel {
-  std::string name, words;  // words: label and name, in small letters
+  std::string name, words;  // words: label and name, in lower case
   std::vector<SpecEdge> edges;
   Mat3 rotation = Mat3::Identity();
   Vec3 translation{0, 0, 0};  // [m]
-  // What follows from these.
+  // Derived from the members above.
   std::vector<std::vector<Vec2>> points;  // along each edge
-  bool mirrored = false;                  // drawn as seen from within
+  bool mirrored = false;                  // drawn as seen from the inside
   Vec3 outward{0, 0, 1};
-  Vec3 middle{0, 0, 0};  // in space
+  Vec3 middle{0, 0, 0};  // in space [m]
   Around around = Around::torso;
-  int steps = -1;                                      // of a limb: stitches to the trunk
+  int steps = -1;                                      // for a limb: number of stitches to the trunk
   double area = 0;                                     // [m²]
-  bool turned = false;                                 // worn with what would be its inside outward, as a lapel
-  Eigen::Affine2d worn = Eigen::Affine2d::Identity();  // from the drawing to it as worn, but for the position
+  bool turned = false;                                 // worn with its drawn inside outward, as a lapel
+  Eigen::Affine2d worn = Eigen::Affine2d::Identity();  // drawing to panel as worn, without position
 
   Vec3 in_space(const Vec2& p) const { return rotation * Vec3(p.x(), p.y(), 0) + translation; }
-  bool limb() const { return around >= Around::left_arm; }
+  bool is_limb() const { return around >= Around::left_arm; }
 };
 
-/// SVG path data of a panel whose points are moved by `map`.
+/// SVG path data of a panel whose points are transformed by `map`.
 std::string path_of(const SpecPanel& panel, const Eigen::Affine2d& map);
 
-/// Finds the points, front, middle and area of a panel. Around its front edges run counter-clockwise.
-void look_at(SpecPanel& panel);
+/// Derives points, orientation, outward direction, middle and area of a panel from its edges.
+void derive_geometry(SpecPanel& panel);
 
-/// Finds which panels are turned: of those that are sewn together, the smaller area of the two sides of the stitches
-/// that say right_wrong. Returns a stitch at which a ring of stitches turns a panel over, where there is one.
-std::optional<std::size_t> turn_over(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches);
+/// Finds the turned panels. The right_wrong stitches split each connected set of panels into two sides; the panels of
+/// the side with the smaller area are turned. Returns a stitch of a ring that would turn a panel over, if any.
+std::optional<std::size_t> find_turned_panels(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches);
 
 }  // namespace weft::garment

@@ -11,21 +11,21 @@
 namespace weft::garment {
 namespace {
 
-// Pull of each vertex to where its panels put it, by that of an edge: it decides where panels lie that no seam ties to
-// others, and hardly anything else.
-constexpr double kAnchor = 1e-4;
-// Rounds in which vertices move between their neighbours, after the depth is found.
+// Weight of pulling each vertex to where its panels put it, relative to the weight of an edge. It determines the
+// position of panels that no seam joins to others, and hardly anything else.
+constexpr double kAnchorWeight = 1e-4;
+// Number of smoothing rounds after the depth is computed.
 constexpr int kSmoothingRounds = 10;
 
 double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 side = b - a;
-  const double share = std::clamp((p - a).dot(side) / std::max(side.squaredNorm(), 1e-30), 0.0, 1.0);
-  return (a + share * side - p).norm();
+  const double fraction = std::clamp((p - a).dot(side) / std::max(side.squaredNorm(), 1e-30), 0.0, 1.0);
+  return (a + fraction * side - p).norm();
 }
 
 using VertexPair = std::array<Index, 2>;
 
-// Sides of triangles as pairs of vertices, those of front and back apart.
+// Sides of triangles as pairs of vertices, separate for front and back.
 std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) {
   std::array<std::set<VertexPair>, 2> sides;
   for (const LaidPanel& panel : panels)
@@ -37,7 +37,7 @@ std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) 
   return sides;
 }
 
-// Moves the vertices that `free` allows to the middle of their neighbours, halfway, all at once.
+// Moves the vertices with `free` set halfway to the mean of their neighbours, all at once, in each round.
 void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector<char>& free, std::vector<Vec3>& x) {
   for (int round = 0; round < kSmoothingRounds; ++round) {
     const std::vector<Vec3> before = x;
@@ -53,7 +53,7 @@ void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector
 }  // namespace
 
 std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices) {
-  JoinedPlaces<2> places(vertices, kAnchor);
+  JoinedPlaces<2> places(vertices, kAnchorWeight);
   for (const LaidPanel& panel : panels)
     for (std::size_t t = 0; t < panel.triangles.size(); ++t) places.add(panel.triangles[t], panel.corners[t]);
   return places.solve();
@@ -65,12 +65,12 @@ std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec
   std::ranges::set_intersection(sides[0], sides[1], std::back_inserter(shared));
   std::vector<std::vector<Index>> neighbours(plane.size());
   std::vector<char> free(plane.size(), 1);
-  std::vector<double> way(plane.size());  // which side of the plane: −1 front, 1 back
+  std::vector<double> side_sign(plane.size());  // side of the plane: −1 front, 1 back
   for (std::size_t half = 0; half < 2; ++half)
     for (const auto& [a, b] : sides[half]) {
       neighbours[at(a)].push_back(b);
       neighbours[at(b)].push_back(a);
-      way[at(a)] = way[at(b)] = half == 0 ? -1 : 1;
+      side_sign[at(a)] = side_sign[at(b)] = half == 0 ? -1 : 1;
     }
   for (const auto& [a, b] : shared) free[at(a)] = free[at(b)] = 0;
 
@@ -79,9 +79,9 @@ std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec
     double d = shared.empty() ? depth : std::numeric_limits<double>::infinity();
     for (const auto& [a, b] : shared) d = std::min(d, distance(plane[v], plane[at(a)], plane[at(b)]));
     d = free[v] ? std::min(d, depth) : 0;
-    x[v] = {plane[v].x(), way[v] * std::sqrt(d * (2 * depth - d)), plane[v].y()};
+    x[v] = {plane[v].x(), side_sign[v] * std::sqrt(d * (2 * depth - d)), plane[v].y()};
   }
-  // The rim of openings stays where it is.
+  // The rims of openings keep their positions.
   std::vector<mesh::Triangle> all;
   for (const LaidPanel& panel : panels) all.insert(all.end(), panel.triangles.begin(), panel.triangles.end());
   for (const mesh::Edge& edge : mesh::collect_edges(all).edges)

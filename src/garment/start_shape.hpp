@@ -1,4 +1,4 @@
-// Where the panels of a garment start.
+// Start positions of the panels that are not bent around a part.
 #pragma once
 
 #include <span>
@@ -10,21 +10,21 @@
 
 namespace weft::garment {
 
-/// Panels with their placed corners, before they are one surface.
+/// A panel with placed corners, before the panels are joined into one surface.
 struct LaidPanel {
   bool back = false;
-  std::vector<mesh::Triangle> triangles;     ///< of joined vertices; counter-clockwise seen from before
-  std::vector<std::array<Vec2, 3>> corners;  ///< where the panel alone would put them: across and up [m]
+  std::vector<mesh::Triangle> triangles;     ///< of joined vertices; counter-clockwise seen from in front
+  std::vector<std::array<Vec2, 3>> corners;  ///< position in the panel alone: across and up [m]
 };
 
-/// One place in the plane for each joined vertex, such that the edges keep the vectors they have in their panels as
-/// well as they can together (least squares): closing seams and darts spreads smoothly over the panels.
+/// One position in the plane for each joined vertex. The edges keep the vectors that they have in their panels as well
+/// as possible (least squares), so that closing seams and darts spreads smoothly over the panels.
 std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices);
 
-/// Takes the panels apart in depth: with d the distance in the plane to the nearest seam between front and back, front
-/// panels go to −f(d) and back panels to +f(d), f(d) = √(d (2 depth − d)), and f = depth from d = depth on: a pillow
-/// with round edges. Then each vertex inside moves between its neighbours a few times. Both halves are graphs over the
-/// plane, on either side of it: they meet in the seams alone. Returns (across, depth, up) [m].
+/// Separates front and back panels in depth. With d the distance in the plane to the nearest seam between front and
+/// back, front panels move to −f(d) and back panels to +f(d), where f(d) = √(d (2 depth − d)) and f = depth for d >=
+/// depth: a pillow with round edges. A few smoothing steps then move each inner vertex toward its neighbours. Both
+/// halves are graphs over the plane and meet only in the seams. Returns (across, depth, up) [m].
 std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth);
 
 }  // namespace weft::garment

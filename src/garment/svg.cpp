@@ -26,19 +26,19 @@ namespace weft::garment {
 namespace {
 
 constexpr double kMetresPerPixel = 0.0254 / 96;
-// Curves that turn by more where they meet have a corner there: pieces of a drawn curve meet within 1 or 2 degrees, a
-// side seam and a hem by 60 or more.
-constexpr double kCorner = 25 * std::numbers::pi / 180;
-// Numbers read from one attribute at most.
+// Minimum angle between two curves at a corner. Pieces of one curve meet within 1 or 2 degrees, seam and hem at 60 or
+// more.
+constexpr double kMinCornerAngle = 25 * std::numbers::pi / 180;
+// Maximum count of numbers read from one attribute.
 constexpr std::size_t kMaxNumbers = 20000;
 using Affine = Eigen::Affine2d;
 
-/// Stops a walk, which pugixml makes without recursion, at elements that functions here could not recurse into.
+/// Stops the traversal, which pugixml does without recursion, at elements too deep for the recursive functions here.
 struct DepthLimit : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node&) override { return depth() < kMaxDepth; }
 };
 
-/// A drawing, and what its errors say.
+/// A parsed SVG file, with its error reporting.
 class Drawing {
  public:
   explicit Drawing(const std::filesystem::path& file) : file_(file) {
@@ -69,7 +69,7 @@ class Drawing {
       if (const auto found = document_.find_node([&](const auto& n) { return id == n.attribute(key).value(); }))
         return found;
     if (const auto numbered = find_numbered(id)) return numbered;
-    refuse(0, fmt::format("expected an element with the id or label \"{}\", got none; {}", id, ids_instead(id)));
+    refuse(0, fmt::format("expected an element with the id or label \"{}\", got none; {}", id, suggest_ids(id)));
   }
 
  private:
@@ -78,7 +78,7 @@ class Drawing {
     return name == "path" || name == "polygon" || name == "rect" || name == "g";
   }
 
-  /// "path:2" is the second path of the drawing, in its order: programs such as Valentina write no ids.
+  /// Finds "path:2", the second path in the order of the drawing: programs such as Valentina write no ids.
   pugi::xml_node find_numbered(const std::string& id) const {
     const std::size_t colon = id.find(':');
     if (colon == std::string::npos) return {};
@@ -90,8 +90,8 @@ class Drawing {
     });
   }
 
-  /// What could be written in place of an id that nothing has.
-  std::string ids_instead(const std::string& id) const {
+  /// Suggestions for the message about an unknown id.
+  std::string suggest_ids(const std::string& id) const {
     std::vector<std::string> known;
     std::size_t paths = 0;
     document_.find_node([&](const pugi::xml_node& node) {
@@ -106,8 +106,8 @@ class Drawing {
                          paths);
     const std::string nearest = nearest_name(id, known);
     if (!nearest.empty()) return fmt::format("did you mean \"{}\"?", nearest);
-    constexpr std::size_t kMostNamed = 12;
-    const std::size_t named = std::min(known.size(), kMostNamed);
+    constexpr std::size_t kMaxSuggestions = 12;
+    const std::size_t named = std::min(known.size(), kMaxSuggestions);
     return fmt::format("it has \"{}\"{}", fmt::join(std::span(known).first(named), "\", \""),
                        named < known.size() ? ", ..." : "");
   }
@@ -122,8 +122,8 @@ class Drawing {
   pugi::xml_document document_;
 };
 
-// The numbers of a text, apart by white space or commas; nothing where there is anything else.
-std::optional<std::vector<double>> numbers_of(std::string_view text) {
+// The numbers of a text, separated by white space or commas; nothing if it contains anything else.
+std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   std::vector<double> numbers;
   for (;;) {
     const std::size_t start = text.find_first_not_of(" \t\r\n,");
@@ -137,8 +137,8 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
   }
 }
 
-// A length such as "210mm" [m]; nothing for percentages and what is none.
-std::optional<double> length_of(std::string_view text) {
+// A length such as "210mm" in [m]; nothing for percentages and invalid text.
+std::optional<double> parse_length(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || !(value > 0) || !std::isfinite(value)) return std::nullopt;
@@ -152,22 +152,22 @@ std::optional<double> length_of(std::string_view text) {
   return std::nullopt;
 }
 
-// Metres per unit of the drawing.
-double unit_of(const Drawing& drawing) {
+// Size of one unit of the drawing [m].
+double metres_per_unit(const Drawing& drawing) {
   const pugi::xml_node root = drawing.root();
-  const auto width = length_of(root.attribute("width").value());
-  const auto box = numbers_of(root.attribute("viewBox").value());
+  const auto width = parse_length(root.attribute("width").value());
+  const auto box = parse_numbers(root.attribute("viewBox").value());
   if (!root.attribute("viewBox")) return kMetresPerPixel;
   if (!box || box->size() != 4 || !((*box)[2] > 0) || !((*box)[3] > 0))
     drawing.refuse(root, "viewBox: expected x, y, width > 0 and height > 0, got something else");
   if (!width) return kMetresPerPixel;
   double unit = *width / (*box)[2];
-  // With both the drawing fits into the smaller, as browsers show it.
-  if (const auto height = length_of(root.attribute("height").value())) unit = std::min(unit, *height / (*box)[3]);
+  // With both given, the drawing fits into the smaller extent, as in browsers.
+  if (const auto height = parse_length(root.attribute("height").value())) unit = std::min(unit, *height / (*box)[3]);
   return unit;
 }
 
-// One of the transforms of SVG 1.1, section 7.6; nothing where it is none.
+// One of the transforms of SVG 1.1, section 7.6; nothing if it is invalid.
 std::optional<Affine> transform_of(std::string_view kind, const std::vector<double>& p) {
   const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
   Affine t = Affine::Identity();
@@ -191,7 +191,7 @@ std::optional<Affine> transform_of(std::string_view kind, const std::vector<doub
   return t;
 }
 
-Affine own_transform(const Drawing& drawing, const pugi::xml_node& node) {
+Affine parse_transform(const Drawing& drawing, const pugi::xml_node& node) {
   std::string_view text = node.attribute("transform").value();
   Affine all = Affine::Identity();
   for (;;) {
@@ -202,7 +202,8 @@ Affine own_transform(const Drawing& drawing, const pugi::xml_node& node) {
     if (open < close && close != std::string_view::npos) {
       std::string_view kind = text.substr(start, open - start);
       kind = kind.substr(0, kind.find_last_not_of(" \t\r\n") + 1);
-      if (const auto numbers = numbers_of(text.substr(open + 1, close - open - 1))) one = transform_of(kind, *numbers);
+      if (const auto numbers = parse_numbers(text.substr(open + 1, close - open - 1)))
+        one = transform_of(kind, *numbers);
     }
     if (!one) drawing.refuse(node, "transform: expected such as translate(1 2) or rotate(30), got something else");
     all = all * *one;
@@ -210,14 +211,14 @@ Affine own_transform(const Drawing& drawing, const pugi::xml_node& node) {
   }
 }
 
-// The outline in the element's own coordinates.
+// The outline in the coordinates of the element.
 Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
   const std::string_view kind = node.name();
   std::string data = node.attribute("d").value();
   if (kind == "polygon") {
     data = fmt::format("M {} Z", node.attribute("points").value());
   } else if (kind == "rect") {
-    const auto number = [&](const char* key) { return numbers_of(node.attribute(key).value()); };
+    const auto number = [&](const char* key) { return parse_numbers(node.attribute(key).value()); };
     const auto x = number("x"), y = number("y"), width = number("width"), height = number("height");
     if (!x || !y || x->size() > 1 || y->size() > 1 || !width || width->size() != 1 || !height || height->size() != 1)
       drawing.refuse(node, "expected x, y, width and height as numbers, got something else");
@@ -231,15 +232,15 @@ Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
   return std::move(parsed.outline);
 }
 
-/// An element's coordinates to metres, y upward.
+/// Converts coordinates of elements to metres, y upward.
 class Sheet {
  public:
-  explicit Sheet(const Drawing& drawing) : drawing_(drawing), unit_(unit_of(drawing)) {}
+  explicit Sheet(const Drawing& drawing) : drawing_(drawing), unit_(metres_per_unit(drawing)) {}
 
   Affine to_metres(const pugi::xml_node& element) const {
     Affine transform = Affine::Identity();
     for (pugi::xml_node node = element; node && node != drawing_.root(); node = node.parent())
-      transform = own_transform(drawing_, node) * transform;
+      transform = parse_transform(drawing_, node) * transform;
     return Eigen::Scaling(unit_, -unit_) * transform;
   }
 
@@ -263,14 +264,14 @@ struct Label {
   Vec2 place;  ///< [m]
 };
 
-/// What a group holds.
+/// Content of a group.
 struct Group {
   std::vector<pugi::xml_node> outlines;
   std::vector<Label> edges;
   std::optional<Vec2> origin;
 };
 
-/// The words of a text and of what is in it.
+/// The text of a node and of its descendants.
 std::string words_in(const pugi::xml_node& node) {
   std::string words = node.value();
   for (const pugi::xml_node& child : node.children()) words += words_in(child);
@@ -284,7 +285,7 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   if (first != "origin" && !first.starts_with("edge:")) return;
   pugi::xml_node at = node;
   if (!at.attribute("x")) at = node.child("tspan");
-  const auto x = numbers_of(at.attribute("x").value()), y = numbers_of(at.attribute("y").value());
+  const auto x = parse_numbers(at.attribute("x").value()), y = parse_numbers(at.attribute("y").value());
   if (!x || !y || x->empty() || y->empty())
     drawing.refuse(node, "expected x and y where a label stands, got something else");
   const Vec2 place = sheet.to_metres(at) * Vec2(x->front(), y->front());
@@ -295,8 +296,10 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   }
   name = first.substr(5);
   if (name.empty()) stream >> name;
-  const auto of_names = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
-  if (name.empty() || !std::ranges::all_of(name, of_names) || stream >> more)
+  const auto is_name_character = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  };
+  if (name.empty() || !std::ranges::all_of(name, is_name_character) || stream >> more)
     drawing.refuse(node, "expected edge: and a name of letters, digits, _ and -, got something else");
   group.edges.push_back({name, place});
 }
@@ -326,15 +329,15 @@ double distance(const Curve& curve, const Vec2& from) {
 }
 
 bool has_corner(const Curve& before, const Curve& after) {
-  constexpr double kEnd = 1e-3;  // directions at ends whose control points coincide are those a little inward
-  const Vec2 in = before.end() - before.at(1 - kEnd), out = after.at(kEnd) - after.start();
-  return std::abs(std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out))) > kCorner;
+  constexpr double kEndOffset = 1e-3;  // direction at an end is taken at this offset: control points may coincide
+  const Vec2 in = before.end() - before.at(1 - kEndOffset), out = after.at(kEndOffset) - after.start();
+  return std::abs(std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out))) > kMinCornerAngle;
 }
 
-/// A name for each curve.
+/// Determines a name for each curve.
 std::vector<std::string> name_edges(const Outline& outline, const std::vector<Label>& labels) {
   const std::size_t n = outline.size();
-  std::vector<std::size_t> edge(n, 0);  // of a curve, counted from the first corner on
+  std::vector<std::size_t> edge(n, 0);  // edge number of each curve, counted from the first corner
   std::size_t first = 0, edges = 0;
   while (first < n && !has_corner(outline[(first + n - 1) % n], outline[first])) ++first;
   for (std::size_t i = 0; i < n; ++i) {
@@ -357,7 +360,7 @@ std::vector<std::string> name_edges(const Outline& outline, const std::vector<La
   return names;
 }
 
-DrawnPanel panel_of(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node) {
+DrawnPanel read_panel_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node) {
   Group group;
   read_group(drawing, sheet, node, group);
   if (group.outlines.size() != 1)
@@ -366,7 +369,7 @@ DrawnPanel panel_of(const Drawing& drawing, const Sheet& sheet, const pugi::xml_
                                group.outlines.size()));
   DrawnPanel panel{sheet.place(outline_of(drawing, group.outlines[0]), group.outlines[0]), {}};
   if (!group.edges.empty()) panel.names = name_edges(panel.outline, group.edges);
-  // A part that was moved on its sheet stays the same part.
+  // Without an origin text, the group's own origin counts, so that moving the group on the sheet changes nothing.
   const Vec2 origin = group.origin.value_or(sheet.to_metres(node) * Vec2(0, 0));
   for (Curve& curve : panel.outline)
     for (Vec2& p : curve.control) p -= origin;
@@ -379,7 +382,7 @@ DrawnPanel load_svg_panel(const std::filesystem::path& file, const std::string& 
   const Drawing drawing(file);
   const Sheet sheet(drawing);
   const pugi::xml_node element = drawing.find(id);
-  if (std::string_view(element.name()) == "g") return panel_of(drawing, sheet, element);
+  if (std::string_view(element.name()) == "g") return read_panel_group(drawing, sheet, element);
   return {sheet.place(outline_of(drawing, element), element), {}};
 }
 

@@ -9,11 +9,11 @@
 namespace weft::garment {
 namespace {
 
-// Least distance of lattice points from the outline, in spacings: the strip between is then 0.6 to 1.6 spacings wide,
-// which bounds its angles from both sides.
-constexpr double kMargin = 0.62;
-// Shift of each row against the one below where diagonals are chosen, in spacings. Large against rounding, small
-// against any angle, also summed up over the rows.
+// Minimum distance of lattice points from the outline, in spacings. The strip between them is then 0.6 to 1.6 spacings
+// wide, which bounds its angles from both sides.
+constexpr double kMinOutlineDistance = 0.62;
+// Shift of each lattice row against the row below, in spacings, which makes the choice of diagonals unique. Large
+// against rounding errors, small against any angle, even summed over all rows.
 constexpr double kRowShift = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) {
@@ -29,7 +29,7 @@ double in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   return p.squaredNorm() * cross(q, r) + q.squaredNorm() * cross(r, p) + r.squaredNorm() * cross(p, q);
 }
 
-/// A triangulation that points are inserted into.
+/// A Delaunay triangulation into which points are inserted.
 class Delaunay {
  public:
   explicit Delaunay(std::span<const Vec2> outline) : points_(outline.begin(), outline.end()) {
@@ -48,14 +48,14 @@ class Delaunay {
         neighbours_[t][k] = edge.triangles[0] == static_cast<Index>(t) ? edge.triangles[1] : edge.triangles[0];
         stack_.emplace_back(static_cast<Index>(t), k);
       }
-    turn_edges();
+    flip_edges();
   }
 
   void insert(const Vec2& p) {
     const Index t = locate(p);
     const auto vertex = static_cast<Index>(points_.size());
     points_.push_back(p);
-    // The triangle becomes three around the point; a point on an edge makes one that is flat until that edge is turned.
+    // Split the triangle into three around the point. For a point on an edge one is flat until that edge is flipped.
     const auto [a, b, c] = triangles_[at(t)];
     const auto [ab, bc, ca] = neighbours_[at(t)];
     const auto u = static_cast<Index>(triangles_.size()), v = u + 1;
@@ -65,7 +65,7 @@ class Delaunay {
     replace_neighbour(bc, t, u);
     replace_neighbour(ca, t, v);
     for (Index each : {t, u, v}) stack_.emplace_back(each, 0);
-    turn_edges();
+    flip_edges();
     last_ = t;
   }
 
@@ -74,8 +74,8 @@ class Delaunay {
  private:
   const Vec2& point(Index i) const { return points_[at(i)]; }
 
-  // The triangle that holds p: from the one last hit across the edges that p lies beyond; where that leaves the region,
-  // by looking at all of them.
+  // Finds the triangle that contains p: walks from the last one found across edges that separate it from p; if that
+  // leaves the region, searches all triangles.
   Index locate(const Vec2& p) const {
     Index t = last_;
     for (std::size_t steps = 0; steps < triangles_.size(); ++steps) {
@@ -92,12 +92,12 @@ class Delaunay {
   }
   double depth_in(Index t, const Vec2& p) const {
     const mesh::Triangle& corners = triangles_[at(t)];
-    double least = std::numeric_limits<double>::infinity();
+    double smallest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < 3; ++k)
-      least = std::min(least, orientation(point(corners[k]), point(corners[(k + 1) % 3]), p));
-    return least;
+      smallest = std::min(smallest, orientation(point(corners[k]), point(corners[(k + 1) % 3]), p));
+    return smallest;
   }
-  // A side with p on its outside; 3 where there is none.
+  // A side that has p on its outside; 3 if there is none.
   std::size_t side_towards(Index t, const Vec2& p) const {
     const mesh::Triangle& corners = triangles_[at(t)];
     for (std::size_t k = 0; k < 3; ++k)
@@ -109,8 +109,8 @@ class Delaunay {
     if (of >= 0) std::ranges::replace(neighbours_[at(of)], from, to);
   }
 
-  // Turns edges until all that are waiting are locally Delaunay.
-  void turn_edges() {
+  // Flips edges until all edges on the stack are locally Delaunay.
+  void flip_edges() {
     while (!stack_.empty()) {
       const auto [t, k] = stack_.back();
       stack_.pop_back();
@@ -120,7 +120,7 @@ class Delaunay {
       while (neighbours_[at(s)][m] != t) ++m;
       const Index a = triangles_[at(t)][k], b = triangles_[at(t)][(k + 1) % 3], c = triangles_[at(t)][(k + 2) % 3];
       const Index d = triangles_[at(s)][(m + 2) % 3];
-      if (!should_turn(a, b, c, d)) continue;
+      if (!should_flip(a, b, c, d)) continue;
       const Index bc = neighbours_[at(t)][(k + 1) % 3], ca = neighbours_[at(t)][(k + 2) % 3];
       const Index ad = neighbours_[at(s)][(m + 1) % 3], db = neighbours_[at(s)][(m + 2) % 3];
       triangles_[at(t)] = {c, a, d}, neighbours_[at(t)] = {ca, ad, s};
@@ -130,31 +130,32 @@ class Delaunay {
       for (std::size_t side : {0U, 1U}) stack_.emplace_back(t, side), stack_.emplace_back(s, side);
     }
   }
-  // Edge ab of abc with d beyond: only within a convex quadrilateral, and only if that is better by more than rounding.
-  bool should_turn(Index a, Index b, Index c, Index d) const {
+  // Whether to flip edge ab of triangle abc, with d on its other side: only inside a convex quadrilateral, and only if
+  // it is better by more than rounding errors.
+  bool should_flip(Index a, Index b, Index c, Index d) const {
     const Vec2 &pa = point(a), &pb = point(b), &pc = point(c), &pd = point(d);
     if (orientation(pc, pa, pd) <= 0 || orientation(pd, pb, pc) <= 0) return false;
     const double size = std::max((pa - pb).squaredNorm(), (pc - pd).squaredNorm());
-    // A flat triangle has no circle: any turn is better.
+    // A flat triangle has no circumcircle: any flip is better.
     if (orientation(pa, pb, pc) <= 1e-12 * size) return true;
     return in_circle(pa, pb, pc, pd) > 1e-12 * size * size;
   }
 
   std::vector<Vec2> points_;
   std::vector<mesh::Triangle> triangles_;
-  std::vector<std::array<Index, 3>> neighbours_;  // across the side from corner k to k + 1; -1: the outline
+  std::vector<std::array<Index, 3>> neighbours_;  // across the side from corner k to k + 1; -1: outline
   std::vector<std::pair<Index, std::size_t>> stack_;
   Index last_ = 0;
 };
 
 double distance_sq(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 side = b - a;
-  const double share = std::clamp((p - a).dot(side) / side.squaredNorm(), 0.0, 1.0);
-  return (a + share * side - p).squaredNorm();
+  const double fraction = std::clamp((p - a).dot(side) / side.squaredNorm(), 0.0, 1.0);
+  return (a + fraction * side - p).squaredNorm();
 }
 
-// Even-odd rule.
-bool holds(std::span<const Vec2> outline, const Vec2& p) {
+// Whether p lies inside the outline (even-odd rule).
+bool contains(std::span<const Vec2> outline, const Vec2& p) {
   bool inside = false;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
@@ -163,7 +164,7 @@ bool holds(std::span<const Vec2> outline, const Vec2& p) {
   return inside;
 }
 
-bool far_from(std::span<const Vec2> outline, const Vec2& p, double distance) {
+bool is_far_from(std::span<const Vec2> outline, const Vec2& p, double distance) {
   for (std::size_t i = 0; i < outline.size(); ++i)
     if (distance_sq(p, outline[i], outline[(i + 1) % outline.size()]) < distance * distance) return false;
   return true;
@@ -178,17 +179,17 @@ FlatMesh triangulate(std::span<const Vec2> outline, std::span<const Vec2> inside
 }
 
 FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spacing) {
-  // In coordinates along weft and warp, so that the lattice stands upright.
-  const auto along = [&](const Vec2& p) -> Vec2 { return {cross(p, warp), p.dot(warp)}; };
-  std::vector<Vec2> turned;
-  Vec2 low = along(outline[0]), high = low;
+  // In coordinates along weft and warp, so that the lattice is axis-aligned.
+  const auto to_lattice = [&](const Vec2& p) -> Vec2 { return {cross(p, warp), p.dot(warp)}; };
+  std::vector<Vec2> rotated;
+  Vec2 low = to_lattice(outline[0]), high = low;
   for (const Vec2& p : outline) {
-    turned.push_back(along(p));
-    low = low.cwiseMin(turned.back());
-    high = high.cwiseMax(turned.back());
+    rotated.push_back(to_lattice(p));
+    low = low.cwiseMin(rotated.back());
+    high = high.cwiseMax(rotated.back());
   }
-  // Whole rows, centred, so that a symmetric panel gets a symmetric lattice; a multiple of the spacing is one in spite
-  // of rounding.
+  // Whole rows, centred, so that a symmetric panel gets a symmetric lattice. The added shift keeps rounding errors from
+  // losing a row if the size is a multiple of the spacing.
   std::array<int, 2> count{};
   for (int axis = 0; axis < 2; ++axis) count[axis] = static_cast<int>((high[axis] - low[axis]) / spacing + kRowShift);
   const Vec2 first = 0.5 * (low + high) - 0.5 * spacing * Vec2(count[0], count[1]);
@@ -197,11 +198,11 @@ FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spac
   for (int j = 0; j <= count[1]; ++j)
     for (int i = 0; i <= count[0]; ++i) {
       const Vec2 p = first + spacing * Vec2(i, j);
-      if (!holds(turned, p) || !far_from(turned, p, kMargin * spacing)) continue;
+      if (!contains(rotated, p) || !is_far_from(rotated, p, kMinOutlineDistance * spacing)) continue;
       inside.emplace_back(p.x() + j * kRowShift * spacing, p.y());
       exact.emplace_back(p.x() * Vec2(warp.y(), -warp.x()) + p.y() * warp);
     }
-  FlatMesh mesh = triangulate(turned, inside);
+  FlatMesh mesh = triangulate(rotated, inside);
   mesh.points = std::move(exact);
   return mesh;
 }
@@ -219,7 +220,7 @@ std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const
     for (std::size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j + 1 == n) continue;
       const Vec2 &a = outline[i], &b = outline[i + 1], &c = outline[j], &d = outline[(j + 1) % n];
-      // Sides in one line cross nowhere unless they overlap.
+      // Collinear sides touch only if they overlap.
       if ((a.cwiseMax(b) - c.cwiseMin(d)).minCoeff() < 0 || (c.cwiseMax(d) - a.cwiseMin(b)).minCoeff() < 0) continue;
       if (orientation(a, b, c) * orientation(a, b, d) <= 0 && orientation(c, d, a) * orientation(c, d, b) <= 0)
         return std::pair(i, j);

@@ -14,25 +14,25 @@
 namespace weft::garment {
 namespace {
 
-// Most that the lengths of a unit along u and v differ by before they are taken for two: cloth that hangs is longer
+// Maximum relative difference between the scales along u and v that still counts as one scale: hanging cloth is longer
 // along one of them by some percent.
-constexpr double kSquare = 0.05;
-// Share of all edges, by their lengths in the UVs, that must be as long as in the mesh within so much for the UVs to be
-// in one of these units. Of garments that start sewn together around a body, with seams of many times their lengths, 35
-// to 67 % are within 5 %; of charts of a body 4 %.
-constexpr double kInUnit = 0.02, kShareInUnit = 0.2;
+constexpr double kMaxScaleDifference = 0.05;
+// UVs are in one of the units below if more than the fraction kMinFractionInUnit of all edges, weighted by their
+// lengths in the UVs, is as long as in the mesh within kUnitTolerance. (Measured: 35 to 67 % within 5 % for garments
+// that start sewn together around a body with strongly stretched seams; 4 % for charts of a body.)
+constexpr double kUnitTolerance = 0.02, kMinFractionInUnit = 0.2;
 constexpr std::array<std::pair<double, const char*>, 4> kUnits{
     {{1, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}}};
-// Beyond a hundredth or a hundred times their size triangles have no shape in the UVs. (Cloth that is laid around a
-// body before it is sewn has triangles 36 times as long as in its pattern.)
-constexpr double kUsable = 100;
-// Rounds in which the scale is found; each weights what fitted badly in the last less.
-constexpr int kRounds = 30;
-// Half of all edges of cloth are nearly as long as in its panels, even where its seams are pulled together.
-constexpr double kLikePanels = 0.05;
+// Triangles that are more than this factor larger or smaller than in the mesh have no usable shape in the UVs. (Cloth
+// laid around a body before sewing has triangles 36 times as long as in its pattern.)
+constexpr double kMaxSizeRatio = 100;
+// Rounds of iterative reweighting to find the scale; edges that fitted badly get less weight.
+constexpr int kScaleRounds = 30;
+// Tolerance for `alike`: half of all edges of cloth keep their lengths even if seams are pulled together.
+constexpr double kAlikeTolerance = 0.05;
 
 struct UvEdge {
-  double du, dv, length;  // of the UVs, and in the mesh [m]
+  double du, dv, length;  // du, dv in the UVs; length in the mesh [m]
 };
 
 bool has_uv(const UvCorners& c) {
@@ -44,8 +44,8 @@ double twice_area(const UvCorners& c) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// The triangle of the mesh laid flat.
-UvCorners flat(const mesh::Triangle& t, std::span<const Vec3> x) {
+/// The triangle of the mesh, laid flat.
+UvCorners flatten_triangle(const mesh::Triangle& t, std::span<const Vec3> x) {
   const Vec3 a = x[at(t[1])] - x[at(t[0])], b = x[at(t[2])] - x[at(t[0])];
   const double length = a.norm(), along = b.dot(a) / length;
   return {Vec2(0, 0), Vec2(length, 0), Vec2(along, a.cross(b).norm() / length)};
@@ -65,9 +65,9 @@ std::vector<UvEdge> edges_of(const mesh::Mesh& mesh, std::span<const UvCorners> 
   return edges;
 }
 
-/// The length of a unit by an edge: half of all length of edges in the UVs has it longer. Weights by lengths in the
-/// mesh would prefer what is stretched.
-double even_scale(const std::vector<UvEdge>& edges) {
+/// Median over all edges of the length of one UV unit, weighted by lengths in the UVs; weights by lengths in the mesh
+/// would prefer stretched edges.
+double median_scale(const std::vector<UvEdge>& edges) {
   std::vector<std::pair<double, double>> ratios;
   double total = 0;
   for (const UvEdge& e : edges) {
@@ -82,11 +82,11 @@ double even_scale(const std::vector<UvEdge>& edges) {
   return 1;
 }
 
-/// Lengths of a unit along u and v, (su du)² + (sv dv)² being the squared length of most edges: least sum of relative
-/// errors, by least squares with weights.
-std::optional<Vec2> uneven_scale(const std::vector<UvEdge>& edges, double even) {
+/// Lengths (su, sv) of a UV unit along u and v for which (su du)² + (sv dv)² is the squared length of most edges:
+/// minimises the sum of relative errors by iteratively reweighted least squares.
+std::optional<Vec2> fit_anisotropic_scale(const std::vector<UvEdge>& edges, double even) {
   Vec2 squares = Vec2::Constant(even * even);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kScaleRounds; ++round) {
     Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
     Vec2 right = Vec2::Zero();
     for (const UvEdge& e : edges) {
@@ -102,32 +102,32 @@ std::optional<Vec2> uneven_scale(const std::vector<UvEdge>& edges, double even) 
   return Vec2(squares.cwiseSqrt());
 }
 
-/// Share of all edges, by their lengths in the UVs, that are as long as in the mesh, off by at most `most`.
-double share_alike(const std::vector<UvEdge>& edges, const Vec2& scale, double most) {
+/// Fraction of all edges, weighted by their lengths in the UVs, whose length differs by at most `tolerance`.
+double fraction_alike(const std::vector<UvEdge>& edges, const Vec2& scale, double tolerance) {
   double alike = 0, total = 0;
   for (const UvEdge& e : edges) {
     const double in_uv = std::hypot(e.du, e.dv);
     total += in_uv;
-    if (std::abs(std::hypot(scale.x() * e.du, scale.y() * e.dv) / e.length - 1) <= most) alike += in_uv;
+    if (std::abs(std::hypot(scale.x() * e.du, scale.y() * e.dv) / e.length - 1) <= tolerance) alike += in_uv;
   }
   return total > 0 ? alike / total : 0;
 }
 
-/// Into `rest`: the scale, and what unit it is.
+/// Finds scale and unit, and writes them to `rest`.
 void measure_scale(const std::vector<UvEdge>& edges, UvRest& rest) {
-  double best = kShareInUnit;
+  double best = kMinFractionInUnit;
   for (const auto& [length, name] : kUnits)
-    if (const double share = share_alike(edges, Vec2::Constant(length), kInUnit); share > best)
-      best = share, rest.scale = Vec2::Constant(length), rest.unit = name;
+    if (const double fraction = fraction_alike(edges, Vec2::Constant(length), kUnitTolerance); fraction > best)
+      best = fraction, rest.scale = Vec2::Constant(length), rest.unit = name;
   if (!rest.unit.empty() || edges.empty()) return;
-  const double even = even_scale(edges);
-  const auto both = uneven_scale(edges, even);
-  const bool differ = both && std::abs(std::log(both->x() / both->y())) > std::log1p(kSquare);
+  const double even = median_scale(edges);
+  const auto both = fit_anisotropic_scale(edges, even);
+  const bool differ = both && std::abs(std::log(both->x() / both->y())) > std::log1p(kMaxScaleDifference);
   rest.scale = differ ? *both : Vec2::Constant(even);
 }
 
-/// Singular values of the map from a triangle's rest shape to the mesh.
-Vec2 stretches(const UvCorners& from, const UvCorners& to) {
+/// Singular values of the linear map from a triangle's rest shape to its shape in the mesh.
+Vec2 principal_stretches(const UvCorners& from, const UvCorners& to) {
   Eigen::Matrix2d a, b;
   a << from[1] - from[0], from[2] - from[0];
   b << to[1] - to[0], to[2] - to[0];
@@ -151,9 +151,9 @@ std::size_t count_islands(const mesh::Mesh& mesh, std::span<const UvCorners> uv)
   return islands;
 }
 
-/// Gives triangles that are flatter than a share of the longest edge the shape that they have in the mesh, if that is
-/// higher; returns how many.
-std::size_t unflatten(const mesh::Mesh& mesh, double flattest, std::vector<UvCorners>& material) {
+/// Replaces triangles whose height is less than `flattest` times the longest edge by their shape in the mesh, if that
+/// is higher. Returns the number of triangles changed.
+std::size_t replace_flat_triangles(const mesh::Mesh& mesh, double flattest, std::vector<UvCorners>& material) {
   const auto longest_edge = [](const UvCorners& c) {
     return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
   };
@@ -162,7 +162,7 @@ std::size_t unflatten(const mesh::Mesh& mesh, double flattest, std::vector<UvCor
   std::size_t changed = 0;
   for (std::size_t t = 0; t < material.size(); ++t) {
     const auto height = [&](const UvCorners& c) { return twice_area(c) / longest_edge(c); };
-    const UvCorners own = flat(mesh.topology.triangles[t], mesh.positions);
+    const UvCorners own = flatten_triangle(mesh.topology.triangles[t], mesh.positions);
     if (height(material[t]) >= flattest * longest || height(own) <= height(material[t])) continue;
     material[t] = own;
     ++changed;
@@ -170,13 +170,13 @@ std::size_t unflatten(const mesh::Mesh& mesh, double flattest, std::vector<UvCor
   return changed;
 }
 
-/// Where so much of the weight is below. `values`: value and weight.
-double quantile(std::vector<std::pair<double, double>> values, double share) {
+/// Weighted quantile: the value below which `fraction` of the weight lies. `values`: value and weight.
+double quantile(std::vector<std::pair<double, double>> values, double fraction) {
   std::ranges::sort(values);
   double total = 0, sum = 0;
   for (const auto& [value, weight] : values) total += weight;
   for (const auto& [value, weight] : values)
-    if ((sum += weight) >= share * total) return value;
+    if ((sum += weight) >= fraction * total) return value;
   return 0;
 }
 
@@ -206,34 +206,34 @@ UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const
     rest.scale = *scale;
   else
     measure_scale(edges, rest);
-  rest.alike = share_alike(edges, rest.scale, kLikePanels);
+  rest.alike = fraction_alike(edges, rest.scale, kAlikeTolerance);
   rest.islands = count_islands(mesh, uv);
-  std::vector<std::pair<double, double>> off;
+  std::vector<std::pair<double, double>> deviations;
   double total = 0;
   for (std::size_t t = 0; t < uv.size(); ++t) {
-    const UvCorners own = flat(mesh.topology.triangles[t], mesh.positions);
+    const UvCorners own = flatten_triangle(mesh.topology.triangles[t], mesh.positions);
     const double area = 0.5 * twice_area(own);
     total += area;
     UvCorners& panel = rest.material.emplace_back(uv[t]);
     for (Vec2& c : panel) c = c.cwiseProduct(rest.scale);
     if (twice_area(panel) < 0) {
-      // Seen from behind: left and right change places.
+      // Seen from behind: exchange left and right.
       for (Vec2& c : panel) c.x() = -c.x();
       ++rest.mirrored;
     }
-    const Vec2 stretch = has_uv(panel) && twice_area(panel) != 0 ? stretches(panel, own) : Vec2(0, 0);
-    if (!(stretch.x() < kUsable) || !(stretch.y() > 1 / kUsable)) {
+    const Vec2 stretch = has_uv(panel) && twice_area(panel) != 0 ? principal_stretches(panel, own) : Vec2(0, 0);
+    if (!(stretch.x() < kMaxSizeRatio) || !(stretch.y() > 1 / kMaxSizeRatio)) {
       panel = own;
       ++rest.unusable;
       rest.unusable_area += area;
       continue;
     }
-    off.emplace_back(std::max(std::abs(stretch.x() - 1), std::abs(stretch.y() - 1)), area);
+    deviations.emplace_back(std::max(std::abs(stretch.x() - 1), std::abs(stretch.y() - 1)), area);
   }
-  rest.unusable += unflatten(mesh, flattest, rest.material);
+  rest.unusable += replace_flat_triangles(mesh, flattest, rest.material);
   rest.unusable_area /= total;
-  rest.median_stretch = quantile(off, 0.5);
-  rest.most_stretch = quantile(off, 0.95);
+  rest.median_stretch = quantile(deviations, 0.5);
+  rest.most_stretch = quantile(deviations, 0.95);
   return rest;
 }
 

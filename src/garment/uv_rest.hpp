@@ -1,4 +1,4 @@
-// A mesh with texture coordinates as cloth that was sewn from flat panels: its islands are the panels.
+// A mesh with texture coordinates as cloth sewn from flat panels: its UV islands are the panels.
 #pragma once
 
 #include <array>
@@ -11,37 +11,37 @@
 
 namespace weft::garment {
 
-/// UV coordinates of the corners of a triangle, v upward; not finite where there are none.
+/// UV coordinates of the corners of a triangle, v upward; not finite if there are none.
 using UvCorners = std::array<Vec2, 3>;
 
-/// The panels that UVs are, in their real size, and how well they fit the mesh.
+/// Panels in real size, derived from UVs, and how well they fit the mesh.
 struct UvRest {
-  std::vector<UvCorners> material;  ///< of each triangle: weft and warp of its corners, counter-clockwise [m]
-  Vec2 scale{1, 1};                 ///< length of a unit along u and v [m]
-  std::string unit;                 ///< "centimetres", where it is one; empty: measured against the mesh, or given
+  std::vector<UvCorners> material;  ///< per triangle: (weft, warp) of its corners, counter-clockwise [m]
+  Vec2 scale{1, 1};                 ///< length of one UV unit along u and v [m]
+  std::string unit;  ///< name of the unit, such as "centimetres"; empty: measured against the mesh, or given
   std::size_t islands = 0;
-  std::size_t mirrored = 0;  ///< triangles that are turned over in the plane of the UVs, and back here
-  /// Triangles without UVs, without an area in them, or a hundred times longer or shorter there: these have the
-  /// shape of the mesh.
+  std::size_t mirrored = 0;  ///< triangles that are mirrored in the UV plane; mirrored back here
+  /// Triangles without UVs, without an area in them, or a hundred times longer or shorter there. They keep the mesh's
+  /// shape.
   std::size_t unusable = 0;
-  double unusable_area = 0;  ///< their share of the mesh
-  /// By how much triangles of the mesh differ from these in length, in the direction where they do most: in the middle
-  /// of all area, and where 95 % of it differ less.
+  double unusable_area = 0;  ///< fraction of the area of the mesh
+  /// Largest relative difference in length between a triangle of the mesh and its panel, over all directions: the
+  /// median over the area, and the 95 % quantile.
   double median_stretch = 0, most_stretch = 0;
-  double alike = 0;  ///< share of all edges that are as long as in the mesh within 5 %
+  double alike = 0;  ///< fraction of all edges as long as in the mesh within 5 %
 
-  /// Whether half of all edges are as long as in the mesh: those of cloth are, those of charts of other surfaces are
-  /// not.
+  /// Whether at least half of all edges are as long as in the mesh: true for cloth, not for UV charts of other
+  /// surfaces.
   bool like_panels() const;
-  /// "3 islands, 1 unit = 1 m (metres), 98 % of all edges as long as in the mesh within 5 %; its triangles are off
-  /// by 1.2 % in the middle, 95 % of them by at most 4.3 %".
+  /// Text for messages, such as "3 islands, 1 unit = 1 m (metres), 98 % of all edges as long as in the mesh within 5 %;
+  /// its triangles are off by 1.2 % in the middle, 95 % of them by at most 4.3 %".
   std::string describe() const;
 };
 
-/// Without a `scale` it is that of metres, centimetres, millimetres or inches at which most edges are as long as in the
-/// mesh, if a fifth of them are; else the one at which most are, of u and v each where these differ. `uv` has as many
-/// entries as the mesh triangles, or none.
-/// `flattest`: triangles with less height in the UVs, as a share of the longest edge there, are unusable.
+/// Derives the rest shape from UVs. `uv`: one entry per mesh triangle, or none. If `scale` is not given, it is the unit
+/// (metres, centimetres, millimetres or inches) at which most edges are as long as in the mesh, if a fifth of them are;
+/// else the scale at which most are, separate for u and v if these differ. `flattest`: triangles whose height in the
+/// UVs, relative to the longest edge there, is smaller are unusable.
 UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale,
                     double flattest = 0);
 

@@ -11,34 +11,35 @@
 namespace weft::garment {
 namespace {
 
-// Shares of an upper arm: below the first the section beyond is taken, since the shoulder is cut off there slantwise.
-constexpr double kShoulder = 0.25;
-// Of the length of a limb, by which its tube goes on beyond wrist or ankle.
-constexpr double kBeyond = 0.3;
-// Height of a head, below its crown, in which it is widest [share of the height of head and neck].
-constexpr double kHead = 0.6;
-// How far the dome of a hood ends above the crown [m], and its narrowest section by the widest.
-constexpr double kDome = 0.08, kDomeEnd = 0.3;
-// Points of the skin that a section needs.
-constexpr std::size_t kFewestPoints = 6;
+// Fraction of the upper arm near the shoulder whose sections are replaced by the nearest one farther out, since the
+// shoulder cuts them obliquely.
+constexpr double kShoulderFraction = 0.25;
+// Length by which the tube of an arm extends beyond the wrist, as a fraction of the forearm.
+constexpr double kWristExtension = 0.3;
+// Fraction of head and neck, down from the crown, in which the widest section is sought.
+constexpr double kHeadFraction = 0.6;
+// Height of the end of a hood's dome above the crown [m], and ratio of its narrowest section to the widest.
+constexpr double kDomeHeight = 0.08, kMinDomeScale = 0.3;
+// Minimum number of skin points of a section.
+constexpr std::size_t kMinSectionPoints = 6;
 
 double radians(int direction, int directions) {
   return 2 * std::numbers::pi * direction / directions;
 }
 
-/// Where an axis goes: corners from its low end to its high one.
+/// A polygonal axis: corners from its low end to its high end.
 struct Axis {
   std::vector<Vec3> corners;
-  double first = 0;  // s of the first
+  double first = 0;  // s of the first corner
 
   double length() const {
     double sum = 0;
     for (std::size_t k = 1; k < corners.size(); ++k) sum += (corners[k] - corners[k - 1]).norm();
     return sum;
   }
-  /// Point and direction; the direction turns over within a bend.
+  /// Point and direction at a length from the low end; the direction changes gradually around a corner.
   std::pair<Vec3, Vec3> at(double length) const {
-    constexpr double kTurn = 0.06;  // [m] on both sides of a corner
+    constexpr double kCornerBlend = 0.06;  // [m] on each side of a corner
     Vec3 along = Vec3::Zero(), point = corners.front();
     double from = 0;
     for (std::size_t k = 1; k < corners.size(); ++k) {
@@ -46,8 +47,8 @@ struct Axis {
       const double to = from + side.norm();
       const bool last = k + 1 == corners.size();
       if (length >= from && (length <= to || last)) point = corners[k - 1] + (length - from) * side.normalized();
-      const double overlap = std::min(last ? length + kTurn : to, length + kTurn) -
-                             std::max(k == 1 ? length - kTurn : from, length - kTurn);
+      const double overlap = std::min(last ? length + kCornerBlend : to, length + kCornerBlend) -
+                             std::max(k == 1 ? length - kCornerBlend : from, length - kCornerBlend);
       if (overlap > 0) along += overlap * side.normalized();
       from = to;
     }
@@ -91,7 +92,7 @@ std::optional<Tube::Section> Tube::cut(const Wearer& wearer, const std::vector<m
       const Vec3 p = a + ha / (ha - hb) * (b - a);
       points.emplace_back(p.dot(plane.front), p.dot(plane.left));
     }
-  if (points.size() < kFewestPoints) return std::nullopt;
+  if (points.size() < kMinSectionPoints) return std::nullopt;
   Section section = plane;
   Vec2 low = points[0], high = points[0];
   for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -100,9 +101,9 @@ std::optional<Tube::Section> Tube::cut(const Wearer& wearer, const std::vector<m
   for (int k = 0; k < kDirections; ++k) {
     const double angle = radians(k, kDirections);
     const Vec2 n(std::cos(angle), std::sin(angle));
-    double reach = -std::numeric_limits<double>::infinity();
-    for (const Vec2& p : points) reach = std::max(reach, n.dot(p - middle));
-    section.reach[static_cast<std::size_t>(k)] = reach;
+    double support = -std::numeric_limits<double>::infinity();
+    for (const Vec2& p : points) support = std::max(support, n.dot(p - middle));
+    section.support[static_cast<std::size_t>(k)] = support;
   }
   return section;
 }
@@ -111,13 +112,13 @@ Tube::Tube(const Wearer& wearer, Around part) {
   double floor = std::numeric_limits<double>::infinity(), crown = -floor;
   for (const Vec3& x : wearer.skin) floor = std::min(floor, x.z()), crown = std::max(crown, x.z());
   const std::string& name = kAroundNames[static_cast<std::size_t>(part)];
-  Axis axis{{Vec3(0, 0, floor), Vec3(0, 0, part == Around::head ? crown + kDome : crown)}, floor};
+  Axis axis{{Vec3(0, 0, floor), Vec3(0, 0, part == Around::head ? crown + kDomeHeight : crown)}, floor};
   const bool arm = part == Around::left_arm || part == Around::right_arm;
   const bool leg = part == Around::left_leg || part == Around::right_leg;
   const bool left = part == Around::left_arm || part == Around::left_leg;
   if (arm) {
     const Limb& joints = limb(left ? wearer.left_arm : wearer.right_arm, name, "UpperArm, LowerArm and Hand");
-    const Vec3 end = joints[2] + kBeyond * (joints[2] - joints[1]);
+    const Vec3 end = joints[2] + kWristExtension * (joints[2] - joints[1]);
     axis.corners = {end, joints[1], joints[0]};
     axis.first = -axis.length();
   } else if (leg) {
@@ -127,7 +128,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
     axis.first = floor;
   }
 
-  // What of the skin it goes around.
+  // Select the skin that the tube goes around.
   std::vector<mesh::Triangle> skin;
   for (const mesh::Triangle& t : wearer.triangles) {
     const auto is = [&](Region region) {
@@ -157,15 +158,15 @@ Tube::Tube(const Wearer& wearer, Around part) {
     plane.left = along.cross(plane.front);
     cuts.push_back(cut(wearer, skin, plane));
     const double s = first_ + i * kSpacing;
-    if (arm && -s < kShoulder * (axis.corners[2] - axis.corners[1]).norm()) cuts.back() = std::nullopt;
+    if (arm && -s < kShoulderFraction * (axis.corners[2] - axis.corners[1]).norm()) cuts.back() = std::nullopt;
   }
   // A hood hangs from the widest section of the head.
   double widest = first_;
   if (part == Around::head) {
     const auto girth_of = [](const std::optional<Section>& section) {
-      return section ? std::accumulate(section->reach.begin(), section->reach.end(), 0.0) : 0.0;
+      return section ? std::accumulate(section->support.begin(), section->support.end(), 0.0) : 0.0;
     };
-    const double low = crown - kHead * (crown - wearer.neck);
+    const double low = crown - kHeadFraction * (crown - wearer.neck);
     const auto first = cuts.begin() + std::clamp(static_cast<int>((low - first_) / kSpacing), 0, count - 1);
     const auto found = std::ranges::max_element(first, cuts.end(), {}, girth_of);
     const std::optional<Section> section = *found;
@@ -173,7 +174,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
     *found = section;
     widest = first_ + static_cast<double>(found - cuts.begin()) * kSpacing;
   }
-  // Where nothing is cut, the nearest section that there is, moved along the axis.
+  // Without a section of its own, a position uses the nearest section, moved along the axis.
   std::vector<std::size_t> known;
   for (std::size_t i = 0; i < cuts.size(); ++i)
     if (cuts[i]) known.push_back(i);
@@ -188,25 +189,26 @@ Tube::Tube(const Wearer& wearer, Around part) {
         axis.at(static_cast<double>(i) * kSpacing).first - axis.at(static_cast<double>(nearest) * kSpacing).first;
     sections_.push_back(section);
   }
-  // A hood closes above the head: what would meet at its crown then lies near it.
+  // A hood closes above the head: seams that meet at its crown then start near it.
   if (part == Around::head)
     for (std::size_t i = 0; i < sections_.size(); ++i) {
       const double height =
-          std::clamp((first_ + static_cast<double>(i) * kSpacing - widest) / (crown + kDome - widest), 0.0, 1.0);
-      const double scale = std::max(std::sqrt(1 - height * height), kDomeEnd);
+          std::clamp((first_ + static_cast<double>(i) * kSpacing - widest) / (crown + kDomeHeight - widest), 0.0, 1.0);
+      const double scale = std::max(std::sqrt(1 - height * height), kMinDomeScale);
       sections_[i].scale = scale;
-      for (double& reach : sections_[i].reach) reach *= scale;
+      for (double& support : sections_[i].support) support *= scale;
     }
-  // A cloak hangs from what is widest above.
+  // A cloak hangs from the widest section above.
   if (part == Around::body)
     for (std::size_t i = sections_.size() - 1; i-- > 0;) {
       const Section& above = sections_[i + 1];
       const Vec3 shift = above.centre - sections_[i].centre;
       for (int k = 0; k < kDirections; ++k) {
         const double angle = radians(k, kDirections);
-        double& reach = sections_[i].reach[static_cast<std::size_t>(k)];
-        reach = std::max(reach, above.reach[static_cast<std::size_t>(k)] + std::cos(angle) * shift.dot(above.front) +
-                                    std::sin(angle) * shift.dot(above.left));
+        double& support = sections_[i].support[static_cast<std::size_t>(k)];
+        support =
+            std::max(support, above.support[static_cast<std::size_t>(k)] + std::cos(angle) * shift.dot(above.front) +
+                                  std::sin(angle) * shift.dot(above.left));
       }
     }
 }
@@ -216,27 +218,28 @@ Tube::Section Tube::section(double s) const {
   const double last = static_cast<double>(sections_.size() - 1);
   const double inside = std::clamp(place, 0.0, last);
   const auto below = std::min(static_cast<std::size_t>(inside), sections_.size() - 2);
-  const double share = inside - static_cast<double>(below);
+  const double fraction = inside - static_cast<double>(below);
   const Section &a = sections_[below], &b = sections_[below + 1];
   Section mixed = a;
-  mixed.centre = (1 - share) * a.centre + share * b.centre;
-  mixed.along = ((1 - share) * a.along + share * b.along).normalized();
+  mixed.centre = (1 - fraction) * a.centre + fraction * b.centre;
+  mixed.along = ((1 - fraction) * a.along + fraction * b.along).normalized();
   mixed.front = (-Vec3::UnitY() + mixed.along.y() * mixed.along).normalized();
   mixed.left = mixed.along.cross(mixed.front);
-  for (std::size_t k = 0; k < mixed.reach.size(); ++k) mixed.reach[k] = (1 - share) * a.reach[k] + share * b.reach[k];
-  mixed.scale = (1 - share) * a.scale + share * b.scale;
+  for (std::size_t k = 0; k < mixed.support.size(); ++k)
+    mixed.support[k] = (1 - fraction) * a.support[k] + fraction * b.support[k];
+  mixed.scale = (1 - fraction) * a.scale + fraction * b.scale;
   mixed.centre += (place - inside) * kSpacing * mixed.along;
   return mixed;
 }
 
-// The curve of a support function h: h n + h' t.
+// Boundary curve of a support function h: h n + h' t.
 Tube::Ring Tube::ring(const Section& section, double outward) {
   Ring points;
   const double step = 2 * std::numbers::pi / kDirections;
   for (int k = 0; k < kDirections; ++k) {
-    const double angle = radians(k, kDirections), h = section.reach[static_cast<std::size_t>(k)] + outward;
-    const double slope = (section.reach[static_cast<std::size_t>((k + 1) % kDirections)] -
-                          section.reach[static_cast<std::size_t>((k + kDirections - 1) % kDirections)]) /
+    const double angle = radians(k, kDirections), h = section.support[static_cast<std::size_t>(k)] + outward;
+    const double slope = (section.support[static_cast<std::size_t>((k + 1) % kDirections)] -
+                          section.support[static_cast<std::size_t>((k + kDirections - 1) % kDirections)]) /
                          (2 * std::sin(step));
     const double f = h * std::cos(angle) - slope * std::sin(angle), l = h * std::sin(angle) + slope * std::cos(angle);
     points[static_cast<std::size_t>(k)] = section.centre + f * section.front + l * section.left;
@@ -260,19 +263,19 @@ Vec3 Tube::at(double s, double angle, double length, double outward) const {
   const Ring points = ring(here, here.scale * outward);
   const auto n = static_cast<long>(points.size());
   const auto point = [&](long k) -> const Vec3& { return points[static_cast<std::size_t>(((k % n) + n) % n)]; };
-  // Walk from where the angle is, forward or backward.
+  // Walk along the ring from the direction of the angle, forward or backward.
   const double place = angle / (2 * std::numbers::pi) * kDirections;
   auto k = static_cast<long>(std::floor(place));
-  double share = place - std::floor(place);
+  double fraction = place - std::floor(place);
   const double total = Tube::length(points);
   if (!(total > 0)) return here.centre;
   length = std::remainder(here.scale * length, total);
-  length += share * (point(k + 1) - point(k)).norm();
+  length += fraction * (point(k + 1) - point(k)).norm();
   while (length < 0) --k, length += (point(k + 1) - point(k)).norm();
   while (length > (point(k + 1) - point(k)).norm()) length -= (point(k + 1) - point(k)).norm(), ++k;
   const double side = (point(k + 1) - point(k)).norm();
-  share = side > 0 ? length / side : 0;
-  return (1 - share) * point(k) + share * point(k + 1);
+  fraction = side > 0 ? length / side : 0;
+  return (1 - fraction) * point(k) + fraction * point(k + 1);
 }
 
 Vec3 Tube::along(double s) const {

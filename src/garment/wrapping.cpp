@@ -17,56 +17,56 @@ namespace weft::garment {
 namespace {
 
 // Distance between layers at the start [m]: more than any fabric's contact thickness.
-constexpr double kLayer = 0.01;
-// Room in a ring whose panels are buttoned together, not sewn [m]: they do not start in one place.
-constexpr double kRoom = 0.03;
-// Nearest that a narrow sleeve starts to the skin; by how much the width of a sleeve gets less where its cap begins
+constexpr double kLayerDistance = 0.01;
+// Slack in a ring whose panels are buttoned, not sewn, so that they do not start in the same place [m].
+constexpr double kClosureSlack = 0.03;
+// Minimum distance between a narrow sleeve and the skin at the start [m]; decrease in width at the start of its cap
 // [m].
-constexpr double kSkin = 0.006, kCap = 0.01;
-// Points along a seam by which a panel is moved to its neighbour, and rounds of that.
+constexpr double kMinSleeveGap = 0.006, kCapNarrowing = 0.01;
+// Number of sample points along a seam, and of rounds, for moving a panel to its neighbour.
 constexpr int kSeamPoints = 16, kSeamRounds = 6;
-// Distance over which closing a seam bends panels [m]: shorter, and a sleeve is creased at its cap; longer, and it
-// leaves the arm's axis.
-constexpr double kBendOver = 0.1;
+// Distance over which closing a seam bends panels [m]. Smaller: sleeves crease at the cap; larger: they leave the arm's
+// axis.
+constexpr double kBendingDistance = 0.1;
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// Lengths across and heights of a panel's points where they are bent, in the sense seen from outside.
-Vec2 laid(const Panel& panel, const Vec2& position, const Vec2& p) {
+/// Length across and height of a panel's point where it is bent, as seen from outside.
+Vec2 unrolled_position(const Panel& panel, const Vec2& position, const Vec2& p) {
   const Vec2 turned = Eigen::Rotation2Dd(radians(panel.rotation)) * Vec2(panel.scale.cwiseProduct(p));
   const Vec2 q = position + turned;
   return {panel.side == Side::back ? -q.x() : q.x(), q.y()};
 }
 
-class Bending {
+class PanelPlacer {
  public:
-  Bending(const Pattern& pattern, std::span<const FlatMesh> meshes, const Wearer& wearer)
+  PanelPlacer(const Pattern& pattern, std::span<const FlatMesh> meshes, const Wearer& wearer)
       : pattern_(pattern), meshes_(meshes), positions_(pattern.panels.size()) {
     for (const Panel& panel : pattern.panels)
       if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
   }
 
-  /// Positions that are given, then those that seams decide. Returns a panel that has none, if there is one.
+  /// Uses the given positions, then finds the others from seams. Returns a panel that still has none, or null.
   const Panel* find_positions() {
     for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
-    measure_ease();
+    update_eases();
     for (bool found = true; found;) {
-      // All that can be found at once, so that mirror images are treated alike.
+      // Find all that can be found in one round from the same positions, so that mirror images are treated alike.
       std::vector<std::optional<Vec2>> next = positions_;
       for (std::size_t p = 0; p < positions_.size(); ++p)
-        if (!positions_[p]) next[p] = by_seams(p);
+        if (!positions_[p]) next[p] = position_from_seams(p);
       found = next != positions_;
       positions_ = std::move(next);
     }
-    measure_ease();
+    update_eases();
     for (std::size_t p = 0; p < positions_.size(); ++p)
       if (!positions_[p]) return &pattern_.panels[p];
     return nullptr;
   }
 
-  std::vector<Vec3> bent(std::size_t p) const {
+  std::vector<Vec3> bent_points(std::size_t p) const {
     std::vector<Vec3> points;
     for (const Vec2& point : meshes_[p].points) points.push_back(place(p, *positions_[p], point));
     return points;
@@ -83,7 +83,7 @@ class Bending {
 
   Vec3 place(std::size_t p, const Vec2& position, const Vec2& point) const {
     const Panel& panel = pattern_.panels[p];
-    const Vec2 q = laid(panel, position, point);
+    const Vec2 q = unrolled_position(panel, position, point);
     return tubes_.at(part_of(panel)).at(q.y(), angle_of(panel), q.x(), outward(panel, q.y()));
   }
   double outward(const Panel& panel, double s) const {
@@ -92,13 +92,13 @@ class Bending {
       const auto& [first, of_height] = found->second;
       const double place = std::clamp((s - first) / kStep, 0.0, static_cast<double>(of_height.size() - 1));
       const auto below = std::min(static_cast<std::size_t>(place), of_height.size() - 1);
-      const double share = place - static_cast<double>(below);
-      ease = (1 - share) * of_height[below] + share * of_height[std::min(below + 1, of_height.size() - 1)];
+      const double fraction = place - static_cast<double>(below);
+      ease = (1 - fraction) * of_height[below] + fraction * of_height[std::min(below + 1, of_height.size() - 1)];
     }
-    return pattern_.gap + kLayer * panel.layer + ease;
+    return pattern_.gap + kLayerDistance * panel.layer + ease;
   }
 
-  // How wide the panels that make a ring around each part are together, by height in steps.
+  // Total width of the panels that form a ring around each part, per height in steps of kStep.
   std::map<Around, std::map<long, double>> widths() const {
     std::map<Around, std::map<long, double>> of_part;
     for (std::size_t p = 0; p < positions_.size(); ++p) {
@@ -107,8 +107,8 @@ class Bending {
       std::map<long, std::pair<double, double>> extents;
       for (const mesh::Triangle& t : meshes_[p].triangles)
         for (std::size_t k = 0; k < 3; ++k) {
-          Vec2 a = laid(panel, *positions_[p], meshes_[p].points[at(t[k])]);
-          Vec2 b = laid(panel, *positions_[p], meshes_[p].points[at(t[(k + 1) % 3])]);
+          Vec2 a = unrolled_position(panel, *positions_[p], meshes_[p].points[at(t[k])]);
+          Vec2 b = unrolled_position(panel, *positions_[p], meshes_[p].points[at(t[(k + 1) % 3])]);
           if (a.y() > b.y()) std::swap(a, b);
           for (auto level = static_cast<long>(std::ceil(a.y() / kStep)); level * kStep <= b.y() && b.y() > a.y();
                ++level) {
@@ -122,33 +122,33 @@ class Bending {
     }
     return of_part;
   }
-  // Whether a ring around a part is buttoned.
+  // Whether a ring around the part has a closure.
   bool has_closure(Around part) const {
     return std::ranges::any_of(pattern_.seams, [&](const Seam& seam) {
       return seam.closure() && part_of(pattern_.panels[pattern_.find(seam.a).first]) == part;
     });
   }
 
-  // By how much the panels of a ring are wider than their part: so far out they close it. Sleeves that are narrower are
-  // let in toward the skin, since closing them across an arm would draw them through it.
-  void measure_ease() {
+  // Computes the ease of each ring: how far outward its panels must move to close it. Narrower sleeves move toward the
+  // skin, since closing them across an arm would pull them through it.
+  void update_eases() {
     eases_.clear();
     for (const auto& [part, of_level] : widths()) {
       auto& [first, of_height] = eases_[part];
       first = kStep * static_cast<double>(of_level.begin()->first);
-      const double room = has_closure(part) ? kRoom : 0;
+      const double slack = has_closure(part) ? kClosureSlack : 0;
       const bool arm = part == Around::left_arm || part == Around::right_arm;
-      const double least = arm ? std::min(kSkin - pattern_.gap, 0.0) : 0;
+      const double min_ease = arm ? std::min(kMinSleeveGap - pattern_.gap, 0.0) : 0;
       std::vector<double> raw;
       double widest = 0;
       for (const auto& [level, width] : of_level) {
         const double girth = tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap);
-        const double ease = std::max(least, (width + room - girth) / (2 * std::numbers::pi));
-        // The cap of a sleeve gets narrower, and does not close.
-        raw.push_back(arm && width < widest - kCap ? raw.back() : ease);
+        const double ease = std::max(min_ease, (width + slack - girth) / (2 * std::numbers::pi));
+        // The cap of a sleeve narrows and does not close: keep the ease below it.
+        raw.push_back(arm && width < widest - kCapNarrowing ? raw.back() : ease);
         widest = std::max(widest, width);
       }
-      // A panel that begins or ends beside others changes the width at once.
+      // Smooth over height: a panel that begins or ends beside others changes the width abruptly.
       constexpr long kSmooth = 4;
       const auto count = static_cast<long>(raw.size());
       for (long i = 0; i < count; ++i) {
@@ -160,8 +160,8 @@ class Bending {
     }
   }
 
-  // Along its part to where the seams with panels that have a place are shortest.
-  std::optional<Vec2> by_seams(std::size_t p) const {
+  // Position along its part at which the seams with placed panels are shortest.
+  std::optional<Vec2> position_from_seams(std::size_t p) const {
     struct Pair {
       Vec2 own;
       Vec3 other;
@@ -174,20 +174,21 @@ class Bending {
         if (own != p || other == p || !positions_[other]) continue;
         const Panel &panel = pattern_.panels[own], &neighbour = pattern_.panels[other];
         const Arclength along(panel.edges[edge].curves), beside(neighbour.edges[other_edge].curves);
-        const bool reversed = seen_alike(panel, neighbour);
+        const bool reversed = are_drawn_from_same_side(panel, neighbour);
         for (int k = 0; k <= kSeamPoints; ++k) {
-          const double share = double(k) / kSeamPoints;
-          pairs.push_back({along.at(share), place(other, *positions_[other], beside.at(reversed ? 1 - share : share))});
+          const double fraction = double(k) / kSeamPoints;
+          pairs.push_back(
+              {along.at(fraction), place(other, *positions_[other], beside.at(reversed ? 1 - fraction : fraction))});
         }
       }
     if (pairs.empty()) return std::nullopt;
     const Tube& tube = tubes_.at(part_of(pattern_.panels[p]));
-    // From the end nearest to the trunk, or from where the seams are.
+    // Start from the end nearest to the trunk.
     Vec2 position(0, tube.high());
     for (int round = 0; round < kSeamRounds; ++round) {
       double sum = 0;
       for (const Pair& pair : pairs) {
-        const double s = laid(pattern_.panels[p], position, pair.own).y();
+        const double s = unrolled_position(pattern_.panels[p], position, pair.own).y();
         sum += (pair.other - place(p, position, pair.own)).dot(tube.along(s));
       }
       position.y() += sum / static_cast<double>(pairs.size());
@@ -195,20 +196,20 @@ class Bending {
     return position;
   }
 
-  static constexpr double kStep = 0.01;  // of heights at which widths are measured [m]
+  static constexpr double kStep = 0.01;  // step of the heights at which widths are measured [m]
 
   const Pattern& pattern_;
   std::span<const FlatMesh> meshes_;
   std::vector<std::optional<Vec2>> positions_;
   std::map<Around, Tube> tubes_;
-  std::map<Around, std::pair<double, std::vector<double>>> eases_;  // first height, and the ease at each [m]
+  std::map<Around, std::pair<double, std::vector<double>>> eases_;  // first height, and the ease at each step [m]
 };
 
-/// Vertices of the skin by the cubes of space that they are in.
-class NearSkin {
+/// Nearest-neighbour search among the vertices of the skin, sorted into cubic cells.
+class SkinSearch {
  public:
-  NearSkin(const Wearer& wearer, double reach)
-      : wearer_(wearer), reach_(reach), normals_(wearer.skin.size(), Vec3::Zero()) {
+  SkinSearch(const Wearer& wearer, double radius)
+      : wearer_(wearer), radius_(radius), normals_(wearer.skin.size(), Vec3::Zero()) {
     for (const mesh::Triangle& t : wearer.triangles) {
       const Vec3 area = mesh::area_vector(t, wearer.skin);
       for (const Index v : t) normals_[at(v)] += area;
@@ -218,10 +219,10 @@ class NearSkin {
       cells_[key(cell(wearer.skin[v]))].push_back(static_cast<Index>(v));
     }
   }
-  /// The nearest vertex within reach; −1: none.
+  /// The nearest vertex within the search radius; −1: none.
   Index nearest(const Vec3& x) const {
     const auto middle = cell(x);
-    double best = reach_ * reach_;
+    double best = radius_ * radius_;
     Index found = -1;
     for (long i = -1; i <= 1; ++i)
       for (long j = -1; j <= 1; ++j)
@@ -237,48 +238,50 @@ class NearSkin {
 
  private:
   std::array<long, 3> cell(const Vec3& x) const {
-    return {std::lround(std::floor(x.x() / reach_)), std::lround(std::floor(x.y() / reach_)),
-            std::lround(std::floor(x.z() / reach_))};
+    return {std::lround(std::floor(x.x() / radius_)), std::lround(std::floor(x.y() / radius_)),
+            std::lround(std::floor(x.z() / radius_))};
   }
   static std::int64_t key(const std::array<long, 3>& c) {
-    constexpr std::int64_t kMost = 1 << 20;
-    return ((c[0] + kMost) * 2 * kMost + c[1] + kMost) * 2 * kMost + c[2] + kMost;
+    constexpr std::int64_t kCellOffset = 1 << 20;
+    return ((c[0] + kCellOffset) * 2 * kCellOffset + c[1] + kCellOffset) * 2 * kCellOffset + c[2] + kCellOffset;
   }
   const Wearer& wearer_;
-  double reach_;
+  double radius_;
   std::vector<Vec3> normals_;
   std::unordered_map<std::int64_t, std::vector<Index>> cells_;
 };
 
 }  // namespace
 
-bool seen_alike(const Panel& a, const Panel& b) {
+bool are_drawn_from_same_side(const Panel& a, const Panel& b) {
   return a.from_inside() == b.from_inside();
 }
 
 std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,
                                            const Wearer& wearer,
                                            const std::function<void(const std::string&)>& refuse) {
-  Bending bending(pattern, meshes, wearer);
-  if (const Panel* lost = bending.find_positions())
-    refuse(fmt::format("panel {}: expected a position, or a seam to a panel that has one, got neither", lost->name));
+  PanelPlacer placer(pattern, meshes, wearer);
+  if (const Panel* unplaced = placer.find_positions())
+    refuse(
+        fmt::format("panel {}: expected a position, or a seam to a panel that has one, got neither", unplaced->name));
   std::vector<std::vector<Vec3>> points;
-  for (std::size_t p = 0; p < pattern.panels.size(); ++p) points.push_back(bending.bent(p));
+  for (std::size_t p = 0; p < pattern.panels.size(); ++p) points.push_back(placer.bent_points(p));
   return points;
 }
 
 std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
                                 std::size_t vertices, double spacing) {
-  JoinedPlaces<3> places(vertices, spacing * spacing / (kBendOver * kBendOver));  // a pull that is felt over kBendOver
+  // This anchor acts over kBendingDistance.
+  JoinedPlaces<3> places(vertices, spacing * spacing / (kBendingDistance * kBendingDistance));
   for (std::size_t t = 0; t < triangles.size(); ++t) places.add(triangles[t], corners[t]);
   return places.solve();
 }
 
-void clear_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
-                   std::span<Vec3> x) {
-  constexpr double kReach = 0.08;  // deepest that cloth is drawn out of the skin [m]
+void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
+                      std::span<Vec3> x) {
+  constexpr double kMaxSkinDepth = 0.08;  // search radius: maximum depth in the skin from which cloth is moved out [m]
   constexpr int kRounds = 30, kRings = 3;
-  const NearSkin skin(wearer, kReach);
+  const SkinSearch skin(wearer, kMaxSkinDepth);
   std::vector<std::vector<Index>> neighbours(x.size());
   std::vector<char> rim(x.size(), 0);
   const std::vector<mesh::Triangle> all(triangles.begin(), triangles.end());
@@ -287,7 +290,7 @@ void clear_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangl
     if (edge.triangles[1] < 0) rim[at(edge.vertices[0])] = rim[at(edge.vertices[1])] = 1;
   for (const mesh::Edge& edge : edges.edges) {
     const auto [a, b] = edge.vertices;
-    // The rim moves along itself.
+    // A vertex of the rim has only neighbours along the rim.
     if (!rim[at(a)] || edge.triangles[1] < 0) neighbours[at(a)].push_back(b);
     if (!rim[at(b)] || edge.triangles[1] < 0) neighbours[at(b)].push_back(a);
   }

@@ -1,4 +1,4 @@
-// Where the panels of a garment start that are bent around parts of a wearer.
+// Start positions of the panels that are bent around parts of a wearer.
 #pragma once
 
 #include <functional>
@@ -13,25 +13,26 @@
 
 namespace weft::garment {
 
-/// Whether two panels are drawn as seen from the same side of the cloth; then the edges of a seam between them run
-/// against each other.
-bool seen_alike(const Panel& a, const Panel& b);
+/// Whether two panels are drawn as seen from the same side of the cloth. If so, the two edges of a seam between them
+/// run in opposite directions.
+bool are_drawn_from_same_side(const Panel& a, const Panel& b);
 
-/// For each panel, where each point of its flat mesh starts if nothing is sewn: at heights and lengths of its drawing
-/// on the tube around its part, Pattern::gap and its layers away from the skin; where the panels of a ring are wider
-/// than that, as far as closes the ring. A panel without a position goes along its part to where its seams to panels
-/// that have a place are shortest. `refuse` gets what is wrong, and throws. In the wearer's axes [m].
+/// For each panel, the start position of each point of its flat mesh if nothing were sewn. Points keep the heights and
+/// lengths of the drawing on the tube around the panel's part, Pattern::gap plus its layers away from the skin; if the
+/// panels of a ring are wider than that, they move outward until the ring closes. A panel without a position moves
+/// along its part to where its seams to placed panels are shortest. `refuse` receives a description of a mistake and
+/// must throw. In the wearer's axes [m].
 std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,
                                            const Wearer& wearer, const std::function<void(const std::string&)>& refuse);
 
-/// One place for each joined vertex, such that the edges keep the vectors they have in their panels as well as they can
-/// (least squares); closing seams bends the panels over some 10 cm, `spacing` [m] being that of the mesh. `corners`:
-/// of each triangle, where its panel alone puts them.
+/// One position for each joined vertex. The edges keep the vectors that they have in their panels as well as possible
+/// (least squares); closing a seam bends the panels over about 10 cm. `corners`: per triangle, where its panel alone
+/// puts them; `spacing`: that of the mesh [m].
 std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
                                 std::size_t vertices, double spacing);
 
-/// Moves vertices that are nearer to the skin than `clearance` [m], or in it, out, those around them along.
-void clear_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
-                   std::span<Vec3> x);
+/// Moves vertices that are inside the skin or nearer to it than `clearance` [m] outward; vertices around them follow.
+void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
+                      std::span<Vec3> x);
 
 }  // namespace weft::garment

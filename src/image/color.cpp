@@ -41,10 +41,10 @@ Vec3 srgb_from_linear(const Vec3& linear) {
 
 Vec3 heat_color(double t) {
   t = std::clamp(t, 0.0, 1.0);
-  // A helix through L*a*b*: lightness linear, hue from violet blue (290 degrees) through red to yellow (100 + 360).
+  // A helix in L*a*b*: lightness is linear, hue runs from violet blue (290 degrees) through red to yellow (100 + 360).
   const double lightness = 15 + 75 * t;
   const double hue = (290 + 170 * t) * std::numbers::pi / 180;
-  // As colourful as the display allows at that lightness and hue; halving the chroma interval 20 times is exact enough.
+  // Finds the largest chroma inside the gamut at this lightness and hue by 20 bisections.
   double low = 0, high = 90;
   for (int i = 0; i < 20; ++i) {
     const double chroma = 0.5 * (low + high);

@@ -1,4 +1,4 @@
-// Colour spaces: scenes speak sRGB, light adds up in linear RGB.
+// Colour spaces: scenes use sRGB, light is added in linear RGB.
 #pragma once
 
 #include <array>
@@ -16,9 +16,8 @@ Vec3 srgb_from_linear(const Vec3& linear);
 /// Number of entries of the heat colour table.
 inline constexpr int kHeatColors = 256;
 
-/// Linear RGB of a position t on the heat scale, clamped to [0,1]: dark blue over magenta and orange to pale yellow.
-/// Lightness (CIE L*) rises in equal steps from 15 to 90, so equal differences of heat look equally large and the
-/// scale reads the same in gray.
+/// Linear RGB at position t of the heat scale, clamped to [0,1]: dark blue through magenta and orange to pale yellow.
+/// Lightness (CIE L*) rises linearly from 15 to 90, so that equal differences look equal, in grey as well.
 Vec3 heat_color(double t);
 
 /// heat_color at i / (kHeatColors - 1).

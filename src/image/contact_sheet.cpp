@@ -12,13 +12,13 @@ namespace {
 
 constexpr Color kPaper{244, 244, 242}, kInk{38, 38, 42}, kFaintInk{112, 112, 118};
 
-/// Sizes that follow from the width of a picture [pixels].
+/// Sizes derived from the width of a picture [pixels].
 struct Layout {
   explicit Layout(int width)
       : text(std::clamp(width / 24, 9, 28)), heading(text * 4 / 3), gap(text), caption(text * 2) {}
   int text, heading;
   int gap;      // around pictures
-  int caption;  // height of the first line below each
+  int caption;  // height of the first line below each picture
   int line() const { return text * 5 / 4; }
 };
 
@@ -27,28 +27,28 @@ void paste(Image& onto, const Image& image, int x, int y) {
     std::copy_n(image.pixel(0, row), 3 * static_cast<std::size_t>(image.width), onto.pixel(x, y + row));
 }
 
-// Bytes of the longest start of `text` that fits; at least one character.
-std::size_t fitting(const Font& font, std::string_view text, int room) {
+// Length in bytes of the longest prefix of `text` that fits; at least one character.
+std::size_t fitting(const Font& font, std::string_view text, int max_width) {
   std::size_t length =
-      std::min(text.size(), 4 * static_cast<std::size_t>(std::max(1, room)));  // at most 4 bytes a pixel
+      std::min(text.size(), 4 * static_cast<std::size_t>(std::max(1, max_width)));  // at most 4 bytes per pixel
   const auto is_continued = [&](std::size_t at) { return at < text.size() && (text[at] & 0xC0) == 0x80; };  // UTF-8
-  while (length > 1 && (is_continued(length) || font.width(text.substr(0, length)) > room)) --length;
+  while (length > 1 && (is_continued(length) || font.width(text.substr(0, length)) > max_width)) --length;
   while (is_continued(length)) ++length;
   return length;
 }
 
-// Bounds the height of a sheet whose labels are whole tables.
-constexpr std::size_t kMostLines = 60;
+// Limits the height of a sheet with very long captions.
+constexpr std::size_t kMaxCaptionLines = 60;
 
-// Lines no wider than `room`. They end at blanks; a word that is too long for a line goes on in the next one.
-std::vector<std::string> wrapped(const Font& font, std::string_view text, int room) {
+// Wraps a text to lines no wider than `room`, at blanks; a word longer than a line is split.
+std::vector<std::string> wrapped(const Font& font, std::string_view text, int max_width) {
   std::vector<std::string> lines;
   while (!text.empty()) {
-    if (lines.size() == kMostLines) {
+    if (lines.size() == kMaxCaptionLines) {
       lines.back() = "…";
       break;
     }
-    std::size_t length = fitting(font, text, room);
+    std::size_t length = fitting(font, text, max_width);
     const std::size_t blank = length < text.size() ? text.rfind(' ', length) : std::string_view::npos;
     if (blank != std::string_view::npos && blank > 0) length = blank;
     const std::string_view line = text.substr(0, length);
@@ -59,7 +59,7 @@ std::vector<std::string> wrapped(const Font& font, std::string_view text, int ro
   return lines;
 }
 
-// The lines below a picture; `right` shares the last one, or has one of its own.
+// The lines below a picture; `right` shares the last one if it fits, else gets its own.
 std::vector<std::string> caption_lines(const Font& font, const SheetPicture& picture, int width, int gap) {
   std::vector<std::string> lines = wrapped(font, picture.left, width);
   if (lines.empty() || font.width(lines.back()) + gap + font.width(picture.right) > width) lines.emplace_back();
@@ -77,12 +77,12 @@ Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const s
   const int top = 2 * layout.gap + layout.heading;
   const Font heading_font(layout.heading), font(layout.text);
   std::vector<std::vector<std::string>> captions;
-  std::size_t most_lines = 1;
+  std::size_t max_lines = 1;
   for (const SheetPicture& picture : pictures) {
     captions.push_back(caption_lines(font, picture, width, layout.gap / 2));
-    most_lines = std::max(most_lines, captions.back().size());
+    max_lines = std::max(max_lines, captions.back().size());
   }
-  const int caption = layout.caption + (static_cast<int>(most_lines) - 1) * layout.line();
+  const int caption = layout.caption + (static_cast<int>(max_lines) - 1) * layout.line();
 
   Image sheet(layout.gap + columns * (width + layout.gap), top + rows * (height + caption) + layout.gap / 2);
   for (std::size_t i = 0; i < sheet.rgb.size(); ++i) sheet.rgb[i] = kPaper[i % 3];

@@ -1,4 +1,4 @@
-// Many small pictures on one.
+// A contact sheet: many small pictures on one.
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@ namespace weft::image {
 
 struct SheetPicture {
   Image image;
-  std::string left, right;  ///< written below it: `left` in as many lines as it needs, `right` at the end of the last
+  std::string left, right;  ///< caption: `left` wraps over several lines, `right` is at the end of the last one
 };
 
-/// Lays out pictures of one size row by row, under a heading. The text grows with the pictures.
+/// Lays out pictures of one size in rows under a heading. The size of the text follows that of the pictures.
 Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const std::string& heading);
 
 }  // namespace weft::image

@@ -40,12 +40,12 @@ Picture decode_png(std::string_view bytes) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   Picture picture;
-  // It holds no memory of ours where it fails.
+  // libpng frees its own memory if this fails.
   if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) fail(png.message);
   try {
     check_size(png.width, png.height);
-    // Deflate cannot expand a byte to more than 1032: what claims more is broken, and is refused before its memory is
-    // asked for. A pixel takes at least a bit.
+    // Deflate expands a byte to at most 1032, so a file that claims more is damaged; it is refused before its memory is
+    // allocated. A pixel takes at least one bit.
     if (std::uint64_t{png.width} * png.height / 8 > 1032 * bytes.size())
       fail(fmt::format("{} bytes cannot hold {}x{} pixels", bytes.size(), png.width, png.height));
     picture.width = static_cast<int>(png.width);
@@ -60,7 +60,7 @@ Picture decode_png(std::string_view bytes) {
   return picture;
 }
 
-/// JPEG uses the full range of values, which libav says by formats of their own, and swscale wants said beside them.
+/// JPEG uses the full range of values. libav expresses that by separate formats, swscale expects it as a parameter.
 AVPixelFormat plain_format(int format) {
   switch (format) {
     case AV_PIX_FMT_YUVJ420P:
@@ -76,14 +76,14 @@ AVPixelFormat plain_format(int format) {
   }
 }
 
-/// The one picture of a file, by libav.
+/// Decodes the only picture of a file through libav.
 Owned<AVFrame> decode_frame(std::string_view bytes, AVCodecID kind) {
   const AVCodec* codec = avcodec_find_decoder(kind);
   const Owned<AVCodecContext> context(codec ? avcodec_alloc_context3(codec) : nullptr);
   Owned<AVFrame> frame(av_frame_alloc());
   const Owned<AVPacket> packet(av_packet_alloc());
   if (!context || !frame || !packet) fail(fmt::format("libavcodec has no decoder of {}", avcodec_get_name(kind)));
-  context->log_level_offset = AV_LOG_TRACE;  // its words go into the error, not beside it
+  context->log_level_offset = AV_LOG_TRACE;  // libav's message goes into the error only
   context->err_recognition = AV_EF_EXPLODE | AV_EF_CRCCHECK | AV_EF_BITSTREAM;
   context->thread_count = 1;
   if (av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) fail("there is no memory for it");
@@ -119,7 +119,7 @@ Picture to_picture(const AVFrame& frame) {
 }
 
 Picture decode_jpeg(std::string_view bytes) {
-  // A file that ends too early decodes to grey where it is missing.
+  // libav fills the missing part of a truncated file with grey, so truncation is detected by the end marker.
   if (bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 1024)).rfind("\xff\xd9") ==
       std::string_view::npos)
     fail("the file ends too early");

@@ -7,10 +7,10 @@
 
 namespace weft::image {
 
-/// Row-major, top row first, three bytes (R, G, B) a pixel, sRGB encoded.
+/// Row-major, top row first, three bytes (R, G, B) per pixel, sRGB encoded.
 struct Image {
-  int width = 0;   ///< pixels
-  int height = 0;  ///< pixels
+  int width = 0;   ///< [pixels]
+  int height = 0;  ///< [pixels]
   std::vector<std::uint8_t> rgb;
 
   Image() = default;
@@ -20,7 +20,7 @@ struct Image {
   const std::uint8_t* pixel(int x, int y) const { return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x); }
 };
 
-/// The same with 16 bits a channel.
+/// The same with 16 bits per channel.
 struct Image16 {
   int width = 0, height = 0;
   std::vector<std::uint16_t> rgb;

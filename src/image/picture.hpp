@@ -1,4 +1,4 @@
-// Pictures to lay on surfaces, from PNG, JPEG and TGA files.
+// Textures for surfaces, from PNG, JPEG and TGA files.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,26 @@
 
 namespace weft::image {
 
-/// Rows from the top, R G B A bytes a pixel, colours in sRGB, alpha not multiplied in.
+/// Row-major, top row first, R G B A bytes per pixel, sRGB colours, alpha not premultiplied.
 struct Picture {
-  int width = 0, height = 0;  ///< pixels
+  int width = 0, height = 0;  ///< [pixels]
   std::vector<std::uint8_t> rgba;
 };
 
-/// Pixels along one side that a picture may have: what every OpenGL takes.
+/// Limit on a side of a picture [pixels], which every OpenGL implementation supports.
 inline constexpr int kMaxPictureSide = 16384;
 
-/// Bytes that the file of a picture may have.
+/// Limit on the file of a picture [bytes].
 inline constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t{64} << 20;
 
-/// Whether bytes begin like a TGA file, which has no mark of its own: by all of its header that is not free.
+/// Whether the bytes start with a TGA header. The format has no magic bytes, so all header fields with restricted
+/// values are checked.
 bool is_targa(std::string_view bytes);
 
-/// Decodes a PNG (any depth, palette, with or without alpha), a JPEG or a TGA file. Throws std::runtime_error, which
-/// says what is wrong.
+/// Decodes a PNG (any depth, palette, with or without alpha), JPEG or TGA file. Throws std::runtime_error.
 Picture decode_picture(std::string_view bytes);
 
-/// The same of a file. Throws Error(asset_unreadable), which names it.
+/// Decodes a file. Throws Error(asset_unreadable), which names it.
 Picture read_picture(const std::filesystem::path& file);
 
 }  // namespace weft::image

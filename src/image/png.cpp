@@ -22,27 +22,27 @@
 #include "core/input_file.hpp"
 #include "core/temporary_file.hpp"
 
-// libpng reports errors by longjmp, which skips destructors. So each function that calls setjmp below holds plain data
-// only and returns false on an error; its caller owns everything that must be released and does the throwing.
+// libpng reports errors by longjmp, which skips destructors. Each function below that calls setjmp therefore holds only
+// plain data and returns false on an error; its caller owns all resources and throws.
 
 namespace weft::image {
 namespace {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-// Pixels along one side: the largest frame buffer of the software renderer, and of H.264 through x264.
+// Limit on a side [pixels], that of the software renderer's frame buffer and of x264.
 constexpr int kMaxSide = 16384;
 
-// zlib level and row filter. Measured on rendered 1280×720 frames: 19 CPU ms and 62 KB, where libpng's default filters
-// take 27 ms and 65 KB at the same level; level 3 would take 8 ms and 90 KB.
+// zlib level and row filter. Measured on rendered 1280×720 frames: 19 CPU ms and 62 KB; libpng's default filters at the
+// same level: 27 ms and 65 KB; level 3: 8 ms and 90 KB.
 constexpr int kLevel = 6;
 constexpr int kFilter = PNG_FILTER_SUB;
 
-// Deflate cannot expand a byte to more than 1032 (RFC 1951: 258 bytes from two bits), so a file that claims more pixels
-// than this is broken, and is refused before its memory is asked for.
+// Deflate expands a byte to at most 1032 (RFC 1951: 258 bytes from two bits), so a file that claims more pixels is
+// damaged, and is refused before its memory is allocated.
 constexpr std::uintmax_t kMaxDeflateRatio = 1032;
 
-// What libpng or the system said, kept where a longjmp cannot lose it.
+// An error message of libpng or the system, stored outside the frames that a longjmp skips.
 struct Complaint {
   std::array<char, 256> text{};
   void set(const char* words) { std::snprintf(text.data(), text.size(), "%s", words); }
@@ -54,10 +54,10 @@ void on_error(png_structp png, png_const_charp words) {
   png_longjmp(png, 1);
 }
 
-// Warnings speak of private chunks and colour profiles, which this reader leaves out.
+// Warnings concern private chunks and colour profiles, which this reader ignores.
 void on_warning(png_structp, png_const_charp) {}
 
-// Notes the system's reason before libpng replaces it by "Write Error".
+// Stores the system's reason before libpng replaces it by "Write Error".
 void write_bytes(png_structp png, png_bytep data, std::size_t size) {
   auto* file = static_cast<std::FILE*>(png_get_io_ptr(png));
   if (std::fwrite(data, 1, size, file) == size) return;
@@ -97,7 +97,7 @@ struct Reader {
   Reader& operator=(const Reader&) = delete;
 };
 
-/// Rows of pixels, top row first; of 16 bits in the byte order of this machine.
+/// Rows of pixels, top row first; 16-bit values have the byte order of this machine.
 struct Rows {
   int width, height, bits;
   const png_byte* first;
@@ -122,12 +122,12 @@ bool write_all(const Writer& writer, const Rows& rows, std::FILE* file, png_text
   return true;
 }
 
-// Reads up to the pixels and asks for 8-bit RGB, whatever the file holds.
+// Reads the file up to its pixels.
 bool read_header(const Reader& reader, std::FILE* file) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_set_read_fn(reader.png, file, read_bytes);
   png_set_user_limits(reader.png, kMaxSide, kMaxSide);
-  // A damaged chunk is an error even where it only holds metadata: a reference image must be whole.
+  // A damaged chunk is an error even if it contains only metadata: a reference image must be intact.
   png_set_crc_action(reader.png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   png_read_info(reader.png, reader.info);
   return true;
@@ -138,8 +138,8 @@ bool ask_for_rgb(const Reader& reader) {
   png_set_expand(reader.png);
   png_set_scale_16(reader.png);
   png_set_gray_to_rgb(reader.png);
-  // Over white in sRGB values, as browsers show it. Equal gammas keep libpng from blending some files in linear light
-  // and others not, depending on their chunks.
+  // Blends over white in sRGB values, as browsers do. Equal gammas prevent libpng from blending in linear light for
+  // files with certain chunks.
   png_set_gamma(reader.png, 1.0, 1.0);
   png_color_16 white{};
   white.red = white.green = white.blue = white.gray = 255;
@@ -160,13 +160,13 @@ bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
 }
 
-// PNG's rule for keys: 1 to 79 printable characters without spaces at the ends. libpng would quietly change others.
+// PNG's rule for keys: 1 to 79 printable characters without spaces at the ends. libpng would silently change others.
 bool is_key(std::string_view key) {
   const bool printable = std::all_of(key.begin(), key.end(), [](unsigned char c) { return c >= 32 && c < 127; });
   return printable && !key.empty() && key.size() < 80 && key.front() != ' ' && key.back() != ' ';
 }
 
-// The chunks point into `metadata`. Text is Latin-1 in tEXt, so other than ASCII goes into an iTXt chunk as UTF-8.
+// The chunks point into `metadata`. tEXt is Latin-1, so text other than ASCII goes into an iTXt chunk as UTF-8.
 std::vector<png_text> text_chunks(const std::filesystem::path& file, const Metadata& metadata) {
   std::vector<png_text> texts;
   for (const auto& [key, value] : metadata) {
@@ -201,10 +201,11 @@ Metadata metadata_of(const Reader& reader) {
   throw Error(ExitCode::output_failed, "{}: cannot be written: {}", file.string(), words);
 }
 
-// libpng asks for the memory that a chunk promises to fill, up to 2 GB, before it finds out that the file ends. What is
-// no PNG at all is left to it.
+// Checks that no chunk is longer than the rest of the file, since libpng would first allocate the claimed length, up to
+// 2 GB. Files that are not PNG are left to libpng.
 void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax_t file_size) {
-  constexpr std::uintmax_t kSignature = 8, kAround = 12;  // bytes of length, name and checksum
+  // [bytes] of the signature; of length, name and checksum of a chunk
+  constexpr std::uintmax_t kSignature = 8, kAround = 12;
   std::array<png_byte, kSignature> signature{};
   const bool is_png = std::fread(signature.data(), 1, kSignature, in) == kSignature &&
                       png_sig_cmp(signature.data(), 0, kSignature) == 0;
@@ -219,7 +220,7 @@ void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax
   std::rewind(in);
 }
 
-// `bytes`: that there are.
+// `bytes`: size of the available data.
 void check_size(const std::filesystem::path& file, const Rows& rows, std::size_t bytes) {
   const bool in_range = rows.width >= 1 && rows.height >= 1 && rows.width <= kMaxSide && rows.height <= kMaxSide;
   if (!in_range || bytes != rows.row_bytes() * static_cast<std::size_t>(rows.height)) {
@@ -245,7 +246,7 @@ void write(const std::filesystem::path& file, const Rows& rows, std::size_t byte
   File out(std::fopen(temporary.path().c_str(), "wbe"), std::fclose);
   if (!out) fail_to_write(file, std::strerror(errno));
   encode(file, rows, std::move(texts), out.get());
-  // The last bytes reach the system only now, so a full disk may show only here.
+  // The last bytes are written only here, so a full disk may be noticed only here.
   if (std::fclose(out.release()) != 0) fail_to_write(file, std::strerror(errno));
   temporary.commit();
 }
@@ -263,14 +264,14 @@ void write_png(const std::filesystem::path& file, const Image16& image, const Me
 
 namespace {
 
-// `bytes`: that there are.
+// `bytes`: size of the available data.
 std::string bytes_of(const Rows& rows, std::size_t bytes) {
   const std::filesystem::path name = "a picture in memory";
   check_size(name, rows, bytes);
   char* buffer = nullptr;
   std::size_t size = 0;
-  const auto free_buffer = [](char** text) { std::free(*text); };  // NOLINT: what open_memstream() made
-  const std::unique_ptr<char*, decltype(free_buffer)> owner(&buffer, free_buffer);  // outlives the stream
+  const auto free_buffer = [](char** text) { std::free(*text); };  // NOLINT: memory of open_memstream()
+  const std::unique_ptr<char*, decltype(free_buffer)> owner(&buffer, free_buffer);  // must outlive the stream
   File out(::open_memstream(&buffer, &size), std::fclose);
   if (!out) fail_to_write(name, std::strerror(errno));
   encode(name, rows, {}, out.get());
@@ -290,7 +291,7 @@ std::string png_bytes(const Picture& picture) {
 
 namespace {
 
-/// A file up to its pixels.
+/// A file, opened and read up to its pixels.
 struct Opened {
   File in{nullptr, std::fclose};
   std::uintmax_t size = 0;  // [bytes]
@@ -325,7 +326,7 @@ Image read_png(const std::filesystem::path& file, Metadata* metadata) {
   const Reader& reader = opened.reader;
   const Complaint& complaint = opened.complaint;
 
-  // Hold the claimed size against the size of the file before asking for memory.
+  // Checks the claimed size against the size of the file before allocating memory.
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const std::uintmax_t packed_size = std::uintmax_t{height} * png_get_rowbytes(reader.png, reader.info);

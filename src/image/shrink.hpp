@@ -1,12 +1,12 @@
-// Smaller pictures, for sheets.
+// Smaller pictures, for contact sheets.
 #pragma once
 
 #include "image/image.hpp"
 
 namespace weft::image {
 
-/// The picture at `width` pixels in its own shape; as it is where it is not wider. Each new pixel is the mean of those
-/// that it covers, in sRGB as browsers do it.
+/// Scales a picture down to `width` pixels, keeping its aspect ratio; unchanged if it is not wider. Each new pixel is
+/// the mean of those that it covers, in sRGB values, as in browsers.
 Image shrink(const Image& image, int width);
 
 }  // namespace weft::image

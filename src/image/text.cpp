@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-// The bytes of the font's file; the build sets its name.
+// The bytes of the font file, whose name the build defines.
 asm(".pushsection .rodata\n"
     "weft_font_begin:\n"
     ".incbin \"" WEFT_FONT_FILE
@@ -21,7 +21,7 @@ namespace {
 
 constexpr char32_t kNoCharacter = 0xFFFD;
 
-/// Takes the next character off a text.
+/// Removes the first character of a text and returns it, or kNoCharacter for an invalid byte.
 char32_t next_character(std::string_view& text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -61,14 +61,14 @@ struct Font::Face {
     FT_Done_FreeType(library);
   }
 
-  /// Calls visit(glyph, x) for each character with its pen position, and returns the position after the last.
+  /// Calls visit(glyph, x) for each character with its pen position; returns the position after the last.
   template <class Visit>
   int layout(std::string_view text, FT_Int32 flags, const Visit& visit) const {
     int x = 0;
     while (!text.empty()) {
       check(FT_Load_Char(face, next_character(text), flags));
       visit(*face->glyph, x);
-      x += static_cast<int>(face->glyph->advance.x >> 6);  // FreeType counts in 1/64 pixel
+      x += static_cast<int>(face->glyph->advance.x >> 6);  // FreeType uses units of 1/64 pixel
     }
     return x;
   }

@@ -1,4 +1,4 @@
-// Text on pictures, in a font that is part of the program: none can be missing where it runs.
+// Text on pictures, in a font that is built into the program.
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@ namespace weft::image {
 
 using Color = std::array<std::uint8_t, 3>;  ///< sRGB
 
-/// DejaVu Sans in one size. Text is UTF-8; what is none, and characters the font does not have, show as boxes.
+/// DejaVu Sans in one size. Text is UTF-8; invalid bytes and characters missing in the font are drawn as boxes.
 class Font {
  public:
-  /// `pixels`: of the em square, 4 to 400.
+  /// `pixels`: size of the em square, clamped to 4 to 400.
   explicit Font(int pixels);
   ~Font();
   Font(const Font&) = delete;
@@ -23,7 +23,7 @@ class Font {
 
   int width(std::string_view text) const;  ///< [pixels]
 
-  /// Draws a line that starts at x on this baseline; what lies outside the picture is left out.
+  /// Draws a line of text that starts at x on this baseline, clipped to the picture.
   void draw(Image& image, int x, int baseline, std::string_view text, const Color& color) const;
 
  private:

@@ -8,10 +8,10 @@
 namespace weft::integrator {
 namespace {
 
-/// Disjoint sets of parts, each named by its lowest part.
-class Groups {
+/// Disjoint sets of diagonal blocks, each identified by its lowest block.
+class BlockGroups {
  public:
-  explicit Groups(std::span<const solver::Part> parts)
+  explicit BlockGroups(std::span<const solver::Part> parts)
       : parts_(parts), lowest_(parts.size()), is_free_(parts.size(), 1) {
     std::iota(lowest_.begin(), lowest_.end(), std::size_t{0});
   }
@@ -35,11 +35,11 @@ class Groups {
  private:
   std::span<const solver::Part> parts_;
   std::vector<std::size_t> lowest_;
-  std::vector<char> is_free_;  // per group: nothing holds it from outside
+  std::vector<char> is_free_;  // per group: nothing acts on it from outside
 };
 
 template <class Term>
-void add_term(const Term& term, Groups& groups) {
+void join_by_term(const Term& term, BlockGroups& groups) {
   double sum = 0;
   int first = -1;
   for (std::size_t k = 0; k < term.particles.size(); ++k) {
@@ -58,10 +58,10 @@ void add_term(const Term& term, Groups& groups) {
 std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std::span<const double> masses,
                                         std::span<const Vec3> residual) {
   const std::vector<solver::Part> parts = solver::parts_of(linear);
-  Groups groups(parts);
+  BlockGroups groups(parts);
   for (const auto& constraint : linear.constraints) groups.hold(groups.of_particle(constraint.particle));
   for (const auto& term : linear.diagonal_terms) groups.hold(groups.of_particle(term.particle));
-  solver::for_each_term(linear, [&](const auto& term) { add_term(term, groups); });
+  solver::for_each_term(linear, [&](const auto& term) { join_by_term(term, groups); });
 
   std::vector<Vec3> force(parts.size(), Vec3::Zero());
   std::vector<double> mass(parts.size(), 0);

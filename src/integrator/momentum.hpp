@@ -1,4 +1,4 @@
-// Momentum of cloth on which nothing acts from outside but weight and air.
+// Momentum of cloth on which only weight and air act from outside.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace weft::integrator {
 
-/// Of each part of a system the acceleration [m/s²] by which the group that it is in has to be changed as a whole, so
-/// that its residual [N] sums to zero; zero where a constraint or an obstacle acts on the group. Parts are in one group
-/// where terms join them. A translation of a group changes no force in it.
+/// Per diagonal block of the system: the acceleration [m/s²] by which its group must change as a whole so that the
+/// group's residual [N] sums to zero; zero if a constraint or an obstacle acts on the group. A group is a set of blocks
+/// that terms connect. Translating a group changes no force inside it.
 std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std::span<const double> masses,
                                         std::span<const Vec3> residual);
 

@@ -16,20 +16,21 @@ bool Sliding::evaluate(const System& system, const StagePoint& at) {
 
 double Sliding::wrong_friction(const solver::Part& rows, std::span<const Vec3> residual) const {
   Vec3 push = Vec3::Zero(), friction = Vec3::Zero(), missing = Vec3::Zero();
-  double load = 0, limit = 0;
+  double normal_force = 0, limit = 0;
   for (auto i = static_cast<std::size_t>(rows.begin); i < static_cast<std::size_t>(rows.end); ++i) {
     push += push_[i];
     friction += friction_[i];
     missing += residual[i];
-    load += push_[i].norm();
+    normal_force += push_[i].norm();
     limit += limit_[i];
   }
-  const double pushed = push.norm(), rubbed = friction.norm();
-  if (pushed == 0 || rubbed == 0) return 0;
-  // Friction that the motion takes, and the most that its load allows.
-  const double along = missing.dot(friction) / rubbed, taken = rubbed - along;
-  const double most = limit * (1 - missing.dot(push) / (pushed * load));
-  return taken > numerics.newton.about_to_slide * most ? std::max(std::abs(along), taken - most) : 0;
+  const double push_norm = push.norm(), friction_norm = friction.norm();
+  if (push_norm == 0 || friction_norm == 0) return 0;
+  // Friction that the motion requires, and the largest that the normal force allows.
+  const double along = missing.dot(friction) / friction_norm, required = friction_norm - along;
+  const double max_friction = limit * (1 - missing.dot(push) / (push_norm * normal_force));
+  return required > numerics.newton.about_to_slide * max_friction ? std::max(std::abs(along), required - max_friction)
+                                                                  : 0;
 }
 
 bool is_held(const solver::Part& rows, std::span<const solver::ParticleConstraint> constraints) {

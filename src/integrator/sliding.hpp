@@ -1,4 +1,4 @@
-// Whether friction holds a part of the system back by more, or less, than it can.
+// Error of friction on a diagonal block that is about to slide.
 #pragma once
 
 #include <span>
@@ -10,19 +10,18 @@
 
 namespace weft::integrator {
 
-/// What is left of an equation may be hidden by friction: cloth that sticks is held stiffly, up to where it lets go as
-/// a whole, and what pushes it is stiffer still. So where friction is near its limit the momentum counts that is
-/// missing along it, and the friction that the motion takes beyond what its load allows. By a preconditioned residual
-/// alone, sheets that had fallen by a millimetre on slopes half a degree too steep were solved while they stuck, for up
-/// to five steps: 0.92 to 0.97 of a block's way, and 0.57 with velocity constraints; so 1.00 to 1.01, with 3 and 0 %
-/// more iterations. Asking that of particles at their limit, one by one or as a piece, sphere_drape takes two to three
-/// times the iterations.
+/// Friction can hide a remaining error: sticking cloth is held stiffly until it slides as a whole, and the normal
+/// contacts are stiffer still. If friction is near its limit, this class therefore measures the momentum that is
+/// missing along it, and the friction in excess of what the normal force allows (measured: sheets on slopes half a
+/// degree too steep slid 1.00 to 1.01 of a block's distance; with a preconditioned residual alone 0.92 to 0.97, and
+/// 0.57 with velocity constraints). The measure is per block; per particle, sphere_drape takes two to three times the
+/// iterations.
 class Sliding {
  public:
-  /// Takes the forces of the contacts of a system at this stage. False where nothing touches.
+  /// Evaluates the contact forces of a system at this stage. Returns false if there is no contact.
   bool evaluate(const System& system, const StagePoint& at);
 
-  /// Force [N] by which friction is wrong for a part as a whole, by its residual [N]; 0 unless it is about to slide.
+  /// Error [N] of the friction on a block as a whole, from its residual [N]; 0 unless it is about to slide.
   double wrong_friction(const solver::Part& rows, std::span<const Vec3> residual) const;
 
  private:
@@ -30,7 +29,8 @@ class Sliding {
   std::vector<double> limit_;          // [N]
 };
 
-/// Whether constraints hold a part against sliding. A wall that is slid along leaves two directions free.
+/// Whether constraints hold a block against sliding. A wall along which it slides leaves two directions free, and does
+/// not count.
 bool is_held(const solver::Part& rows, std::span<const solver::ParticleConstraint> constraints);
 
 }  // namespace weft::integrator

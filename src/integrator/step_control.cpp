@@ -9,8 +9,8 @@ namespace weft::integrator {
 namespace {
 
 // The proportional-integral controller PI.4.2 (Söderlind, "Digital filters in adaptive time-stepping", ACM TOMS 29,
-// 2003): exponents of this share and of the last one, over the order plus one.
-constexpr double kNow = 3.0 / 5, kBefore = -1.0 / 5;
+// 2003): exponents of the current and the last ratio, to be divided by the order plus one.
+constexpr double kExponentNow = 3.0 / 5, kExponentBefore = -1.0 / 5;
 
 }  // namespace
 
@@ -21,28 +21,29 @@ bool StepControl::accepts(double h, double error) const {
   return meets(error) || (h <= numerics.steps.least && std::isfinite(error));
 }
 
-// What was aimed at over what came.
-double StepControl::aim_over(double error) const {
+// The aimed error over this error.
+double StepControl::aim_to_error_ratio(double error) const {
   return numerics.steps.aim * tolerance_ / std::max(error, kRoundoff * tolerance_);
 }
 
 void StepControl::accepted(double h, double error) {
-  const double share = aim_over(error), alone = std::pow(share, 1 / order_plus_one_);
-  if (alone > 1 - numerics.steps.kept_change && alone < 1 + numerics.steps.kept_change) {
+  const double ratio = aim_to_error_ratio(error), elementary_factor = std::pow(ratio, 1 / order_plus_one_);
+  if (elementary_factor > 1 - numerics.steps.kept_change && elementary_factor < 1 + numerics.steps.kept_change) {
     wanted_ = h;
   } else {
-    const double factor = std::pow(share, kNow / order_plus_one_) * std::pow(last_share_, kBefore / order_plus_one_);
-    // Steps are shorter than wanted where that makes them end with the frame: growth goes on from what was wanted.
-    const double longest = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
-    wanted_ = std::clamp(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least, longest);
+    const double factor =
+        std::pow(ratio, kExponentNow / order_plus_one_) * std::pow(last_ratio_, kExponentBefore / order_plus_one_);
+    // A step may be shorter than wanted to end with its frame; growth continues from the wanted length.
+    const double max_step = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
+    wanted_ = std::clamp(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least, max_step);
   }
-  last_share_ = share;
+  last_ratio_ = ratio;
   after_failure_ = false;
 }
 
-// The elementary controller: the last error has nothing to say of a step that went wrong.
+// The elementary controller: after a rejected step, the ratio of the step before it does not count.
 void StepControl::too_inexact(double h, double error) {
-  const double factor = std::pow(aim_over(error), 1 / order_plus_one_);
+  const double factor = std::pow(aim_to_error_ratio(error), 1 / order_plus_one_);
   wanted_ = std::max(h * std::clamp(factor, numerics.steps.least_factor, 1 - numerics.steps.kept_change),
                      numerics.steps.least);
   after_failure_ = true;

@@ -1,4 +1,4 @@
-// Lengths of steps from estimates of their local errors.
+// Step sizes from estimates of the local error.
 #pragma once
 
 #include <cmath>
@@ -9,43 +9,43 @@
 
 namespace weft::integrator {
 
-/// Keeps the local error of each step at a tolerance. Error per step, not per second: what a velocity that jumps in an
-/// impact leaves in one step is h Δv at best, which an error per second would chase down to h = 0. So the steps go as
-/// tolerance^(1/(p+1)) with a method of order p, and the error in the end as tolerance^(p/(p+1)): 1/2 for Euler, 2/3
+/// Keeps the local error of each step at a tolerance: error per step, not per second. An impact changes velocity by Δv
+/// at once, which leaves an error of at least h Δv in its step; an error per second would reduce h to 0. With a method
+/// of order p, step sizes scale as tolerance^(1/(p+1)) and the final error as tolerance^(p/(p+1)): 1/2 for Euler, 2/3
 /// for midpoint and BDF2.
 ///
-/// It remembers the last error and the length it wants: both are part of the state of a simulation.
+/// Its state, the ratio of the last step and the wanted step size, is part of the state of a simulation.
 class StepControl {
  public:
-  /// The tolerance and the estimates are lengths [m]; `first` is the length of the first step [s].
+  /// `tolerance`: bound of the local error [m]; `first`: length of the first step [s].
   StepControl(Method method, double tolerance, double first);
 
-  /// Whether a step over h with this error may stand. Steps of the least length do in any case.
+  /// Whether a step over h with this error is accepted, as every step of the minimum length with a finite error.
   bool accepts(double h, double error) const;
   bool meets(double error) const { return error <= tolerance_; }
 
-  /// How long the next step should be [s]: after one over h that was accepted, was too inexact, or was not solved.
+  /// Length [s] of the next step, after a step over h that was accepted, too inexact, or not solved.
   double wanted() const { return wanted_; }
   void accepted(double h, double error);
   void too_inexact(double h, double error);
   void unsolved(double h);
 
-  /// What it remembers after an accepted step. Throws std::runtime_error where that cannot be.
+  /// Saves or restores the state after an accepted step. Throws std::runtime_error if a restored value is impossible.
   template <class Archive>
   void serialize(Archive& archive) {
-    serialize_values(archive, wanted_, last_share_);
-    // Half of the shortest step may be wanted after it failed.
+    serialize_values(archive, wanted_, last_ratio_);
+    // After a failure, half of the minimum step may be wanted.
     if constexpr (Archive::kReads)
-      require(wanted_ >= 0.1 * numerics.steps.least && std::isfinite(wanted_) && std::isfinite(last_share_),
+      require(wanted_ >= 0.1 * numerics.steps.least && std::isfinite(wanted_) && std::isfinite(last_ratio_),
               "a step length");
   }
 
  private:
-  double aim_over(double error) const;
+  double aim_to_error_ratio(double error) const;
 
   double order_plus_one_, tolerance_, wanted_;
-  double last_share_ = 1;       // of the last accepted step: what was aimed at, over its error
-  bool after_failure_ = false;  // the step before was done again: do not grow at once
+  double last_ratio_ = 1;       // aimed error over error of the last accepted step
+  bool after_failure_ = false;  // the last step was rejected: do not grow yet
 };
 
 }  // namespace weft::integrator

@@ -1,4 +1,4 @@
-// What the integrator knows of the thing it integrates: M x'' = f(x, x') with constraints.
+// The integrator's interface to the physical system: M x'' = f(x, x') with constraints.
 #pragma once
 
 #include <span>
@@ -10,20 +10,21 @@
 
 namespace weft::integrator {
 
-/// Positions [m] and velocities [m/s] of all particles. Behind the particles' positions others may stand, of what is
-/// not integrated: they are left alone.
+/// Positions [m] and velocities [m/s] of all particles. x may have more entries behind those of the particles, for
+/// points that are not integrated; the integrator leaves them alone.
 struct State {
   std::vector<Vec3> x, v;
 };
 
-/// Where the implicit equation of a step is evaluated.
+/// Point at which the implicit equation of a step is evaluated.
 struct StagePoint {
   std::span<const Vec3> x;      ///< stage positions
   std::span<const Vec3> v;      ///< stage velocities, (x − x̂) / β
-  std::span<const Vec3> x_end;  ///< positions at the end of the step that this stage leads to; contacts act there
+  std::span<const Vec3> x_end;  ///< positions at the end of the step that belongs to this stage; contacts act there
   double rate = 0;              ///< dv/dx = 1/β [1/s]
   double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
-  /// What x̂ is made of; empty with the midpoint rule, with which ∂q/∂x v is the change of a quadratic q in the step.
+  /// Earlier positions that x̂ consists of. Empty for the midpoint rule, where ∂q/∂x v is the exact change of a
+  /// quadratic q over the step.
   std::span<const Past> past = {};
 };
 
@@ -33,46 +34,43 @@ class System {
 
   virtual std::span<const double> masses() const = 0;
 
-  /// Adds forces of a step that hang neither on positions nor on velocities, beside the weight [N].
+  /// Adds the forces of a step that depend neither on positions nor on velocities, excluding the weight [N].
   virtual void constant_forces(std::span<Vec3> force) const = 0;
 
-  /// Adds all other forces at a stage [N]. What a system remembers between calls may change here only as far as it does
-  /// not change results.
+  /// Adds all other forces at a stage [N]. May update caches of the system, but must not change its results.
   virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
 
-  /// As `forces`, but what the last linearise() has put its tangent for is so here: what a search along the solution of
-  /// that linear system must see.
+  /// As `forces`, but forces that the last linearise() replaced by their tangent are evaluated as such. A line search
+  /// along the solution of that linear system must use these.
   virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
 
-  /// As `linear_forces`, and fills the matrix of linear_system() with rate² M − ∂f/∂x − rate ∂f/∂v and its terms with
-  /// what stands beside it. `iteration`: of Newton's method, from 0 in each solve. Forces that lag behind the positions
-  /// catch up here, before they are added.
+  /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. Forces
+  /// that lag behind the positions are updated first. `iteration`: Newton iteration, from 0 in each solve.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
-  /// Whether translating a part changes no force but by terms and constraints of linear_system(), and by air.
+  /// Whether translating a diagonal block changes no force except through terms, constraints, and air.
   virtual bool is_translation_invariant() const { return false; }
 
-  /// Adds what contacts have in `forces`, friction apart from what pushes, and the most that friction can be by the
-  /// loads that it goes by [N]. False, and nothing is added, where nothing touches.
+  /// Adds the contact part of `forces` [N] at each particle: friction, all other contact forces (`push`), and the
+  /// largest friction that the current normal forces allow. Returns false, and adds nothing, if there is no contact.
   virtual bool contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                               std::span<double> limit) const {
     (void)at, (void)push, (void)friction, (void)limit;
     return false;
   }
 
-  /// Of a step that has been solved: makes the terms of linear_system() those of impacts, and adds to its right hand
-  /// side; the solution is what impacts have changed of velocities [m/s]. False if there is no impact.
+  /// After a solved step: replaces the terms of linear_system() by those of impacts, and adds their right hand side.
+  /// The solution is the change of velocities by impacts [m/s]. Returns false if there is no impact.
   virtual bool find_impacts(const StagePoint& at, const StepStart& start, std::span<Vec3> right_side) {
     (void)at, (void)start, (void)right_side;
     return false;
   }
 
-  /// What linearise() fills; its constraints are the integrator's.
+  /// The system that linearise() fills. The integrator sets its constraints.
   virtual solver::LinearSystem& linear_system() = 0;
 };
 
-/// A particle held in some directions: at the end of the step it is at `x_end`, moving with `v_end`, as far as the
-/// constraint reaches.
+/// A particle that is held in some directions, in which it ends the step at `x_end` with velocity `v_end`.
 struct HeldParticle {
   solver::ParticleConstraint constraint;
   Vec3 x_end, v_end;

@@ -1,4 +1,4 @@
-// What stands behind the public classes, for the library and the Python module.
+// The data behind the public classes, for the library and the Python module.
 #pragma once
 
 #include <filesystem>
@@ -17,8 +17,8 @@ namespace weft {
 
 struct Scene::Data {
   scene::Scene scene;
-  std::string text;            ///< TOML as it was given
-  std::filesystem::path file;  ///< likewise
+  std::string text;            ///< TOML as given
+  std::filesystem::path file;  ///< as given
   std::vector<std::string> changes;
 };
 
@@ -26,9 +26,9 @@ struct Frame::Data {
   frame::SnapshotPtr snapshot;
   Report report;
   std::vector<std::vector<Vec3>> velocities;      ///< per cloth
-  std::vector<std::vector<float>> strains;        ///< likewise
-  std::vector<std::vector<Vec3>> contact_forces;  ///< likewise
-  std::vector<Object> objects;                    ///< views of the above
+  std::vector<std::vector<float>> strains;        ///< per cloth
+  std::vector<std::vector<Vec3>> contact_forces;  ///< per cloth
+  std::vector<Object> objects;                    ///< views of the members above
 };
 
 }  // namespace weft
@@ -37,13 +37,13 @@ namespace weft::library {
 
 Report report_of(const frame::FrameReport& report);
 
-/// Makes the views of `data`.
+/// Makes a frame, with views of `data` as its objects.
 Frame make_frame(Frame::Data data);
 
-/// Throws the public exception for one of the program's.
+/// Throws the public exception that corresponds to an error of the program.
 [[noreturn]] void throw_public(const Error& error);
 
-/// Returns what `work` returns, with the exceptions of errors.hpp.
+/// Returns what `work` returns. Throws errors as the exceptions of errors.hpp.
 template <class Work>
 auto with_public_errors(const Work& work) {
   try {

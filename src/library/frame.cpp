@@ -8,9 +8,9 @@
 namespace weft {
 namespace {
 
-// Points of `count` numbers each lie in memory one after the other, here as there.
+// Views points as another type of the same size: an array of the same numbers.
 template <class To, class From>
-std::span<const To> viewed(const std::vector<From>& points) {
+std::span<const To> view_as(const std::vector<From>& points) {
   static_assert(sizeof(To) == sizeof(From));
   return {reinterpret_cast<const To*>(points.data()), points.size()};
 }
@@ -21,13 +21,13 @@ Object view_object(const Frame::Data& data, std::size_t number) {
   object.name = surface.name;
   static_assert(static_cast<int>(Kind::rope) == static_cast<int>(frame::ObjectKind::rope));
   object.kind = static_cast<Kind>(surface.kind);
-  object.positions = viewed<Vector>(data.snapshot->states[number].positions);
+  object.positions = view_as<Vector>(data.snapshot->states[number].positions);
   if (number < data.velocities.size()) {
-    object.velocities = viewed<Vector>(data.velocities[number]);
+    object.velocities = view_as<Vector>(data.velocities[number]);
     object.strains = data.strains[number];
-    object.contact_forces = viewed<Vector>(data.contact_forces[number]);
+    object.contact_forces = view_as<Vector>(data.contact_forces[number]);
   }
-  if (object.kind == Kind::cloth || object.kind == Kind::rope) object.rest = viewed<RestPoint>(surface.uv);
+  if (object.kind == Kind::cloth || object.kind == Kind::rope) object.rest = view_as<RestPoint>(surface.uv);
   object.triangles = surface.triangles;
   return object;
 }

@@ -1,4 +1,4 @@
-// In the shared library, decoding of pictures is what its host gives.
+// The decoder of pictures in the shared library: the one that its host sets.
 #include <stdexcept>
 #include <utility>
 #include <weft/settings.hpp>

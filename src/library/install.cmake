@@ -2,8 +2,8 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# Objects of the modules instead of the modules themselves, which would bring the libraries of pictures: what the
-# simulation needs stands here, and the linker reports everything else as undefined.
+# Links the objects of the modules that the simulation needs, not the modules, which would bring in image libraries.
+# The linker reports whatever is missing as undefined.
 set(objects "")
 foreach(module core mesh scene character assets garment environment solver forces integrator collision untangle
                simulation library)
@@ -69,7 +69,7 @@ if(WEFT_PYTHON)
 endif()
 include(CPack)
 
-# One archive that needs nothing of the machine that it runs on: ninja bundle
+# An archive that needs nothing from the machine that it runs on: ninja bundle
 add_executable(weft_start EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/.packaging/start.c)
 target_compile_options(weft_start PRIVATE -march=x86-64 -Wall -Wextra)  # an older CPU is named by the program
 target_link_options(weft_start PRIVATE -static)

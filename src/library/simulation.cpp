@@ -15,7 +15,7 @@
 namespace weft {
 namespace {
 
-// One thing moves those that are driven; an obstacle moves in a scene if it has two keys or more.
+// An obstacle counts as moving if it has two keys or more, so a driven obstacle needs at least two.
 void add_keys(scene::Scene& scene, scene::Obstacle& obstacle) {
   if (obstacle.motion.keys.size() > 1) return;
   const scene::Pose pose = obstacle.motion.keys.empty() ? obstacle.pose : obstacle.motion.keys.front().pose;
@@ -32,11 +32,11 @@ struct Simulation::Impl {
   Impl(const Scene& public_scene, const SimulationOptions& options);
 
   std::size_t obstacle(std::string_view name) const;
-  void view(const frame::FrameReport& report);
+  void update_current_frame(const frame::FrameReport& report);
 
   scene::Scene scene;
-  std::string heading;              // of a saved state
-  std::vector<std::size_t> driven;  // obstacles, by number
+  std::string heading;              // first line of a saved state
+  std::vector<std::size_t> driven;  // numbers of the driven obstacles
   std::unique_ptr<simulation::Simulation> simulation;
   std::optional<Frame> current;
 };
@@ -50,7 +50,7 @@ Simulation::Impl::Impl(const Scene& public_scene, const SimulationOptions& optio
   simulation = std::make_unique<simulation::Simulation>(scene);
   if (options.state.empty()) {
     simulation->run_preroll();
-    view(simulation->initial_report());
+    update_current_frame(simulation->initial_report());
     return;
   }
   if (!options.state.starts_with(heading))
@@ -62,10 +62,10 @@ Simulation::Impl::Impl(const Scene& public_scene, const SimulationOptions& optio
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(std::string("state: ") + error.what());
   }
-  view({});
+  update_current_frame({});
 }
 
-// Throws std::invalid_argument with the nearest name.
+// Number of an obstacle. Throws std::invalid_argument with the names of all obstacles if there is none of this name.
 std::size_t Simulation::Impl::obstacle(std::string_view name) const {
   const auto found = std::ranges::find(scene.obstacles, name, &scene::Obstacle::name);
   if (found != scene.obstacles.end()) return static_cast<std::size_t>(found - scene.obstacles.begin());
@@ -75,7 +75,7 @@ std::size_t Simulation::Impl::obstacle(std::string_view name) const {
       fmt::format("expected an obstacle of the scene ({}), got {}", fmt::join(names, ", "), name));
 }
 
-void Simulation::Impl::view(const frame::FrameReport& report) {
+void Simulation::Impl::update_current_frame(const frame::FrameReport& report) {
   Frame::Data data;
   data.snapshot = simulation->snapshot();
   data.report = library::report_of(report);
@@ -99,7 +99,7 @@ const Frame& Simulation::frame() const {
 }
 
 const Frame& Simulation::advance() {
-  library::with_public_errors([&] { impl_->view(impl_->simulation->advance()); });
+  library::with_public_errors([&] { impl_->update_current_frame(impl_->simulation->advance()); });
   return frame();
 }
 

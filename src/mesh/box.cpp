@@ -10,12 +10,12 @@
 namespace weft::mesh {
 namespace {
 
-/// Largest bevel by the smallest size. At a half the flat sides would have no area left.
+/// Largest bevel as a fraction of the smallest size. At 0.5 the flat sides would have no area left.
 constexpr double kMaxBevel = 0.49;
 
-/// A box is the hull of eight octants of a small sphere. Each octant is a triangular lattice of points (i, j, k) with
-/// i + j + k = steps; (steps, 0, 0) lies on the box side across the x axis, and so on. Neighbouring octants are joined
-/// by strips along the edges and by the six sides. steps = 0 stands for sharp corners: one point each.
+/// A box is the hull of eight octants of a small sphere. Each octant is a triangular lattice of points (i, j, k) with i
+/// + j + k = steps; (steps, 0, 0) lies on the side of the box across the x axis, and so on. Strips along the edges and
+/// the six flat sides join neighbouring octants. steps = 0 means sharp corners: one point each.
 class RoundedBox {
  public:
   RoundedBox(const Vec3& size, double bevel, int steps) : steps_(steps) {
@@ -38,7 +38,7 @@ class RoundedBox {
  private:
   using Lattice = std::array<int, 3>;
 
-  /// Equal angles along the rim of the octant, where one of the three is zero.
+  /// Unit direction of a lattice point: equal angles along the rim of the octant, where one of i, j, k is zero.
   Vec3 direction(int i, int j, int k) const {
     if (steps_ == 0) return Vec3::Zero();
     const double quarter = 0.5 * std::numbers::pi / steps_;
@@ -47,7 +47,7 @@ class RoundedBox {
 
   Index vertex(int corner, const Lattice& p) const {
     const int octant = (steps_ + 1) * (steps_ + 2) / 2;
-    // Points before row i: steps + 1, then steps, … of them.
+    // Rows before row i hold steps + 1, then steps, … points.
     const int before = p[0] * (steps_ + 1) - p[0] * (p[0] - 1) / 2;
     return corner * octant + before + p[1];
   }
@@ -57,7 +57,7 @@ class RoundedBox {
     for (const Triangle& t : split_quad(q, true)) mesh_.topology.triangles.push_back(t);
   }
 
-  /// An odd number of negative signs: faces given for the corner (+, +, +) then run clockwise.
+  /// Whether the corner has an odd number of negative signs: faces given for the corner (+, +, +) then run clockwise.
   static bool mirrored(int corner) { return ((corner & 1) + (corner >> 1 & 1) + (corner >> 2)) % 2 == 0; }
 
   void add_octant(int corner) {
@@ -75,7 +75,7 @@ class RoundedBox {
     }
   }
 
-  /// Lattice point with `first` on axis + 1 and the rest on axis + 2.
+  /// Lattice point with `first` on axis + 1 and the remainder on axis + 2.
   Lattice rim(int axis, int first) const {
     Lattice p{};
     p[(axis + 1) % 3] = first;
@@ -83,7 +83,7 @@ class RoundedBox {
     return p;
   }
 
-  /// The four rounded edges along an axis.
+  /// The four rounded edges parallel to an axis.
   void add_edges(int axis) {
     for (int corner = 0; corner < 8; ++corner) {
       if (corner >> axis & 1) continue;
@@ -95,7 +95,7 @@ class RoundedBox {
     }
   }
 
-  /// The two flat sides across an axis.
+  /// The two flat sides perpendicular to an axis.
   void add_sides(int axis) {
     const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
     Lattice p{};

@@ -10,28 +10,28 @@
 namespace weft::mesh {
 namespace {
 
-using Way = std::array<Index, 2>;  // an edge as its triangle runs along it
+using DirectedEdge = std::array<Index, 2>;  // directed edge, in the order of its triangle
 
-std::set<Way> ways_of(std::span<const Triangle> triangles) {
-  std::set<Way> ways;
+std::set<DirectedEdge> directed_edges(std::span<const Triangle> triangles) {
+  std::set<DirectedEdge> edges;
   for (const Triangle& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) ways.insert({t[k], t[(k + 1) % 3]});
-  return ways;
+    for (std::size_t k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
+  return edges;
 }
 
 }  // namespace
 
 void close_cuts(std::span<const Triangle> whole, std::span<const Vec3> positions, std::vector<Triangle>& kept) {
-  const std::set<Way> all = ways_of(whole), left = ways_of(kept);
-  std::multimap<Index, Index> lid;  // the ways of the lids, against those of the triangles beside them
-  for (const auto& [from, to] : left)
-    if (!left.contains({to, from}) && all.contains({to, from})) lid.emplace(to, from);
+  const std::set<DirectedEdge> whole_edges = directed_edges(whole), kept_edges = directed_edges(kept);
+  std::multimap<Index, Index> lid;  // directed edges of the lids, opposite to those of the adjacent triangles
+  for (const auto& [from, to] : kept_edges)
+    if (!kept_edges.contains({to, from}) && whole_edges.contains({to, from})) lid.emplace(to, from);
 
   std::vector<Index> path;
   while (!lid.empty()) {
     if (path.empty()) path.push_back(lid.begin()->first);
     const auto next = lid.find(path.back());
-    if (next == lid.end()) {  // a cut that runs into a border of the whole closes nothing
+    if (next == lid.end()) {  // a cut that ends at a border of `whole` closes nothing
       path.pop_back();
       continue;
     }

@@ -1,4 +1,4 @@
-// Lids on the holes of a surface that parts have been taken from.
+// Lids that close the holes left in a surface after some of its triangles have been removed.
 #pragma once
 
 #include <span>
@@ -8,9 +8,9 @@
 
 namespace weft::mesh {
 
-/// Appends to `kept`, some of the triangles of `whole`, those that close the borders which the others left behind; a
-/// border of `whole` stays open. No vertex is added. Where borders meet in a vertex, each ring ends where it comes back
-/// to one of its own vertices. Time O(n log n) and that of triangulate_polygon().
+/// Appends lid triangles to `kept`, a subset of the triangles of `whole`. The lids close the borders that the removed
+/// triangles left behind; a border of `whole` itself stays open. No vertex is added. If several borders share a vertex,
+/// each ring ends where it returns to one of its own vertices. Time O(n log n), plus that of triangulate_polygon().
 void close_cuts(std::span<const Triangle> whole, std::span<const Vec3> positions, std::vector<Triangle>& kept);
 
 }  // namespace weft::mesh

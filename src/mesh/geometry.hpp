@@ -1,4 +1,4 @@
-// Sizes and normals of triangle meshes.
+// Areas, normals and bounding boxes of triangle meshes.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace weft::mesh {
 
-/// Half the cross product of two sides: length is the area [m²], direction the front normal.
+/// Half the cross product of two sides: its length is the area [m²], its direction the front normal.
 inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return x[t[k]]; };
   return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0));
@@ -16,8 +16,8 @@ inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
 /// Sum of the triangle areas [m²].
 double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> positions);
 
-/// Unit normal per vertex, triangles weighted by area; zero where a vertex has no triangle of any area. Writes
-/// `normals` (one per position) and allocates nothing.
+/// Computes one unit normal per vertex, as the area-weighted mean over its triangles; zero if the vertex has no
+/// triangle with an area. Writes `normals` (one per position) and allocates nothing.
 void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions, std::span<Vec3> normals);
 
 /// Smallest box around the points; empty without points.

@@ -10,14 +10,14 @@
 namespace weft::mesh {
 namespace {
 
-/// Nodes of a cubic lattice, x from 0. Values are asked for when needed and remembered.
+/// Nodes of a cubic lattice with x from 0. Values are evaluated on first use and cached.
 class Lattice {
  public:
   Lattice(const Field& field, const Box3& box, double cell) : field_(field), cell_(cell) {
     for (int k = 0; k < 3; ++k) {
       const double low = k == 0 ? 0.0 : box.min()[k];
       origin_[k] = low;
-      // Whole blocks.
+      // Rounded up to whole blocks.
       const int cells = static_cast<int>(std::ceil((box.max()[k] - low) / cell));
       nodes_[k] = (cells + kBlock - 1) / kBlock * kBlock + 1;
     }
@@ -38,11 +38,11 @@ class Lattice {
     return v;
   }
 
-  /// Whether the surface may pass through the block with this first node.
+  /// Whether the surface may pass through the block that starts at this node.
   bool may_cross(int i, int j, int k) const {
-    const double reach = std::sqrt(3.0) / 2 * kBlock * cell_;
+    const double half_diagonal = std::sqrt(3.0) / 2 * kBlock * cell_;
     const double half = kBlock / 2.0;
-    return std::abs(field_(origin_ + cell_ * Vec3(i + half, j + half, k + half))) < 3 * reach;
+    return std::abs(field_(origin_ + cell_ * Vec3(i + half, j + half, k + half))) < 3 * half_diagonal;
   }
 
  private:
@@ -59,12 +59,12 @@ struct Node {
   double value = 0;
 };
 
-/// Cuts tetrahedra and collects their triangles; a lattice edge that is crossed has one vertex.
+/// Cuts tetrahedra and collects their triangles. Each crossed lattice edge gets one shared vertex.
 class Cutter {
  public:
   explicit Cutter(const Lattice& lattice) : lattice_(lattice) {}
 
-  /// The corners of the tetrahedron are positively oriented.
+  /// `corner` must be positively oriented.
   void cut(const std::array<Node, 4>& corner) {
     std::array<int, 4> in{}, out{};
     int ins = 0, outs = 0;
@@ -77,7 +77,7 @@ class Cutter {
     }
     if (ins == 0 || outs == 0) return;
     const auto v = [&](int a, int b) { return vertex(corner[a], corner[b]); };
-    // Each list of corners, followed by the rest in ascending order, is an even or odd permutation of 0 1 2 3.
+    // The inside corners followed by the outside corners, each ascending, are an even or odd permutation of 0 1 2 3.
     if (ins == 1) {
       add(v(in[0], out[0]), v(in[0], out[1]), v(in[0], out[2]), in[0] % 2 != 0);
     } else if (outs == 1) {
@@ -95,13 +95,13 @@ class Cutter {
  private:
   Index vertex(const Node& a, const Node& b) {
     const auto [low, high] = std::minmax(a.index, b.index);
-    // Index differences of neighbours are few, but a lattice is small enough for a pair of 32 bits.
+    // Node indices of a lattice fit into 32 bits, so a pair of them fits into 64.
     const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
     const auto [entry, is_new] = vertices_.try_emplace(key, static_cast<Index>(mesh.positions.size()));
     if (is_new) {
       const Node& first = a.index == low ? a : b;
       const Node& second = a.index == low ? b : a;
-      // Away from the nodes, so that no triangle loses its area.
+      // Keep the vertex away from the nodes, so that no triangle loses its area.
       const double s = std::clamp(first.value / (first.value - second.value), 0.05, 0.95);
       const Vec3 p = lattice_.place(first.at[0], first.at[1], first.at[2]);
       const Vec3 q = lattice_.place(second.at[0], second.at[1], second.at[2]);
@@ -119,7 +119,7 @@ class Cutter {
   std::unordered_map<std::uint64_t, Index> vertices_;
 };
 
-/// The six tetrahedra of a cube: from one end of the diagonal to the other along the axes in each order.
+/// The six tetrahedra of a cube: each follows the axes in another order from one end of the diagonal to the other.
 constexpr std::array<std::array<int, 3>, 6> kOrders{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
 
 void cut_cell(Lattice& lattice, Cutter& cutter, int i, int j, int k) {
@@ -171,7 +171,7 @@ MirroredMesh join_mirror_image(const Mesh& half) {
       for (const Index v : edge.vertices) on_border[v] = true;
     }
   }
-  // Border first, then the half as it is, then its image in the same order.
+  // Order: border vertices, the other vertices of the half, then their images in the same order.
   MirroredMesh joined;
   std::vector<Index> place(count), image(count);
   for (std::size_t v = 0; v < count; ++v) {

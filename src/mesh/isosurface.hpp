@@ -1,4 +1,4 @@
-// Triangles on the zero set of a function, even in size and shape.
+// Triangulates the zero set of a function with triangles of even size and shape.
 #pragma once
 
 #include <functional>
@@ -7,29 +7,29 @@
 
 namespace weft::mesh {
 
-/// Negative inside; at least about as steep as a distance [m] and continuously differentiable near its zero set. Its
-/// slope must stay below 3.
+/// Implicit function: negative inside. Near its zero set it must be continuously differentiable and at least about as
+/// steep as a distance [m]; its slope must stay below 3.
 using Field = std::function<double(const Vec3&)>;
 
-/// A length [m] for each place; should change slowly.
+/// Wanted edge length [m] at a point; it should vary slowly.
 using Sizing = std::function<double(const Vec3&)>;
 
-/// Marching tetrahedra on the part of `box` where x >= 0: a cube of the lattice is cut into six tetrahedra along its
-/// diagonal (Kuhn 1960), which leaves no ambiguous case, so the surface is always manifold. It is open where it meets
-/// the plane x = 0, its border vertices having x = 0 exactly, and closed elsewhere if `box` holds all of it. Parts
-/// thinner than `cell` [m] may be missed.
+/// Marching tetrahedra on the half of `box` with x >= 0. Each cube of the lattice is cut into six tetrahedra along its
+/// diagonal (Kuhn 1960); this leaves no ambiguous case, so the surface is always manifold. The surface is open at the
+/// plane x = 0, where its border vertices have x = 0 exactly, and closed elsewhere if `box` contains all of it.
+/// Features thinner than `cell` [m] may be missed.
 Mesh march_half_space(const Field& field, const Box3& box, double cell);
 
-/// Remeshes a surface to edges of the length `edge_length`: splits, collapses, flips and relaxes in turn, and draws
-/// the vertices back to the zero set (Botsch & Kobbelt, "A Remeshing Approach to Multiresolution Modeling", 2004).
-/// Border vertices stay on the border and in its plane x = 0.
+/// Remeshes a surface toward the edge length `edge_length`: each round splits, collapses and flips edges, relaxes
+/// vertices, and projects them back to the zero set (Botsch & Kobbelt, "A Remeshing Approach to Multiresolution
+/// Modeling", 2004). Border vertices stay on the border and in its plane x = 0.
 void remesh(Mesh& surface, const Field& field, const Sizing& edge_length, int rounds);
 
-/// Joins a surface whose border lies in x = 0 to its mirror image: vertex v has its image at v + (number of vertices
-/// off the border), border vertices come first and have none.
+/// A surface whose border lies in x = 0, joined to its mirror image. Border vertices come first and are their own
+/// images; any other vertex v of the half has its image at v + (number of vertices off the border).
 struct MirroredMesh {
   Mesh mesh;
-  std::vector<Index> image;  ///< per vertex, that on the other side; itself on the plane
+  std::vector<Index> image;  ///< index of the mirrored vertex, per vertex; itself on the plane
 };
 MirroredMesh join_mirror_image(const Mesh& half);
 

@@ -11,8 +11,8 @@
 
 namespace weft::mesh {
 
-/// Faces of a surface. Quads keep their four corners and are also split into two triangles, which collision, drawing
-/// and files all use, so that there is one surface and not three.
+/// Faces of a surface. Quads keep their four corners and are also split into two triangles. Collision, drawing and
+/// files all use these triangles, so that there is only one surface.
 struct Topology {
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated; empty for a triangle mesh
   std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise from the front; quad q owns triangles 2q, 2q+1
@@ -24,32 +24,31 @@ struct Mesh {
   std::vector<Vec2> uv;         ///< rest coordinates (weft, warp) per vertex [m]; empty where there are none
 };
 
-/// Grid of nu × nv particles in rows and columns. Particle (i, j) has index i + nu * j, i along weft (u), j along warp
-/// (v).
+/// Grid of nu × nv particles in rows and columns. Index of (i, j): i + nu * j, i along weft (u), j along warp (v).
 struct Grid {
   int nu = 0, nv = 0;                         ///< particles along weft and warp, at least 2
   double lu = 0, lv = 0;                      ///< mean rest spacing along weft and warp [m]
-  double weft_grading = 1, warp_grading = 1;  ///< last spacing over the first; geometric between; 1: all are the mean
+  double weft_grading = 1, warp_grading = 1;  ///< last / first spacing, geometric in between; 1: all equal
   Index index(int i, int j) const { return static_cast<Index>(i + nu * j); }
   Index size() const { return static_cast<Index>(nu * nv); }
 
   /// Rest coordinates of column i and row j, from 0 [m].
   double u(int i) const { return spacings_before(i, nu, weft_grading) * lu; }
   double v(int j) const { return spacings_before(j, nv, warp_grading) * lv; }
-  /// The same from the middle of the sheet [m].
+  /// The same coordinates, measured from the middle of the sheet [m].
   double x(int i) const { return (spacings_before(i, nu, weft_grading) - 0.5 * (nu - 1)) * lu; }
   double y(int j) const { return (spacings_before(j, nv, warp_grading) - 0.5 * (nv - 1)) * lv; }
   /// Rest spacing between columns i and i + 1, rows j and j + 1 [m].
   double du(int i) const { return spacing(i, nu, lu, weft_grading); }
   double dv(int j) const { return spacing(j, nv, lv, warp_grading); }
-  /// Width of the sheet that belongs to a column or row: half of the spacing on either side [m].
+  /// Width of the sheet that belongs to a column or row: half of the spacing on each side [m].
   double width_u(int i) const { return width(i, nu, lu, weft_grading); }
   double width_v(int j) const { return width(j, nv, lv, warp_grading); }
-  /// Least of all spacings [m].
+  /// Smallest of all spacings [m].
   double least_spacing() const { return std::min({du(0), du(nu - 2), dv(0), dv(nv - 2)}); }
 
  private:
-  // In mean spacings.
+  // In units of the mean spacing.
   static double spacings_before(int i, int count, double grading) {
     return grading == 1 ? i : graded_fraction(i, count, grading) * (count - 1);
   }

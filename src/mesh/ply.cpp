@@ -13,10 +13,10 @@
 namespace weft::mesh {
 namespace {
 
-// Numbers are copied as they lie in memory.
+// Numbers are copied with their memory layout.
 static_assert(std::endian::native == std::endian::little);
 
-/// One face of the file: the number of its corners as a byte, then their indices.
+/// Bytes of a face (the number of its corners as a byte, then their indices) and of an edge.
 constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t), kEdgeBytes = 2 * sizeof(std::int32_t);
 constexpr std::size_t kPlaceBytes = 3 * sizeof(double), kUvBytes = 2 * sizeof(float);
 

@@ -1,4 +1,4 @@
-// Triangles from polygons with any number of corners.
+// Triangulates polygons with any number of corners.
 #pragma once
 
 #include <span>
@@ -8,14 +8,14 @@
 
 namespace weft::mesh {
 
-/// Cuts a simple polygon, convex or not and nearly flat, into n - 2 triangles of its own orientation by clipping ears,
-/// and appends them. Self-crossing or collapsed polygons give n - 2 triangles too, of whatever shape. Time O(n²) for
-/// usual polygons, O(n³) at worst.
+/// Cuts a simple, nearly flat polygon (convex or not) into n - 2 triangles of its own orientation by ear clipping, and
+/// appends them. Self-crossing or collapsed polygons also give n - 2 triangles, of any shape. Time O(n²) for usual
+/// polygons, O(n³) in the worst case.
 void triangulate_polygon(std::span<const Index> corners, std::span<const Vec3> positions,
                          std::vector<Triangle>& triangles);
 
-/// The same of a face of a file, whose coordinates are of single precision: corners along a straight side stay corners
-/// of triangles with an area, and where needles remain edges are turned until the triangles are as even as they can be.
+/// The same for a face of a file, whose coordinates have single precision. Corners along a straight side become corners
+/// of triangles with an area. If needles remain, edges are flipped until the triangles are as even as possible.
 void triangulate_face(std::span<const Index> corners, std::span<const Vec3> positions,
                       std::vector<Triangle>& triangles);
 

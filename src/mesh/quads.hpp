@@ -1,4 +1,4 @@
-// Regular sheets, and how quads become triangles.
+// Regular sheets, and the split of quads into triangles.
 #pragma once
 
 #include <array>
@@ -10,19 +10,19 @@
 
 namespace weft::mesh {
 
-/// The two triangles of a quad: cut from corner 0 to 2 (the first diagonal), or from 1 to 3.
+/// The two triangles of a quad, cut along the first diagonal (corner 0 to 2) or the second (corner 1 to 3).
 inline std::array<Triangle, 2> split_quad(const Quad& q, bool first_diagonal) {
   if (first_diagonal) return {Triangle{q[0], q[1], q[2]}, Triangle{q[0], q[2], q[3]}};
   return {Triangle{q[0], q[1], q[3]}, Triangle{q[1], q[2], q[3]}};
 }
 
-/// Splits any quads along a diagonal inside the quad, the shorter one where both are, the first on a tie. Quad q gives
-/// triangles 2q and 2q + 1.
+/// Splits quads along a diagonal that lies inside the quad. If both do, the shorter one is used; on a tie, the first.
+/// Quad q gives triangles 2q and 2q + 1.
 std::vector<Triangle> split_quads(std::span<const Quad> quads, std::span<const Vec3> positions);
 
-/// Sheet of nu × nv particles in the x-y plane, centred on the origin: weft along x, warp along y, front toward +z,
-/// uv = rest coordinates of column and row [m]. The diagonal alternates from quad to quad, so that the split prefers no
-/// direction of bias.
+/// Sheet of nu × nv particles in the x-y plane, centred on the origin: weft along x, warp along y, front toward +z, uv
+/// = rest coordinates of column and row [m]. The diagonal alternates from quad to quad: the split prefers no bias
+/// direction.
 Mesh make_sheet(const Grid& grid);
 
 }  // namespace weft::mesh

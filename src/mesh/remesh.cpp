@@ -10,14 +10,15 @@
 namespace weft::mesh {
 namespace {
 
-constexpr double kLongest = 4.0 / 3, kShortest = 4.0 / 5;  // of the wanted length (Botsch & Kobbelt 2004)
+constexpr double kMaxEdgeRatio = 4.0 / 3, kMinEdgeRatio = 4.0 / 5;  // of the wanted length (Botsch & Kobbelt 2004)
 
 std::size_t z(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Two Newton steps along the gradient, by forward differences. Off the plane x = 0 unless `in_plane`.
-Vec3 drawn_to_surface(const Field& field, Vec3 p, bool in_plane) {
+/// Projects a point to the zero set by two Newton steps along the gradient (forward differences). If `in_plane`, x is
+/// kept.
+Vec3 project_to_surface(const Field& field, Vec3 p, bool in_plane) {
   constexpr double step = 1e-6;  // m
   for (int n = 0; n < 2; ++n) {
     const double value = field(p);
@@ -32,33 +33,33 @@ double angle_at(const Vec3& corner, const Vec3& a, const Vec3& b) {
   return std::atan2((a - corner).cross(b - corner).norm(), (a - corner).dot(b - corner));
 }
 
-/// A triangle mesh under change: which triangles each vertex has is kept up to date.
-class Patchwork {
+/// A triangle mesh that is being changed, with the list of triangles around each vertex kept up to date.
+class Remesher {
  public:
-  Patchwork(Mesh& mesh, const Field& field, const Sizing& edge_length)
+  Remesher(Mesh& mesh, const Field& field, const Sizing& edge_length)
       : x_(mesh.positions), triangles_(mesh.topology.triangles), field_(field), edge_length_(edge_length) {}
 
-  void round() {
+  void run_round() {
     split_long_edges();
-    collect();
+    update_connectivity();
     collapse_short_edges();
     drop_unused();
-    collect();
+    update_connectivity();
     flip_edges();
     relax();
   }
 
  private:
-  /// Every edge that is too long gets a vertex in its middle, and each triangle is cut along them.
+  /// Puts a vertex in the middle of every edge that is too long, and cuts the triangles there.
   void split_long_edges() {
     const EdgeSet edges = collect_edges(triangles_);
     std::vector<Index> middle(edges.edges.size(), -1);
     for (std::size_t e = 0; e < middle.size(); ++e) {
       const auto [a, b] = edges.edges[e].vertices;
       const Vec3 m = 0.5 * (x_[z(a)] + x_[z(b)]);
-      if ((x_[z(b)] - x_[z(a)]).norm() <= kLongest * edge_length_(m)) continue;
+      if ((x_[z(b)] - x_[z(a)]).norm() <= kMaxEdgeRatio * edge_length_(m)) continue;
       middle[e] = static_cast<Index>(x_.size());
-      x_.push_back(drawn_to_surface(field_, m, edges.edges[e].triangles[1] < 0));
+      x_.push_back(project_to_surface(field_, m, edges.edges[e].triangles[1] < 0));
     }
     std::vector<Triangle> cut;
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
@@ -68,7 +69,7 @@ class Patchwork {
     triangles_ = std::move(cut);
   }
 
-  /// `m[k]` is the vertex between corners k and k + 1, or -1.
+  /// `m[k]` is the vertex between corners k and k + 1, or -1 if that edge is not cut.
   void cut_triangle(Triangle t, std::array<Index, 3> m, std::vector<Triangle>& out) const {
     const auto count = std::count_if(m.begin(), m.end(), [](Index v) { return v >= 0; });
     if (count == 0) return out.push_back(t);
@@ -76,7 +77,7 @@ class Patchwork {
       out.insert(out.end(), {{t[0], m[0], m[2]}, {t[1], m[1], m[0]}, {t[2], m[2], m[1]}, {m[0], m[1], m[2]}});
       return;
     }
-    // Turned so that the first edge is cut and the last one is not.
+    // Rotate the triangle so that its first edge is cut and its last edge is not.
     while (m[0] < 0 || m[2] >= 0) {
       std::rotate(t.begin(), t.begin() + 1, t.end());
       std::rotate(m.begin(), m.begin() + 1, m.end());
@@ -88,8 +89,8 @@ class Patchwork {
     }
   }
 
-  /// Who is around whom, and what is on the border.
-  void collect() {
+  /// Collects the triangles around each vertex, the edges, and the vertices on the border.
+  void update_connectivity() {
     around_.assign(x_.size(), {});
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       for (const Index v : triangles_[t]) around_[z(v)].push_back(static_cast<Index>(t));
@@ -101,7 +102,7 @@ class Patchwork {
     }
   }
 
-  /// Ascending, each once.
+  /// Ascending, without duplicates.
   std::vector<Index> neighbours(Index v) const {
     std::vector<Index> list;
     for (const Index t : around_[z(v)]) {
@@ -120,7 +121,7 @@ class Patchwork {
       const auto [a, b] = edges_[e].vertices;
       const double wanted = edge_length_(0.5 * (x_[z(a)] + x_[z(b)]));
       const double length = (x_[z(b)] - x_[z(a)]).norm();
-      if (length < kShortest * wanted) queue.emplace_back(length / wanted, e);
+      if (length < kMinEdgeRatio * wanted) queue.emplace_back(length / wanted, e);
     }
     std::sort(queue.begin(), queue.end());
     for (const auto& [ratio, e] : queue) {
@@ -130,7 +131,7 @@ class Patchwork {
     }
   }
 
-  /// Whether `gone` may be drawn into `keep` without changing what the surface is (link condition).
+  /// Whether `gone` may be merged into `keep` without a change of topology (link condition).
   bool link_allows(Index keep, Index gone, bool on_border) const {
     if (border_[z(gone)] && !on_border) return false;
     const std::vector<Index> a = neighbours(keep), b = neighbours(gone);
@@ -138,12 +139,12 @@ class Patchwork {
     std::vector<Index> common;
     std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
     if (common.size() != (on_border ? 1U : 2U)) return false;
-    // No edge inside may join two border vertices: its mirror image would be the same edge.
+    // No inner edge may join two border vertices: its mirror image would be the same edge.
     return on_border || !border_[z(keep)] ||
            std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
   }
 
-  /// Whether the triangles around `v` but without `other` keep their side, and their edges stay short, with v at p.
+  /// Whether, with `v` moved to p, triangles around `v` without `other` keep their orientation and stay small.
   bool shape_allows(Index v, Index other, const Vec3& p) const {
     for (const Index t : around_[z(v)]) {
       Triangle corner = triangles_[z(t)];
@@ -152,7 +153,7 @@ class Patchwork {
       const Vec3 &q = x_[z(corner[1])], &r = x_[z(corner[2])];
       const Vec3 before = (q - x_[z(v)]).cross(r - x_[z(v)]), after = (q - p).cross(r - p);
       if (before.dot(after) < 0.5 * before.norm() * after.norm()) return false;
-      if ((q - p).norm() > kLongest * edge_length_(0.5 * (p + q))) return false;
+      if ((q - p).norm() > kMaxEdgeRatio * edge_length_(0.5 * (p + q))) return false;
     }
     return true;
   }
@@ -160,7 +161,7 @@ class Patchwork {
   void collapse(Index keep, Index gone, bool on_border) {
     if (!link_allows(keep, gone, on_border)) return;
     const bool to_keep = border_[z(keep)] && !on_border;
-    const Vec3 p = to_keep ? x_[z(keep)] : drawn_to_surface(field_, 0.5 * (x_[z(keep)] + x_[z(gone)]), on_border);
+    const Vec3 p = to_keep ? x_[z(keep)] : project_to_surface(field_, 0.5 * (x_[z(keep)] + x_[z(gone)]), on_border);
     if (!shape_allows(keep, gone, p) || !shape_allows(gone, keep, p)) return;
     x_[z(keep)] = p;
     for (const Index t : around_[z(gone)]) {
@@ -193,12 +194,12 @@ class Patchwork {
     }
   }
 
-  /// Delaunay: the diagonal of two triangles whose opposite angles add up to less than π.
+  /// Makes edges locally Delaunay: keeps the diagonal if the two angles opposite to it add up to less than π.
   void flip_edges() {
     for (const Edge& edge : edges_) {
       if (edge.triangles[1] < 0) continue;
       const auto [a, b] = edge.vertices;
-      // Earlier flips may have changed the triangles at this edge.
+      // Earlier flips may have changed the triangles at this edge, so collect them anew.
       std::vector<Index> sides;
       for (const Index t : around_[z(a)]) {
         const Triangle& corner = triangles_[z(t)];
@@ -213,7 +214,7 @@ class Patchwork {
       const Triangle& corner = triangles_[z(t)];
       return *std::find_if(corner.begin(), corner.end(), [&](Index v) { return v != a && v != b; });
     };
-    // `left` holds a, b in this order.
+    // Make `left` the triangle that runs from a to b.
     const auto follows = [&](Index t) {
       const Triangle& corner = triangles_[z(t)];
       const auto at = std::find(corner.begin(), corner.end(), a) - corner.begin();
@@ -226,7 +227,7 @@ class Patchwork {
     if (angle_at(pc, pa, pb) + angle_at(pd, pa, pb) < std::numbers::pi + 1e-6) return;
     const std::vector<Index> of_c = neighbours(c);
     if (std::binary_search(of_c.begin(), of_c.end(), d)) return;
-    // No fold: the new triangles look where the old ones did.
+    // Avoid folds: the new triangles must face the same way as the old ones.
     const Vec3 normal = (pb - pa).cross(pc - pa) + (pd - pa).cross(pb - pa);
     const Vec3 first = (pd - pa).cross(pc - pa), second = (pb - pd).cross(pc - pd);
     if (first.dot(normal) < 0.7 * first.norm() * normal.norm() ||
@@ -241,7 +242,7 @@ class Patchwork {
     around_[z(d)].push_back(left);
   }
 
-  /// Every vertex goes toward the mean of its neighbours, along the surface.
+  /// Moves each vertex along the surface toward the weighted mean of its neighbours.
   void relax() {
     std::vector<Vec3> normals(x_.size());
     vertex_normals(triangles_, x_, normals);
@@ -251,7 +252,7 @@ class Patchwork {
       double count = 0;
       for (const Index w : neighbours(static_cast<Index>(v))) {
         if (border_[v] && !border_[z(w)]) continue;
-        // Larger where neighbours are wanted farther away, which keeps gradual sizes gradual.
+        // Finely meshed neighbours weigh more, so that gradual changes of size stay gradual.
         const double weight = 1 / edge_length_(0.5 * (x_[v] + x_[z(w)]));
         sum += weight * x_[z(w)];
         count += weight;
@@ -259,7 +260,7 @@ class Patchwork {
       Vec3 move = 0.8 * (sum / count - x_[v]);
       move -= normals[v].dot(move) * normals[v];
       if (border_[v]) move.x() = 0;
-      target[v] = drawn_to_surface(field_, x_[v] + move, border_[v]);
+      target[v] = project_to_surface(field_, x_[v] + move, border_[v]);
     }
     x_ = std::move(target);
   }
@@ -276,8 +277,8 @@ class Patchwork {
 }  // namespace
 
 void remesh(Mesh& surface, const Field& field, const Sizing& edge_length, int rounds) {
-  Patchwork patchwork(surface, field, edge_length);
-  for (int n = 0; n < rounds; ++n) patchwork.round();
+  Remesher remesher(surface, field, edge_length);
+  for (int n = 0; n < rounds; ++n) remesher.run_round();
 }
 
 }  // namespace weft::mesh

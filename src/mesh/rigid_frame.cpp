@@ -8,14 +8,14 @@
 namespace weft::mesh {
 namespace {
 
-// Volume, first and second moments of tetrahedra from a point to triangles: all integrals over what a surface encloses.
+// Volume, first and second moments of a solid: the sum over the tetrahedra from one point to each surface triangle.
 struct Moments {
   double volume = 0;
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();
 };
 
-// Of the tetrahedron (0, a, b, c): V = det / 6, ∫x = V (a + b + c) / 4, ∫x xᵀ = V / 20 (Σ v vᵀ + (Σ v)(Σ v)ᵀ).
+// Adds the tetrahedron (0, a, b, c): V = det / 6, ∫x = V (a + b + c) / 4, ∫x xᵀ = V / 20 (Σ v vᵀ + (Σ v)(Σ v)ᵀ).
 void add_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, Moments& moments) {
   const double volume = a.dot(b.cross(c)) / 6;
   const Vec3 sum = a + b + c;
@@ -38,7 +38,7 @@ Vec3 RigidFrame::corner(std::size_t k) {
 RigidFrame::RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
   if (triangles.empty() || !is_closed(triangles)) throw std::invalid_argument("a closed surface");
   Moments moments;
-  const Vec3 origin = vertices[static_cast<std::size_t>(triangles.front()[0])];  // near, for few rounding errors
+  const Vec3 origin = vertices[static_cast<std::size_t>(triangles.front()[0])];  // near, for small rounding errors
   for (const Triangle& t : triangles)
     add_tetrahedron(vertices[static_cast<std::size_t>(t[0])] - origin,
                     vertices[static_cast<std::size_t>(t[1])] - origin,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Least number of faces around a round shape that still encloses a volume.
+/// Minimum number of faces around a round shape that still enclose a volume.
 constexpr int kMinSegments = 3;
 
 Index add_vertex(Mesh& mesh, const Vec3& x) {
@@ -24,33 +24,33 @@ void add_quad(Mesh& mesh, const Quad& q, bool first_diagonal) {
   for (const Triangle& t : split_quad(q, first_diagonal)) mesh.topology.triangles.push_back(t);
 }
 
-/// Pieces into which a length is cut so that cells about `edge` wide come out square, but never more than `limit`:
-/// thin bars would otherwise get thousands of rows.
-int pieces(double length, double edge, int limit) {
+/// Number of pieces of a length that give square cells of width about `edge`, at most `limit`: thin bars would
+/// otherwise get thousands of rows.
+int piece_count(double length, double edge, int limit) {
   return static_cast<int>(std::clamp(std::round(length / edge), 1.0, static_cast<double>(limit)));
 }
 
-/// Point of a profile that is turned around the z axis.
+/// Point of a profile that is revolved around the z axis.
 struct ProfilePoint {
   double radius, z;
 };
 
-/// Cuts a polyline so that the cells of the turned surface are about square at radius `radius`.
+/// Refines a polyline so that the cells of the revolved surface are about square at radius `radius`.
 std::vector<ProfilePoint> refine(const std::vector<ProfilePoint>& corners, double radius, int segments) {
   const double edge = 2 * kPi * radius / segments;
   std::vector<ProfilePoint> profile;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
     const auto [r0, z0] = corners[k];
     const auto [r1, z1] = corners[k + 1];
-    const int count = pieces(std::hypot(r1 - r0, z1 - z0), edge, segments);
+    const int count = piece_count(std::hypot(r1 - r0, z1 - z0), edge, segments);
     for (int i = 0; i < count; ++i) profile.push_back({r0 + (r1 - r0) * i / count, z0 + (z1 - z0) * i / count});
   }
   profile.push_back(corners.back());
   return profile;
 }
 
-/// Turns a profile around the z axis. A profile that runs upward with the axis on its left gives an outward surface.
-/// Points on the axis (radius 0) become one vertex; `closed` joins the last point to the first.
+/// Revolves a profile around the z axis. A profile that runs upward with the axis on its left gives an outward surface.
+/// Points on the axis (radius 0) become one vertex. `closed` joins the last point to the first.
 Mesh revolve(const std::vector<ProfilePoint>& profile, int segments, bool closed) {
   Mesh mesh;
   const auto around = static_cast<std::size_t>(segments);
@@ -85,7 +85,7 @@ Mesh revolve(const std::vector<ProfilePoint>& profile, int segments, bool closed
   return mesh;
 }
 
-/// The twelve corners of an icosahedron, cyclic permutations of (0, ±1, ±golden ratio), and its twenty sides. The axes
+/// The twelve corners of an icosahedron, cyclic permutations of (0, ±1, ±golden ratio), and its twenty faces. The axes
 /// pass through the middles of edges.
 Mesh icosahedron() {
   const double g = std::numbers::phi;
@@ -101,12 +101,12 @@ Mesh icosahedron() {
 }  // namespace
 
 Mesh make_sphere(double radius, int segments) {
-  // Sides cut into n pieces give edges of mean length 1.20 radius / n (measured), 5.24 n of them around. An even n puts
-  // vertices on the axes.
+  // Edges cut into n pieces: mean length 1.20 radius / n (measured), 5.24 n around the sphere. An even n puts vertices
+  // on the axes.
   const int pieces_per_side = 2 * std::max(1, static_cast<int>(std::lround(segments / (2 * 5.24))));
   const Mesh coarse = icosahedron();
   Mesh mesh;
-  // A vertex on a side is named by integer weights of coarse corners: neighbours then share it exactly.
+  // A vertex is identified by integer weights of the coarse corners, so that neighbouring faces share it exactly.
   std::map<std::array<std::array<int, 2>, 3>, Index> known;
   for (const Triangle& side : coarse.topology.triangles) {
     const auto vertex = [&](int b, int c) {
@@ -149,7 +149,7 @@ Mesh make_cylinder(double radius, double height, int segments) {
 
 Mesh make_torus(double radius, double tube_radius, int segments) {
   segments = std::max(segments, kMinSegments);
-  // The outer equator sets the width of a cell. A multiple of four puts a ring at the very bottom, to stand on.
+  // The outer equator determines the width of a cell. A multiple of four puts a ring at the very bottom, to stand on.
   const double edge = 2 * kPi * (radius + tube_radius) / segments;
   const int around_tube = 4 * std::max(2, static_cast<int>(std::lround(2 * kPi * tube_radius / edge / 4)));
   std::vector<ProfilePoint> circle;
@@ -162,7 +162,7 @@ Mesh make_torus(double radius, double tube_radius, int segments) {
 
 Mesh make_half_pipe(double radius, double length, double thickness, int segments) {
   const int steps = std::max(segments / 2, 2);
-  const int rows = pieces(length, kPi * radius / steps, std::max(segments, 2));
+  const int rows = piece_count(length, kPi * radius / steps, std::max(segments, 2));
   const auto arc = static_cast<std::size_t>(steps) + 1;
   Mesh mesh;
   // Each row holds the profile: the inner arc from -y over the bottom to +y, then the outer arc the same way.
@@ -170,7 +170,7 @@ Mesh make_half_pipe(double radius, double length, double thickness, int segments
     const double x = length * row / rows - 0.5 * length;
     for (const double r : {radius, radius + thickness}) {
       for (int k = 0; k <= steps; ++k) {
-        // The rims at exactly z = 0, which the rounded sine of pi would miss.
+        // The rims lie at exactly z = 0, which the rounded sine of π would miss.
         const bool rim = k == 0 || k == steps;
         const double angle = kPi * k / steps;
         add_vertex(mesh, {x, -r * std::cos(angle), rim ? 0.0 : -r * std::sin(angle)});

@@ -9,15 +9,14 @@
 namespace weft::mesh {
 namespace {
 
-// Share of x left in the plane of a triangle below which its direction there is taken from the warp [1]: a slope of
-// 84°.
-constexpr double kAcross = 0.1;
+// Minimum length of the projection of the x axis into a triangle [1]; below it (slope 84°) the warp decides.
+constexpr double kMinProjectedWeft = 0.1;
 
 // Unit directions of weft and warp in a triangle with this normal.
 std::array<Vec3, 2> axes(const Vec3& normal) {
   const Vec3 n = normal.normalized();
   Vec3 weft = Vec3::UnitX() - n.x() * n;
-  if (weft.norm() < kAcross) weft = Vec3::UnitY().cross(n);
+  if (weft.norm() < kMinProjectedWeft) weft = Vec3::UnitY().cross(n);
   weft.normalize();
   return {weft, n.cross(weft)};
 }

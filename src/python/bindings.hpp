@@ -9,12 +9,12 @@ namespace py = pybind11;
 
 /// Scenes, simulations, frames, and the exceptions of errors.hpp.
 void bind_simulation(py::module_& module);
-/// Error of a run, frame caches, comparison of pictures.
+/// Error estimates, frame caches, comparison of pictures.
 void bind_tools(py::module_& module);
-/// Pictures of frames.
+/// Drawing of frames.
 void bind_drawing(py::module_& module);
 
-/// Without the lock of the interpreter: others go on meanwhile.
+/// Releases the lock of the interpreter during a call, so that other threads can run.
 using WithoutLock = py::call_guard<py::gil_scoped_release>;
 
 }  // namespace weft::python

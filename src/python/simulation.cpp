@@ -15,7 +15,7 @@
 namespace weft::python {
 namespace {
 
-// A value of a change as TOML. Of numpy, scalars and arrays are taken too.
+// A value of a change as TOML text. Accepts scalars and arrays of numpy too.
 std::string toml_of(const py::handle& value) {
   if (py::hasattr(value, "tolist")) return toml_of(value.attr("tolist")());
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
@@ -31,7 +31,7 @@ std::string toml_of(const py::handle& value) {
     for (const py::handle entry : value) entries.push_back(toml_of(entry));
     return fmt::format("[{}]", fmt::join(entries, ", "));
   }
-  // A JSON text is a TOML text.
+  // A JSON string is also a TOML string.
   return py::module_::import("json").attr("dumps")(py::str(value), py::arg("ensure_ascii") = false).cast<std::string>();
 }
 
@@ -63,7 +63,7 @@ Scene change(const Scene& scene, const py::dict& changes) {
   return scene.with(texts);
 }
 
-/// An object of a frame that it keeps alive.
+/// An object of a frame, and the frame, which must live as long.
 struct FrameObject {
   Frame frame;
   const Object* object;
@@ -77,7 +77,7 @@ FrameObject find_object(const Frame& frame, const std::string& name) {
   }
 }
 
-// A view of numbers that `owner` keeps alive; nobody may write to it.
+// A read-only view of numbers that `owner` keeps alive.
 template <class Number>
 py::array view(const Number* numbers, std::vector<py::ssize_t> shape, const py::object& owner) {
   py::array_t<Number> array(std::move(shape), numbers, owner);
@@ -85,7 +85,7 @@ py::array view(const Number* numbers, std::vector<py::ssize_t> shape, const py::
   return array;
 }
 
-// Rows of a span of std::array; `field` is that span of an Object.
+// An array of rows, one for each std::array of a span. `field`: the member of Object that is this span.
 template <auto field>
 py::array rows(const py::object& self) {
   const auto& span = self.cast<const FrameObject&>().object->*field;
@@ -104,7 +104,7 @@ const char* kind_of(const FrameObject& object) {
   return kNames[static_cast<std::size_t>(object.object->kind)];
 }
 
-// Exceptions with the places of the mistakes: `mistakes` of SceneError.
+// Makes the exceptions; SceneError has the places of the mistakes in `mistakes`.
 void bind_errors(py::module_& module) {
   py::class_<Mistake>(module, "Mistake", "One mistake of a scene, with its place.")
       .def_readonly("file", &Mistake::file, "File of the scene, as it was given.")
@@ -113,7 +113,7 @@ void bind_errors(py::module_& module) {
       .def_readonly("change", &Mistake::change, "\"key=value\", if a change brought the mistake; else empty.")
       .def_readonly("key", &Mistake::key, "Such as \"cloth.band.material.thickness\"; may be empty.")
       .def_readonly("text", &Mistake::text, "Such as \"expected > 0 m, got -0.001\".");
-  // They are never given back: the interpreter may be gone before this library is.
+  // These are never released, because the interpreter may end before this library.
   static const py::handle scene_error = py::exception<SceneError>(module, "SceneError", PyExc_ValueError).release();
   static const py::handle file_error = py::exception<FileError>(module, "FileError", scene_error).release();
   static const py::handle simulation_error =

@@ -21,7 +21,7 @@ namespace {
 
 using library::with_public_errors;
 
-/// Errors by the name of the quantity.
+/// Errors by name of the quantity.
 using Errors = std::map<std::string, double>;
 
 Errors errors_of(const bench::Errors& errors) {
@@ -33,7 +33,7 @@ Errors errors_of(const bench::Errors& errors) {
 
 struct ErrorOfRun {
   Errors all;
-  std::map<std::string, std::optional<Errors>> parts;  // none: not known
+  std::map<std::string, std::optional<Errors>> parts;  // none: unknown
   bool chaotic = false;
   double cpu_s = 0;
 };
@@ -50,7 +50,7 @@ ErrorOfRun estimate_error(const Scene& public_scene, bool mesh) {
   });
 }
 
-/// Frames of a cache as those of a simulation, without what only that has.
+/// Frames of a cache, in the form of frames of a simulation, without data that only a simulation has.
 class Cache {
  public:
   explicit Cache(const std::filesystem::path& folder)

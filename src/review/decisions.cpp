@@ -68,7 +68,7 @@ const Decisions::File& Decisions::read(const fs::path& folder) {
 }
 
 Json Decisions::of(RunFiles& run) {
-  // "stiff/band": in stiff/ as "band", then in the searched folder as "stiff/band".
+  // For "stiff/band", looks for "band" in stiff/, then for "stiff/band" in the searched folder.
   std::string key = fs::path(run.key).filename().string();
   fs::path below = fs::path(run.key).parent_path();
   while (true) {

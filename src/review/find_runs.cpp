@@ -25,7 +25,7 @@ bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
 
-// Every regular file below the folder, in order of the paths. Links could lead to anything, which the page would show.
+// All regular files below the folder, sorted by path. Links are not followed, as the page would publish their targets.
 std::vector<fs::path> list_files(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error))
@@ -33,7 +33,7 @@ std::vector<fs::path> list_files(const fs::path& folder) {
   std::vector<fs::path> files;
   fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    std::error_code ignored;  // a file that went away in between is none
+    std::error_code ignored;  // a file that has disappeared is skipped
     if (entry->is_directory(ignored)) {
       if (is_hidden(entry->path()) || is_review_page(entry->path())) entry.disable_recursion_pending();
     } else if (fs::is_regular_file(entry->symlink_status(ignored)) && !is_hidden(entry->path())) {
@@ -45,7 +45,7 @@ std::vector<fs::path> list_files(const fs::path& folder) {
   return files;
 }
 
-// "band_00012" is "band_" and "00012".
+// Splits "band_00012" into "band_" and "00012".
 std::pair<std::string, std::string> split_number(const std::string& stem) {
   const std::size_t digits = stem.find_last_not_of("0123456789") + 1;  // npos + 1 is 0
   return {stem.substr(0, digits), stem.substr(digits)};
@@ -72,9 +72,9 @@ bool is_object_entry(const Json& entry) {
   return entry.is_object() && text("name") && text("kind") && count("vertices") && count("faces");
 }
 
-/// What the page shows of statistics, and how it has to look. Each that does not is left out and named, so that nothing
-/// of one file keeps the page from showing the rest.
-void drop_odd_values(Json& stats, const std::string& file, std::vector<std::string>& problems) {
+/// Removes values of the statistics that do not have the form that the page expects, and names them, so that the rest
+/// can still be shown.
+void drop_invalid_values(Json& stats, const std::string& file, std::vector<std::string>& problems) {
   const auto drop = [&](const char* key, const char* expected, const auto& fits) {
     const auto found = stats.find(key);
     if (found == stats.end() || fits(*found)) return;
@@ -94,14 +94,14 @@ void drop_odd_values(Json& stats, const std::string& file, std::vector<std::stri
        [](const Json& value) { return is_list_of(value, is_object_entry); });
 }
 
-/// What a sweep has set for a run: texts by key; null where it tells anything else.
+/// The values that a sweep has set for a run: texts by key; null if the entry is invalid.
 Json set_of(const Json& run) {
   const auto set = run.find("set");
   const auto is_text = [](const Json& value) { return value.is_string(); };
   return set != run.end() && set->is_object() && std::all_of(set->begin(), set->end(), is_text) ? *set : Json();
 }
 
-// The files below one folder while runs are put together from them.
+// The files below one folder, while runs are composed from them.
 class Search {
  public:
   explicit Search(const fs::path& folder) : folder_(folder) {
@@ -145,10 +145,10 @@ class Search {
   }
 
  private:
-  /// A folder of a sweep, by which its runs are in order: names of values are not (10, 2).
+  /// A run of a sweep. Its place defines the order, as names made of values do not sort numerically (10, 2).
   struct Swept {
-    std::string sweep;      // its folder
-    std::size_t place = 0;  // among its runs
+    std::string sweep;      // folder of the sweep
+    std::size_t place = 0;  // index among its runs
     Json values;
   };
 
@@ -179,7 +179,7 @@ class Search {
     try {
       run.stats_json = parse_json(read_file(file, kLargestText));
     } catch (const std::exception& error) {
-      // Any program may leave JSON here; it is missed only where a video of this name is.
+      // Any program may write JSON here; it is reported only if a video of this name exists.
       unusable_[run.name] = fmt::format("{}: not readable as JSON: {}", file.filename().string(), error.what());
       return;
     }
@@ -193,8 +193,8 @@ class Search {
     runs_.push_back(std::move(run));
   }
 
-  // What the statistics name as output, looked for beside them, since folders are moved and fetched from other
-  // machines; else what has their name.
+  // Finds the pictures that the statistics name as output. They are searched beside the statistics, since folders may
+  // have been moved or copied from other machines. Otherwise takes the video with the name of the statistics.
   void take_pictures(RunFiles& run) {
     const fs::path beside = run.stats.parent_path();
     const auto named_output = run.stats_json.find("output");
@@ -225,7 +225,7 @@ class Search {
     return true;
   }
 
-  // Of which a farm has joined the video of a run: they lie in a folder of its own.
+  // Whether a farm has joined these pictures to the video of their run; they are in a subfolder of that run.
   bool are_in_a_video(const fs::path& prefix) const {
     const fs::path run = prefix.parent_path().parent_path();
     return swept_.contains(run.lexically_relative(folder_)) && std::ranges::any_of(runs_, [&](const RunFiles& other) {
@@ -233,7 +233,7 @@ class Search {
            });
   }
 
-  // One picture alone is a thumbnail or a sheet, no run.
+  // A single picture is a thumbnail or a sheet, not a run.
   void add_pictures(const fs::path& prefix, const std::vector<fs::path>& files) {
     if (files.size() < 2 || are_in_a_video(prefix)) return;
     std::string name = prefix.lexically_relative(folder_).generic_string();
@@ -263,10 +263,10 @@ class Search {
 
   const fs::path folder_;
   std::vector<fs::path> statistics_;
-  std::set<fs::path> videos_, effective_;               // videos that belong to no run yet
-  std::map<fs::path, std::vector<fs::path>> pictures_;  // by what stands before the number; of no run yet
+  std::set<fs::path> videos_, effective_;               // videos not yet assigned to a run
+  std::map<fs::path, std::vector<fs::path>> pictures_;  // by prefix before the number; not yet assigned to a run
   std::map<fs::path, Swept> swept_;                     // by the folder of the run
-  std::map<std::string, std::string> unusable_;         // JSON files by name: why
+  std::map<std::string, std::string> unusable_;         // unusable JSON files by name, with the reason
   std::vector<RunFiles> runs_;
 };
 
@@ -274,7 +274,7 @@ class Search {
 
 bool take_statistics(RunFiles& run) {
   if (!is_statistics(run.stats_json)) return false;
-  drop_odd_values(run.stats_json, run.stats.filename().string(), run.problems);
+  drop_invalid_values(run.stats_json, run.stats.filename().string(), run.problems);
   return true;
 }
 

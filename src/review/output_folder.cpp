@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first file in the folder that its list of files does not name; empty where there is none.
+/// The first file in the folder that its list of files does not name; empty if there is none.
 fs::path foreign_file(const fs::path& folder) {
   std::set<std::string> own{kFileList};
   std::istringstream lines(read_start(folder / kFileList, kLargestText));
@@ -62,7 +62,7 @@ void check_replaceable(const fs::path& folder, bool overwrite) {
 
 namespace {
 
-/// Names all files of a page below `folder` in a list beside them.
+/// Writes the list of all files of a page into its folder.
 void write_file_list(const fs::path& folder) {
   std::string list;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -72,7 +72,8 @@ void write_file_list(const fs::path& folder) {
     throw Error(ExitCode::output_failed, "{}: cannot be written", (folder / kFileList).string());
 }
 
-// One step where the file system can exchange two names; else the former page is gone for a moment, never half.
+// Exchanges both folders atomically if the file system supports it. Otherwise the former page is missing for a moment,
+// but never incomplete.
 bool exchange(const fs::path& fresh, const fs::path& former) {
   if (::renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, former.c_str(), RENAME_EXCHANGE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
@@ -94,10 +95,10 @@ OutputFolder::OutputFolder(const fs::path& final_name, bool overwrite) : overwri
 
 void OutputFolder::commit() {
   write_file_list(path());
-  check_replaceable(final_name_, overwrite_);  // somebody may have put something there meanwhile
-  // Without the flush a crash of the machine soon after the rename can leave empty files under the final name.
+  check_replaceable(final_name_, overwrite_);  // the folder may have changed meanwhile
+  // Without the flush, a crash of the machine soon after the rename could leave empty files under the final name.
   int error = ::syncfs(temporary_->descriptor()) != 0 ? errno : 0;
-  if (error == 0 && std::rename(path().c_str(), final_name_.c_str()) == 0) {  // takes the place of an empty folder, too
+  if (error == 0 && std::rename(path().c_str(), final_name_.c_str()) == 0) {  // also replaces an empty folder
     temporary_->release();
   } else if (error == 0) {
     error = errno == ENOTEMPTY || errno == EEXIST ? 0 : errno;

@@ -1,4 +1,4 @@
-// A folder that appears under its final name only when it is whole.
+// A folder that gets its final name only when it is complete.
 #pragma once
 
 #include <filesystem>
@@ -8,23 +8,23 @@
 
 namespace weft::review {
 
-/// The files of a page, one a line: what a later page may remove.
+/// List of the files of a page, one per line, which a later page may remove.
 inline constexpr const char* kFileList = "files.txt";
 
-/// Throws Error(output_failed) where a page in place of `folder` would lose something: a page that exists, unless
-/// `overwrite` is set, and in any case a file that no page has put there.
+/// Throws Error(output_failed) if a page that replaces `folder` would lose something: an existing page, unless
+/// `overwrite` is set, or in any case a file that does not belong to a page.
 void check_replaceable(const std::filesystem::path& folder, bool overwrite);
 
-/// A hidden folder beside the final one to write into first. Unless committed, it is removed by the destructor.
+/// A hidden temporary folder beside the final one. The destructor removes it unless it was committed.
 class OutputFolder {
  public:
-  /// Throws as check_replaceable().
+  /// Throws as check_replaceable() does.
   OutputFolder(const std::filesystem::path& final_name, bool overwrite);
 
   const std::filesystem::path& path() const { return temporary_->path(); }
 
-  /// Flushes everything to disk and gives the folder its final name; a former page is exchanged for it in one step,
-  /// then removed. Throws Error(output_failed).
+  /// Flushes everything to disk and gives the folder its final name. A former page is exchanged for it atomically, then
+  /// removed. Throws Error(output_failed).
   void commit();
 
  private:

@@ -14,10 +14,10 @@ namespace weft::review {
 namespace {
 
 constexpr std::size_t kMaxTiles = 16;
-constexpr int kTileWidth = 320;  // pixels; a poster of the overview on a screen of two pixels a point
-constexpr int kHeatWidth = 640;  // pixels at most; what is finer than two pixels of a picture keeps its largest value
+constexpr int kTileWidth = 320;  // [pixels]; width of a poster in the overview on a high-density screen
+constexpr int kHeatWidth = 640;  // maximum [pixels]; shrinking keeps the largest value
 
-// One picture after the other, whatever they are kept in.
+// Reads pictures one after the other, from a video or from files.
 class Reader {
  public:
   explicit Reader(const RunFiles& run) : run_(run) {
@@ -31,7 +31,7 @@ class Reader {
     return image::read_png(run_.pictures[at]);
   }
 
-  /// The picture of this number, from the next one on; none if there are not so many.
+  /// The picture with this index, which must not be before the next one; nullopt if there are fewer.
   std::optional<image::Image> skip_to(long long picture) {
     if (!decoder_) next_ = picture;
     while (next_ < picture) {
@@ -48,7 +48,7 @@ class Reader {
   long long next_ = 0;
 };
 
-// The largest value of each square of pixels, so that a thin line stays as bright as it is.
+// Shrinks by taking the largest value of each square of pixels, so that a thin line keeps its brightness.
 compare::Plane<float> shrink_to_largest(const compare::Plane<float>& plane, int width) {
   const int side = (plane.width + width - 1) / width;
   compare::Plane<float> small((plane.width + side - 1) / side, (plane.height + side - 1) / side);
@@ -67,7 +67,7 @@ Survey survey(const RunFiles& run) {
   Survey found;
   Reader reader(run);
   found.fps = reader.fps();
-  // Every stride-th picture, twice the stride where they become too many: the number need not be known before.
+  // Keeps every stride-th picture; doubles the stride if they become too many, as their number is not known in advance.
   long long stride = 1;
   while (const std::optional<image::Image> image = reader.next()) {
     if (found.count == 0) {
@@ -100,7 +100,7 @@ std::vector<PairComparison> compare_with_reference(const RunFiles& run, const Pi
   long long last = -1;
   for (const long long picture : at) {
     const long long other = same_moment(picture, times, reference_times);
-    if (other <= last) continue;  // before the reference begins, or compared already
+    if (other <= last) continue;  // before the start of the reference, or already compared
     last = other;
     const std::optional<image::Image> b = theirs.skip_to(other), a = b ? ours.skip_to(picture) : std::nullopt;
     if (!a) break;

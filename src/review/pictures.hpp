@@ -1,4 +1,4 @@
-// The pictures of a run: contact sheet, and how they compare with those of its reference.
+// The pictures of a run: contact sheet, and comparison with its reference.
 #pragma once
 
 #include <functional>
@@ -11,38 +11,38 @@
 
 namespace weft::review {
 
-/// A small picture, evenly spaced from its neighbours.
+/// A small picture of the contact sheet.
 struct Tile {
-  long long picture = 0;  ///< counted from 0
+  long long picture = 0;  ///< index, from 0
   image::Image image;
 };
 
-/// What one pass over the pictures tells.
+/// Result of one pass over the pictures.
 struct Survey {
-  std::vector<Tile> tiles;  ///< all pictures where there are few, else 8 to 15
-  long long count = 0;      ///< pictures that could be read
-  double fps = 0;           ///< of a video; 0 where the file does not tell, and for stills
+  std::vector<Tile> tiles;  ///< evenly spaced: all pictures if there are few, else 8 to 15
+  long long count = 0;      ///< number of readable pictures
+  double fps = 0;           ///< of a video; 0 if the file does not state it, and for stills
   int width = 0, height = 0;
 };
 
-/// Throws Error(asset_unreadable) for what cannot be read, also in the middle.
+/// Throws Error(asset_unreadable) if any picture cannot be read.
 Survey survey(const RunFiles& run);
 
-/// How one picture compares with the one of its reference that shows the same moment.
+/// Comparison of one picture with that of the reference at the same time.
 struct PairComparison {
-  long long picture = 0, reference = 0;  ///< counted from 0
+  long long picture = 0, reference = 0;  ///< indices, from 0
   compare::Figures figures;
   compare::Verdict verdict = compare::Verdict::same;
-  image::Image heat;  ///< of FLIP; empty where the pictures are the same
+  image::Image heat;  ///< FLIP map; empty if the pictures are equal
 };
 
-/// Compares at the pictures `at`, in rising order; those that the reference does not reach are left out. Throws
-/// Error(asset_unreadable) for what cannot be read and for pictures of different size.
+/// Compares the pictures with the ascending indices `at`; skips those that the reference does not reach. Throws
+/// Error(asset_unreadable) if pictures cannot be read or differ in size.
 std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,
                                                    const RunFiles& reference, const PictureTimes& reference_times,
                                                    const std::vector<long long>& at);
 
-/// The picture of `to` that shows the moment closest to picture k of `from`.
+/// Index of the picture of `to` that is closest in time to picture k of `from`.
 long long same_moment(long long k, const PictureTimes& from, const PictureTimes& to);
 
 }  // namespace weft::review

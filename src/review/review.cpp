@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names that are safe in every file system and address.
+// A name that is safe in every file system and URL.
 std::string slug(const std::string& name) {
   std::string text;
   for (const unsigned char c : name) {
@@ -37,7 +37,7 @@ std::string slug(const std::string& name) {
   return text.empty() ? "run" : text;
 }
 
-// `name`, or with a number after it the first that is not taken yet.
+// Returns `name`, with a number appended if it is already taken.
 std::string unique(const std::string& name, std::set<std::string>& taken) {
   std::string text = name;
   for (int i = 2; !taken.insert(text).second; ++i) text = fmt::format("{}-{}", name, i);
@@ -48,7 +48,7 @@ std::string last_part(const std::string& name) {
   return name.substr(name.rfind('/') + 1);
 }
 
-// The reference of the same path, else the only one of the same last name.
+// The reference with the same path, else the only one with the same last part.
 const RunFiles* find_reference(const std::vector<RunFiles>& references, const std::string& name) {
   const RunFiles* found = nullptr;
   for (const RunFiles& reference : references) {
@@ -81,7 +81,7 @@ void copy_into(const fs::path& from, const fs::path& to) {
   if (error) throw Error(ExitCode::output_failed, "{}: cannot be copied: {}", from.string(), error.message());
 }
 
-// Without a flush of its own: the folder is flushed as a whole.
+// Writes without a flush, since the folder is flushed as a whole.
 void write_text(const fs::path& file, std::string_view text) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
@@ -123,7 +123,7 @@ class Page {
   }
 
  private:
-  // Names tell the folder where several were given.
+  // Adds the name of the folder to each run if several folders were given.
   std::vector<RunFiles> wanted_runs() const {
     std::vector<RunFiles> runs;
     for (const fs::path& folder : request_.folders) {
@@ -153,11 +153,11 @@ class Page {
     return references;
   }
 
-  // A run that is in the page's folder.
+  // A run that was added to the folder of the page.
   struct Entry {
     const RunFiles* run = nullptr;
     Json json;
-    std::string place;  // its folder below the page's, with a slash at the end
+    std::string place;  // its folder relative to the page, with a slash at the end
     PictureTimes times;
     std::vector<long long> tiles;
 
@@ -173,7 +173,7 @@ class Page {
     entry.json["id"] = id;
     entry.json["date"] = date_of(run);
     if (run.values.is_object()) entry.json["values"] = run.values;
-    // A page of many runs reads what only the page of one of them shows when it is opened.
+    // Data that only the run's own page needs are loaded when it is opened.
     Json detail = Json::object();
     for (const char* part : {"columns", "effective"}) {
       detail[part] = std::move(entry.json[part]);
@@ -213,7 +213,7 @@ class Page {
     entry.json["pictures"]["files"] = std::move(files);
   }
 
-  // Contact sheet and poster, and what the pictures themselves tell of their number and rate.
+  // Adds contact sheet and poster; takes number and rate of the pictures from the files themselves.
   void add_tiles(Entry& entry) const {
     if (entry.json["pictures"]["kind"] == "none") return;
     const Survey found = survey(*entry.run);
@@ -235,7 +235,7 @@ class Page {
     if (!sheet.empty()) entry.json["poster"] = sheet[sheet.size() / 2]["file"];
   }
 
-  // What was decided, where the page's own file of decisions belongs, and what makes the run the reference.
+  // Adds the decision, the place for the page's own decisions file, and the arguments that make the run the reference.
   void add_decision(Entry& entry, const Json& decision, const RunFiles* reference) {
     const RunFiles& run = *entry.run;
     entry.json["key"] = run.key;
@@ -253,7 +253,7 @@ class Page {
       outcome_.approved += now && decision["state"] == "approved" ? 1 : 0;
       outcome_.needing_work += now && decision["state"] == "needs work" ? 1 : 0;
     }
-    // Its files, and the reference or the folder of references, as weft accept takes them.
+    // The files of the run, and the reference or folder of references, as arguments of weft accept.
     Json accept = Json::object();
     if (!run.video.empty()) {
       accept["file"] = run.video.string();
@@ -269,7 +269,7 @@ class Page {
     entry.json["accept"] = std::move(accept);
   }
 
-  // At the pictures of the contact sheet.
+  // Compares the pictures of the contact sheet.
   void compare(Entry& entry, const Entry& reference) {
     entry.json["reference"] = reference.json["id"];
     if (reference.tiles.empty()) entry.problem("the reference has no pictures that can be read");
@@ -304,7 +304,7 @@ class Page {
 
   const Request& request_;
   OutputFolder folder_;
-  std::map<std::string, std::set<std::string>> ids_;  // taken ones of each kind
+  std::map<std::string, std::set<std::string>> ids_;  // ids in use, per kind
   Outcome outcome_;
 };
 
@@ -317,7 +317,7 @@ void replace_once(std::string& text, const std::string& mark, const std::string&
 }  // namespace
 
 std::string script_json(const Json& data) {
-  // A scene may be called "</script>": no tag can begin where every < is written as an escape.
+  // A scene may be called "</script>"; escaping every < prevents any tag.
   const std::string json = json_text(data);
   std::string safe;
   safe.reserve(json.size());

@@ -13,16 +13,16 @@
 namespace weft::review {
 namespace {
 
-// To six digits: more than a plot of 1000 pixels can show, at half the size of the file.
+// Rounds to six digits: more than a plot of 1000 pixels can show, at half the file size.
 Json rounded(const Json& value) {
   if (!value.is_number_float()) return value.is_number() || value.is_boolean() ? value : Json(nullptr);
   const auto number = value.get<double>();
   if (number == 0 || !std::isfinite(number)) return number == 0 ? Json(0) : Json(nullptr);
-  // Not by std::stod(), which throws for numbers below 2.2e-308.
+  // std::stod() would throw for numbers below 2.2e-308.
   return std::strtod(fmt::format("{:.6g}", number).c_str(), nullptr);
 }
 
-// An entry of a list by its name where it has one, as in --set.
+// Name of a list entry, or its index if it has none, as in --set.
 std::string entry_name(const toml::node& entry, std::size_t index) {
   const toml::table* table = entry.as_table();
   const toml::node* name = table != nullptr ? table->get("name") : nullptr;
@@ -39,7 +39,7 @@ std::string value_text(const toml::node& node) {
     for (const toml::node& part : *list) parts.push_back(value_text(part));
     return fmt::format("[{}]", fmt::join(parts, ", "));
   }
-  return "?";  // dates, which no scene has
+  return "?";  // dates, which no scene contains
 }
 
 bool has_tables(const toml::node& node) {
@@ -86,11 +86,11 @@ double number_or_zero(const Json& object, const char* key) {
 }  // namespace
 
 Json frame_columns(const Json& frames) {
-  constexpr std::size_t kMostColumns = 200;  // Weft writes 27
+  constexpr std::size_t kMaxFrameColumns = 200;  // Weft writes 33
   Json columns = Json::object();
   for (const Json& frame : frames) {
     for (const auto& [key, value] : frame.items())
-      if (columns.size() < kMostColumns) columns.emplace(key, Json::array());
+      if (columns.size() < kMaxFrameColumns) columns.emplace(key, Json::array());
   }
   for (auto& [key, column] : columns.items()) {
     for (const Json& frame : frames) {
@@ -129,8 +129,8 @@ PictureTimes picture_times(const RunFiles& run) {
   } else if (!run.stats.empty()) {
     for (const Json& frame : run.stats_json["frames"]) {
       if (frame.value("written", Json(true)) == true) {
-        constexpr double kMost = 1e9;  // frames
-        shown.push_back(static_cast<long long>(std::clamp(number_or_zero(frame, "frame"), 0.0, kMost)));
+        constexpr double kMaxFrameNumber = 1e9;  // limit on frame numbers
+        shown.push_back(static_cast<long long>(std::clamp(number_or_zero(frame, "frame"), 0.0, kMaxFrameNumber)));
       }
     }
   }

@@ -46,7 +46,7 @@ const Table& part_rules() {
   return kTable;
 }
 
-/// Access to a member of the source that a character has.
+/// Access to a member of the source of a character.
 template <class Kind, class Base, class Field>
 auto of_source(Field Base::*field) {
   return [field](Character& c) -> Field& { return std::get<Kind>(c.source).*field; };
@@ -62,7 +62,7 @@ Travel travel_from(const Value& value) {
   return {std::get<std::string>(value) == "none" ? Travel::Kind::none : Travel::Kind::file, 0};
 }
 
-/// The keys of every skinned body.
+/// The keys that all skinned bodies share.
 template <class Kind>
 void acting_rows(TableBuilder<Character>& rows) {
   rows.plain(Type::file, "motion", of_source<Kind>(&Acting::motion),

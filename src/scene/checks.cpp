@@ -22,8 +22,8 @@ namespace weft::scene {
 namespace {
 
 constexpr double kMaxFrames = 100000;
-constexpr double kLeastGap = 1e-7;         // between keys [s], as the shortest time step
-constexpr long kMaxParticles = 4'000'000;  // of all cloths; their solver state fits a large workstation
+constexpr double kMinKeyGap = 1e-7;        // minimum time between keys [s], that of the shortest time step
+constexpr long kMaxParticles = 4'000'000;  // total of all cloths; their solver state fits a large workstation
 
 template <class Entries>
 std::vector<std::string> names_of(const Entries& entries) {
@@ -39,7 +39,7 @@ std::vector<std::string> names_of_all(const Scene& scene) {
   return names;
 }
 
-/// A key that names an entry of a list.
+/// Checks a key that names an entry of a list.
 void check_reference(const std::string& name, const std::vector<std::string>& names, const std::string& kind,
                      const std::string& key, Findings& findings) {
   if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return;
@@ -55,17 +55,17 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
     if (!findings.has(key) || findings.faulty(key)) continue;
     if (keys[i].time <= latest) {
       findings.report(key, fmt::format("expected > {} s, later than the keys before, got {}", latest, keys[i].time));
-    } else if (keys[i].time - latest < kLeastGap) {
-      findings.report(key, fmt::format("expected at least {:g} s after the key before, at {} s, got {}", kLeastGap,
+    } else if (keys[i].time - latest < kMinKeyGap) {
+      findings.report(key, fmt::format("expected at least {:g} s after the key before, at {} s, got {}", kMinKeyGap,
                                        latest, keys[i].time));
     }
     latest = std::max(latest, keys[i].time);
   }
 }
 
-/// Whole turns have an axis, which one angle alone names.
+/// Reports changes of several angles by more than half a turn, which define no axis.
 template <class Key>
-void check_turns(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
+void check_rotation_changes(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const std::string key = fmt::format("{}.keys.{}.rotation", path, i);
     if (!findings.has(key) || findings.faulty(key)) continue;
@@ -77,7 +77,7 @@ void check_turns(const std::vector<Key>& keys, const std::string& path, Findings
   }
 }
 
-/// Reads the picture, so that what is wrong with it shows with all other mistakes.
+/// Decodes the picture, so that its defects are reported together with all other mistakes.
 void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
   if (!image || !findings.has(key) || findings.faulty(key)) return;
   try {
@@ -113,9 +113,10 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
       findings.report(path + ".vertex_group",
                       "expected none of a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
-  if (rectangle_particles(cloth) == 0) return;  // what it holds shows when the file is read
-  // A part between two rows of particles would hold nothing, silently. Nothing, or the nearest row to name.
-  const auto missed_row = [](double low, double high, int count, double grading) {
+  if (rectangle_particles(cloth) == 0) return;  // the number of particles is known only after the file is read
+  // A part between two rows of particles would be empty without any sign. Returns the nearest row for the message, or
+  // nothing if a row is inside.
+  const auto nearest_missed_row = [](double low, double high, int count, double grading) {
     std::optional<double> nearest;
     const auto distance = [&](double at) { return std::max({low - at, at - high, 0.0}); };
     for (int i = 0; i < count; ++i) {
@@ -132,15 +133,15 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
   const auto look_along = [&](const char* axis, const std::optional<double>& row) {
     if (row) rows += fmt::format("; the nearest along {} is at {:.6g}", axis, *row);
   };
-  look_along("weft", missed_row(part.low.x(), part.high.x(), cloth.particles_weft, cloth.grading.x()));
-  look_along("warp", missed_row(part.low.y(), part.high.y(), cloth.particles_warp, cloth.grading.y()));
+  look_along("weft", nearest_missed_row(part.low.x(), part.high.x(), cloth.particles_weft, cloth.grading.x()));
+  look_along("warp", nearest_missed_row(part.low.y(), part.high.y(), cloth.particles_warp, cloth.grading.y()));
   if (!rows.empty())
     findings.report(path, "expected a part that holds at least one particle, got one between two rows" + rows);
 }
 
 void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {
   check_times(pin.motion.keys, path, findings);
-  check_turns(pin.motion.keys, path, findings);
+  check_rotation_changes(pin.motion.keys, path, findings);
   const Followed followed = scene::followed(pin.follow);
   const std::vector<std::string> characters = names_of(scene.characters);
   std::vector<std::string> bodies = names_of(scene.obstacles);
@@ -207,7 +208,7 @@ void check_attachments(const Scene& scene, Findings& findings) {
   }
 }
 
-/// What a cloth is worn over: cloths of the scene, and not around in a circle.
+/// Reports an `over` that names no cloth, or that closes a cycle.
 void check_layers(const Scene& scene, Findings& findings) {
   const std::vector<std::string> names = names_of(scene.cloths);
   for (std::size_t i = 0; i < scene.cloths.size(); ++i)
@@ -215,12 +216,12 @@ void check_layers(const Scene& scene, Findings& findings) {
       check_reference(name, names, "a cloth", entry_of_cloth(scene, i, findings) + ".over", findings);
   for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
     const Cloth& cloth = scene.cloths[i];
-    const auto circle = std::ranges::find_if(
+    const auto cycle_entry = std::ranges::find_if(
         cloth.over, [&](const std::string& name) { return name == cloth.name || worn_over(scene, name, cloth.name); });
-    if (circle == cloth.over.end()) continue;
+    if (cycle_entry == cloth.over.end()) continue;
     findings.report(entry_of_cloth(scene, i, findings) + ".over",
-                    fmt::format("expected cloth that is put on before this one, got {}{}", in_quotes(*circle),
-                                *circle == cloth.name ? ", which it is itself" : ", which is worn over this one"));
+                    fmt::format("expected cloth that is put on before this one, got {}{}", in_quotes(*cycle_entry),
+                                *cycle_entry == cloth.name ? ", which it is itself" : ", which is worn over this one"));
     return;
   }
 }
@@ -270,7 +271,7 @@ void check_shape(const Shape& shape, const std::string& path, Findings& findings
   }
 }
 
-// Of a body that forces move, or of one that lacks the mass for it.
+// Checks a body moved by forces; without a mass, reports the keys that need one.
 void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::string& path, Findings& findings) {
   if (!is_dynamic(obstacle)) {
     for (const auto& [key, is_given] :
@@ -310,9 +311,9 @@ void check_obstacles(const Scene& scene, Findings& findings) {
     check_shape(obstacle.shape, path, findings);
     check_image(obstacle.look.image, path + ".look.image", findings);
     check_times(obstacle.motion.keys, path, findings);
-    check_turns(obstacle.motion.keys, path, findings);
+    check_rotation_changes(obstacle.motion.keys, path, findings);
     check_dynamics(scene, obstacle, path, findings);
-    // One name each: it names the object in pictures, statistics and mesh files.
+    // Names are unique, since they name the object in pictures, statistics and mesh files.
     if (!obstacle.name.empty() && std::find(cloths.begin(), cloths.end(), obstacle.name) != cloths.end()) {
       findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth or rope has",
                                                   in_quotes(obstacle.name)));
@@ -350,7 +351,7 @@ void check_characters(const Scene& scene, Findings& findings) {
   }
 }
 
-/// All keys of a camera say how wide it sees in the same way, so that values between them are defined.
+/// All keys of a camera must give the field of view in the same way, so that it can be interpolated.
 void check_lens(const Camera& camera, const std::string& path, Findings& findings) {
   const bool by_focal_length = has_focal_length(camera);
   if (!by_focal_length && findings.has(path + ".sensor_width"))

@@ -1,4 +1,4 @@
-// What a scene must fulfil beyond the rules of single keys.
+// Checks of a scene beyond the rules of single keys.
 #pragma once
 
 #include "scene/findings.hpp"
@@ -6,10 +6,10 @@
 
 namespace weft::scene {
 
-/// Key path of a cloth, or of the rope that it stands for.
+/// Key path of a cloth, or of the rope that the cloth stands for.
 const std::string& entry_of_cloth(const Scene& scene, std::size_t cloth, const Findings& findings);
 
-/// Reports references to names that do not exist, key times out of order, and combinations that cannot be built.
+/// Reports references to names that do not exist, key times out of order, and combinations that cannot be simulated.
 void check(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

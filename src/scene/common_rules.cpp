@@ -12,7 +12,7 @@ Quat from_angles(const Vec3& degrees) {
 }
 
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to) {
-  // Who says nothing of the rotation means that of angles of 0.
+  // A pose without rotation counts as having angles of 0.
   const auto angles = [](const Pose& pose) {
     return !pose.angles && pose.rotation.coeffs() == Quat::Identity().coeffs() ? Vec3(Vec3::Zero()) : pose.angles;
   };

@@ -1,4 +1,4 @@
-// What several tables of the scene format have in common.
+// Rules that several tables of the scene format share.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ inline const std::vector<std::string> kXyz = {"x", "y", "z"};
 inline const std::vector<std::string> kWeftWarp = {"weft", "warp"};
 inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
 
-// Tones of what a scene gives no colour [sRGB]: a floor that reflects 0.4 of the light, and what stands out from it.
+// Default colours [sRGB]: a floor that reflects 0.4 of the light, and objects that stand out from it.
 inline const Vec3 kClothColor(0.60, 0.27, 0.22), kObstacleColor(0.76, 0.72, 0.65), kFloorColor(0.66, 0.66, 0.65);
 inline Look look_of(const Vec3& color) {
   Look look;
@@ -30,10 +30,10 @@ inline Look rope_look() {
   return look;
 }
 
-/// Turns about the fixed x, then y, then z axis.
+/// Rotations about the fixed x, then y, then z axis.
 Quat from_angles(const Vec3& degrees);
 
-/// The rotation of a pose.
+/// Rows for the rotation of a pose.
 template <class S, class Member>
 void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherwise) {
   const auto of = [pose](S& s) -> Pose& { return std::invoke(pose, s); };
@@ -53,7 +53,7 @@ void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherw
       .when_given([of](S& s) { of(s).rotation = from_angles(*of(s).angles); });
 }
 
-/// position, and quaternion or rotation. `otherwise` says what holds where they are absent.
+/// Rows for position, and quaternion or rotation. `otherwise`: text about the value if they are absent.
 template <class S, class Member>
 void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
   rows.vector(
@@ -62,11 +62,11 @@ void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_o
   rotation_rows(rows, pose, otherwise);
 }
 
-/// Looks of what is not cloth.
+/// Looks of objects other than cloth.
 const Table& obstacle_look_rules();
 const Table& character_look_rules();
 
-/// What a key leaves out.
+/// Text about the value that a key does not give.
 inline const std::string kHeld = "that of the key before; of the first key, that of the thing itself";
 
 }  // namespace weft::scene

@@ -1,4 +1,4 @@
-// The rows of the rule table for [contact] and what is in it.
+// The rows of the rule table for [contact] and its inner tables.
 #pragma once
 
 #include "scene/rule.hpp"

@@ -18,27 +18,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Larger files are left out: no reader takes them.
-constexpr std::uintmax_t kLargestFile = std::uintmax_t{256} << 20;
+/// Larger files are skipped: no reader accepts them.
+constexpr std::uintmax_t kMaxDependencyBytes = std::uintmax_t{256} << 20;
 
-/// Names that are longer are none of files: those end at 255 bytes, with some folders before.
-constexpr std::size_t kLongestName = 1024;
+/// Longer texts are no file names: a name has at most 255 bytes, plus some folders.
+constexpr std::size_t kMaxFileNameBytes = 1024;
 
 bool is_alphanumeric(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Whether a text ends as names of files do: a dot, then 2 to 12 letters and digits, not digits alone.
-bool has_ending(std::string_view text) {
+/// Whether a text ends like a file name: a dot, then 2 to 12 letters and digits, not digits alone.
+bool has_extension(std::string_view text) {
   const std::size_t dot = text.rfind('.');
-  if (dot == std::string_view::npos || dot == 0 || text.size() > kLongestName) return false;
+  if (dot == std::string_view::npos || dot == 0 || text.size() > kMaxFileNameBytes) return false;
   const std::string_view ending = text.substr(dot + 1);
   return ending.size() >= 2 && ending.size() <= 12 && std::ranges::all_of(ending, is_alphanumeric) &&
          !std::ranges::all_of(ending, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// %20 and the like, which addresses in glTF and Collada files have for blanks.
-std::string without_escapes(std::string_view text) {
+/// Decodes %20 and similar escapes of addresses in glTF and Collada files.
+std::string decode_escapes(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
     unsigned char byte = 0;
@@ -53,12 +53,12 @@ std::string without_escapes(std::string_view text) {
   return plain;
 }
 
-/// What may be names of files in text or binary content: whatever stands between quotes, brackets, commas, equals signs
-/// and control characters, and its pieces between blanks.
-std::set<std::string> possible_names(std::string_view content) {
+/// Possible file names in text or binary content: any text between quotes, brackets, commas, equals signs and control
+/// characters, and its pieces between blanks.
+std::set<std::string> find_possible_names(std::string_view content) {
   std::set<std::string> names;
   const auto add = [&](std::string_view text) {
-    if (has_ending(text)) names.insert(without_escapes(text));
+    if (has_extension(text)) names.insert(decode_escapes(text));
   };
   const auto split = [](std::string_view text, const auto& is_end, const auto& use) {
     for (std::size_t begin = 0; begin < text.size();) {
@@ -84,23 +84,23 @@ std::set<std::string> possible_names(std::string_view content) {
   return names;
 }
 
-class Walk {
+class DependencyWalk {
  public:
-  explicit Walk(const DependencyVisitor& each) : each_(each) {}
+  explicit DependencyWalk(const DependencyVisitor& each) : each_(each) {}
 
   void visit(const fs::path& file) {
     std::error_code error;
     if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return;
-    if (fs::file_size(file, error) > kLargestFile) return;
+    if (fs::file_size(file, error) > kMaxDependencyBytes) return;
     std::string content;
     try {
-      content = read_bytes(file, kLargestFile);
+      content = read_bytes(file, kMaxDependencyBytes);
     } catch (const std::runtime_error&) {
-      return;  // its reader says so
+      return;  // its own reader reports the reason
     }
     each_(file, content);
-    for (const std::string& name : possible_names(content)) visit(file.parent_path() / name);
-    // The one format whose readers find the motion by the name of the mesh.
+    for (const std::string& name : find_possible_names(content)) visit(file.parent_path() / name);
+    // The readers of this format find the motion file by the name of the mesh file.
     if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"));
   }
 
@@ -112,7 +112,7 @@ class Walk {
 }  // namespace
 
 void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
-  Walk walk(each);
+  DependencyWalk walk(each);
   for (const Obstacle& obstacle : scene.obstacles)
     if (const auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) walk.visit(mesh->path);
   for (const Cloth& cloth : scene.cloths) {

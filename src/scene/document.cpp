@@ -13,7 +13,7 @@ namespace weft::scene {
 
 namespace {
 
-/// The parser's words; what it says of a key that is there twice, in ours.
+/// The parser's message; a message about a repeated key is reworded.
 std::string explain(std::string_view description) {
   const std::string_view redefined = "cannot redefine existing ";
   const auto found = description.find(redefined);

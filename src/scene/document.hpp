@@ -1,4 +1,4 @@
-// From a file and overrides to one TOML document, before anything is known of its meaning.
+// Builds one TOML document from a file and overrides, before its meaning is known.
 #pragma once
 
 #include <toml++/toml.h>
@@ -13,17 +13,17 @@
 
 namespace weft::scene {
 
-/// Largest scene file that is read [bytes]; a scene with ten thousand key frames has about one megabyte.
+/// Maximum size of a scene file [bytes]; a scene with ten thousand key frames has about one megabyte.
 inline constexpr std::uintmax_t kMaxFileSize = 16 << 20;
 
-/// The bytes of a scene file, or nothing and a mistake without place. Looks at kind and size before it reads.
+/// The bytes of a scene file; if it cannot be read, reports a mistake without a place. Checks type and size first.
 std::optional<std::string> read_file(const std::filesystem::path& file, Findings& findings);
 
-/// Parses TOML text, or reports why it is none.
+/// Parses TOML text; reports a mistake and returns nothing if it is not TOML.
 std::optional<toml::table> parse(std::string_view text, Findings& findings);
 
-/// Puts "path.to.key=value" into the document; list entries go by name or index. A value that is no TOML but a plain
-/// word is taken as text.
+/// Inserts "path.to.key=value" into the document; list entries are addressed by name or index. A value that is a plain
+/// word and not TOML counts as text.
 void apply_override(const std::string& override_text, toml::table& document, Findings& findings);
 
 }  // namespace weft::scene

@@ -56,7 +56,7 @@ class Writer {
 
   std::string text;
 
-  /// One table: first its own keys, then the tables in it. `path` is empty for the root.
+  /// Writes a table: first its own keys, then its inner tables. `path` is empty for the root.
   void write(const Table& table, void* target, const std::string& path) {
     for_rules(table, target, [&](const Rule& rule) { write_value(rule, target); });
     for_rules(table, target, [&](const Rule& rule) {
@@ -116,7 +116,7 @@ class Writer {
 };
 
 std::string text_of(const Scene& scene, Part part) {
-  // The rules reach members through plain pointers; a copy keeps the scene itself out of their hands.
+  // Rules access members through non-const pointers; the copy protects the scene itself.
   Scene copy = scene;
   remove_rope_cloths(copy);
   Writer writer(part);
@@ -145,25 +145,25 @@ void identify(Scene& scene) {
   Fnv1a files;
   for_each_dependency(scene, [&](const std::filesystem::path& file, std::string_view content) {
     scene.files.push_back(file);
-    files.add(fmt::format("{} ", content.size()));  // so that where one file ends counts
+    files.add(fmt::format("{} ", content.size()));  // so that the boundary between files counts
     files.add(content);
   });
-  // The content of files counts, and not their folder.
+  // The content of files counts, but not their folder.
   Scene copy = scene;
-  const auto strip = [](std::filesystem::path& path) { path = path.filename(); };
+  const auto keep_file_name = [](std::filesystem::path& path) { path = path.filename(); };
   for (Obstacle& obstacle : copy.obstacles)
-    if (auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) strip(mesh->path);
-  for (Cloth& cloth : copy.cloths) strip(cloth.file);
+    if (auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) keep_file_name(mesh->path);
+  for (Cloth& cloth : copy.cloths) keep_file_name(cloth.file);
   for (Character& character : copy.characters) {
-    if (auto* file = std::get_if<CharacterFile>(&character.source)) strip(file->path);
-    if (Acting* acting = acting_of(character); acting != nullptr && acting->motion) strip(*acting->motion);
+    if (auto* file = std::get_if<CharacterFile>(&character.source)) keep_file_name(file->path);
+    if (Acting* acting = acting_of(character); acting != nullptr && acting->motion) keep_file_name(*acting->motion);
     if (auto* sequence = std::get_if<MeshSequence>(&character.source))
       sequence->files = std::filesystem::path(sequence->files).filename().string();
   }
   Fnv1a shown = files, simulated = files;
   shown.add(text_of(copy, Part::all));
   simulated.add(text_of(copy, Part::simulated));
-  // Characters are sampled up to the end of the film, and the last key frames decide on the motion between them.
+  // Characters are sampled up to the end of the film, and the last key frames influence the motion between them.
   if (!scene.characters.empty()) simulated.add(fmt::format("{}", scene.time.duration));
   scene.hash = shown.value();
   scene.simulation_hash = simulated.value();

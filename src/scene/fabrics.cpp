@@ -6,55 +6,55 @@
 // Units. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
 //   bending     1 gf·cm²/cm    = 98.07 µN·m; 2HB in gf·cm/cm = 9.807 mN
 //   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; our mu is twice the shear modulus
-//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; its linearity LT is 2 / (n + 1) where force goes by eⁿ
+//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; linearity LT is 2 / (n + 1) if force is proportional to eⁿ
 // FAST (Minazio, "FAST – Fabric Assurance by Simple Testing", Int. J. Clothing Sci. Tech. 7(2/3), 1995):
 //   shear       G = 123 / EB5 N/m, EB5 the bias extension in percent
 //   extension   E5, E20 and E100 are the strains at 4.9, 19.6 and 98.07 N/m
 //
-// From measurements to a Material, for all fabrics:
-//   stretch      the secant up to 19.6 N/m, as loads of worn and hanging cloth are. Force goes by e²: LT is then 2/3,
-//                where 0.50 to 0.60 (suitings) and 0.66 to 0.78 (denims) were measured, and the secant 98.07 N/m / EMT.
-//   max_stretch  such that force at the mean EMT of weft and warp is the 490 N/m measured there, by `stretch` and the
-//                law of forces/stretch_limit.hpp, whose threads take 4 kN/m at the limit.
+// Conversion of measurements to a Material, for all fabrics:
+//   stretch      secant up to 19.6 N/m, the load of worn and hanging cloth. Force is proportional to e²: LT is then
+//                2/3 (measured: 0.50 to 0.60 for suitings, 0.66 to 0.78 for denims), and the secant 98.07 N/m / EMT.
+//   max_stretch  such that the force at the mean EMT of weft and warp is the measured 490 N/m, by `stretch` and the law
+//                of forces/stretch_limit.hpp, whose threads carry 4 kN/m at the limit.
 //   shear        2 G
 //   bend         √(weft · warp): bending is isotropic here
 //   bend_friction   HB
-//   Rounded to two digits, since none of them is known so well.
+//   All are rounded to two digits, since none is known more precisely.
 //
-// What was not measured is estimated by fibre, weave and weight:
-//   bend         130 µN·m (density / 1 kg/m²)^1.35: within 13 % the medians of 251 fabrics in nine classes of weight
-//                from 30 to 490 g/m², by cantilever (data set of Feng et al., "Learning-Based Bending Stiffness
-//                Parameter Estimation by a Drape Tester", 2022). A fabric of more or less hand than usual takes another
-//                quantile of its class (Hand). Warp over weft is 1.4 there in the median.
+// Quantities without a measurement are estimated from fibre, weave and weight:
+//   bend         130 µN·m (density / 1 kg/m²)^1.35: within 13 % of the medians of 251 fabrics in nine classes of
+//                weight from 30 to 490 g/m², by cantilever (data set of Feng et al., "Learning-Based Bending Stiffness
+//                Parameter Estimation by a Drape Tester", 2022). Softer or firmer fabrics take another quantile of
+//                their class (Hand). The median ratio of warp to weft is 1.4 there.
 //   hysteresis   cotton 50, wool 25, filaments 18 1/m; measured: 53 and 43 of broadcloth and denim, 25 of a tropical,
 //                19 and 18 of polyesters
-//   shear        cotton 65, wool 26, filaments and knits 30 N/m; measured of plain weaves: 65, 24 to 26, 30. What has
-//                no threads: an isotropic sheet with Poisson's ratio 0.3. Where weight, bending and drape are published
-//                and shear is not, and one gives the other, that: faille, 7.5 N/m (it drapes by 33 % with 30)
-//   extension    weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, others 12 % and
-//                linear, since nothing is crimped
+//   shear        cotton 65, wool 26, filaments and knits 30 N/m; measured for plain weaves: 65, 24 to 26, 30.
+//                Fabrics without threads: an isotropic sheet with Poisson's ratio 0.3. If weight, bending and drape are
+//                published but shear is not, it is fitted to the drape: faille, 7.5 N/m (30 would drape by 33 %)
+//   extension    weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, others 12 %
+//                and linear, since they have no crimp
 //   thickness    2.2 mm for 1 kg/m²; measured: 1.7 to 4
 //
-// Chosen by us for every fabric: friction (cloth on cloth is usually given as 0.2 to 0.6), contact thickness (several
-// times the fabric's own, which is below what contact can resolve), drag, and the viscosity of bending. Stretch and
-// shear have none: implicit Euler already damps them like a viscosity of half a time step times the stiffness.
+// Our choice for every fabric: friction (cloth on cloth is usually given as 0.2 to 0.6), contact thickness (several
+// times the thickness of the fabric, which contact cannot resolve), drag, and viscosity of bending. Stretch and shear
+// have no viscosity: implicit Euler already damps them like a viscosity of half a time step times the stiffness.
 
 namespace weft::scene {
 
 namespace {
 
-// Bending viscosity over bending stiffness [s]: yarns rubbing on each other damp a fold within about this time.
-constexpr double kBendingTime = 0.1;
+// Bending viscosity / bending stiffness [s]: friction between yarns damps a fold within about this time.
+constexpr double kBendingDampingTime = 0.1;
 
 enum class Fibre { cotton, wool, filament };
 enum class Weave { woven, knitted, none };
-/// How stiff for its weight: the quantile of the measured fabrics, 10, 25, 50, 75 and 90 %.
+/// Stiffness for the weight, as a quantile of the measured fabrics: 10, 25, 50, 75 and 90 %.
 enum class Hand { limp, soft, usual, firm, stiff };
 
 using Measured = std::optional<double>;
 using Pair = std::optional<std::pair<double, double>>;
 
-/// A fabric as it is published; what is left out is estimated.
+/// A fabric as published; missing figures are estimated.
 struct Row {
   const char* name;
   const char* what;
@@ -66,13 +66,13 @@ struct Row {
   Measured thickness = {};     // [mm]
   Pair extension = {};         // EMT of weft and warp [%]
   Measured shear = {};         // G [N/m]
-  Pair bend = {};              // B of weft and warp, or twice what is given for both together [µN·m]
-  Measured fitted_shear = {};  // G with which it drapes as published, where that is not measured [N/m]
+  Pair bend = {};              // B of weft and warp [µN·m]; if only their mean is published, twice the same value
+  Measured fitted_shear = {};  // G fitted to the published drape, if not measured [N/m]
   Measured hysteresis = {};    // HB / B [1/m]
-  Pair drape = {};             // least and most [%]
+  Pair drape = {};             // minimum and maximum [%]
   double contact = 2;          // contact thickness [mm]
   double friction = 0.3;
-  std::optional<Finish> finish = {};  // else that of the fibre
+  std::optional<Finish> finish = {};  // absent: that of the fibre
 };
 
 constexpr const char* kMatsudaira =
@@ -246,7 +246,7 @@ constexpr Row kRows[] = {
      .finish = Finish{0.35, 0.5, 0.1, 0, Threads::none}},
 };
 
-// Cotton scatters, wool is fuzzy, filaments shine; how much lets light through goes by weight and opening.
+// Cotton scatters light, wool is fuzzy, filaments shine; transparency depends on weight and openness.
 Finish finish_of(const Row& row) {
   if (row.finish) return *row.finish;
   return row.fibre == Fibre::cotton ? Finish{0.1, 0.5, 0.4, 0.2}
@@ -256,7 +256,7 @@ Finish finish_of(const Row& row) {
 
 double two_digits(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  // Divided where that is exact, so that 0.015 is the number that a scene would write.
+  // Division is exact here, so that the result is the double that "0.015" in a scene denotes.
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
 }
 
@@ -270,7 +270,7 @@ constexpr std::pair<Measured, Measured> both(const Pair& pair) {
 }
 
 double estimated_bend(const Row& row) {
-  // 10, 25, 75 and 90 % of a class of weight over its median, about the mean of the nine.
+  // Ratios of the 10, 25, 75 and 90 % quantiles of a weight class to its median, mean of the nine classes.
   constexpr std::array kQuantiles{0.3, 0.55, 1.0, 1.5, 2.3};
   return kQuantiles[static_cast<std::size_t>(row.hand)] * 130e-6 * std::pow(1e-3 * row.density.value, 1.35);
 }
@@ -284,13 +284,13 @@ std::pair<double, double> estimated_extension(const Row& row) {
   return row.weave == Weave::woven ? std::pair{0.08, 0.05} : std::pair{0.60, 0.25};
 }
 
-// Up to the worn load. Threads are crimped and stretch the less the more they are pulled; what has none is linear.
-double secant(Weave weave, double extension) {
+// Secant up to the worn load. Crimped threads stiffen as they are stretched; fabrics without threads are linear.
+double secant_stiffness(Weave weave, double extension) {
   return (weave == Weave::none ? kExtensionLoad : std::sqrt(kExtensionLoad * kWornLoad)) / extension;
 }
 
 double estimated_shear(const Row& row) {
-  if (row.weave == Weave::none) return secant(row.weave, estimated_extension(row).first) / (2 * (1 + 0.3));
+  if (row.weave == Weave::none) return secant_stiffness(row.weave, estimated_extension(row).first) / (2 * (1 + 0.3));
   if (row.weave == Weave::knitted) return 30;
   return row.fibre == Fibre::cotton ? 65 : row.fibre == Fibre::wool ? 26 : 30;
 }
@@ -311,11 +311,10 @@ Measurements measurements(const Row& row) {
   return m;
 }
 
-// The limit to stretch with which force at `extension` is that of KES: what `stretch` leaves of it locking threads
-// take.
-double limit_to_stretch(Weave weave, double extension) {
-  constexpr double kOnset = 0.7, kTension = 4e3;  // forces::Lock
-  const double rest = kExtensionLoad - secant(weave, extension) * extension;
+// Value of max_stretch for which the force at `extension` is that of KES: locking threads carry the rest.
+double max_stretch_for(Weave weave, double extension) {
+  constexpr double kOnset = 0.7, kTension = 4e3;  // constants of forces::Lock
+  const double rest = kExtensionLoad - secant_stiffness(weave, extension) * extension;
   return extension / (kOnset + (1 - kOnset) * std::cbrt(rest / kTension));
 }
 
@@ -325,13 +324,13 @@ Fabric fabric(const Row& row) {
   Material material;
   material.fabric = row.name;
   material.density = m.density.value;
-  material.stretch_weft = two_digits(secant(row.weave, m.extension_weft.value));
-  material.stretch_warp = two_digits(secant(row.weave, m.extension_warp.value));
+  material.stretch_weft = two_digits(secant_stiffness(row.weave, m.extension_weft.value));
+  material.stretch_warp = two_digits(secant_stiffness(row.weave, m.extension_warp.value));
   material.max_stretch =
-      two_digits(limit_to_stretch(row.weave, 0.5 * (m.extension_weft.value + m.extension_warp.value)));
+      two_digits(max_stretch_for(row.weave, 0.5 * (m.extension_weft.value + m.extension_warp.value)));
   material.shear = two_digits(2 * m.shear.value);
   material.bend = two_digits(bend);
-  material.bend_viscosity = two_digits(kBendingTime * bend);
+  material.bend_viscosity = two_digits(kBendingDampingTime * bend);
   material.bend_friction = two_digits(m.hysteresis.value * bend);
   material.thickness = 1e-3 * row.contact;
   material.friction = row.friction;

@@ -1,4 +1,4 @@
-// Fabrics by name, from what was measured of cloth.
+// Fabrics by name, from published measurements.
 #pragma once
 
 #include <optional>
@@ -10,33 +10,33 @@
 
 namespace weft::scene {
 
-/// A figure, and whether it was measured or follows from the rules of fabrics.cpp for what was not.
+/// A figure, and whether it was measured or estimated by the rules of fabrics.cpp.
 struct Figure {
   double value = 0;
   bool estimated = false;
 };
 
-/// What textile laboratories measure of a fabric.
+/// Quantities that textile laboratories measure of a fabric.
 struct Measurements {
-  Figure density;                         ///< [kg/m²]
-  Figure thickness;                       ///< of the cloth itself [m]
-  Figure extension_weft, extension_warp;  ///< at 490 N/m, the largest load of KES (its EMT) [1]
-  Figure shear;                           ///< G, shear force per width over shear angle [N/m]
-  Figure bend_weft, bend_warp;            ///< B [N·m]
-  Figure hysteresis;                      ///< HB / B, the curvature that is left when the moment is let go [1/m]
-  std::optional<std::pair<double, double>> drape;  ///< Cusick's coefficient, least and most that was published [1]
+  Figure density;                                  ///< [kg/m²]
+  Figure thickness;                                ///< of the cloth itself [m]
+  Figure extension_weft, extension_warp;           ///< at 490 N/m, the maximum load of KES (its EMT) [1]
+  Figure shear;                                    ///< G, shear force per width over shear angle [N/m]
+  Figure bend_weft, bend_warp;                     ///< B [N·m]
+  Figure hysteresis;                               ///< HB / B, residual curvature after unloading [1/m]
+  std::optional<std::pair<double, double>> drape;  ///< Cusick's coefficient: minimum and maximum published values [1]
 };
 
 struct Fabric {
-  Material material;  ///< its `fabric` is the name; made of `measured`
+  Material material;  ///< `fabric` is the name; derived from `measured`
   Measurements measured;
-  Finish finish;       ///< chosen by us, by fibre and weave
-  bool frays;          ///< where it is cut, which is why it is hemmed
+  Finish finish;       ///< our choice, by fibre and weave
+  bool frays;          ///< cut edges fray, so they are hemmed
   std::string what;    ///< weave and kind
   std::string source;  ///< of its figures
 };
 
-/// Load of a KES test of extension, 500 gf/cm, and that up to which `stretch` is the secant, FAST's 20 gf/cm [N/m].
+/// Load of a KES extension test, 500 gf/cm, and maximum load for which `stretch` is the secant, FAST's 20 gf/cm [N/m].
 inline constexpr double kExtensionLoad = 490.3, kWornLoad = 19.6;
 
 /// All named fabrics; the first is the default and equals Material{}.

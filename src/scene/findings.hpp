@@ -1,4 +1,4 @@
-// What reading a scene finds out beside its values: mistakes, and where each key was written.
+// By-products of reading a scene: mistakes, and the place of each key.
 #pragma once
 
 #include <toml++/toml.h>
@@ -18,31 +18,32 @@ struct Place {
   std::string override_text;  ///< as in Mistake
 };
 
-/// Where a node or key of a parsed document was written. Overrides are parsed under their own name as source path.
+/// Place of a node or key of a parsed document. Overrides are parsed with their own name as source path.
 Place place_of(const toml::source_region& source);
 
 class Findings {
  public:
-  /// Remembers where `key` (a whole path such as cloth.band.size) was written.
+  /// Stores where `key` (a whole path such as cloth.band.size) was written.
   void saw(const std::string& key, Place place) { places_.insert_or_assign(key, std::move(place)); }
   bool has(const std::string& key) const { return places_.contains(key); }
-  /// The place of the key, or of the nearest table around it that was seen.
+  /// The place of the key, or of the nearest stored table around it.
   Place place(std::string key) const;
 
   void report(const std::string& key, Place place, std::string text);
-  /// Reports at the place where the key was seen, unless the key has a mistake already.
+  /// Reports at the stored place of the key, unless the key already has a mistake.
   void report(const std::string& key, std::string text);
   bool faulty(const std::string& key) const { return faulty_.contains(key); }
 
-  /// Remembers the key path of entry i of a list ("cloth.band"), for checks that follow reading.
+  /// Stores the key path of entry i of a list ("cloth.band"), for checks after reading.
   void add_entry(const std::string& list, std::string path) { entries_[list].push_back(std::move(path)); }
   const std::string& entry(const std::string& list, std::size_t i) const { return entries_.at(list).at(i); }
 
-  /// The first kMaxMistakes in file order, then overrides, and a last one that counts the others. Empties this.
+  /// Returns the first kMaxMistakes mistakes in file order, then those of overrides, and a final one that counts the
+  /// rest. Clears the mistakes.
   std::vector<Mistake> take_mistakes();
 
  private:
-  /// Sorts, and drops what exceeds kMaxMistakes.
+  /// Sorts the mistakes, and drops those beyond kMaxMistakes.
   void keep_first();
 
   std::vector<Mistake> mistakes_;

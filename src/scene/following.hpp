@@ -1,4 +1,4 @@
-// Bodies that take part in the rigid motion of another one.
+// Bodies that follow the rigid motion of another one.
 #pragma once
 
 #include "scene/findings.hpp"
@@ -6,11 +6,12 @@
 
 namespace weft::scene {
 
-/// Whether an obstacle is ever moved: by keys of its own, or by what it follows, at any remove. A character counts as
-/// moving.
+/// Whether an obstacle ever moves: by its own keys, or by a body that it follows, directly or through others. A
+/// character counts as moving.
 bool moves(const Scene& scene, const Obstacle& obstacle);
 
-/// Reports each `follow` of an obstacle or camera that names nothing, no part of a character, or a circle of obstacles.
+/// Reports each `follow` of an obstacle or camera that names nothing or no part of a character, or closes a cycle of
+/// obstacles.
 void check_following(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

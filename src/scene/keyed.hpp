@@ -1,4 +1,4 @@
-// How values with keys go from one key to the next.
+// Interpolation between keys.
 #pragma once
 
 namespace weft::scene {

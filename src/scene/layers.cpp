@@ -7,7 +7,7 @@
 namespace weft::scene {
 namespace {
 
-// Adds what is worn below a cloth.
+// Adds all cloths that are worn below a cloth.
 void add_below(const Scene& scene, const std::string& name, std::set<std::string>& below) {
   for (const Cloth& cloth : scene.cloths)
     if (cloth.name == name)
@@ -32,7 +32,7 @@ bool worn_over(const Scene& scene, const std::string& outer, const std::string& 
 
 std::vector<std::size_t> layers_of(const Scene& scene) {
   std::vector<std::size_t> layers(scene.cloths.size(), 0);
-  // As often as there are cloths: more would be a circle.
+  // One pass per cloth is enough; cycles are reported elsewhere.
   for (std::size_t pass = 0; pass < scene.cloths.size(); ++pass)
     for (std::size_t c = 0; c < scene.cloths.size(); ++c)
       for (std::size_t below = 0; below < scene.cloths.size(); ++below)

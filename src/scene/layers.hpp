@@ -1,4 +1,4 @@
-// Cloth worn over cloth: in which order it is put on.
+// Cloth worn over cloth: the order of dressing.
 #pragma once
 
 #include <string>
@@ -8,21 +8,21 @@
 
 namespace weft::scene {
 
-/// Whether a cloth is worn over another, or over one that is, and so on. Names that no cloth has are over nothing.
+/// Whether a cloth is worn over another, directly or through others. A name of no cloth is over nothing.
 bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner);
 
-/// Of each cloth the most cloths that are worn below it, one over the other; 0 next to the skin.
+/// For each cloth, the maximum number of cloths worn below it, one over the other; 0 next to the skin.
 std::vector<std::size_t> layers_of(const Scene& scene);
 
-/// When a layer is put on.
+/// A layer of cloths that is put on together.
 struct Layer {
-  int first_frame = 0;               ///< negative in the preroll
-  std::vector<std::size_t> cloths;   ///< of it, by number
-  std::vector<std::size_t> dressed;  ///< of it and of those below, by ascending number
+  int first_frame = 0;               ///< first frame of dressing; negative in the preroll
+  std::vector<std::size_t> cloths;   ///< indices of the cloths of this layer
+  std::vector<std::size_t> dressed;  ///< indices of the cloths of this and all lower layers, ascending
 };
 
-/// All layers from the skin outward, at least one. They share evenly, in whole frames, the part of the preroll in which
-/// all characters that stand still at its start do so.
+/// All layers from the skin outward, at least one. They share, evenly and in whole frames, the initial part of the
+/// preroll during which all characters that stand still at its start still do so.
 std::vector<Layer> list_layers(const Scene& scene);
 
 }  // namespace weft::scene

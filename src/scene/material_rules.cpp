@@ -9,7 +9,7 @@ namespace weft::scene {
 
 namespace {
 
-// "named fabric ...; bending measured: poplin, wool; estimated from weight, fibre and weave: cotton, ..."
+// Names all fabrics whose bending is measured.
 std::string fabric_documentation() {
   std::vector<std::string> measured, estimated;
   for (const Fabric& fabric : fabrics())

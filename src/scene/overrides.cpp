@@ -1,4 +1,4 @@
-// "--set path.to.key=value" on the parsed document.
+// Applies "--set path.to.key=value" to the parsed document.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,18 +26,19 @@ std::vector<std::string> split(std::string_view path) {
   return parts;
 }
 
-/// A word that stands for itself: no TOML value starts like this, true, false, inf and nan aside, which TOML took.
+/// Whether the text is a word that can be used unquoted. No TOML value starts like this except true, false, inf and
+/// nan, which TOML has already parsed.
 bool is_plain_word(std::string_view text) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c >= 0x80 || std::strchr("_-./# ", c); };
   return !text.empty() && std::all_of(text.begin(), text.end(), plain);
 }
 
-/// A table { value = ... } whose nodes carry `source` as their source path; nothing where the text is no value.
+/// A table { value = ... } whose nodes carry `source` as their source path; nothing if the text is not a value.
 std::optional<toml::table> parse_value(std::string_view text, const std::string& source) {
   const auto parse = [&](const std::string& value) -> std::optional<toml::table> {
     try {
       toml::table table = parse_toml("value = " + value, source);
-      // A line break in the text could bring further keys.
+      // A line break in the text could add further keys.
       if (table.size() != 1) return std::nullopt;
       return table;
     } catch (const toml::parse_error&) {
@@ -48,7 +49,7 @@ std::optional<toml::table> parse_value(std::string_view text, const std::string&
   return is_plain_word(text) ? parse(fmt::format("\"{}\"", text)) : std::nullopt;
 }
 
-/// The entry of a list that has this name or index.
+/// The entry of a list with this name or index; null if there is none. Collects the names that it passes.
 toml::node* find_entry(toml::array& list, const std::string& part, std::vector<std::string>& names) {
   for (toml::node& entry : list) {
     const auto* table = entry.as_table();
@@ -62,8 +63,8 @@ toml::node* find_entry(toml::array& list, const std::string& part, std::vector<s
   return is_index ? list.get(index) : nullptr;
 }
 
-/// The nearest name, or all where none is near.
-std::string instead(const std::string& part, const std::vector<std::string>& names) {
+/// Suggests the nearest name, or all names if none is near.
+std::string suggest_names(const std::string& part, const std::vector<std::string>& names) {
   const std::string nearest = suggestion(part, names);
   return !nearest.empty() || names.empty() ? nearest : fmt::format("; there is {}", fmt::join(names, ", "));
 }
@@ -71,7 +72,7 @@ std::string instead(const std::string& part, const std::vector<std::string>& nam
 }  // namespace
 
 void apply_override(const std::string& override_text, toml::table& document, Findings& findings) {
-  // Shown in messages, and the sign by which nodes are later known to come from here.
+  // Shown in messages; also marks nodes that come from overrides.
   std::string source = "--set " + override_text;
   std::replace_if(
       source.begin(), source.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
@@ -109,7 +110,7 @@ void apply_override(const std::string& override_text, toml::table& document, Fin
       node = find_entry(*list, parts[i], names);
       if (node == nullptr) {
         return refuse(walked, fmt::format("expected the name or index of an entry, got {}{}", parts[i],
-                                          instead(parts[i], names)));
+                                          suggest_names(parts[i], names)));
       }
     } else {
       return refuse(walked, "expected a key of a table");

@@ -33,7 +33,7 @@ const Table& physics_key_rules() {
   return kTable;
 }
 
-/// Access to a member of the key that the own values of a fan go into.
+/// Access to a member of the first key, which stores the fan's own values.
 template <class Field>
 auto own_of_fan(Field FanKey::*field) {
   return [field](Fan& fan) -> Field& { return fan.keys.front().*field; };

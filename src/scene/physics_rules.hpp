@@ -1,4 +1,4 @@
-// The rules of gravity and air.
+// The rows of the rule table for gravity and air.
 #pragma once
 
 #include "scene/rule.hpp"

@@ -6,7 +6,7 @@
 namespace weft::scene {
 namespace {
 
-/// low and high of a part of a cloth.
+/// Rows low and high of a part of a cloth.
 template <class S>
 void part_rows(TableBuilder<S>& rows) {
   rows.plain(Type::text, "panel", &S::panel,
@@ -54,7 +54,7 @@ const Table& pin_key_rules() {
   return kTable;
 }
 
-/// at of a part of a rope.
+/// Row "at" of a part of a rope.
 template <class S>
 void rope_part_rows(TableBuilder<S>& rows) {
   rows.vector("at", &S::at, {"from", "to"}, within(0, 1), "",

@@ -1,4 +1,4 @@
-// The rows of the rule table for parts of a cloth: what holds them, and what hangs on them.
+// The rows of the rule table for parts of a cloth: pins, weights and attachments.
 #pragma once
 
 #include "scene/rule.hpp"

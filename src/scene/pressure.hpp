@@ -7,11 +7,11 @@
 
 namespace weft::scene {
 
-/// The quantity that a scene controls. The other one, pressure or amount, follows from the volume.
+/// The quantity that a scene prescribes. The other one, pressure or amount of air, follows from the volume.
 enum class PressureControl {
-  gauge,  ///< pressure above that of the air outside [Pa]
-  air,    ///< air that is pumped in after the cloth is closed, as volume at the pressure outside [m³]; negative: out
-  fill,   ///< all air, as ratio of what the cloth encloses when it is closed
+  gauge,  ///< pressure above that of the outside air [Pa]
+  air,    ///< air pumped in after closing, as volume at outside pressure [m³]; negative: out
+  fill,   ///< total air, as a ratio of the enclosed volume at closing
 };
 
 struct PressureKey {
@@ -19,14 +19,14 @@ struct PressureKey {
   double value = 0;
 };
 
-/// A cloth with air inside. What it encloses counts from the start, of cloth that is sewn from the end of sewing.
+/// A cloth filled with air. It counts as closed from the start; sewn cloth, from the end of sewing.
 struct Pressure {
   PressureControl control = PressureControl::gauge;
-  double value = 0;                                    ///< of what `control` says, where there are no keys
+  double value = 0;                                    ///< value of the controlled quantity if there are no keys
   Interpolation interpolation = Interpolation::cubic;  ///< between its keys
-  std::vector<PressureKey> keys;                       ///< empty: always `value`
+  std::vector<PressureKey> keys;                       ///< empty: constant `value`
 
-  /// Whether the air inside acts on the cloth at all.
+  /// Whether the enclosed air has any effect on the cloth.
   bool acts() const { return control != PressureControl::gauge || value != 0 || !keys.empty(); }
 };
 

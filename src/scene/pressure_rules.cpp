@@ -7,7 +7,7 @@
 namespace weft::scene {
 namespace {
 
-/// What a scene writes for one PressureControl.
+/// Key and documentation of one PressureControl.
 struct Quantity {
   const char* key;
   Range range;
@@ -24,7 +24,7 @@ Table key_table(const Quantity& quantity) {
       .build();
 }
 
-/// The value and its keys.
+/// The rows of the value and its keys.
 void quantity_rows(TableBuilder<Pressure>& rows, const Quantity& quantity, const Table& keys) {
   rows.number(quantity.key, &Pressure::value, quantity.range, quantity.unit, quantity.documentation)
       .choice("interpolation", &Pressure::interpolation, kInterpolations, "between its keys")
@@ -36,7 +36,7 @@ void quantity_rows(TableBuilder<Pressure>& rows, const Quantity& quantity, const
 }  // namespace
 
 const Table& pressure_rules() {
-  // Silk bursts at some kPa; air of a cubic kilometre keeps all sums finite.
+  // Ranges: silk bursts at some kPa; a cubic kilometre of air keeps all sums finite.
   static const Quantity kGauge = {"gauge", within(-1e6, 1e6), "Pa",
                                   "pressure inside above that outside; negative: it draws the cloth in"};
   static const Quantity kAir = {"air", within(-1e9, 1e9), "m³",

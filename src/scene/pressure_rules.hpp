@@ -1,4 +1,4 @@
-// The rules of the air inside a cloth.
+// The rows of the rule table for air inside a cloth.
 #pragma once
 
 #include "scene/rule.hpp"

@@ -11,13 +11,13 @@ namespace weft::scene {
 
 namespace {
 
-constexpr std::size_t kShownCharacters = 40;
+constexpr std::size_t kMaxShownCharacters = 40;
 
-std::string below(const std::string& path, std::string_view key) {
+std::string join_path(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// Where a key was written: toml++ knows it for keys of files; for those of overrides its value tells.
+/// Place of a key. toml++ stores it for keys of files; keys of overrides use that of their value.
 Place place_of_key(const toml::key& key, const toml::node& node) {
   return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
 }
@@ -37,10 +37,10 @@ bool is_name(std::string_view text) {
 
 std::string in_quotes(std::string_view text) {
   std::string shown = "\"";
-  const bool cut = text.size() > kShownCharacters;
+  const bool cut = text.size() > kMaxShownCharacters;
   if (cut) {
-    // Not in the middle of a UTF-8 character: step back over its continuation bytes.
-    std::size_t end = kShownCharacters;
+    // Do not cut a UTF-8 character: step back over its continuation bytes.
+    std::size_t end = kMaxShownCharacters;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
     text = text.substr(0, end);
   }
@@ -52,7 +52,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
-  // A longer name is no misspelling of ours, and the search for one would take long.
+  // A longer name is not a misspelt key, and the search would take long.
   if (name.size() > 64) return {};
   const std::string nearest = nearest_name(name, known);
   return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
@@ -78,8 +78,8 @@ void Reader::read(const toml::table& table, const Table& rules, void* target, co
   for (const Rule& rule : rules.rules) read_rule(table, rule, target, path);
 
   const Variant* variant = rules.variant_of(target);
-  // A selector that was not understood leaves the keys of all variants open: its own mistake is enough.
-  const bool undecided = !rules.selector.empty() && findings_.faulty(below(path, rules.selector));
+  // If the selector has a mistake, keys of all variants are accepted: one mistake is enough.
+  const bool undecided = !rules.selector.empty() && findings_.faulty(join_path(path, rules.selector));
   if (variant != nullptr && !undecided) {
     for (const Rule& rule : variant->rules) read_rule(table, rule, target, path);
   }
@@ -87,7 +87,7 @@ void Reader::read(const toml::table& table, const Table& rules, void* target, co
 }
 
 void Reader::read_rule(const toml::table& table, const Rule& rule, void* target, const std::string& path) {
-  const std::string key = below(path, rule.key);
+  const std::string key = join_path(path, rule.key);
   const toml::node* node = table.get(rule.key);
   if (node == nullptr) {
     const bool in_first_key = rule.need == Need::here_or_in_first_key && table["keys"][0][rule.key];
@@ -100,7 +100,7 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
   findings_.saw(key, place_of(node->source()));
 
   if (!rule.excludes.empty() && table.contains(rule.excludes)) {
-    // What --set says replaces what the file says in the other way.
+    // A value from --set replaces the excluded alternative in the file.
     const bool set_here = is_override(*node), set_there = is_override(*table.get(rule.excludes));
     if (set_here == set_there) {
       findings_.report(key, place_of(node->source()),
@@ -135,10 +135,10 @@ void Reader::read_entries(const toml::node& node, const Rule& rule, void* target
   for (std::size_t i = 0; i < entries->size(); ++i) {
     const toml::node& element = *entries->get(i);
     const toml::table* table = element.as_table();
-    const std::string by_index = below(path, std::to_string(i));
+    const std::string by_index = join_path(path, std::to_string(i));
     if (table == nullptr) {
       refuse(element, by_index, "expected a table, got " + describe_node(element));
-      // The entry keeps its place, so that index and struct go on belonging together.
+      // The entry keeps its place, so that indices and structs stay in step.
       findings_.add_entry(path, by_index);
       rule.append(target, i);
       continue;
@@ -154,8 +154,8 @@ std::string Reader::entry_path(const toml::table& table, const Rule& rule, const
                                const std::string& by_index, std::set<std::string>& names) {
   const auto name = table["name"].value<std::string>();
   if (rule.table->find("name") == nullptr || !name || !is_name(*name)) return by_index;
-  if (names.insert(*name).second) return below(path, *name);
-  findings_.report(below(by_index, "name"), place_of(table["name"].node()->source()),
+  if (names.insert(*name).second) return join_path(path, *name);
+  findings_.report(join_path(by_index, "name"), place_of(table["name"].node()->source()),
                    fmt::format("expected a name used once, got {} again", in_quotes(*name)));
   return by_index;
 }
@@ -182,7 +182,7 @@ void Reader::report_unknown(const toml::table& table, const Table& rules, const 
     }
     std::string inner;
     for (const Rule& rule : rules.rules) {
-      if (rule.type == Type::table && rule.table->find(name) != nullptr) inner = below(rule.key, name);
+      if (rule.type == Type::table && rule.table->find(name) != nullptr) inner = join_path(rule.key, name);
     }
     if (!owners.empty() && variant != nullptr) {
       text = fmt::format("unknown key of a {}; it belongs to {}", variant->name, join_or(owners));
@@ -193,8 +193,8 @@ void Reader::report_unknown(const toml::table& table, const Table& rules, const 
     } else {
       text += "; known here: " + fmt::format("{}", fmt::join(known, ", "));
     }
-    const std::string shown = name.size() > kShownCharacters || !is_name(name) ? in_quotes(name) : name;
-    findings_.report(below(path, shown), place_of_key(key, node), text);
+    const std::string shown = name.size() > kMaxShownCharacters || !is_name(name) ? in_quotes(name) : name;
+    findings_.report(join_path(path, shown), place_of_key(key, node), text);
   }
 }
 

@@ -1,4 +1,4 @@
-// From TOML to the structs, by the rule table.
+// Reads TOML into structs, by the rule table.
 #pragma once
 
 #include <toml++/toml.h>
@@ -12,28 +12,28 @@
 
 namespace weft::scene {
 
-/// "-0.001", "the text \"heavy\"", "an array of 4 values": a node, as a message shows it.
+/// A node as messages show it: "-0.001", "the text \"heavy\"", "an array of 4 values".
 std::string describe_node(const toml::node& node);
-/// The text in quotes, at most some 40 characters of it, without control characters.
+/// The text in quotes, shortened to about 40 characters, without control characters.
 std::string in_quotes(std::string_view text);
-/// Whether the text may name a list entry.
+/// Whether the text is valid as the name of a list entry.
 bool is_name(std::string_view text);
-/// "; did you mean a?" with the nearest of `known`, or nothing.
+/// "; did you mean a?" with the nearest of `known`; empty if none is near.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 class Reader {
  public:
-  /// `folder`: where relative file names start.
+  /// `folder`: base of relative file names.
   Reader(Findings& findings, std::filesystem::path folder) : findings_(findings), folder_(std::move(folder)) {}
 
-  /// Fills `target`, the struct that `rules` describes, from the table at `path` (empty: the whole scene). A key with a
+  /// Fills `target`, a struct that `rules` describes, from the table at `path` (empty: the whole scene). A key with a
   /// mistake keeps its default.
   void read(const toml::table& table, const Table& rules, void* target, const std::string& path);
 
  private:
   void read_rule(const toml::table& table, const Rule& rule, void* target, const std::string& path);
   void read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path);
-  /// The key path of a list entry: by its name where that is right and new (adds it to `names`), else by its index.
+  /// The key path of a list entry: by its name if that is valid and unique (adds it to `names`), else by its index.
   std::string entry_path(const toml::table& table, const Rule& rule, const std::string& path,
                          const std::string& by_index, std::set<std::string>& names);
   void report_unknown(const toml::table& table, const Table& rules, const Variant* variant, const std::string& path);

@@ -10,9 +10,9 @@
 namespace weft::scene {
 namespace {
 
-constexpr long kMostRopeParticles = 1'000'000;  // of all ropes
+constexpr long kMaxRopeParticles = 1'000'000;  // total of all ropes
 
-// Whether it says where it starts.
+// Checks that the course of a rope is defined; returns whether it is.
 bool check_course(const Scene& scene, const Rope& rope, const std::string& path, Findings& findings) {
   if (rope.points.empty()) {
     for (const auto& [key, end] : {std::pair("from", rope.from), std::pair("to", rope.to)})
@@ -54,9 +54,9 @@ bool check_course(const Scene& scene, const Rope& rope, const std::string& path,
 void check_pieces(const Scene& scene, const Rope& rope, const std::string& path, long& particles, Findings& findings) {
   const RopeShape shape = start_shape(rope, scene.up);
   particles += static_cast<long>(shape.places.size());
-  if (particles > kMostRopeParticles)
+  if (particles > kMaxRopeParticles)
     findings.report(path + ".segments", fmt::format("expected at most {} particles in all ropes together, got {}",
-                                                    kMostRopeParticles, particles));
+                                                    kMaxRopeParticles, particles));
   const double piece = *std::ranges::min_element(shape.lengths), least = kLeastRopePiece * rope.diameter;
   if (piece < (1 - kRoundoff) * least) {
     const bool chosen = rope.segments.has_value();

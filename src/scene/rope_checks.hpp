@@ -1,4 +1,4 @@
-// What ropes must fulfil beyond the rules of single keys.
+// Checks of ropes beyond the rules of single keys.
 #pragma once
 
 #include "scene/findings.hpp"
@@ -6,7 +6,7 @@
 
 namespace weft::scene {
 
-/// Reports ropes without a course, and pieces that are shorter than contact allows.
+/// Reports ropes whose course is not defined, and pieces that are too short for contact.
 void check_ropes(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

@@ -1,4 +1,4 @@
-// The keys of ropes.
+// The rows of the rule table for ropes.
 #pragma once
 
 #include "scene/rule.hpp"

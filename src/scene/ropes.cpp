@@ -9,12 +9,12 @@
 namespace weft::scene {
 namespace {
 
-constexpr double kStandardGravity = 9.81;  // [m/s²]; bending lengths are measured on Earth
-constexpr int kFewestPieces = 4;
-constexpr int kSplinePieces = 16;  // of a spline between two points
+constexpr double kStandardGravity = 9.81;  // [m/s²]; bending lengths are measured under it
+constexpr int kMinRopePieces = 4;
+constexpr int kSplinePieces = 16;  // pieces of a spline between two points
 constexpr int kCatenaryPieces = 512;
 
-// The polyline that a rope with points follows; a closed one comes back to its first point.
+// The polyline through the points of a rope; closed ropes return to the first point.
 std::vector<Vec3> path_through(const Rope& rope) {
   const std::vector<Vec3>& points = rope.points;
   const auto count = static_cast<int>(points.size()), spans = rope.closed ? count : count - 1;
@@ -28,11 +28,11 @@ std::vector<Vec3> path_through(const Rope& rope) {
 
 // A rope of this length that hangs from both ends.
 std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, const Vec3& up) {
-  const Vec3 way = to - from;
-  const double rise = up.dot(way);
-  const Vec3 along = way - rise * up;
+  const Vec3 chord = to - from;
+  const double rise = up.dot(chord);
+  const Vec3 along = chord - rise * up;
   const double span = along.norm();
-  // sinh(u) / u = ratio, with a = span / 2u the ratio of tension and weight at the lowest point.
+  // Solves sinh(u) / u = ratio; a = span / 2u is the ratio of tension to weight at the lowest point.
   const double ratio = std::sqrt(length * length - rise * rise) / span;
   double low = 0, high = 1;
   while (std::sinh(high) / high < ratio) high *= 2;
@@ -52,18 +52,19 @@ std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, cons
   return path;
 }
 
-// Places along a polyline, evenly by its length; both ends among them.
-std::vector<Vec3> resampled(const std::vector<Vec3>& path, int pieces) {
-  std::vector<double> reached{0};
-  for (std::size_t k = 1; k < path.size(); ++k) reached.push_back(reached.back() + (path[k] - path[k - 1]).norm());
+// Points at equal distances along a polyline, including both ends.
+std::vector<Vec3> resample(const std::vector<Vec3>& path, int pieces) {
+  std::vector<double> arc_lengths{0};
+  for (std::size_t k = 1; k < path.size(); ++k)
+    arc_lengths.push_back(arc_lengths.back() + (path[k] - path[k - 1]).norm());
   std::vector<Vec3> places;
   std::size_t span = 1;
   for (int i = 0; i < pieces; ++i) {
-    const double s = reached.back() * i / pieces;
-    while (span + 1 < path.size() && reached[span] < s) ++span;
-    const double length = reached[span] - reached[span - 1];
+    const double s = arc_lengths.back() * i / pieces;
+    while (span + 1 < path.size() && arc_lengths[span] < s) ++span;
+    const double length = arc_lengths[span] - arc_lengths[span - 1];
     places.emplace_back(path[span - 1] +
-                        (length > 0 ? (s - reached[span - 1]) / length : 0) * (path[span] - path[span - 1]));
+                        (length > 0 ? (s - arc_lengths[span - 1]) / length : 0) * (path[span] - path[span - 1]));
   }
   places.push_back(path.back());
   return places;
@@ -113,9 +114,9 @@ RopeShape start_shape(const Rope& rope, UpAxis up) {
     path = {*rope.from, *rope.to};
   double length = 0;
   for (std::size_t k = 1; k < path.size(); ++k) length += (path[k] - path[k - 1]).norm();
-  const int pieces = rope.segments.value_or(
-      std::max(kFewestPieces, static_cast<int>(std::min(1e6, wanted.value_or(length) / (kRopePiece * rope.diameter)))));
-  RopeShape shape{resampled(path, pieces), {}};
+  const int pieces = rope.segments.value_or(std::max(
+      kMinRopePieces, static_cast<int>(std::min(1e6, wanted.value_or(length) / (kRopePiece * rope.diameter)))));
+  RopeShape shape{resample(path, pieces), {}};
   double chords = 0;
   for (std::size_t k = 1; k < shape.places.size(); ++k) {
     shape.lengths.push_back((shape.places[k] - shape.places[k - 1]).norm());

@@ -1,5 +1,4 @@
-// Ropes as the rest of the program sees them: their material in numbers, how they start, and the cloth that stands for
-// them.
+// Conversion of ropes for the rest of the program: material figures, start shape, and the cloth that represents a rope.
 #pragma once
 
 #include <optional>
@@ -10,7 +9,7 @@
 
 namespace weft::scene {
 
-/// Figures of a kind of rope, each for the square of its nominal diameter d [m].
+/// Figures of a kind of rope, per square of its nominal diameter d [m].
 struct RopeMaterial {
   std::string name;
   double mass;            ///< [kg/m per m²]
@@ -19,7 +18,7 @@ struct RopeMaterial {
 };
 const std::vector<RopeMaterial>& rope_materials();
 
-/// Of one rope, those of its material where the scene does not say.
+/// Figures of one rope; those that the scene does not give are derived from its material.
 struct RopeNumbers {
   double mass;     ///< [kg/m]
   double stretch;  ///< force per strain, EA [N]
@@ -27,30 +26,30 @@ struct RopeNumbers {
 };
 RopeNumbers numbers_of(const Rope& rope);
 
-/// Where the particles of a rope start [m], and how long its pieces are at rest [m]: one piece less than particles, or
-/// as many where it is closed.
+/// Start positions of the particles of a rope [m], and rest lengths of its pieces [m]: one less than particles unless
+/// closed.
 struct RopeShape {
   std::vector<Vec3> places;
   std::vector<double> lengths;
 };
-/// `up`: the scene's. A slack rope without points hangs as a catenary.
+/// Start shape of a rope. A slack rope without points hangs as a catenary. `up`: of the scene.
 RopeShape start_shape(const Rope& rope, UpAxis up);
 
-/// Length of a piece, in diameters: by default, and at least.
+/// Default and minimum length of a piece, in diameters.
 inline constexpr double kRopePiece = 3, kLeastRopePiece = 1.5;
-/// How far apart, across the up axis, the ends of a slack rope without points are at least, in diameters.
+/// Minimum distance, across the up axis, between the ends of a slack rope without points, in diameters.
 inline constexpr double kLeastRopeSpan = 4;
-/// Whether it has no points and is longer than the distance of its ends.
+/// Whether a rope has no points and is longer than the distance of its ends.
 bool hangs_slack(const Rope& rope);
 
-/// At the start [m]; empty: as its course is.
+/// Length at the start [m]; empty: that of its course.
 std::optional<double> start_length(const Rope& rope);
 
-/// The cloth of one dimension that is simulated.
+/// The one-dimensional cloth that is simulated for a rope.
 Cloth as_cloth(const Rope& rope);
 /// Appends the cloths of all ropes to those of the scene.
 void add_rope_cloths(Scene& scene);
-/// Takes them away again.
+/// Removes them again.
 void remove_rope_cloths(Scene& scene);
 
 }  // namespace weft::scene

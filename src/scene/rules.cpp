@@ -1,6 +1,5 @@
 // The rule table of the scene format: every key with its unit, range and documentation. Defaults are the initialisers
-// in scene.hpp. Upper bounds are sanity bounds: far outside use, and small enough that no scene can exhaust the
-// machine.
+// in scene.hpp. Upper bounds are sanity bounds: no scene within them can exhaust the machine.
 #include <array>
 #include <cmath>
 
@@ -20,8 +19,8 @@ namespace weft::scene {
 
 namespace {
 
-/// Turns a vector that is meant for z up the way that the scene's up axis has it.
-Vec3 turned_up(UpAxis up, const Vec3& z_up) {
+/// Rotates a vector given for z up to the scene's up axis.
+Vec3 rotate_to_up_axis(UpAxis up, const Vec3& z_up) {
   return up == UpAxis::z ? z_up : Vec3(z_up.x(), z_up.z(), -z_up.y());
 }
 
@@ -66,7 +65,7 @@ const Table& solver_rules() {
   return kTable;
 }
 
-/// Keys of a cloth's look that its panels can have each for itself.
+/// Keys of a cloth's look that each of its panels can also have.
 template <class Painted>
 void paint_rows(TableBuilder<Painted>& rows) {
   rows.color("color", &Painted::color, "of the side from which weft x warp points to the viewer")
@@ -130,7 +129,7 @@ const Table& pose_key_rules() {
   return kTable;
 }
 
-/// interpolation and keys of the PoseTrack that `track` gives; the first key starts from the pose `start` gives.
+/// Rows interpolation and keys of the PoseTrack that `track` selects. The first key starts from `start`'s pose.
 template <class S, class Member, class Start>
 void track_rows(TableBuilder<S>& rows, Member track, Start start) {
   const auto keys = [track](S& s) -> std::vector<PoseKey>& { return std::invoke(track, s).keys; };
@@ -206,7 +205,7 @@ const Table& cloth_rules() {
               [](Cloth& c) { return static_cast<std::size_t>(c.shape); },
               [](Cloth& c, std::size_t index) {
                 c.shape = static_cast<ClothShape>(index);
-                if (c.shape == ClothShape::mesh) c.sewing = 0;  // it was sewn elsewhere
+                if (c.shape == ClothShape::mesh) c.sewing = 0;  // its file is already sewn
               })
           .selects()
           .with(cloth_shape_rows)
@@ -243,7 +242,7 @@ const Table& cloth_rules() {
   return kTable;
 }
 
-/// Access to a member of the shape that an obstacle has.
+/// Access to a member of the shape of an obstacle.
 template <class Kind, class Field>
 auto of_shape(Field Kind::*field) {
   return [field](Obstacle& o) -> Field& { return std::get<Kind>(o.shape).*field; };
@@ -344,7 +343,7 @@ const Table& obstacle_rules() {
 
 void set_up_axis(Scene& s, std::size_t index) {
   s.up = static_cast<UpAxis>(index);
-  s.physics.gravity = turned_up(s.up, Physics{}.gravity);
+  s.physics.gravity = rotate_to_up_axis(s.up, Physics{}.gravity);
 }
 
 void append_cloth(Scene& s, std::size_t) {
@@ -357,8 +356,8 @@ void append_rope(Scene& s, std::size_t) {
 
 void append_light(Scene& s, std::size_t) {
   LightKey key;
-  key.direction = turned_up(s.up, key.direction);
-  key.position = turned_up(s.up, key.position);
+  key.direction = rotate_to_up_axis(s.up, key.direction);
+  key.position = rotate_to_up_axis(s.up, key.position);
   s.lights.push_back({.name = {}, .color = Light{}.color, .keys = {key}});
 }
 
@@ -369,7 +368,7 @@ void append_camera(Scene& s, std::size_t) {
 }  // namespace
 
 const Table& scene_rules() {
-  // The up axis comes first: defaults of what is read after it depend on it.
+  // The up axis comes first: defaults of later keys depend on it.
   static const Table kTable = TableBuilder<Scene>("A scene of Weft: SI units, angles in degrees, colors in sRGB.")
                                   .choice_by(
                                       "up", {"y", "z"}, "axis that points up",

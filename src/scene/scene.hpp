@@ -1,4 +1,4 @@
-// A scene after checking: plain values in SI units, every default filled in, every name resolved.
+// A checked scene: plain values in SI units, with every default filled in and every name resolved.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace weft::scene {
 enum class UpAxis { y, z };
 enum class Integrator { implicit_euler, implicit_midpoint, bdf2 };
 
-/// What scenes and reports call them, in their order.
+/// Names in scenes and reports, in the order of the enumeration.
 inline const std::vector<std::string> kIntegratorNames = {"implicit_euler", "implicit_midpoint", "bdf2"};
 inline const std::string& name_of(Integrator integrator) {
   return kIntegratorNames[static_cast<std::size_t>(integrator)];
@@ -35,43 +35,43 @@ enum class Response { springs, velocity_constraints };
 
 struct Time {
   double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
-  double fps = 25;      ///< frames a second
-  double preroll = 0;   ///< simulated before frame 0 and not shown [s]
-  double step = 0.01;   ///< largest time step [s]; a frame is cut into equal steps no longer than this
+  double fps = 25;      ///< frames per second
+  double preroll = 0;   ///< time simulated before frame 0 and not shown [s]
+  double step = 0.01;   ///< maximum time step [s]; frames are cut into equal steps no longer than this
   std::optional<double> tolerance =
-      std::nullopt;  ///< instead of `step`: local error of the positions of a cloth in one step [m]
+      std::nullopt;  ///< replaces `step`: local error of a cloth's positions in one step [m]
   Integrator integrator = Integrator::implicit_euler;
 };
 
 struct Solver {
-  double newton_tolerance = 0.3;  ///< residual against the weight and inertia of the cloth, relative
-  int newton_iterations = 60;     ///< per step, before the step is halved
+  double newton_tolerance = 0.3;  ///< residual relative to the weight and inertia of the cloth
+  int newton_iterations = 60;     ///< maximum per step, before the step is halved
   double linear_tolerance = 0.1;  ///< of the conjugate gradients, relative to the first residual
   int linear_iterations = 1000;
-  int halvings = 8;  ///< of a rejected step, before the run gives up
+  int halvings = 8;  ///< maximum of a rejected step, before the run gives up
 };
 
 enum class Bounds { box, dop18, dop26 };
 enum class TreeKind { binary, quad, oct };
 
-/// How near surfaces are found (seed, "Collision Detection"). Nothing here changes what is found, only how fast.
+/// Methods that find near surfaces (seed, "Collision Detection"). They change only the speed, not the result.
 struct Search {
   Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
-  TreeKind tree = TreeKind::oct;  ///< two, four or eight children to a node
-  int leaf = 8;                   ///< most triangles of a leaf
-  bool open_longer_side = false;  ///< of two nodes open the longer one, instead of both
-  bool separation_lists = false;  ///< walk on from where the last walk stopped
-  bool velocity_cones = false;    ///< leave the bounds of slow nodes as they are
+  TreeKind tree = TreeKind::oct;  ///< two, four or eight children per node
+  int leaf = 8;                   ///< maximum number of triangles per leaf
+  bool open_longer_side = false;  ///< of two nodes, open only the longer one
+  bool separation_lists = false;  ///< continue a traversal where the last one stopped
+  bool velocity_cones = false;    ///< keep the bounds of slow nodes
   bool normal_cones = false;      ///< skip regions that are provably flat enough
-  bool coherence = false;         ///< keep closest points of surfaces that hardly move relative to each other
-  bool reuse = true;              ///< keep candidates and close features while nothing has moved far
+  bool coherence = false;         ///< keep closest points of surfaces with little relative motion
+  bool reuse = true;              ///< keep candidate pairs and close features until something moves far
 };
 
-/// Coulomb friction between two objects, instead of what their own coefficients give.
+/// Coulomb friction between two objects, in place of their own coefficients.
 struct FrictionPair {
-  std::string first, second;              ///< names of cloths or obstacles; the same twice: a cloth with itself
+  std::string first, second;              ///< names of cloths or obstacles; equal names: a cloth with itself
   double friction = 0.3;                  ///< while sliding
-  std::optional<double> static_friction;  ///< until sliding begins, at least that of sliding; the same where absent
+  std::optional<double> static_friction;  ///< while sticking, at least `friction`; absent: equal to it
 };
 
 /// Contact of all surfaces.
@@ -86,41 +86,41 @@ struct Contact {
 
 /// A fabric in continuum units (seed, "Elastic Model").
 struct Material {
-  std::string fabric = "cotton";  ///< the named fabric that the numbers started from
+  std::string fabric = "cotton";  ///< the named fabric that supplies the initial figures
   double density = 0.15;          ///< [kg/m²]
   double stretch_weft = 800;      ///< k1 [N/m]
   double stretch_warp = 2100;     ///< k2 [N/m]
   double shear = 130;             ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
   double bend = 1e-5;             ///< B [N·m]
   double max_stretch = 0.1;       ///< extension at which threads lock; 0: never
-  double max_shear = 0;           ///< angle off square at which they lock [degrees]; 0: never
+  double max_shear = 0;           ///< change of the right angle at which they lock [degrees]; 0: never
   double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
   double shear_viscosity = 0;     ///< [N·s/m]
   double bend_viscosity = 1e-6;   ///< [N·m·s]
-  double bend_friction = 5e-4;    ///< moment per width that a change of curvature must overcome [N]
-  double thickness = 0.002;       ///< distance that contact keeps between two layers [m]
-  double friction = 0.3;          ///< Coulomb coefficient; of a pair: the geometric mean of both
-  double drag = 1.0;              ///< air resistance coefficient of the normal motion; 0 for none
+  double bend_friction = 5e-4;    ///< moment per width that must be overcome to change the curvature [N]
+  double thickness = 0.002;       ///< contact distance between two layers [m]
+  double friction = 0.3;          ///< Coulomb coefficient; of two objects: the geometric mean
+  double drag = 1.0;              ///< air resistance coefficient of the normal motion; 0: none
 };
 
-/// Colours of a cloth or of one of its panels, and a picture on it that lies along the grain.
+/// Colours of a cloth or of one of its panels, and a picture on it, aligned with the grain.
 struct Paint {
   Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
-  std::optional<Vec3> back_color;              ///< cloth: the other side; a paler front where absent
+  std::optional<Vec3> back_color;              ///< other side of cloth; absent: a paler front
   std::optional<std::filesystem::path> image;  ///< PNG, JPEG or TGA; absolute after checking
-  double image_width = 0.2;                    ///< of one tile along weft [m]; its height follows the picture's shape
+  double image_width = 0.2;                    ///< of one tile along weft [m]; the height follows from the picture
   Vec2 image_offset{0, 0};                     ///< of the lower left corner of a tile along weft and warp [m]
   double image_rotation = 0;                   ///< about that corner, counter-clockwise [degrees]
-  bool image_repeat = true;                    ///< else one tile, and `color` around it
-  bool cutout = false;                         ///< what is transparent is a hole; else `color` shows there
+  bool image_repeat = true;                    ///< false: one tile, with `color` around it
+  bool cutout = false;                         ///< transparent parts are holes; else `color` shows there
 };
 
-/// A panel of a pattern with colours of its own.
+/// A panel of a pattern with its own colours.
 struct PanelPaint : Paint {
   std::string name;
 };
 
-/// What cloth does with light beside showing its colour, each from 0 to 1; see frame::Finish.
+/// Reflection properties of cloth besides colour, each from 0 to 1; see frame::Finish.
 struct Finish {
   double gloss, warp_share, fuzz, sheer;
   Threads threads = Threads::plain;
@@ -128,17 +128,17 @@ struct Finish {
 
 struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< of a pattern
-  bool as_file = true;             ///< characters: colours and pictures are those of the file, where it has some
+  bool as_file = true;             ///< characters: use colours and pictures of the file, if any
   double roughness = 0.6;
-  std::optional<double> gloss;        ///< of threads, by default of the fabric; of an obstacle: of its coat
-  std::optional<double> fuzz, sheer;  ///< cloth only; those of the fabric where absent
-  double metal = 0;                   ///< obstacles only: 1 where it reflects in its own colour
+  std::optional<double> gloss;        ///< of threads, default from the fabric; obstacles: of the coat
+  std::optional<double> fuzz, sheer;  ///< cloth only; absent: those of the fabric
+  double metal = 0;                   ///< obstacles only: 1 for reflections in the object's colour
   std::optional<double> tile_width;   ///< obstacles only: of its picture [m]; absent: once over the shape
-  double warp_share = 0.5;            ///< of the gloss; of the fabric
+  double warp_share = 0.5;            ///< part of the gloss along warp; of the fabric
   Threads threads = Threads::plain;   ///< of the fabric
   double cloth_thickness = 0;         ///< of the fabric itself, or of a rope [m]
-  double thread_spacing = 0.0006;     ///< of the drawn weave [m]; cloth only; 0 draws none
-  std::optional<double> hem;          ///< width of its hems [m]; cloth only; 0: cut edges
+  double thread_spacing = 0.0006;     ///< of the drawn weave [m]; cloth only; 0: not drawn
+  std::optional<double> hem;          ///< width of hems [m]; cloth only; 0: cut edges
   bool checker = false;               ///< floors only
   bool strands = true;                ///< ropes only: drawn twisted
   bool visible = true;
@@ -148,10 +148,10 @@ struct Look : Paint {
 struct Pose {
   Vec3 position{0, 0, 0};  ///< [m]
   Quat rotation{1, 0, 0, 0};
-  std::optional<Vec3> angles{};  ///< of the same rotation, where it was given by them [degrees]: with whole turns
+  std::optional<Vec3> angles{};  ///< the same rotation as angles, if given so [degrees]; may contain whole turns
 };
 
-/// How far the angles differ from one key to the next [degrees]: nothing where one of them has none.
+/// Difference of the angles of two poses [degrees]; empty if one of them has no angles.
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to);
 
 struct PoseKey {
@@ -161,35 +161,35 @@ struct PoseKey {
 
 struct PoseTrack {
   Interpolation interpolation = Interpolation::cubic;
-  std::vector<PoseKey> keys;  ///< empty: stays at the object's own pose
+  std::vector<PoseKey> keys;  ///< empty: keeps the object's own pose
 };
 
-/// Where a pin holds its particles at a time. The rotation is about their middle.
+/// Position at which a pin holds its particles at one time. It rotates them about their centroid.
 struct PinKey {
   double time = 0;  ///< [s], strictly increasing
-  Pose pose;        ///< position: of their middle, from where that starts, or in the world
+  Pose pose;        ///< position: of the centroid, relative to its start or in the world
   bool in_world = false;
 };
 
 struct PinTrack {
   Interpolation interpolation = Interpolation::cubic;
-  std::vector<PinKey> keys;  ///< empty: they stay where they start
+  std::vector<PinKey> keys;  ///< empty: the particles keep their start positions
 };
 
 enum class VertexColor { none, red, green, blue, brightness };
 
-/// Particles of a cloth, in fractions of its rest size along weft and warp: those inside [low, high]. What else is
-/// given says which share of each of them; several such shares are multiplied.
+/// Particles of a cloth inside [low, high], in fractions of its rest size along weft and warp. The other members give
+/// each particle a weight; several weights are multiplied.
 struct ClothPart {
-  std::string panel;  ///< of a pattern: only those of it, and fractions are of its own size; empty: all
+  std::string panel;  ///< of a pattern: only this panel, with fractions of its size; empty: all
   Vec2 low{0, 0}, high{1, 1};
   std::optional<Vec2> at = {};                   ///< of a rope, in place of low and high: fractions of its length
-  std::string edge;                              ///< of a pattern, as "panel.edge": only those on it; empty: all
-  std::optional<std::filesystem::path> mask;     ///< picture whose greys are shares; absolute after checking
-  VertexColor vertex_color = VertexColor::none;  ///< of the file of a mesh
-  std::string vertex_group;                      ///< likewise: a group of its vertices, or bone; empty: all
+  std::string edge;                              ///< of a pattern, as "panel.edge": only this edge; empty: all
+  std::optional<std::filesystem::path> mask;     ///< picture whose grey values are weights; absolute after checking
+  VertexColor vertex_color = VertexColor::none;  ///< of a mesh file: colour channel that gives weights
+  std::string vertex_group;  ///< of a mesh file: vertex group or bone that gives weights; empty: all
 
-  /// Whether the particle at fractions (u, v) of the rest size is inside; the slack keeps i / (n - 1) inside a bound
+  /// Whether the particle at fractions (u, v) of the rest size is inside. The slack keeps i / (n - 1) inside a bound
   /// that was written with fewer digits.
   bool holds(double u, double v) const {
     constexpr double kSlack = 1e-9;
@@ -197,16 +197,16 @@ struct ClothPart {
   }
 };
 
-/// Particles held in place, or moved.
+/// Particles that are held in place, or moved.
 struct Pin : ClothPart {
   std::string follow;              ///< body whose motion they share, or "<character>.<part>"; empty: none
-  PinTrack motion;                 ///< else of their own
-  double release = -1;             ///< time at which they are let go [s]; negative: never
-  std::optional<double> strength;  ///< of the springs that draw them there [N/m]; none: they are held
-  double fade = 0;  ///< distance along the cloth up to which others are drawn too, ever less [m]; needs a strength
+  PinTrack motion;                 ///< their own motion, if they follow nothing
+  double release = -1;             ///< time of release [s]; negative: never
+  std::optional<double> strength;  ///< stiffness of the springs that pull them [N/m]; absent: held rigidly
+  double fade = 0;  ///< distance along the cloth over which the pull on others fades [m]; needs a strength
 };
 
-/// The body and, of a character, the part (else empty) that a `follow` names.
+/// The body that a `follow` names and, for a character, the part (else empty).
 struct Followed {
   std::string body, part;
 };
@@ -215,18 +215,18 @@ inline Followed followed(const std::string& follow) {
   return {follow.substr(0, dot), dot == std::string::npos ? "" : follow.substr(dot + 1)};
 }
 
-/// Mass that hangs on particles, by their shares.
+/// Mass distributed over particles by their weights.
 struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };
 
-/// Springs from particles of a cloth to the nearest places of another cloth or of a body: buttons, pegs, tacks.
+/// Springs from particles of a cloth to the nearest points of another cloth or body: buttons, pegs, tacks.
 struct Attachment : ClothPart {
   std::string name, cloth, to;
-  double stiffness = 10000;             ///< of the spring of each particle, times its share [N/m]
-  std::optional<double> length;         ///< up to which it is slack [m]; none: as far apart as when it begins
-  double begin = -1e5, release = -1;    ///< [s]; release negative: never
-  std::optional<double> breaking_load;  ///< of all its springs together, above which it is gone [N]; none: never
+  double stiffness = 10000;             ///< of the spring of each particle, times its weight [N/m]
+  std::optional<double> length;         ///< slack length [m]; absent: the distance at `begin`
+  double begin = -1e5, release = -1;    ///< [s]; negative release: never
+  std::optional<double> breaking_load;  ///< total force of its springs above which it breaks [N]; absent: never
 };
 
 enum class ClothStart { as_given, untangle };
@@ -238,65 +238,65 @@ struct Rope;
 struct Cloth {
   std::string name;
   ClothShape shape = ClothShape::quads;
-  Vec2 size{1, 1};                               ///< weft, warp [m]; not of a file
-  int particles_weft = 41, particles_warp = 41;  ///< likewise; crossed triangles have one more in each cell
-  Vec2 grading{1, 1};                            ///< likewise: last spacing of particles over the first
-  std::filesystem::path file;                    ///< of a mesh or sewing pattern; absolute after checking
-  double scale = 1;             ///< of a mesh: metres per unit of the file; of a pattern: factor on its lengths
-  FileUp up = FileUp::as_file;  ///< of a mesh: axis of the file that points up
-  std::string object;           ///< of a mesh: name of what the file has it as; empty: all that it holds
-  ClothRest rest = ClothRest::automatic;  ///< what the shape at rest of a mesh is taken from
-  std::optional<Vec2> uv_scale;           ///< metres per unit of its UVs; absent: measured against the mesh
-  double edge_length = 0.02;              ///< of the mesh of a pattern [m]
-  std::string wearer;                     ///< character that a pattern is put on; empty: the only one
-  bool fit = false;                       ///< whether a pattern is scaled to the wearer's measures
-  double sewing = 1;                      ///< time in which what has flat panels goes to their measures [s]
-  int line = 0, column = 0;               ///< where the scene names it, for errors of its file
+  Vec2 size{1, 1};                               ///< weft, warp [m]; for rectangles
+  int particles_weft = 41, particles_warp = 41;  ///< for rectangles; crossed triangles have one more per cell
+  Vec2 grading{1, 1};                            ///< for rectangles: last spacing of particles / first spacing
+  std::filesystem::path file;                    ///< mesh or sewing pattern; absolute after checking
+  double scale = 1;                              ///< mesh: metres per unit of the file; pattern: factor on its lengths
+  FileUp up = FileUp::as_file;                   ///< mesh: up axis of the file
+  std::string object;                            ///< mesh: name of the object in the file; empty: all objects
+  ClothRest rest = ClothRest::automatic;         ///< mesh: source of the rest shape
+  std::optional<Vec2> uv_scale;                  ///< metres per unit of the UVs; absent: measured against the mesh
+  double edge_length = 0.02;                     ///< of the mesh of a pattern [m]
+  std::string wearer;                            ///< character that wears a pattern; empty: the only one
+  bool fit = false;                              ///< scale a pattern to the wearer's measures
+  double sewing = 1;                             ///< time in which cloth from flat panels takes their measures [s]
+  int line = 0, column = 0;                      ///< where the scene names it, for errors in its file
   Pose pose;               ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
   Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
-  Vec3 spin{0, 0, 0};      ///< at the start, about its centre of mass: along the axis [degrees/s]
-  Vec2 start_scale{1, 1};  ///< lengths along weft and warp at the start, times those at rest
-  ClothStart start = ClothStart::as_given;  ///< where it touches or crosses something
-  std::vector<std::string> over;            ///< cloths that are put on before it, and stay inside of it
-  double start_noise = 0;                   ///< most that a particle is off its place at the start, along each axis [m]
+  Vec3 spin{0, 0, 0};      ///< at the start, about the centre of mass: along the axis [degrees/s]
+  Vec2 start_scale{1, 1};  ///< start lengths along weft and warp / rest lengths
+  ClothStart start = ClothStart::as_given;  ///< if it touches or crosses something at the start
+  std::vector<std::string> over;            ///< cloths that are put on before it and stay inside it
+  double start_noise = 0;                   ///< maximum random offset of a particle at the start, along each axis [m]
   Material material;
   Pressure pressure;
   Look look;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
-  std::shared_ptr<const Rope> rope;  ///< that it stands for; null: it is a sheet
+  std::shared_ptr<const Rope> rope;  ///< the rope that it represents; null: a sheet
 };
 
-/// Particles of a rectangle of cloth; of the others their file tells, and this is 0.
+/// Number of particles of a rectangle of cloth; 0 for other shapes, whose file determines it.
 inline long rectangle_particles(const Cloth& cloth) {
   const long u = cloth.particles_weft, v = cloth.particles_warp;
   if (cloth.shape > ClothShape::crossed_triangles) return 0;
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
 
-/// How long a rope is at a time, as if it were drawn in or let out evenly.
+/// Length of a rope at a time, as if it were evenly reeled in or paid out.
 struct RopeKey {
   double time = 0;    ///< [s], strictly increasing
   double length = 1;  ///< at rest [m]
 };
 
-/// A thin chain of particles. What is simulated is the cloth of one dimension that as_cloth() makes of it.
+/// A thin chain of particles, simulated as the one-dimensional cloth that as_cloth() makes of it.
 struct Rope {
   std::string name;
-  std::vector<Vec3> points;                            ///< that it runs through at the start [m]
-  std::optional<Vec3> from, to;                        ///< its ends, where it has no points [m]
-  bool smooth = false;                                 ///< bent through its points; else straight between them
-  bool closed = false;                                 ///< its end is its beginning
-  std::optional<double> length;                        ///< at rest [m]; absent: as it starts
+  std::vector<Vec3> points;                            ///< points of its start course [m]
+  std::optional<Vec3> from, to;                        ///< its ends, if it has no points [m]
+  bool smooth = false;                                 ///< curved through its points; else straight between them
+  bool closed = false;                                 ///< its end joins its beginning
+  std::optional<double> length;                        ///< at rest [m]; absent: as at the start
   Interpolation interpolation = Interpolation::cubic;  ///< between its keys
-  std::vector<RopeKey> keys;                           ///< of its length; empty: that stays
+  std::vector<RopeKey> keys;                           ///< of its length; empty: constant
   std::optional<int> segments;                         ///< pieces between particles; absent: by diameter
-  double diameter = 0.008;                             ///< that contact keeps [m]
-  int material = 0;                                    ///< into rope_materials()
-  std::optional<double> mass, stretch, bend;  ///< of a metre [kg/m], EA [N], EI [N·m²]; absent: of the material
-  double damping = 0.01;                      ///< viscosity of stretch and bending over their stiffness [s]
-  double friction = 0.3;                      ///< Coulomb coefficient; of a pair: the geometric mean of both
-  double drag = 1.1;                          ///< air resistance coefficient of motion across it, as of a cylinder
+  double diameter = 0.008;                             ///< contact diameter [m]
+  int material = 0;                                    ///< index into rope_materials()
+  std::optional<double> mass, stretch, bend;  ///< mass per length [kg/m], EA [N], EI [N·m²]; absent: of the material
+  double damping = 0.01;                      ///< viscosity of stretch and bending / their stiffness [s]
+  double friction = 0.3;                      ///< Coulomb coefficient; of two objects: the geometric mean
+  double drag = 1.1;                          ///< air resistance coefficient of the motion across it, as of a cylinder
   Vec3 velocity{0, 0, 0};                     ///< at the start [m/s]
   Look look;
   std::vector<Pin> pins;
@@ -306,21 +306,20 @@ struct Rope {
 struct Obstacle {
   std::string name;
   Shape shape;
-  int segments = 48;  ///< round shapes: faces around
+  int segments = 48;  ///< round shapes: number of faces around
   Pose pose;
   PoseTrack motion;        ///< absolute poses; empty: rests at `pose`
   double mass = 0;         ///< [kg]; 0: by density
-  double density = 0;      ///< of its volume [kg/m³]; 0, and no mass: forces do not move it
-  Vec3 velocity{0, 0, 0};  ///< at the start, where forces move it and no keys [m/s]
-  Vec3 spin{0, 0, 0};      ///< likewise, rate of turning about its centre of mass [degrees/s]
-  double release = 0;      ///< time from which on forces move it [s]; before, its keys do
-  /// Obstacle, or "<character>.<part>", whose rigid motion from the start of the run on is added to its own; empty:
-  /// none.
+  double density = 0;      ///< of its volume [kg/m³]; 0 without mass: not moved by forces
+  Vec3 velocity{0, 0, 0};  ///< at the start, if forces but no keys move it [m/s]
+  Vec3 spin{0, 0, 0};      ///< likewise, about its centre of mass [degrees/s]
+  double release = 0;      ///< time from which forces move it [s]; before it, its keys do
+  /// Obstacle, or "<character>.<part>", whose rigid motion since the start of the run is added; empty: none.
   std::string follow = {};
   double friction = 0.3;
   bool collide = true;
   Look look;
-  int line = 0, column = 0;  ///< where the scene names it, for errors of its file
+  int line = 0, column = 0;  ///< where the scene names it, for errors in its file
 };
 
 /// Whether forces move it.
@@ -330,53 +329,53 @@ inline bool is_dynamic(const Obstacle& obstacle) {
 
 enum class Stance { first, rest };
 
-/// A joint of the body that `motion` is to move, where its name is none that is known.
+/// Names of a joint that the common names do not cover, in the body and in the motion.
 struct JointNames {
   std::string name;                   ///< one of character::joint_names()
   std::optional<std::string> body;    ///< in the character's file
   std::optional<std::string> motion;  ///< in the file of the motion
 };
 
-/// How a clip goes over the floor: as its file has it, in place, or at a speed.
+/// Horizontal travel of a clip: as in its file, in place, or at a speed.
 struct Travel {
   enum class Kind { file, none, speed };
   Kind kind = Kind::file;
-  double speed = 0;  ///< [m/s of the scene]; where that is the kind
+  double speed = 0;  ///< for Kind::speed [m/s of the scene]
 };
 
-/// How a skinned body is made to move.
+/// How a skinned body moves.
 struct Acting {
-  std::optional<std::string> clip;              ///< of `motion`, else of the body itself; absent: the first
-  std::optional<std::filesystem::path> motion;  ///< file whose motion it takes over; absolute after checking
-  FileUp motion_up = FileUp::as_file;           ///< axis of `motion` that points up
+  std::optional<std::string> clip;              ///< of `motion`, or else of the body; absent: the first
+  std::optional<std::filesystem::path> motion;  ///< file with the motion to transfer; absolute after checking
+  FileUp motion_up = FileUp::as_file;           ///< up axis of `motion`
   std::vector<JointNames> joints;
   Travel travel;
-  Stance stance = Stance::first;      ///< pose that is held while dressing
-  std::optional<double> stance_arms;  ///< angle of its straight arms from hanging down; absent: as they are [degrees]
-  bool loop = false;                  ///< again and again, each round from where the last one has come to
-  double crossfade = 0;               ///< [s] of clip time at the end of a round that pass over into the next
+  Stance stance = Stance::first;      ///< pose while dressing
+  std::optional<double> stance_arms;  ///< angle of straight arms from hanging [degrees]; absent: unchanged
+  bool loop = false;                  ///< repeat; each round continues from the end position of the last
+  double crossfade = 0;               ///< clip time at the end of a round that is blended into the next [s]
 };
 
 /// A skinned and animated character from a file.
 struct CharacterFile : Acting {
   std::filesystem::path path;        ///< absolute after checking
-  std::vector<std::string> meshes;   ///< that it consists of, by the names of meshes or their nodes; empty: all
-  std::vector<std::string> without;  ///< that it does not have, likewise
+  std::vector<std::string> meshes;   ///< its meshes, by names of meshes or their nodes; empty: all
+  std::vector<std::string> without;  ///< meshes to leave out, likewise
 };
 
-/// Our own mannequin, see character::MannequinBuild. It looks along −y, where y is up along z, and walks there.
+/// The built-in mannequin; see character::MannequinBuild. In scenes with z up it faces and walks along −y.
 struct Mannequin : Acting {
   double height = 1.75;       ///< [m]
-  double girth = 1;           ///< widths against those of the slender default
+  double girth = 1;           ///< factor on the widths of the slender default
   double masculinity = 0;     ///< 0 a woman, 1 a man
   double edge_length = 0.02;  ///< of its triangles [m]
-  double walk = 0;            ///< [m]; 0: it stands
-  double pace = 1.2;          ///< of even walking [m/s]
+  double walk = 0;            ///< distance [m]; 0: it stands
+  double pace = 1.2;          ///< steady walking speed [m/s]
   bool turn_back = false;     ///< at the end it turns and walks back
-  double arms_out = 13;       ///< of the upper arms from the vertical while it walks [degrees]
+  double arms_out = 13;       ///< angle of the upper arms from the vertical while walking [degrees]
 };
 
-/// Key frames as mesh files, one after the other.
+/// Key frames as a sequence of mesh files.
 struct MeshSequence {
   std::string files;  ///< a folder, or a file name with one *; relative paths start at the scene's folder
   double fps = 25;    ///< [1/s]
@@ -384,39 +383,39 @@ struct MeshSequence {
 
 using CharacterSource = std::variant<CharacterFile, Mannequin, MeshSequence>;
 
-/// Of a character, with a say of its own in contact. What it is: a bone, a material, else what its name says.
+/// A part of a character with its own contact settings: a bone, a material, or a part by its name.
 struct BodyPart {
   std::string name;
   std::optional<std::string> bone;      ///< node of the character's file, with all below it
   std::optional<std::string> material;  ///< of the character's file
   bool collide = true;
   std::optional<double> friction;  ///< absent: that of the character
-  double thickness = 0;            ///< distance that cloth keeps from it beyond its own half thickness, twice [m]
+  double thickness = 0;            ///< twice the contact distance beyond half of the cloth's thickness [m]
 };
 
-/// A body that moves by itself, stored as key frames of its vertices.
+/// A body with prescribed motion, stored as key frames of its vertices.
 struct Character {
   std::string name;
   CharacterSource source;
-  std::optional<double> scale;  ///< metres per unit of the file; absent: what the file says, else 1
+  std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, else 1
   FileUp up = FileUp::as_file;
   Pose pose;                              ///< of the file's origin, or of the floor below the mannequin
-  double dressing = 0;                    ///< [s] it stands still
-  double blend = 0;                       ///< [s] in which it then gets going
-  double grow = 0;                        ///< [s] of the dressing in which it grows from its bones to its size
-  double start = 0;                       ///< time of the clip that it gets going from [s]
-  double speed = 1;                       ///< of the clip
-  std::optional<double> room;             ///< [m] between its limbs for cloth; absent: as cloths are thick
-  std::optional<double> keys_per_second;  ///< absent: those of the clip
+  double dressing = 0;                    ///< time standing still [s]
+  double blend = 0;                       ///< time in which it then starts to move [s]
+  double grow = 0;                        ///< part of the dressing in which it grows from its bones to its size [s]
+  double start = 0;                       ///< time of the clip at which it begins [s]
+  double speed = 1;                       ///< factor on the speed of the clip
+  std::optional<double> room;             ///< clearance between limbs for cloth [m]; absent: by cloth thickness
+  std::optional<double> keys_per_second;  ///< absent: that of the clip
   Interpolation interpolation = Interpolation::cubic;
   double friction = 0.3;
   bool collide = true;
   std::vector<BodyPart> parts;
   Look look;
-  int line = 0, column = 0;  ///< where the scene names it, for errors of its file
+  int line = 0, column = 0;  ///< where the scene names it, for errors in its file
 };
 
-/// Of a character with joints; else nullptr.
+/// The acting of a character with joints; else nullptr.
 inline const Acting* acting_of(const Character& character) {
   if (const auto* file = std::get_if<CharacterFile>(&character.source)) return file;
   return std::get_if<Mannequin>(&character.source);
@@ -445,30 +444,30 @@ enum class StageLook { studio, stage, daylight, clay, wire, strain };
 
 struct Render {
   int width = 1280, height = 720;
-  std::string camera;  ///< name; empty: the first, or automatic framing where there is none
+  std::string camera;  ///< name; empty: the first, or automatic framing if there is none
   StageLook look = StageLook::studio;
-  std::optional<Vec3> sky_color, ground_color;  ///< sRGB; those of the look where absent
+  std::optional<Vec3> sky_color, ground_color;  ///< sRGB; absent: those of the look
   std::optional<double> sky_intensity;
   double exposure = 0;     ///< stops
-  double motion_blur = 0;  ///< angle of the shutter [degrees]
+  double motion_blur = 0;  ///< shutter angle [degrees]
   HeatQuantity heat = HeatQuantity::none;
   double heat_max = 0;
 };
 
 struct Scene {
   std::filesystem::path file;
-  std::string name;  ///< file name without its ending; names the output
+  std::string name;  ///< file name without extension; names the output
   std::string title;
-  std::uint64_t hash = 0;                    ///< of the checked values, so that comments and order do not count
-  std::uint64_t simulation_hash = 0;         ///< of those that count for the simulation
-  std::vector<std::filesystem::path> files;  ///< all that were read for it, and it depends on
+  std::uint64_t hash = 0;                    ///< of the checked values, independent of comments and order
+  std::uint64_t simulation_hash = 0;         ///< of the values that affect the simulation
+  std::vector<std::filesystem::path> files;  ///< all files that it depends on
   UpAxis up = UpAxis::z;
   Time time;
   Physics physics;
   std::vector<Fan> fans;
   Solver solver;
   Contact contact;
-  std::vector<Cloth> cloths;  ///< those of ropes behind the others
+  std::vector<Cloth> cloths;  ///< those of ropes come last
   std::vector<Rope> ropes;    ///< as they are read
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
@@ -478,7 +477,7 @@ struct Scene {
   Render render;
 
   int frame_count() const { return static_cast<int>(std::lround(time.duration * time.fps)) + 1; }
-  /// Of the preroll; frame 0 comes after them.
+  /// Number of frames in the preroll; frame 0 follows them.
   int preroll_frames() const { return static_cast<int>(std::ceil(time.preroll * time.fps - 1e-9)); }
   double start_time() const { return -preroll_frames() / time.fps; }  ///< of the run, with its preroll [s]
 };

@@ -1,4 +1,4 @@
-// The JSON schema of the scene format, Draft 2020-12. It has only what editors that know no draft after 7 read alike.
+// The JSON schema of the scene format, Draft 2020-12. It uses only features that editors limited to draft 7 read alike.
 #include <fmt/format.h>
 
 #include "core/json.hpp"
@@ -60,7 +60,7 @@ Json type_schema(const Rule& rule) {
   return {};
 }
 
-/// "length of the film [s]", with the meaning of the components and of an absent key.
+/// "length of the film [s]", followed by components, default and exclusions.
 std::string description(const Rule& rule) {
   std::string text = rule.documentation;
   if ((rule.type == Type::number || rule.type == Type::points) && !rule.components.empty())
@@ -93,7 +93,7 @@ void add_rule(Json& schema, const Rule& rule, void* defaults) {
   if (rule.need == Need::required) schema["required"].push_back(rule.key);
 }
 
-/// The schema of a table that has only the rules of one variant, or of one without variants.
+/// The schema of a table with the rules of one variant, or without variants.
 Json variant_schema(const Table& table, const Variant* variant) {
   Json schema = {{"type", "object"}, {"description", table.documentation}, {"properties", Json::object()}};
   const auto defaults = table.make();
@@ -105,8 +105,8 @@ Json variant_schema(const Table& table, const Variant* variant) {
   return schema;
 }
 
-/// True if both allow the same values, whatever they say of them.
-bool allow_alike(Json one, Json other) {
+/// Whether both schemas allow the same values, regardless of descriptions and defaults.
+bool allow_same_values(Json one, Json other) {
   for (Json* schema : {&one, &other}) {
     schema->erase("description");
     schema->erase("default");
@@ -114,18 +114,18 @@ bool allow_alike(Json one, Json other) {
   return one == other;
 }
 
-/// The selector's text that picks a variant.
+/// The condition on the selector that selects a variant.
 Json condition(const Table& table, const Variant& variant) {
   Json when = {{"properties", {{table.selector, {{"enum", {variant.name}}}}}}};
-  // Without the selector, the variant of its default is meant.
+  // Without the selector, its default variant applies.
   const auto defaults = table.make();
   if (table.find(table.selector)->need == Need::required || table.variant_of(defaults.get()) != &variant)
     when["required"].push_back(table.selector);
   return when;
 }
 
-// Properties of all variants, for editors to offer, and for each variant a condition with those that it allows. Not
-// oneOf, of which editors only say that none of it fits: of a condition they name the key that does not.
+// Lists the properties of all variants, for completion in editors, and for each variant a condition with the allowed
+// keys. Not oneOf: editors then only state that no alternative fits, whereas for a condition they name the wrong key.
 Json table_schema(const Table& table) {
   Json schema = variant_schema(table, nullptr);
   if (table.variants.empty()) return schema;
@@ -136,12 +136,13 @@ Json table_schema(const Table& table) {
   for (const Json& variant : variants)
     for (const auto& [key, property] : variant["properties"].items()) {
       if (!properties.contains(key)) properties[key] = property;
-      if (!allow_alike(property, properties[key])) properties[key] = {{"description", properties[key]["description"]}};
+      if (!allow_same_values(property, properties[key]))
+        properties[key] = {{"description", properties[key]["description"]}};
     }
   Json conditions = Json::array();
   for (std::size_t i = 0; i < variants.size(); ++i) {
     for (const char* unused : {"type", "description"}) variants[i].erase(unused);
-    // What stands above need not stand here again.
+    // Properties that are listed above need not be repeated.
     for (auto& [key, property] : variants[i]["properties"].items())
       if (property == properties[key]) property = true;
     conditions.push_back({{"if", condition(table, table.variants[i])}, {"then", std::move(variants[i])}});

@@ -10,9 +10,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Text with each number in it led by its count of digits without leading zeros, so that plain order is that of
-/// numbers.
-std::string sortable(const std::string& name) {
+/// Precedes each number by its count of digits without leading zeros, so that text order is number order.
+std::string sort_key(const std::string& name) {
   std::string key;
   for (std::size_t i = 0; i < name.size();) {
     if (!is_digit(name[i])) {
@@ -47,7 +46,7 @@ std::vector<std::filesystem::path> sequence_files(const std::string& files) {
   }
   std::sort(found.begin(), found.end(), [](const fs::path& a, const fs::path& b) {
     const std::string left = a.filename().string(), right = b.filename().string();
-    return std::pair(sortable(left), left) < std::pair(sortable(right), right);
+    return std::pair(sort_key(left), left) < std::pair(sort_key(right), right);
   });
   return found;
 }

@@ -7,8 +7,8 @@
 
 namespace weft::scene {
 
-/// All files of a folder, or those whose name fits the one * of a file name; numbers in names count as numbers, so that
-/// 10 comes after 9. Empty where there are none.
+/// All files of a folder, or those that match a file name with one *. Numbers in names are compared by value, so that
+/// 10 follows 9. Empty if there are none.
 std::vector<std::filesystem::path> sequence_files(const std::string& files);
 
 }  // namespace weft::scene

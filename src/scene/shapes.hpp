@@ -32,7 +32,7 @@ struct HalfPipe {
 struct Plane {
   Vec2 size{20, 20};
   bool infinite = true;
-};  ///< drawn to the horizon where infinite
+};  ///< drawn to the horizon if infinite
 struct MeshFile {
   std::filesystem::path path;
   double scale = 1;

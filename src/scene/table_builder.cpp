@@ -75,7 +75,7 @@ void assign(Vec3& target, const Value& value) {
 void assign(Quat& target, const Value& value) {
   const std::vector<double>& wxyz = numbers_of(value);
   target = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  // Already of unit length up to rounding: left as it is, so that writing and reading again changes no bit.
+  // Already normalised up to rounding: unchanged, so that writing and reading again changes no bit.
   if (std::abs(target.squaredNorm() - 1) > 1e-14) target.normalize();
 }
 

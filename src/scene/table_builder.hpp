@@ -1,5 +1,5 @@
-// Writes rows of the rule table: binds a key to the member of a struct it fills. What does not depend on the struct is
-// compiled once, in table_builder.cpp: there are hundreds of rows.
+// Builds rows of the rule table: each binds a key to the member of a struct that it fills. Code that does not depend on
+// the struct is in table_builder.cpp, to be compiled once for the hundreds of rows.
 #pragma once
 
 #include <functional>
@@ -47,7 +47,7 @@ void assign(std::optional<T>& target, const Value& value) {
   assign(target.emplace(), value);
 }
 
-/// Choices, or names of components.
+/// Names of choices or of components.
 struct Words {
   Words(std::initializer_list<std::string_view> words);
   Words(const std::vector<std::string>& words);
@@ -55,7 +55,7 @@ struct Words {
   std::vector<std::string> list;
 };
 
-/// Rows of a table, whichever struct they fill.
+/// Rows of a table, independent of the struct that they fill.
 class RowBuilder {
  public:
   RowBuilder(const RowBuilder&) = delete;
@@ -73,10 +73,10 @@ class RowBuilder {
   void add_table(std::string_view key, Type type, const Table& inner);
   void set_components(const Words& components);
   void bind(std::function<Value(void*)> get, std::function<void(void*, const Value&)> set);
-  /// One array of two numbers for two members, which the functions give and take one by one.
+  /// One array of two numbers for two members. The functions read and write one of them.
   void bind_pair(std::function<Value(void*, bool second)> get,
                  std::function<void(void*, bool second, const Value&)> set);
-  /// The functions give and take the index of the choice.
+  /// The functions read and write the index of the choice.
   void bind_choice(const Words& choices, std::function<std::size_t(void*)> get,
                    std::function<void(void*, std::size_t)> set);
   void add_variant(std::string_view name, const RowBuilder& rows);
@@ -111,7 +111,7 @@ class TableBuilder : public RowBuilder {
     set_components(components);
     return *this;
   }
-  /// Places one after the other.
+  /// A list of points.
   template <class Member>
   TableBuilder& points(std::string_view key, Member member, const Words& components, Range range, std::string_view unit,
                        std::string_view documentation) {
@@ -139,7 +139,7 @@ class TableBuilder : public RowBuilder {
         key, choices, documentation, [member](S& s) { return static_cast<std::size_t>(std::invoke(member, s)); },
         [member](S& s, std::size_t index) { std::invoke(member, s) = static_cast<Field>(index); });
   }
-  /// A choice kept in some other way: the functions give (S&) and take (S&, std::size_t) its index.
+  /// A choice with its own storage: the functions read (S&) and write (S&, std::size_t) its index.
   template <class Get, class Set>
   TableBuilder& choice_by(std::string_view key, const Words& choices, std::string_view documentation, Get get,
                           Set set) {
@@ -149,7 +149,7 @@ class TableBuilder : public RowBuilder {
         [set](void* s, std::size_t index) { set(*static_cast<S*>(s), index); });
     return *this;
   }
-  /// A number, or a word in its place; the functions give (S&) and take (S&, const Value&) either.
+  /// A number, or one of `words`; the functions read (S&) and write (S&, const Value&) either.
   template <class Get, class Set>
   TableBuilder& number_or(std::string_view key, const Words& words, Range range, std::string_view unit,
                           std::string_view documentation, Get get, Set set) {
@@ -183,12 +183,12 @@ class TableBuilder : public RowBuilder {
     last().inner = [member](void* s) -> void* { return &std::invoke(member, *static_cast<S*>(s)); };
     return *this;
   }
-  /// A list of tables kept in a vector.
+  /// A list of tables stored in a vector.
   template <class Member>
   TableBuilder& list(Type type, std::string_view key, Member member, const Table& entries) {
     return list(type, key, member, entries, [member](S& s, std::size_t) { std::invoke(member, s).emplace_back(); });
   }
-  /// `make_entry` (S&, std::size_t) puts entry i, filled with its defaults, at the end of the vector.
+  /// `make_entry` (S&, std::size_t) appends entry i, filled with its defaults, to the vector.
   template <class Member, class Make>
   TableBuilder& list(Type type, std::string_view key, Member member, const Table& entries, Make make_entry) {
     add_table(key, type, entries);
@@ -203,13 +203,13 @@ class TableBuilder : public RowBuilder {
     };
     return *this;
   }
-  /// Rows that apply only where the selector has this name.
+  /// Rows that apply only to this value of the selector.
   TableBuilder& variant(std::string_view name, const RowBuilder& rows) {
     add_variant(name, rows);
     return *this;
   }
 
-  // Said of the row just added.
+  // The functions below modify the row added last.
   TableBuilder& need(Need need) {
     last().need = need;
     return *this;
@@ -234,7 +234,7 @@ class TableBuilder : public RowBuilder {
     last().excludes = key;
     return *this;
   }
-  /// What more is to be done (S&) where the key is given.
+  /// Additional action (S&) if the key is given.
   template <class Then>
   TableBuilder& when_given(Then then) {
     do_when_given([then](void* s) { then(*static_cast<S*>(s)); });
@@ -255,12 +255,12 @@ class TableBuilder : public RowBuilder {
     return *this;
   }
 
-  /// The struct that shows the defaults, where S{} alone does not.
+  /// The struct with the defaults, if S{} is not it.
   TableBuilder& starting_from(S start) {
     table_.make = [start] { return std::make_shared<S>(start); };
     return *this;
   }
-  /// Adds rows that other tables have too.
+  /// Adds rows that several tables share.
   template <class Rows>
   TableBuilder& with(const Rows& rows) {
     rows(*this);

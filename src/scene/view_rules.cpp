@@ -6,10 +6,10 @@
 namespace weft::scene {
 namespace {
 
-// A camera or light that stands still has one key, which its own values go into. With `keys`, the first of them starts
-// from these values and each later one from the key before.
+// A camera or light that stands still has one key, which stores its own values. With `keys`, the first key starts from
+// these values and each later key from the preceding one.
 template <class S>
-void go_on_from_key_before(S& owner, std::size_t i) {
+void copy_key_before(S& owner, std::size_t i) {
   if (i == 0) return;
   const auto last = owner.keys.back();
   owner.keys.push_back(last);
@@ -22,7 +22,7 @@ template <class S>
 bool stands_still(S& owner) {
   return owner.keys.size() == 1;
 }
-/// Access to a member of the key that the own values of a camera or light go into.
+/// Access to a member of the first key, which stores the own values of a camera or light.
 template <class Key, class Field>
 auto own(Field Key::*field) {
   return [field](auto& owner) -> Field& { return owner.keys.front().*field; };
@@ -32,7 +32,7 @@ const Range kFieldOfView = within(1, 170);    // [degrees]
 const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
 
-/// The focal length of a key, after the row of its field of view. `stands`: whether (S&) its own value is written.
+/// Row of the focal length of a key, after that of its field of view. `stands`: whether (S&) its own value is written.
 template <class S, class Member, class Stands>
 void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& otherwise, Stands stands) {
   rows.number("focal_length", member, kFocalLength, "mm", "in place of field_of_view, with sensor_width")
@@ -41,7 +41,7 @@ void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& o
       .written_if([member, stands](S& s) { return stands(s) && std::invoke(member, s) > 0; });
 }
 
-/// The same of a camera, and the sensor for it.
+/// The same for a camera, with its sensor width.
 template <class Stands>
 void focal_rows(TableBuilder<Camera>& rows, Stands stands) {
   focal_length_row(rows, own(&CameraKey::focal_length), "none", stands);
@@ -85,7 +85,7 @@ void placed_camera_rows(TableBuilder<Camera>& rows) {
       .written_if([](Camera& camera) { return stands_still(camera) && has_field_of_view(camera); })
       .with([](auto& own_rows) { focal_rows(own_rows, stands_still<Camera>); })
       .choice("interpolation", &Camera::interpolation, kInterpolations, "between its keys")
-      .list(Type::keys, "keys", &Camera::keys, camera_key_rules(), go_on_from_key_before<Camera>)
+      .list(Type::keys, "keys", &Camera::keys, camera_key_rules(), copy_key_before<Camera>)
       .written_if(moves<Camera>)
       .plain(Type::text, "follow", &Camera::follow,
              "obstacle, or part of a character as \"man.head\", with which position and target move; they say where "
@@ -104,7 +104,7 @@ void lens_rows(TableBuilder<Camera>& rows) {
       .by_default("that of what is in the middle of the picture");
 }
 
-/// What cameras that are found are told of their subject.
+/// Keys of computed cameras for their subject.
 void subject_rows(TableBuilder<Camera>& rows) {
   rows.plain(Type::texts, "subject", &Camera::subjects, "names of cloths, obstacles and characters that it shows")
       .by_default("of whole, all but floors without end; of the others the characters, else the cloths")
@@ -114,7 +114,7 @@ void smoothing_row(TableBuilder<Camera>& rows) {
   rows.number("smoothing", &Camera::smoothing, within(0, 60), "s", "of the way that it takes; 0 follows every twitch");
 }
 
-/// Keys of cameras that look from a direction.
+/// Keys of cameras that view the subject from a direction.
 void direction_rows(TableBuilder<Camera>& rows) {
   rows.number("azimuth", &Camera::azimuth, within(-36000, 36000), "degrees",
               "direction in which the eye is, around the up axis from the front to the right: with z up, 0 is toward "
@@ -138,7 +138,7 @@ void file_rows(TableBuilder<Camera>& rows) {
       .number("scale", &Camera::scale, above(0, 1e6), "", "factor on lengths of the file, which are metres there");
 }
 
-/// What the keys of suns and spots have in common; `rows` adds the rest.
+/// Keys that suns and spots share; `rows` adds the others.
 Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
   return TableBuilder<LightKey>("A light at a time.")
       .number("time", &LightKey::time, kMoment, "s", "later than the key before")
@@ -212,7 +212,7 @@ const Table& light_rules() {
   using Rows = TableBuilder<Light>;
   const auto keys_row = [](const Table& key_rules) {
     return [&key_rules](Rows& rows) {
-      rows.list(Type::keys, "keys", &Light::keys, key_rules, go_on_from_key_before<Light>).written_if(moves<Light>);
+      rows.list(Type::keys, "keys", &Light::keys, key_rules, copy_key_before<Light>).written_if(moves<Light>);
     };
   };
   static const Table kTable =

@@ -1,4 +1,4 @@
-// The rows of the rule table for what is looked at: cameras, lights and the picture.
+// The rows of the rule table for cameras, lights and the picture.
 #pragma once
 
 #include "scene/rule.hpp"

@@ -20,11 +20,11 @@ int object_named(const Objects& objects, const std::string& name) {
 
 Attachments::Attachments(const scene::Scene& scene, const environment::Environment& environment,
                          std::span<const Index> first_particle, std::span<const Index> first_of_frames)
-    : environment_(&environment), first_(first_particle.begin(), first_particle.end()) {
-  std::vector<std::size_t> seen(environment.cloths.size(), 0);  // of each cloth's attachments
+    : environment_(&environment), first_particle_(first_particle.begin(), first_particle.end()) {
+  std::vector<std::size_t> seen(environment.cloths.size(), 0);  // attachments so far, per cloth
   for (const scene::Attachment& of_scene : scene.attachments) {
     const int own = object_named(environment.cloths, of_scene.cloth);
-    if (own < 0) continue;  // of a cloth that is not there yet
+    if (own < 0) continue;  // this cloth is not put on yet
     const auto& chosen = environment.cloths[own].attachments[seen[own]++];
     Attachment attachment;
     attachment.name = of_scene.name;
@@ -38,7 +38,7 @@ Attachments::Attachments(const scene::Scene& scene, const environment::Environme
     attachment.breaking_load = of_scene.breaking_load;
     for (const environment::Chosen& one : chosen)
       attachment.springs.push_back(
-          {.particle = first_[own] + one.particle, .stiffness = of_scene.stiffness * one.share});
+          {.particle = first_particle_[own] + one.particle, .stiffness = of_scene.stiffness * one.share});
     attachments_.push_back(std::move(attachment));
   }
 }
@@ -47,8 +47,8 @@ bool Attachments::holds_at(const Attachment& attachment, double t) const {
   return attachment.state != State::broken && t >= attachment.begin && t <= attachment.release;
 }
 
-// Of a body at time t [m].
-Vec3 Attachments::corner(std::size_t body, Index vertex, double t) const {
+// Position of a body's vertex at time t [m].
+Vec3 Attachments::corner_position(std::size_t body, Index vertex, double t) const {
   const environment::BodyObject& object = environment_->bodies[body];
   if (object.character) return environment_->vertex(body, static_cast<std::size_t>(vertex), t).position;
   const environment::PoseSample pose = environment_->pose(body, t);
@@ -59,8 +59,8 @@ const mesh::RigidFrame& Attachments::frame_of(const Attachment& attachment) cons
   return environment_->bodies[attachment.body].dynamics->frame;
 }
 
-// The place of a spring on three vertices as one on the frame of their body.
-void Attachments::use_frame(const Attachment& attachment, Spring& spring) const {
+// Converts a point on three vertices into a point on the frame of their body.
+void Attachments::move_to_frame(const Attachment& attachment, Spring& spring) const {
   const std::vector<mesh::RigidFrame::Weights>& weights = frame_of(attachment).weights();
   const Spring on_vertices = spring;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -71,11 +71,11 @@ void Attachments::use_frame(const Attachment& attachment, Spring& spring) const 
   }
 }
 
-// To the nearest places on its target at time t, cloths being at x.
-void Attachments::tie(Attachment& attachment, double t, std::span<const Vec3> x) const {
+// Ties each spring to the nearest point on the target at time t; `x`: particles [m].
+void Attachments::tie_to_target(Attachment& attachment, double t, std::span<const Vec3> x) const {
   std::vector<Vec3> of_target;
   const bool is_cloth = attachment.cloth >= 0;
-  const Index first = is_cloth ? first_[attachment.cloth] : 0;
+  const Index first = is_cloth ? first_particle_[attachment.cloth] : 0;
   if (is_cloth) {
     const auto own = x.subspan(first, environment_->cloths[attachment.cloth].start.size());
     of_target.assign(own.begin(), own.end());
@@ -98,22 +98,23 @@ void Attachments::tie(Attachment& attachment, double t, std::span<const Vec3> x)
       place += nearest.weights[k] * of_target[nearest.face[k]];
     }
     spring.length = attachment.length.value_or((place - own).norm());
-    if (attachment.frame >= 0) use_frame(attachment, spring);
+    if (attachment.frame >= 0) move_to_frame(attachment, spring);
   }
   attachment.state = State::tied;
 }
 
 void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
   for (Attachment& attachment : attachments_) {
-    if (attachment.state == State::tied && t1 < attachment.begin) attachment.state = State::open;  // a shorter step
+    // this attempt at the step is shorter
+    if (attachment.state == State::tied && t1 < attachment.begin) attachment.state = State::open;
     attachment.holds = holds_at(attachment, t1);
     if (!attachment.holds) continue;
-    if (attachment.state == State::open) tie(attachment, t0, x);
-    if (attachment.is_of_particles()) continue;
+    if (attachment.state == State::open) tie_to_target(attachment, t0, x);
+    if (attachment.target_has_particles()) continue;
     for (Spring& spring : attachment.springs) {
       spring.place.setZero();
       for (std::size_t k = 0; k < 3; ++k)
-        spring.place += spring.weights[k] * corner(attachment.body, spring.corners[k], t1);
+        spring.place += spring.weights[k] * corner_position(attachment.body, spring.corners[k], t1);
     }
   }
 }
@@ -121,55 +122,58 @@ void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
 bool Attachments::stay(double t0, double t1) const {
   return std::ranges::all_of(attachments_, [&](const Attachment& attachment) {
     if (holds_at(attachment, t0) != holds_at(attachment, t1)) return false;
-    if (attachment.is_of_particles() || !holds_at(attachment, t1)) return true;
+    if (attachment.target_has_particles() || !holds_at(attachment, t1)) return true;
     return std::ranges::all_of(attachment.springs, [&](const Spring& spring) {
       return std::ranges::all_of(std::span(spring.corners).first(3), [&](Index vertex) {
-        return corner(attachment.body, vertex, t0) == corner(attachment.body, vertex, t1);
+        return corner_position(attachment.body, vertex, t0) == corner_position(attachment.body, vertex, t1);
       });
     });
   });
 }
 
 Vec3 Attachments::place_of(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const {
-  if (!attachment.is_of_particles()) return spring.place;
+  if (!attachment.target_has_particles()) return spring.place;
   const Vec3 of_three = spring.weights[0] * x[spring.corners[0]] + spring.weights[1] * x[spring.corners[1]] +
                         spring.weights[2] * x[spring.corners[2]];
   return attachment.frame < 0 ? of_three : Vec3(of_three + spring.weights[3] * x[spring.corners[3]]);
 }
 
-Attachments::Pull Attachments::pull(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const {
-  const Vec3 along = place_of(attachment, spring, x) - x[spring.particle];
-  const double length = along.norm();
+Attachments::Tension Attachments::compute_tension(const Attachment& attachment, const Spring& spring,
+                                                  std::span<const Vec3> x) const {
+  const Vec3 direction = place_of(attachment, spring, x) - x[spring.particle];
+  const double length = direction.norm();
   if (length <= spring.length) return {};
-  return {along / length, spring.stiffness * (length - spring.length), length};
+  return {direction / length, spring.stiffness * (length - spring.length), length};
 }
 
-// body(attachment, spring, pull) for all springs that pull.
-template <class Body>
-void Attachments::for_each_pull(std::span<const Vec3> x, const Body& body) const {
+// Calls visit(attachment, spring, tension) for each spring in tension.
+template <class Visit>
+void Attachments::for_each_tension(std::span<const Vec3> x, const Visit& visit) const {
   for (const Attachment& attachment : attachments_) {
     if (!attachment.holds) continue;
     for (const Spring& spring : attachment.springs)
-      if (const Pull now = pull(attachment, spring, x); now.force > 0) body(attachment, spring, now);
+      if (const Tension tension = compute_tension(attachment, spring, x); tension.force > 0)
+        visit(attachment, spring, tension);
   }
 }
 
 void Attachments::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const {
-  for_each_pull(x_end, [&](const Attachment& attachment, const Spring& spring, const Pull& now) {
-    force[spring.particle] += now.force * now.along;
-    if (!attachment.is_of_particles()) return;
+  for_each_tension(x_end, [&](const Attachment& attachment, const Spring& spring, const Tension& tension) {
+    force[spring.particle] += tension.force * tension.direction;
+    if (!attachment.target_has_particles()) return;
     for (std::size_t k = 0; k < (attachment.frame < 0 ? 3 : 4); ++k)
-      force[spring.corners[k]] -= spring.weights[k] * now.force * now.along;
+      force[spring.corners[k]] -= spring.weights[k] * tension.force * tension.direction;
   });
 }
 
 void Attachments::add_terms(std::span<const Vec3> x_end, double end_rate, solver::LinearSystem& system) const {
-  for_each_pull(x_end, [&](const Attachment& attachment, const Spring& spring, const Pull& now) {
+  for_each_tension(x_end, [&](const Attachment& attachment, const Spring& spring, const Tension& tension) {
     // Positive semidefinite: the spring is in tension.
-    const double lateral = now.force / now.length;
+    const double lateral = tension.force / tension.length;
     const Mat3 stiffness =
-        end_rate * ((spring.stiffness - lateral) * now.along * now.along.transpose() + lateral * Mat3::Identity());
-    if (!attachment.is_of_particles()) {
+        end_rate *
+        ((spring.stiffness - lateral) * tension.direction * tension.direction.transpose() + lateral * Mat3::Identity());
+    if (!attachment.target_has_particles()) {
       system.diagonal_terms.push_back({spring.particle, stiffness});
       return;
     }
@@ -189,8 +193,8 @@ void Attachments::add_terms(std::span<const Vec3> x_end, double end_rate, solver
 
 double Attachments::energy(std::span<const Vec3> x_end) const {
   double sum = 0;
-  for_each_pull(x_end, [&](const Attachment&, const Spring& spring, const Pull& now) {
-    sum += 0.5 * now.force * now.force / spring.stiffness;
+  for_each_tension(x_end, [&](const Attachment&, const Spring& spring, const Tension& tension) {
+    sum += 0.5 * tension.force * tension.force / spring.stiffness;
   });
   return sum;
 }
@@ -199,7 +203,7 @@ void Attachments::accept(std::span<const Vec3> x) {
   for (Attachment& attachment : attachments_) {
     attachment.load = 0;
     if (!attachment.holds) continue;
-    for (const Spring& spring : attachment.springs) attachment.load += pull(attachment, spring, x).force;
+    for (const Spring& spring : attachment.springs) attachment.load += compute_tension(attachment, spring, x).force;
     if (attachment.breaking_load && attachment.load > *attachment.breaking_load) attachment.state = State::broken;
   }
 }
@@ -221,9 +225,10 @@ void Attachments::take_over(const Attachments& there, std::span<const std::size_
       const Index particle = spring.particle;
       spring = before.springs[s];
       spring.particle = particle;
-      if (!before.is_of_particles()) continue;
-      const Index shift =
-          before.frame >= 0 ? found->frame - before.frame : first_[cloths[before.cloth]] - there.first_[before.cloth];
+      if (!before.target_has_particles()) continue;
+      const Index shift = before.frame >= 0
+                              ? found->frame - before.frame
+                              : first_particle_[cloths[before.cloth]] - there.first_particle_[before.cloth];
       for (Index& corner : spring.corners) corner += shift;
     }
   }
@@ -234,10 +239,10 @@ void Attachments::serialize(Archive& archive) {
   for (Attachment& attachment : attachments_) {
     serialize_values(archive, attachment.state, attachment.holds, attachment.load);
     if constexpr (Archive::kReads) require(attachment.state <= State::broken, "an attachment");
-    const std::size_t count = attachment.frame >= 0 ? static_cast<std::size_t>(attachment.frame) + 4
-                              : attachment.cloth >= 0
-                                  ? static_cast<std::size_t>(first_.back()) + environment_->cloths.back().start.size()
-                                  : environment_->bodies[attachment.body].mesh.positions.size();
+    const std::size_t count = attachment.frame >= 0   ? static_cast<std::size_t>(attachment.frame) + 4
+                              : attachment.cloth >= 0 ? static_cast<std::size_t>(first_particle_.back()) +
+                                                            environment_->cloths.back().start.size()
+                                                      : environment_->bodies[attachment.body].mesh.positions.size();
     for (Spring& spring : attachment.springs) {
       for (std::size_t k = 0; k < spring.corners.size(); ++k) {
         serialize_values(archive, spring.corners[k], spring.weights[k]);

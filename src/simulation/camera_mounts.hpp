@@ -14,17 +14,17 @@ class CameraMounts {
  public:
   CameraMounts(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// Moves the cameras of a frame from where their keys have them to where what they follow has taken them. Linear in
-  /// the vertices of the obstacles that they follow.
+  /// Moves the cameras of a frame, which are at the positions of their keys, along with what they follow. Takes time
+  /// linear in the vertices of the followed obstacles.
   void move(frame::FrameSnapshot& snapshot) const;
 
  private:
   struct Mount {
     std::size_t camera = 0;
     environment::Parent parent;
-    bool turns = true;       ///< with the rotation of the parent, too
-    std::size_t state = 0;   ///< of an obstacle: number of its surface
-    std::vector<Vec3> mesh;  ///< of an obstacle: its vertices in its own coordinates [m]
+    bool follows_rotation = true;  ///< also rotate with the parent
+    std::size_t surface = 0;       ///< of an obstacle: index of its surface in the snapshot
+    std::vector<Vec3> mesh;        ///< of an obstacle: its vertices in its own coordinates [m]
   };
   std::vector<Mount> mounts_;
 };

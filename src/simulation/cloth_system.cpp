@@ -25,12 +25,11 @@
 namespace weft::simulation {
 namespace {
 
-// Particles that a thread adds forces to at once, at least; and how many such ranges of a cloth for each thread at
-// most, so that none waits long for another.
-constexpr Index kLeastRange = 512;
-constexpr Index kRangesPerThread = 2;
+// Smallest number of particles in a range, and largest number of ranges per cloth and thread: several balance the load.
+constexpr Index kMinRangeSize = 512;
+constexpr Index kMaxRangesPerThread = 2;
 
-bool meets_air(const scene::Material& m, const scene::Physics& physics) {
+bool has_drag(const scene::Material& m, const scene::Physics& physics) {
   return physics.air_density > 0 && m.drag > 0;
 }
 forces::StretchParameters stretch_of(const scene::Material& m) {
@@ -46,22 +45,22 @@ forces::AirParameters air_of(const scene::Material& m, const scene::Physics& phy
   return {physics.air_density, physics.wind, m.drag};
 }
 
-// Sine of the angle at which weft and warp lock; infinite: never.
-double largest_sine(const scene::Material& m) {
+// Sine of the shear angle at which the threads lock; infinite if they never do.
+double max_shear_sine(const scene::Material& m) {
   return m.max_shear > 0 ? std::sin(m.max_shear * std::numbers::pi / 180) : std::numeric_limits<double>::infinity();
 }
-double largest_extension(const scene::Material& m) {
+double max_extension(const scene::Material& m) {
   return m.max_stretch > 0 ? m.max_stretch : std::numeric_limits<double>::infinity();
 }
 
-/// A cell of a lattice across the rest shape, along its normal first and along weft last.
+/// A box of a lattice over the rest shape: indices along the normal, warp and weft.
 using Box = std::array<int, 3>;
 struct Lattice {
-  std::vector<Box> boxes;       // one per particle, or per box of the lattice before
-  std::array<double, 3> sides;  // of a box [m]
+  std::vector<Box> boxes;       // of each particle, or of each box of the finer lattice
+  std::array<double, 3> sides;  // of a box, along the same axes [m]
 };
 
-// One box per particle: its place in the grid, or in a lattice as fine as the triangles are on average.
+// The finest lattice: one box per particle of a grid; of triangles, cubes with the mean particle distance as side.
 Lattice lattice_of(const environment::ClothObject& cloth) {
   Lattice lattice;
   const mesh::Grid& grid = cloth.grid;
@@ -80,7 +79,7 @@ Lattice lattice_of(const environment::ClothObject& cloth) {
   return lattice;
 }
 
-// Makes boxes twice as large, first where they are narrow: cloth is stiffest between particles that are near.
+// Doubles the short sides of boxes first, because cloth is stiffest between close particles.
 void coarsen(Lattice& lattice) {
   Box last{0, 0, 0};
   for (const Box& box : lattice.boxes)
@@ -95,7 +94,7 @@ void coarsen(Lattice& lattice) {
   }
 }
 
-// Share of the way to the pattern after a share of the time: begins and ends without a jerk.
+// Progress of sewing over the elapsed fraction of its duration: starts and ends with zero slope.
 double ease(double s) {
   s = std::clamp(s, 0.0, 1.0);
   return s * s * (3 - 2 * s);
@@ -125,10 +124,10 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
                                                         : forces::lumped_masses(cloth.sheet, material.density);
     masses_.insert(masses_.end(), masses.begin(), masses.end());
     for (std::size_t w = 0; w < cloth.weights.size(); ++w) {
-      double shares = 0;
-      for (const environment::Chosen& carrier : cloth.weights[w]) shares += carrier.share;
+      double fraction_sum = 0;
+      for (const environment::Chosen& carrier : cloth.weights[w]) fraction_sum += carrier.share;
       for (const environment::Chosen& carrier : cloth.weights[w])
-        masses_[first + carrier.particle] += scene.cloths[c].weights[w].mass * (carrier.share / shares);
+        masses_[first + carrier.particle] += scene.cloths[c].weights[w].mass * (carrier.share / fraction_sum);
     }
     held_.resize(masses_.size());
     for (std::size_t p = 0; p < cloth.pins.size(); ++p)
@@ -146,12 +145,12 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   first_.push_back(first);
   inflation_ = Inflation(scene, environment, first_);
   add_frames(scene, environment);
-  cut_groups(environment);
+  build_aggregates(environment);
 
   const solver::Assembly assembly(lay_out_matrix());
   for (const auto& of_cloth : forces_)
     for (const auto& force : of_cloth) force->attach(assembly);
-  cut_ranges();
+  divide_into_ranges();
   for (const auto& of_cloth : forces_)
     for (const auto& force : of_cloth) force->hold(held_);
   sew(0);
@@ -201,10 +200,10 @@ void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, con
   if (material.shear > 0 || material.shear_viscosity > 0)
     forces_[cloth].push_back(std::make_unique<forces::Shear>(grid, first, shear_of(material)));
   if (locks(material))
-    add_limit(cloth, std::make_unique<forces::StretchLimit>(grid, first, stretch_of(material),
-                                                            largest_extension(material), largest_sine(material)));
+    add_limit(cloth, std::make_unique<forces::StretchLimit>(grid, first, stretch_of(material), max_extension(material),
+                                                            max_shear_sine(material)));
   if (bends(material)) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
-  if (meets_air(material, physics))
+  if (has_drag(material, physics))
     forces_[cloth].push_back(std::make_unique<forces::Air>(grid, first, air_of(material, physics)));
 }
 
@@ -227,9 +226,9 @@ void ClothSystem::add_rope_forces(std::size_t cloth, std::span<const double> len
       times.push_back(key.time);
       values.emplace_back(key.length);
     }
-    drawn_.push_back({cord.get(),
-                      std::accumulate(lengths.begin(), lengths.end(), 0.0),
-                      {rope.interpolation, std::move(times), std::move(values)}});
+    keyed_ropes_.push_back({cord.get(),
+                            std::accumulate(lengths.begin(), lengths.end(), 0.0),
+                            {rope.interpolation, std::move(times), std::move(values)}});
   }
   membranes_.push_back(cord.get());
   forces_[cloth].push_back(std::move(cord));
@@ -246,15 +245,15 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   const Index first = first_[cloth];
   const bool crossed = of.shape == scene::ClothShape::crossed_triangles;
   std::unique_ptr<forces::TriangleMembrane> membrane;
-  if (crossed && bends(material))  // what does not bend does not lock
+  if (crossed && bends(material))  // without bending stiffness, the membrane does not lock
     membrane = std::make_unique<forces::CrossedMembrane>(sheet, first, stretch_of(material), shear_of(material));
   else
     membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
   membranes_.push_back(membrane.get());
   if (sheet.sewn) sewing_.push_back({cloth, put_on, of.sewing, -1, membrane.get(), nullptr, nullptr, nullptr});
   if (locks(material)) {
-    auto limit = std::make_unique<forces::StretchLimit>(*membrane, stretch_of(material), largest_extension(material),
-                                                        largest_sine(material));
+    auto limit = std::make_unique<forces::StretchLimit>(*membrane, stretch_of(material), max_extension(material),
+                                                        max_shear_sine(material));
     if (sheet.sewn) sewing_.back().limit = limit.get();
     add_limit(cloth, std::move(limit));
   }
@@ -271,31 +270,34 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   }
   if (bends(material))
     forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material), held_));
-  if (meets_air(material, physics))
+  if (has_drag(material, physics))
     forces_[cloth].push_back(std::make_unique<forces::Air>(sheet, first, air_of(material, physics)));
 }
 
-// What is at a border is evaluated twice: with 1024 particles in 16 rows a tenth of it. All threads get as many.
-void ClothSystem::cut_ranges() {
+// Divides each part into ranges that threads evaluate in parallel, the same number for each thread. Forces at the
+// border of two ranges are evaluated twice: a tenth of them with 1,024 particles in 16 rows.
+void ClothSystem::divide_into_ranges() {
   const Index threads = thread_count();
   for (std::size_t c = 0; c < parts(); ++c) {
     const Index first = first_[c], count = first_[c + 1] - first;
-    Index wanted = threads == 1 ? 1 : std::clamp<Index>(count / kLeastRange, 1, kRangesPerThread * threads);
-    if (wanted > threads) wanted -= wanted % threads;
-    if (wanted == 1) {
+    Index range_count = threads == 1 ? 1 : std::clamp<Index>(count / kMinRangeSize, 1, kMaxRangesPerThread * threads);
+    if (range_count > threads) range_count -= range_count % threads;
+    if (range_count == 1) {
       ranges_.push_back({c, first, first + count, forces::Evaluation::kAll});
       continue;
     }
     std::vector<Index> bounds;
-    for (Index r = 0; r <= wanted; ++r) bounds.push_back(first + static_cast<Index>(std::int64_t{count} * r / wanted));
-    for (Index r = 0; r < wanted; ++r) ranges_.push_back({c, bounds[r], bounds[r + 1], static_cast<std::size_t>(r)});
+    for (Index r = 0; r <= range_count; ++r)
+      bounds.push_back(first + static_cast<Index>(std::int64_t{count} * r / range_count));
+    for (Index r = 0; r < range_count; ++r)
+      ranges_.push_back({c, bounds[r], bounds[r + 1], static_cast<std::size_t>(r)});
     for (const auto& force : forces_[c]) force->cut(bounds);
   }
 }
 
-// Of two by two boxes, again and again, until few enough are left in all, or one of each cloth. Particles of frames are
-// groups of their own.
-void ClothSystem::cut_groups(const environment::Environment& environment) {
+// Builds the aggregates of the preconditioner. Each level merges 2 × 2 boxes of the level below, until there are at
+// most numerics.linear.coarsest_aggregates, or one per cloth. Frame particles stay aggregates of their own.
+void ClothSystem::build_aggregates(const environment::Environment& environment) {
   std::vector<Lattice> lattices;
   for (const environment::ClothObject& cloth : environment.cloths) lattices.push_back(lattice_of(cloth));
   bool is_coarse = false;
@@ -320,27 +322,28 @@ void ClothSystem::cut_groups(const environment::Environment& environment) {
   } while (!is_coarse);
 }
 
-void ClothSystem::Sewing::use_share(double new_share) {
-  share = new_share;
-  membrane->rest_between_start_and_pattern(share);
+void ClothSystem::Sewing::set_progress(double new_progress) {
+  progress = new_progress;
+  membrane->rest_between_start_and_pattern(progress);
   if (limit != nullptr) limit->follow(*membrane);
-  if (bands != nullptr) bands->rest_between_start_and_pattern(share);
+  if (bands != nullptr) bands->rest_between_start_and_pattern(progress);
 }
 
 bool ClothSystem::lengths_stay(double t0, double t1) const {
   return std::ranges::all_of(
-      drawn_, [&](const DrawnRope& rope) { return rope.lengths.at(t0).value == rope.lengths.at(t1).value; });
+      keyed_ropes_, [&](const KeyedRope& rope) { return rope.lengths.at(t0).value == rope.lengths.at(t1).value; });
 }
 
 void ClothSystem::sew(double t) {
-  for (const DrawnRope& rope : drawn_) rope.cord->use_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
+  for (const KeyedRope& rope : keyed_ropes_)
+    rope.cord->use_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
   for (Sewing& sewing : sewing_) {
-    const double share = sewing.duration > 0 ? ease((t - sewing.begin) / sewing.duration) : 1;
+    const double progress = sewing.duration > 0 ? ease((t - sewing.begin) / sewing.duration) : 1;
     if (sewing.ties != nullptr) {
       sewing.time = t;
-      sewing.ties->use(begin_ + t, share);
+      sewing.ties->use(begin_ + t, progress);
     }
-    if (share != sewing.share) sewing.use_share(share);
+    if (progress != sewing.progress) sewing.set_progress(progress);
   }
 }
 
@@ -348,7 +351,7 @@ void ClothSystem::inflate(double t, std::span<const Vec3> x) {
   if (inflation_.empty()) return;
   inflation_.begin_step(begin_ + t, x, [&](std::size_t cloth) {
     return std::ranges::none_of(sewing_,
-                                [&](const Sewing& sewing) { return sewing.cloth == cloth && sewing.share < 1; });
+                                [&](const Sewing& sewing) { return sewing.cloth == cloth && sewing.progress < 1; });
   });
 }
 
@@ -365,12 +368,12 @@ bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {
 template <class Archive>
 void ClothSystem::serialize(Archive& archive) {
   for (Sewing& sewing : sewing_) {
-    archive.value(sewing.share);
+    archive.value(sewing.progress);
     if (sewing.ties != nullptr) archive.value(sewing.time);
     if constexpr (!Archive::kReads) continue;
-    require(sewing.share >= 0 && sewing.share <= 1, "a share of the way to the pattern");
-    sewing.use_share(sewing.share);
-    if (sewing.ties != nullptr) sewing.ties->use(begin_ + sewing.time, sewing.share);
+    require(sewing.progress >= 0 && sewing.progress <= 1, "a share of the way to the pattern");
+    sewing.set_progress(sewing.progress);
+    if (sewing.ties != nullptr) sewing.ties->use(begin_ + sewing.time, sewing.progress);
   }
   inflation_.serialize(archive);
 }
@@ -380,7 +383,7 @@ template void ClothSystem::serialize(ByteReader&);
 
 void ClothSystem::take_weight_off(std::span<Vec3> force) const {
   for (const Sewing& sewing : sewing_) {
-    if (sewing.share == 1) continue;
+    if (sewing.progress == 1) continue;
     const auto end = static_cast<std::size_t>(first_[sewing.cloth + 1]);
     for (auto i = static_cast<std::size_t>(first_[sewing.cloth]); i < end; ++i) force[i] -= masses_[i] * gravity_;
   }
@@ -438,13 +441,13 @@ double ClothSystem::max_strain(std::span<const Vec3> x) const {
 }
 
 ClothSystem::Overstretch ClothSystem::overstretch(std::span<const Vec3> x) const {
-  Overstretch most;
+  Overstretch largest;
   for (const auto& [cloth, limit] : limits_) {
     const forces::StretchLimit::Worst worst = limit->worst(x);
-    if (const double share = worst.extension / limit->limit(); share > most.share)
-      most = {share, cloth, worst.extension, worst.place};
+    if (const double ratio = worst.extension / limit->limit(); ratio > largest.share)
+      largest = {ratio, cloth, worst.extension, worst.place};
   }
-  return most;
+  return largest;
 }
 
 std::vector<float> ClothSystem::strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const {

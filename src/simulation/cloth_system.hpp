@@ -1,4 +1,4 @@
-// The particles of all cloths: masses, what the materials name of forces, and how their matrix is laid out.
+// The particles of all cloths: their masses, the forces of their materials, and the layout of their matrix.
 #pragma once
 
 #include <limits>
@@ -25,16 +25,16 @@ struct LockLag;
 
 namespace weft::simulation {
 
-/// Whether cloth of this material has bending at all. Without rigidity there is nothing that the viscosity and the
-/// friction of a fabric could damp.
+/// Whether cloth of this material resists bending. Without it, bending viscosity and friction have no effect.
 bool bends(const scene::Material& material);
 
-/// Whether the threads of this material lock.
+/// Whether threads of this material lock: whether it has a limit to stretch or shear.
 bool locks(const scene::Material& material);
 
-/// Particles are numbered through all cloths, in the order of the scene; behind them are four for each body that forces
-/// move, its frame, likewise. A part is a cloth or such a frame. Nothing here changes but the rest shape of
-/// cloth that is being sewn and what pins hold: the same arguments give the same forces.
+/// Numbers the particles of all cloths consecutively, in the order of the scene. After them come four particles for
+/// each body that forces move: its frame. A part is a cloth or such a frame. Forces depend only on their arguments, and
+/// on what changes with time: rest shapes of cloth that is being sewn, rope lengths, enclosed air, and which particles
+/// are held.
 class ClothSystem {
  public:
   ClothSystem(const scene::Scene& scene, const environment::Environment& environment);
@@ -42,72 +42,72 @@ class ClothSystem {
   std::span<const double> masses() const { return masses_; }
   std::size_t cloths() const { return membranes_.size(); }
   std::size_t parts() const { return forces_.size(); }
-  /// Of this part, cloths first, or of `parts()` the number of all particles.
+  /// First particle of a part (cloths come first); for `parts()`, the number of all particles.
   Index first_particle(std::size_t part) const { return first_[part]; }
-  /// Of each body of the environment, the first particle of its frame; −1 for those without one.
+  /// First frame particle of each body of the environment; −1 for a body without a frame.
   std::vector<Index> first_of_frames(const environment::Environment& environment) const;
-  /// Least distance between neighbouring particles of all cloths [m].
+  /// Smallest distance between neighbouring particles of all cloths [m].
   double spacing() const { return spacing_; }
 
-  /// In the steps from here on [m/s²].
+  /// Sets gravity for the following steps [m/s²].
   void use_gravity(const Vec3& gravity) { gravity_ = gravity; }
-  /// Takes the weight off what is being sewn: it would fall before it fits.
+  /// Cancels the weight of cloth that is being sewn, which would otherwise fall before it fits.
   void take_weight_off(std::span<Vec3> force) const;
 
-  /// The particles of a cloth, or some of them, whose forces may be evaluated beside those of others.
+  /// Particles of one part whose forces can be evaluated in parallel with those of other ranges.
   struct Range {
     std::size_t cloth;
     Index begin, end;
-    std::size_t number;  ///< as forces::Evaluation has it
+    std::size_t number;  ///< as in forces::Evaluation::range
   };
-  /// Some for each thread, or a whole cloth; forces are the same to the bit, however they are cut.
+  /// The ranges of all parts. The division does not change any bit of the forces.
   std::span<const Range> ranges() const { return ranges_; }
 
-  /// The forces on one part but its weight; positions, velocities and forces are those of all particles.
+  /// Adds the forces on one part, without its weight; `at` has positions, velocities and forces of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
-  /// Locks of threads as forces::StretchLimit has them, per cloth; nothing of cloths without a limit.
+  /// State of the thread locks (forces::StretchLimit), per cloth; empty for cloths without a limit.
   using LockLags = std::vector<forces::LockLag>;
   void begin_locks(std::span<const Vec3> x, LockLags& lags) const;
   void update_locks(std::span<const Vec3> x, bool first, LockLags& lags) const;
   void add_lock_lags(std::span<const Vec3> x, const LockLags& lags, std::span<Vec3> force) const;
 
-  /// rate² M and the part of the stiffness that only hold() changes.
+  /// Fills in rate² M and the constant part of the stiffness, which only hold() changes.
   void fill_constant(double rate, solver::Assembly& assembly) const;
 
-  /// An empty system with the pattern of this one.
+  /// An empty system with the sparsity pattern of these forces.
   solver::LinearSystem make_linear_system() const;
 
-  /// Gives ropes the length, and cloths that are being sewn the rest shape that they have at time t of the simulation
-  /// [s].
+  /// Updates rope lengths and the rest shapes of cloth that is being sewn to time t [s since the start of the run].
   void sew(double t);
 
-  /// Whether keys leave all ropes as long as they are between two times of the simulation [s].
+  /// Whether the key-framed rope lengths are equal at times t0 and t1 of the scene [s].
   bool lengths_stay(double t0, double t1) const;
 
-  /// Air that cloths enclose, in the step that ends at time t of the simulation [s]; after sew(t). `x`: its start [m].
+  /// Updates the enclosed air for the step that ends at time t [s since the start of the run]; call it after sew(t).
+  /// `x`: particles at the start of the step [m].
   void inflate(double t, std::span<const Vec3> x);
   const Inflation& inflation() const { return inflation_; }
   Inflation& inflation() { return inflation_; }
 
-  /// Which particles pins hold from now on; whether that is a change, and with it the stiffness at the borders of pins.
+  /// Sets which particles pins hold. Returns whether they changed, and with them the stiffness at the borders of pins.
   bool hold(std::span<const integrator::HeldParticle> pinned);
 
-  /// What lasts from frame to frame: how far cloths are sewn, and what air they enclose.
+  /// What persists from frame to frame: progress of sewing, and enclosed air.
   template <class Archive>
   void serialize(Archive& archive);
 
   double elastic_energy(std::span<const Vec3> x) const;
-  /// Of the air that cloths enclose [J].
+  /// Energy of the enclosed air [J].
   double air_energy(std::span<const Vec3> x) const { return inflation_.energy(x); }
   double kinetic_energy(std::span<const Vec3> v) const;
-  /// Of gravity, zero at the origin [J].
+  /// Gravitational energy, zero at the origin [J].
   double potential_energy(std::span<const Vec3> x, const Vec3& gravity) const;
   double max_strain(std::span<const Vec3> x) const;
-  /// Where threads are stretched most, as a share of what their cloth allows.
+  /// The largest extension of threads, relative to the limit of their cloth.
   struct Overstretch {
-    double share = 0;       ///< of the limit; 0 where no cloth has one
-    std::size_t cloth = 0;  ///< by its number
+    double share = 0;       ///< extension / limit; 0 if no cloth has a limit
+    std::size_t cloth = 0;  ///< number of the cloth
     double extension = 0;   ///< length / rest length − 1
     Vec3 place = Vec3::Zero();
   };
@@ -125,42 +125,42 @@ class ClothSystem {
   void add_frames(const scene::Scene& scene, const environment::Environment& environment);
   void add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit);
   solver::BlockMatrix lay_out_matrix() const;
-  void cut_groups(const environment::Environment& environment);
-  void cut_ranges();
+  void build_aggregates(const environment::Environment& environment);
+  void divide_into_ranges();
 
-  std::vector<Index> first_;  // per part, and the total at the end
+  std::vector<Index> first_;  // of each part, then the number of all particles
   std::vector<double> masses_;
   std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;          // per part
   std::vector<Range> ranges_;                                                // in the order of particles
-  std::vector<const forces::Membrane*> membranes_;                           // of them, one per cloth
-  std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // likewise, of cloths that have one
-  /// A cloth while it is sewn.
+  std::vector<const forces::Membrane*> membranes_;                           // one per cloth; owned by forces_
+  std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // of cloths that have one
+  /// A cloth that is sewn during the run.
   struct Sewing {
     std::size_t cloth;
     double begin, duration;  // [s]
-    double share = -1;       // of the way to the pattern
+    double progress = -1;    // from the start shape (0) to the pattern (1); −1: not set yet
     forces::TriangleMembrane* membrane;
-    forces::Bands* bands;         // nullptr where it has none
-    forces::StretchLimit* limit;  // likewise
-    forces::Ties* ties;           // likewise
-    double time = 0;              // of ties, since the run began [s]
+    forces::Bands* bands;         // nullptr if the cloth has none
+    forces::StretchLimit* limit;  // nullptr if the cloth has none
+    forces::Ties* ties;           // nullptr if the cloth has none
+    double time = 0;              // for which the ties were last set [s since the start of the run]
 
-    void use_share(double new_share);
+    void set_progress(double new_progress);
   };
   std::vector<Sewing> sewing_;
-  /// A rope whose length has keys.
-  struct DrawnRope {
+  /// A rope with key-framed length.
+  struct KeyedRope {
     forces::Cord* cord;
-    double length;                   // that it was made with [m]
-    environment::Spline<1> lengths;  // by time of the scene
+    double length;                   // as built, at rest [m]
+    environment::Spline<1> lengths;  // over the time of the scene
   };
-  std::vector<DrawnRope> drawn_;
+  std::vector<KeyedRope> keyed_ropes_;
   Inflation inflation_;
-  std::vector<char> held_;  // per particle: by a pin
+  std::vector<char> held_;  // per particle: whether a pin holds it
   Vec3 gravity_;
-  double begin_;  // of the run, in the time of the scene [s]
+  double begin_;  // start of the run, in the time of the scene [s]
   double spacing_ = std::numeric_limits<double>::infinity();
-  std::vector<solver::Grouping> groupings_;  // of the preconditioner
+  std::vector<solver::Grouping> groupings_;  // aggregates of the preconditioner, finest first
 };
 
 }  // namespace weft::simulation

@@ -28,7 +28,7 @@ bool moves_by_forces(const scene::Scene& scene) {
   return std::ranges::any_of(scene.obstacles, [](const scene::Obstacle& o) { return scene::is_dynamic(o); });
 }
 
-// Those that forces move come first.
+// Numbers of the colliding bodies; those that forces move come first.
 std::vector<std::size_t> colliding_bodies(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::size_t> bodies;
   if (!bodies_collide(scene)) return bodies;
@@ -39,13 +39,13 @@ std::vector<std::size_t> colliding_bodies(const scene::Scene& scene, const envir
   return bodies;
 }
 
-// Of a body that forces move.
+// Contact thickness of a body that forces move [m].
 double thickness_of(const environment::Dynamics& dynamics) {
   return std::min(numerics.bodies.thickness,
                   numerics.bodies.thickness_of_size * dynamics.frame.deviations().minCoeff());
 }
 
-// The engine's bodies are the cloths of the scene and then what else collides.
+// Friction of pairs that the scene names. The engine numbers the cloths first, then the colliding bodies.
 std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
                                                     const environment::Environment& environment) {
   std::vector<std::string> names;
@@ -55,7 +55,7 @@ std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
   for (const scene::FrictionPair& pair : scene.contact.pairs) {
     const auto a = std::find(names.begin(), names.end(), pair.first),
                b = std::find(names.begin(), names.end(), pair.second);
-    if (a == names.end() || b == names.end()) continue;  // a body that does not collide
+    if (a == names.end() || b == names.end()) continue;  // the body does not collide
     pairs.push_back({static_cast<std::size_t>(a - names.begin()),
                      static_cast<std::size_t>(b - names.begin()),
                      {pair.friction, pair.static_friction.value_or(pair.friction)}});
@@ -125,7 +125,7 @@ collision::Bodies make_bodies(const scene::Scene& scene, const environment::Envi
   return bodies;
 }
 
-// Of what turns about its origin; 0 for what does not.
+// Largest distance of a vertex from the origin of a moving obstacle [m]; 0 for other bodies.
 double radius_of(const environment::BodyObject& body) {
   double radius_sq = 0;
   if (body.moving && !body.character)
@@ -133,7 +133,7 @@ double radius_of(const environment::BodyObject& body) {
   return std::sqrt(radius_sq);
 }
 
-// Distance of an arc of this angle [rad] from its chord.
+// Largest distance of an arc of this angle [rad] from its chord.
 double sagitta(double radius, double angle) {
   return radius * angle * angle / 8;
 }
@@ -194,7 +194,7 @@ std::vector<MeetingPlace> CollisionStage::find_meetings(const Moment& start) {
 }
 
 double CollisionStage::lift_bodies(const Vec3& up, double t, Moment& start) {
-  constexpr int kMostLayers = 32;  // that stand on each other; by one more each round
+  constexpr int kMaxStackHeight = 32;  // bodies on top of each other; each round lifts one more
   const std::size_t cloths = environment_.cloths.size();
   const collision::Bodies& bodies = engine_.bodies();
   const auto is_free = [&](std::size_t body) {
@@ -208,7 +208,7 @@ double CollisionStage::lift_bodies(const Vec3& up, double t, Moment& start) {
   };
   const std::vector<Vec3> given = start.x;
   std::map<std::size_t, int> lifts;
-  for (int round = 0; round <= kMostLayers; ++round) {
+  for (int round = 0; round <= kMaxStackHeight; ++round) {
     std::set<std::size_t> touching;
     for (const collision::CornerPair& pair : engine_.find_meetings(start.x)) {
       const std::size_t a = bodies.body_of(pair.a[0]), b = bodies.body_of(pair.b[0]);
@@ -229,12 +229,12 @@ double CollisionStage::lift_bodies(const Vec3& up, double t, Moment& start) {
     start.x = given;
     return 0;
   }
-  int most = 0;
-  for (const auto& [body, count] : lifts) most = std::max(most, count);
-  return most * numerics.separation.restored_gap;
+  int max_lift = 0;
+  for (const auto& [body, count] : lifts) max_lift = std::max(max_lift, count);
+  return max_lift * numerics.separation.restored_gap;
 }
 
-// Still bodies are where append_bodies() has put them.
+// Bodies that do not move stay where append_bodies() has put them.
 void CollisionStage::place_bodies(double t, Moment& moment) const {
   rigid_.place(moment.x);
   if (moment.placed_for == t) return;
@@ -248,7 +248,7 @@ void CollisionStage::place_bodies(double t, Moment& moment) const {
   }
 }
 
-// Which objects and triangles, and where.
+// Text that names the objects and triangles of a pair, and its place.
 std::string CollisionStage::describe(const collision::CornerPair& pair, const Moment& moment) const {
   const Vec3& at = moment.x[pair.a[0]];
   const collision::Bodies& bodies = engine_.bodies();
@@ -262,7 +262,7 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
   place_bodies(t, now);
   movable_.assign(now.x.size(), collision::kFixed);
   gave_way_.clear();
-  bend_.clear();
+  x_restart_.clear();
   std::fill_n(movable_.begin(), rigid_.end(), std::uint8_t{collision::kFree});
   for (std::size_t i = 0; i < particles_; ++i) next.x[i] = now.x[i] + h * now.v[i];
   for (const integrator::HeldParticle& particle : held) {
@@ -273,7 +273,7 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
   for (std::size_t b = 0; b < bodies_.size() && is_dynamic(b); ++b) {
     const collision::BodyTraits& traits = engine_.bodies()[environment_.cloths.size() + b];
     if (movable_[static_cast<std::size_t>(traits.frame)] != collision::kPinned) continue;
-    // Not released: it is where its keys have it, as other obstacles are.
+    // Not released yet: keys move it, as they move other obstacles.
     std::fill_n(movable_.begin() + traits.frame, mesh::RigidFrame::kParticles, std::uint8_t{collision::kFixed});
     std::ranges::fill(engine_.bodies()
                           .part(environment_.cloths.size() + b, std::span(movable_))
@@ -286,14 +286,14 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
 }
 
 bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const {
-  const double most = numerics.separation.creep * engine_.reach();
+  const double max_sagitta = numerics.separation.creep * engine_.reach();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (radii_[b] == 0 || (is_dynamic(b) && t >= environment_.bodies[bodies_[b]].dynamics->release)) continue;
-    // Between keys the speed of turning is nearly even; at its last key a body stands.
+    // The angular velocity hardly changes between keys; a body stops at its last key.
     double angle = 0;
-    for (const double share : {0.0, 0.5, 1.0})
-      angle = std::max(angle, h * environment_.pose(bodies_[b], t + share * h).angular_velocity.norm());
-    if (sagitta(radii_[b], angle) > most && cloth_comes_near(b, t, h, angle, now)) return true;
+    for (const double fraction : {0.0, 0.5, 1.0})
+      angle = std::max(angle, h * environment_.pose(bodies_[b], t + fraction * h).angular_velocity.norm());
+    if (sagitta(radii_[b], angle) > max_sagitta && cloth_comes_near(b, t, h, angle, now)) return true;
   }
   return false;
 }
@@ -307,47 +307,47 @@ bool CollisionStage::bodies_stay(double t0, double t1, Moment& now, Moment& next
     if (bodies[b].deformable) continue;
     const auto from = bodies.part(b, std::span<const Vec3>(now.x)), to = bodies.part(b, std::span<const Vec3>(next.x));
     if (std::ranges::equal(from, to)) continue;
-    Box3 way = mesh::bounding_box(from).merged(mesh::bounding_box(to));
-    way.min().array() -= engine_.reach();
-    way.max().array() += engine_.reach();
-    if (way.intersects(cloth)) return false;
+    Box3 swept = mesh::bounding_box(from).merged(mesh::bounding_box(to));
+    swept.min().array() -= engine_.reach();
+    swept.max().array() += engine_.reach();
+    if (swept.intersects(cloth)) return false;
   }
   return true;
 }
 
 bool CollisionStage::obstacles_creep(const Moment& now, const Moment& next) const {
-  const double most = numerics.separation.creep * engine_.reach();
+  const double max_motion = numerics.separation.creep * engine_.reach();
   for (auto v = static_cast<std::size_t>(rigid_.end()); v < now.x.size(); ++v)
-    if ((next.x[v] - now.x[v]).squaredNorm() > most * most &&
+    if ((next.x[v] - now.x[v]).squaredNorm() > max_motion * max_motion &&
         !engine_.is_clear(engine_.bodies().body_of(static_cast<Index>(v))))
       return false;
   return true;
 }
 
-// Whether a triangle of cloth, as it moves now, comes into the box around the way of an obstacle that turns by `angle`.
+// Whether a triangle of cloth, with its velocity, enters the box that an obstacle sweeps as it turns by `angle` [rad].
 bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, double angle, const Moment& now) const {
-  constexpr double kLargestPart = 0.25;  // [rad]
-  const int parts = 1 + static_cast<int>(std::min(angle, 100.0) / kLargestPart);
+  constexpr double kMaxPieceAngle = 0.25;  // [rad]
+  const int pieces = 1 + static_cast<int>(std::min(angle, 100.0) / kMaxPieceAngle);
   Box3 box;
-  for (int p = 0; p <= parts; ++p) {
-    const environment::PoseSample pose = environment_.pose(bodies_[body], t + h * p / parts);
+  for (int p = 0; p <= pieces; ++p) {
+    const environment::PoseSample pose = environment_.pose(bodies_[body], t + h * p / pieces);
     for (int corner = 0; corner < 8; ++corner)
       box.extend(Vec3(pose.position + pose.rotation * boxes_[body].corner(static_cast<Box3::CornerType>(corner))));
   }
-  const double margin = engine_.reach() + std::min(1.0, sagitta(1, angle / parts)) * boxes_[body].diagonal().norm();
+  const double margin = engine_.reach() + std::min(1.0, sagitta(1, angle / pieces)) * boxes_[body].diagonal().norm();
   box.min().array() -= margin;
   box.max().array() += margin;
   const auto meets = [&](const collision::Triangle& triangle) {
-    Box3 way;
-    for (Index v : triangle) way.extend(now.x[v]), way.extend(Vec3(now.x[v] + h * now.v[v]));
-    return way.intersects(box);
+    Box3 swept;
+    for (Index v : triangle) swept.extend(now.x[v]), swept.extend(Vec3(now.x[v] + h * now.v[v]));
+    return swept.intersects(box);
   };
   return std::ranges::any_of(engine_.bodies().deformable(), [&](const collision::Surface& cloth) {
     return std::ranges::any_of(cloth.triangles, meets);
   });
 }
 
-// How a body goes on from t to t + h; that of a character, which bends, is none.
+// Rigid motion of a body from t to t + h; none for characters, which deform, and for bodies that forces move.
 collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, double h) const {
   collision::RigidMotion motion;
   const environment::BodyObject& object = environment_.bodies[body];
@@ -368,7 +368,8 @@ void CollisionStage::append_prescribed(std::vector<integrator::HeldParticle>& he
 std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, bool may_give_way, const Moment& now,
                                                       Moment& next) {
   solved_.assign(next.particles().begin(), next.particles().end());
-  const collision::SeparationReport report = engine_.push_apart(from(now), next.x, movable_, may_pinch, may_give_way);
+  const collision::SeparationReport report =
+      engine_.push_apart(trajectory_start(now), next.x, movable_, may_pinch, may_give_way);
   gave_way_ = report.gave_way;
   if (!report.separated) {
     std::ranges::copy(solved_, next.x.begin());
@@ -391,8 +392,8 @@ bool CollisionStage::find_pressing_pins() {
 }
 
 void CollisionStage::go_on_from(const Moment& next) {
-  bend_ = next.x;
-  engine_.go_on_from(bend_);
+  x_restart_ = next.x;
+  engine_.go_on_from(x_restart_);
 }
 
 std::string CollisionStage::describe(const collision::GivenWay& given, const Moment& now) const {

@@ -1,4 +1,4 @@
-// Brings cloths and obstacles of a scene before the collision engine, step by step.
+// Connects the cloths and obstacles of a scene to the collision engine, step by step.
 #pragma once
 
 #include <cstdint>
@@ -18,111 +18,110 @@
 
 namespace weft::simulation {
 
-/// Where everything is at one time: particles, and behind them in x the vertices of the bodies that collide, of those
-/// first that forces move.
+/// The state of everything at one time. `x` has the particles, then the vertices of the bodies that collide, those of
+/// bodies that forces move first. `v` has the particles alone.
 struct Moment : integrator::State {
-  double placed_for = 0;  ///< time that the bodies are placed for [s]
+  double placed_for = 0;  ///< time at which the key-framed bodies in x are placed [s]
 
   std::span<const Vec3> particles() const { return {x.data(), v.size()}; }
 };
 
-/// Whether a cloth may be moved at the start for what it touches or crosses.
+/// Whether untangle() may move this cloth at the start.
 bool untangles(const scene::Cloth& cloth);
-/// Whether one of the scene may.
+/// Whether untangle() may move any cloth of the scene.
 bool untangles(const scene::Scene& scene);
 
 class CollisionStage {
  public:
-  /// Whether anything in the scene can collide; else no stage is made.
+  /// Whether anything in the scene can collide. If not, no stage is made.
   static bool needed(const scene::Scene& scene);
 
-  /// Appends the bodies to the moment `start`, for its time. The environment must outlive it.
+  /// Appends the vertices of the bodies to `start`, at its time. The environment must outlive it.
   CollisionStage(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
                  Moment& start);
 
-  /// Where surfaces touch or cross at the start. A run begins only where none do: what begins apart is kept apart, and
-  /// nothing else can be promised.
+  /// All places where surfaces touch or cross at the start. A run may begin only if there is none: the guarantee
+  /// against penetration holds only for surfaces that start apart.
   std::vector<MeetingPlace> find_meetings(const Moment& start);
 
-  /// Lifts bodies that forces move off what they touch at the start of a scene, since a block is written to stand where
-  /// it touches: the upper one of two by fifths of a millimetre, until nothing touches; a body that keys hold is
-  /// not moved. Returns the largest lift [m]. Changes nothing where that does not help.
+  /// Lifts bodies that forces move off what they touch at the start, because scenes place a block exactly where it
+  /// stands. Of two bodies that touch, the upper one rises by 0.2 mm at a time, until nothing touches; bodies held by
+  /// keys stay. Returns the largest lift [m]. If something still touches in the end, changes nothing and returns 0.
   double lift_bodies(const Vec3& up, double t, Moment& start);
 
-  /// Takes apart what touches or crosses at the start, as far as the scene has cloth that may be moved for it; `held`
-  /// is not, nor is cloth that was `dressed` before (by number), outside of which others get if one of them is worn
-  /// over it. Throws Error(scene_invalid) where there is no way, with what is where.
+  /// Moves cloth that touches or crosses something at the start, if untangles() is true for it, until nothing does.
+  /// Particles in `held` stay, as do cloths that were `dressed` before (numbers); others get outside of a dressed cloth
+  /// if one of them is worn over it. Throws Error(scene_invalid) with objects and places if there is no solution.
   void untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
                 std::span<const std::size_t> dressed, Moment& start);
 
-  /// Goes on with what another has pinched, whose cloths are these here, by number.
+  /// Takes over the pinched pairs of another stage; `cloths`: number here of each cloth there.
   void take_over(const CollisionStage& before, std::span<const std::size_t> cloths);
 
-  /// Before the solve: bodies go from where they are at t in `now` to where they are at t + h in `next`; contacts are
-  /// found for the particles as they are now and would be with unchanged velocity. `next` has the latter then, moved
-  /// apart where something would meet on the way there. Returns whether anything was moved.
+  /// Begins a step, before its solve. Places bodies at t in `now` and at t + h in `next`. Predicts the particles of
+  /// `next`: held ones at their targets, others with unchanged velocity. Finds contacts for `now` and this prediction,
+  /// and moves predicted particles apart that would meet on the way. Returns whether it moved any.
   bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now, Moment& next);
 
-  /// Whether an obstacle with cloth near it turns so far between t and t + h that its way is no longer the straight one
-  /// that the search takes it for.
+  /// Whether an obstacle with cloth near it turns so far between t and t + h that its vertices leave the straight
+  /// trajectories that the search assumes.
   bool turns_too_far(double t, double h, const Moment& now) const;
 
-  /// Whether all bodies that come near the cloth are at t1 where they are at t0 [s], the time of `now`.
+  /// Whether no body near the cloth moves between t0 and t1 [s]; t0 is the time of `now`. Places bodies in both states.
   bool bodies_stay(double t0, double t1, Moment& now, Moment& next) const;
 
-  /// Whether no obstacle moves so far between these that a shorter step could find room for cloth.
+  /// Whether no obstacle moves so far from `now` to `next` that a shorter step could find space for cloth.
   bool obstacles_creep(const Moment& now, const Moment& next) const;
 
-  /// Of the bodies that forces move; nullptr if there are none.
+  /// The vertices of bodies that forces move; nullptr if there are none.
   const RigidVertices* rigid_vertices() const { return rigid_.empty() ? nullptr : &rigid_; }
-  /// After a solve, whose end `next` is: their vertices follow their frames.
+  /// After a solve that ends at `next`: computes the vertices of these bodies from their frames.
   void follow_frames(Moment& next) const { rigid_.place(next.x); }
 
   collision::ContactResponse& response() { return engine_.response(); }
   const collision::ContactResponse& response() const { return engine_.response(); }
 
-  /// Appends what the response prescribes to the particles that no pin holds.
+  /// Appends the particles whose motion the contact response prescribes, without those that pins hold.
   void append_prescribed(std::vector<integrator::HeldParticle>& held) const;
 
-  /// After the solve: whether nothing meets anything on the way to `next`.
-  bool apart(const Moment& now, const Moment& next) { return engine_.apart(from(now), next.x); }
+  /// After the solve: whether no pair meets on the trajectory to `next`.
+  bool apart(const Moment& now, const Moment& next) { return engine_.apart(trajectory_start(now), next.x); }
 
-  /// Where apart() said no: makes contacts of the pairs that would meet, and says how many were new. If there are some,
-  /// solving again lets the forces do what push_apart would do by moving particles.
+  /// After apart() has failed: makes contacts of the pairs that would meet, and returns how many are new. If some are,
+  /// solving again lets forces do what push_apart() would do by moving particles.
   int adopt_failing(const Moment& now, const Moment& next) { return engine_.adopt_failing(now.x, next.x); }
 
-  /// Corrects positions and velocities of `next` so that nothing meets anything, except cloth and the obstacles that
-  /// leave it no room; these are then pinched. Without `may_pinch` no cloth becomes pinched by an obstacle that did not
-  /// pinch it before. Empty if that worked, else which objects are stuck and where.
-  /// `may_give_way`: pinned particles may be moved too, where nothing else can be; without, they are only told of.
+  /// Corrects positions and velocities of `next` so that no pair meets. Cloth that obstacles leave no space becomes
+  /// pinched: exempted from this. Without `may_pinch`, only obstacles that pinched a cloth before may pinch it. With
+  /// `may_give_way`, pinned particles may move too if nothing else helps; without it, gave_way() only lists them.
+  /// Returns nothing on success, else a text that says which objects are stuck, and where.
   std::optional<std::string> push_apart(double h, bool may_pinch, bool may_give_way, const Moment& now, Moment& next);
-  /// From `next`, where push_apart() has led to, the way of the step goes on, in another direction: contacts are found
-  /// there.
+  /// Restarts the trajectory of the step from `next`, where push_apart() has led, and finds contacts there.
   void go_on_from(const Moment& next);
-  /// Whether pins hold particles of what apart() found to meet, cloth with cloth; these are in gave_way() then.
+  /// Whether pins hold particles of pairs of cloth that apart() found to meet. If so, gave_way() lists them.
   bool find_pressing_pins();
-  /// Whether the way may do so: with springs.
+  /// Whether the step may restart its trajectory: if contacts are springs.
   bool may_bend() const { return response().form() == collision::ResponseForm::springs; }
-  /// The pinned particles that the last push_apart() told of.
+  /// The pinned particles that the last push_apart() or find_pressing_pins() found.
   std::span<const collision::GivenWay> gave_way() const { return gave_way_; }
-  /// What such a particle would have met, and where: "'a' near (0, 0, 0) m".
+  /// Text that says what such a particle would have met, and where: "'a' near (0, 0, 0) m".
   std::string describe(const collision::GivenWay& given, const Moment& now) const;
 
-  /// What a frame has pinched, from its steps so far; the next call tells of the next frame.
+  /// What obstacles pinched in the steps of a frame. take_pinches() also begins the next frame.
   struct Pinches {
-    int pairs = 0;                   ///< most triangles at once that are exempted from non-penetration
-    std::vector<std::string> begun;  ///< those not in the frame before, by object: "'a' has no room between ..."
+    int pairs = 0;  ///< largest number of triangles exempted from non-penetration at once
+    /// One text per pair of objects that is new in this frame: "'a' has no room between ..."
+    std::vector<std::string> begun;
   };
-  Pinches take_pinches(const Moment& last_start);  ///< where the last step began
+  Pinches take_pinches(const Moment& last_start);  ///< `last_start`: start of the last step
 
-  /// The step is done.
+  /// Accepts the step.
   void accept() { engine_.accept(); }
 
-  /// Before a frame, of what the scene switches on: see Engine::forget.
+  /// Before a frame: clears the caches of an optional part of the search, see Engine::forget.
   void forget() { engine_.forget(); }
 
-  /// What the next step from `now`, at time t [s], depends on. Throws std::runtime_error where this scene cannot have
-  /// it.
+  /// All that the next step from `now`, at t [s], depends on. Throws std::runtime_error if the archive does not fit.
   template <class Archive>
   void serialize(Archive& archive, double t, Moment& now);
 
@@ -130,8 +129,8 @@ class CollisionStage {
   double min_distance() const { return engine_.min_distance(); }
 
  private:
-  // Where the piece of the way of this step begins that ends at its end.
-  const std::vector<Vec3>& from(const Moment& now) const { return bend_.empty() ? now.x : bend_; }
+  // Where the trajectory of the step starts: at the start of the step, or where it was last restarted.
+  const std::vector<Vec3>& trajectory_start(const Moment& now) const { return x_restart_.empty() ? now.x : x_restart_; }
   RigidVertices make_rigid_vertices(const ClothSystem& cloth) const;
   std::vector<double> masses_of_all(const ClothSystem& cloth) const;
   const std::vector<Vec3>& append_bodies(Moment& start) const;
@@ -144,22 +143,22 @@ class CollisionStage {
   void note_pinches(const Moment& start);
 
   const environment::Environment& environment_;
-  std::vector<std::string> names_;   // per body
-  std::vector<std::size_t> bodies_;  // of the environment, those that collide; first those that forces move
-  std::vector<double> radii_;        // of these about their origins, where they are obstacles that move; else 0 [m]
-  std::vector<Box3> boxes_;          // around these in their own coordinates
+  std::vector<std::string> names_;   // of all cloths, then of all bodies_
+  std::vector<std::size_t> bodies_;  // colliding bodies of the environment; those that forces move come first
+  std::vector<double> radii_;  // per body: largest distance from its origin if it is a moving obstacle, else 0 [m]
+  std::vector<Box3> boxes_;    // bounding box of each body in its own coordinates
   std::size_t particles_;
   RigidVertices rigid_;
-  std::vector<double> masses_;  // of particles, and of the vertices of bodies that forces move
+  std::vector<double> masses_;  // of particles, then of the vertices of bodies that forces move [kg]
   std::vector<std::uint8_t> movable_;
-  std::vector<collision::RigidMotion> motions_;  // of the step at hand, per body
+  std::vector<collision::RigidMotion> motions_;  // of the current step, per cloth and body
   std::vector<collision::GivenWay> gave_way_;
-  std::vector<Vec3> bend_;    // where the way of the step last bent; empty: nowhere
-  std::vector<Vec3> solved_;  // scratch: particles before they are pushed apart
+  std::vector<Vec3> x_restart_;  // where the trajectory of the step was last restarted; empty: it was not
+  std::vector<Vec3> solved_;     // scratch: solved particles, before push_apart() moves them
   collision::Engine engine_;
 
-  using PinchingObjects = std::pair<std::size_t, std::size_t>;  // cloth and obstacle
-  std::set<PinchingObjects> pinching_, pinching_before_;        // in this frame and in the one before
+  using PinchingObjects = std::pair<std::size_t, std::size_t>;  // numbers of cloth and obstacle
+  std::set<PinchingObjects> pinching_, pinching_before_;        // in this frame and in the previous one
   Pinches pinches_;
 };
 

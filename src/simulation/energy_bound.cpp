@@ -14,16 +14,16 @@
 namespace weft::simulation {
 namespace {
 
-// Whether nothing drives the cloth but pins whose work is counted.
+// Whether pins alone drive the cloth, and their work is counted.
 bool is_driven_by_pins_alone(const scene::Scene& scene) {
   const auto moves = [](const auto& track) { return track.keys.size() > 1; };
   for (const scene::Cloth& cloth : scene.cloths) {
     const bool sewn = cloth.shape == scene::ClothShape::pattern || cloth.shape == scene::ClothShape::mesh;
-    if (sewn && cloth.sewing > 0) return false;        // that drives it
-    if (!cloth.over.empty()) return false;             // comes later
-    if (cloth.pressure.keys.size() > 1) return false;  // air is pumped in
+    if (sewn && cloth.sewing > 0) return false;        // sewing does work
+    if (!cloth.over.empty()) return false;             // this cloth is added later
+    if (cloth.pressure.keys.size() > 1) return false;  // pumping does work
     if (cloth.rope && cloth.rope->keys.size() > 1) return false;
-    // The springs of pins with a strength do work that is not counted.
+    // A pin with a strength is a spring, whose work is not counted.
     for (const scene::Pin& pin : cloth.pins)
       if (pin.strength && (moves(pin.motion) || !pin.follow.empty())) return false;
   }
@@ -31,12 +31,12 @@ bool is_driven_by_pins_alone(const scene::Scene& scene) {
     return !obstacle.collide || !scene::moves(scene, obstacle);
   };
   if (!scene.characters.empty() || !std::ranges::all_of(scene.obstacles, stands)) return false;
-  // What is thrown at its release gets energy then.
+  // A body that gets a velocity at its release gains energy then.
   const auto is_thrown = [](const scene::Obstacle& obstacle) {
     return obstacle.release > 0 && (obstacle.velocity != Vec3::Zero() || obstacle.spin != Vec3::Zero());
   };
   if (std::ranges::any_of(scene.obstacles, is_thrown)) return false;
-  // Attachments that draw their ends together, and bodies that move theirs, do work that is not counted.
+  // The work of attachments is not counted if they contract to a given length, or if their target moves.
   for (const scene::Attachment& attachment : scene.attachments) {
     const auto target = std::ranges::find(scene.obstacles, attachment.to, &scene::Obstacle::name);
     if (attachment.length || (target != scene.obstacles.end() && scene::moves(scene, *target))) return false;
@@ -45,7 +45,7 @@ bool is_driven_by_pins_alone(const scene::Scene& scene) {
   return scene.physics.air_density == 0 || (scene.physics.wind == Vec3::Zero() && scene.physics.gusts.speed == 0);
 }
 
-double mechanical(const FrameReport& report) {
+double mechanical_energy(const FrameReport& report) {
   return report.kinetic_energy + report.potential_energy + report.elastic_energy + report.air_energy;
 }
 
@@ -55,10 +55,10 @@ EnergyBound::EnergyBound(const scene::Scene& scene, double mass, const FrameRepo
     : applies_(is_driven_by_pins_alone(scene)),
       damped_contact_(CollisionStage::needed(scene) && scene.time.integrator != scene::Integrator::implicit_midpoint),
       integrator_(scene.time.integrator),
-      small_(mass * numerics.energy.negligible),
-      start_(mechanical(start)),
-      moving_(start.kinetic_energy),
-      elastic_(start.elastic_energy),
+      negligible_energy_(mass * numerics.energy.negligible),
+      start_energy_(mechanical_energy(start)),
+      start_kinetic_(start.kinetic_energy),
+      start_elastic_(start.elastic_energy),
       potential_low_(start.potential_energy),
       potential_high_(start.potential_energy) {}
 
@@ -78,14 +78,14 @@ std::vector<std::string> EnergyBound::check(const FrameReport& energies) {
 }
 
 double EnergyBound::energy_in_play() const {
-  return moving_ + elastic_ + potential_high_ - potential_low_ + pin_work_high_ - pin_work_low_;
+  return start_kinetic_ + start_elastic_ + potential_high_ - potential_low_ + pin_work_high_ - pin_work_low_;
 }
 
 std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) {
   if (!applies_ || has_lagged_) return {};
   const double in_play = energy_in_play();
-  const double gain = mechanical(energies) - start_ - pin_work_;
-  const auto is_above = [&](double ratio) { return gain > ratio * in_play + small_; };
+  const double gain = mechanical_energy(energies) - start_energy_ - pin_work_;
+  const auto is_above = [&](double ratio) { return gain > ratio * in_play + negligible_energy_; };
   const bool refused = is_above(numerics.energy.failing_gain) && !damped_contact_;
   if (!refused && (warned_ || !is_above(numerics.energy.doubtful_gain))) return {};
   const std::string text = fmt::format(
@@ -102,8 +102,8 @@ std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) 
 }
 
 std::optional<std::string> EnergyBound::check_solver(int frame) {
-  const double in_play = energy_in_play() + highest_;  // of what drives it too
-  if (warned_of_solver_ || solver_work_ <= numerics.energy.failing_gain * in_play + small_) return {};
+  const double in_play = energy_in_play() + highest_;  // with the energy of what drives the cloth
+  if (warned_of_solver_ || solver_work_ <= numerics.energy.failing_gain * in_play + negligible_energy_) return {};
   warned_of_solver_ = true;
   return fmt::format(
       "frame {}: the solver has left forces in the cloth that did {:.3g} J of work, with {:.3g} J in play: the motion "

@@ -1,5 +1,4 @@
-// Finds energy that nothing brings in: a method of integration that runs away stays finite for long; and motion that
-// the solver has left unsolved.
+// Detects energy without a source, since an unstable run stays finite for long, and motion left unsolved.
 #pragma once
 
 #include <optional>
@@ -13,18 +12,18 @@
 
 namespace weft::simulation {
 
-/// If nothing but pins drives a scene (no moving body, no wind), its mechanical energy grows by no more than the work
-/// of the pins and what steps solved to a tolerance add. A run that gains more is warned of, and one that gains much
-/// more ends; if cloth can touch something and the method damps, it is only warned of: contacts at long steps may bring
-/// energy, which goes again. Of every scene a run is warned of in which the solver's remainder has done much of the
-/// work: its motion is finite and may be far off.
+/// If nothing but pins drives a scene (no moving body, no wind), its mechanical energy grows at most by the work of the
+/// pins, and by what inexact solves add. A run that gains more is warned (numerics.energy.doubtful_gain); a run that
+/// gains much more fails (failing_gain). If cloth can touch something and the method damps, the run is only warned:
+/// contacts at long steps can add energy, which the method then damps away.
+/// In any scene, a run is warned if the residual of the solver does much of the work: the motion stays finite but may
+/// be far off.
 class EnergyBound {
  public:
   /// `mass`: of all cloths [kg].
   EnergyBound(const scene::Scene& scene, double mass, const FrameReport& start);
 
-  /// Of a frame whose energies are more than there can be: throws Error(simulation_failed), or returns warnings, each
-  /// once in a run.
+  /// Checks a frame. Returns warnings, each once in a run; throws Error(simulation_failed) if far too much is gained.
   std::vector<std::string> check(const FrameReport& energies);
 
   template <class Archive>
@@ -39,16 +38,17 @@ class EnergyBound {
   std::optional<std::string> check_solver(int frame);
 
   bool applies_, damped_contact_;
-  bool has_lagged_ = false;  // a pin: what draws it does work that is not counted
+  bool has_lagged_ = false;  // a pin has lagged: the force that pulls it does work that is not counted
   bool warned_ = false, warned_of_solver_ = false;
   scene::Integrator integrator_;
-  double small_;                                                // energy that is too small to be taken for an error [J]
-  double start_;                                                // mechanical energy [J]
-  double moving_, elastic_;                                     // kinetic and elastic energy of the start [J]
-  double potential_low_, potential_high_;                       // so far [J]
-  double pin_work_ = 0, pin_work_low_ = 0, pin_work_high_ = 0;  // likewise, since the start [J]
-  double solver_work_ = 0;                                      // likewise, without its sign in each frame [J]
-  double highest_ = 0;                                          // kinetic and elastic energy so far [J]
+  double negligible_energy_;               // smaller differences are no error [J]
+  double start_energy_;                    // mechanical energy at the start [J]
+  double start_kinetic_, start_elastic_;   // at the start [J]
+  double potential_low_, potential_high_;  // lowest and highest so far [J]
+  // since the start, with its lowest and highest value [J]
+  double pin_work_ = 0, pin_work_low_ = 0, pin_work_high_ = 0;
+  double solver_work_ = 0;  // sum of its magnitudes, frame by frame [J]
+  double highest_ = 0;      // largest sum of kinetic and elastic energy so far [J]
 };
 
 }  // namespace weft::simulation

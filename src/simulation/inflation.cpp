@@ -11,9 +11,9 @@
 namespace weft::simulation {
 namespace {
 
-// Ratio of the volume to that of the air at the pressure outside, below which the pressure goes on in a straight line:
-// 1/V has no bound, and a line search may come to a volume of zero. Cloth that contact keeps apart encloses more.
-constexpr double kLeastVolume = 1e-3;
+// Smallest V / A (see the header) for the gas law; below it, the pressure continues as a straight line. 1/V has no
+// bound, and a line search may reach a volume of zero. Cloth that contact keeps apart encloses more.
+constexpr double kMinVolumeRatio = 1e-3;
 
 environment::Spline<1> air_track_of(const scene::Pressure& pressure) {
   using Track = environment::Spline<1>;
@@ -48,35 +48,36 @@ Inflation::Inflation(const scene::Scene& scene, const environment::Environment& 
   }
 }
 
-// As volume at the pressure outside [m³].
+// Amount of air, as its volume at the outside pressure [m³].
 double Inflation::Cloth::air() const {
-  return std::max(0.0, control == scene::PressureControl::fill ? value * closed_with : closed_with + value);
+  return std::max(0.0, control == scene::PressureControl::fill ? value * closed_volume : closed_volume + value);
 }
 
-// Above that outside [Pa].
+// Gauge pressure [Pa].
 double Inflation::Cloth::pressure(double at_volume) const {
-  if (closed_with == kOpen) return 0;
+  if (closed_volume == kOpen) return 0;
   if (control == scene::PressureControl::gauge) return value;
-  const double amount = air(), least = kLeastVolume * amount;
+  const double amount = air(), min_volume = kMinVolumeRatio * amount;
   if (amount == 0) return -kAmbientPressure;
-  const double ratio = at_volume > least ? amount / at_volume : (2 - at_volume / least) / kLeastVolume;
+  const double ratio = at_volume > min_volume ? amount / at_volume : (2 - at_volume / min_volume) / kMinVolumeRatio;
   return kAmbientPressure * (ratio - 1);
 }
 
 // −dp/dV [Pa/m³].
 double Inflation::Cloth::stiffness(double at_volume) const {
-  if (closed_with == kOpen || control == scene::PressureControl::gauge || air() == 0) return 0;
-  const double amount = air(), v = std::max(at_volume, kLeastVolume * amount);
+  if (closed_volume == kOpen || control == scene::PressureControl::gauge || air() == 0) return 0;
+  const double amount = air(), v = std::max(at_volume, kMinVolumeRatio * amount);
   return kAmbientPressure * amount / (v * v);
 }
 
-// [J]
+// Energy [J].
 double Inflation::Cloth::energy(double at_volume) const {
-  if (closed_with == kOpen) return 0;
+  if (closed_volume == kOpen) return 0;
   if (control == scene::PressureControl::gauge) return -value * at_volume;
-  const double amount = air(), least = kLeastVolume * amount;
+  const double amount = air(), min_volume = kMinVolumeRatio * amount;
   if (amount == 0) return kAmbientPressure * at_volume;
-  const double v = std::max(at_volume, least), beyond = at_volume - v;  // beyond: on the straight line, negative
+  const double v = std::max(at_volume, min_volume),
+               beyond = at_volume - v;  // beyond: negative on the straight line, else 0
   return kAmbientPressure * (v - amount - amount * std::log(v / amount)) - pressure(v) * beyond +
          0.5 * stiffness(v) * beyond * beyond;
 }
@@ -85,15 +86,15 @@ void Inflation::begin_step(double t, std::span<const Vec3> x, const std::functio
   for (Cloth& cloth : cloths_) {
     cloth.value = cloth.track.at(t).value[0];
     if (!is_closed(cloth.number)) {
-      cloth.closed_with = kOpen;
-    } else if (cloth.closed_with == kOpen) {
+      cloth.closed_volume = kOpen;
+    } else if (cloth.closed_volume == kOpen) {
       const double volume = cloth.evaluate(x);
       if (cloth.control != scene::PressureControl::gauge && cloth.volume.is_flat(volume))
         throw Error(ExitCode::scene_invalid,
                     "{}: expected cloth that encloses a volume when it is closed, for an amount of air, got {:.3g} m³; "
                     "close it, or give its pressure (control = \"gauge\")",
                     cloth.where, volume);
-      cloth.closed_with = std::max(0.0, volume);
+      cloth.closed_volume = std::max(0.0, volume);
     }
   }
 }
@@ -137,15 +138,16 @@ std::vector<frame::EnclosedAir> Inflation::measure(std::span<const Vec3> x) cons
 void Inflation::take_over(const Inflation& there, std::span<const std::size_t> numbers) {
   for (const Cloth& before : there.cloths_)
     for (Cloth& cloth : cloths_)
-      if (cloth.number == numbers[before.number]) cloth.closed_with = before.closed_with, cloth.value = before.value;
+      if (cloth.number == numbers[before.number])
+        cloth.closed_volume = before.closed_volume, cloth.value = before.value;
 }
 
 template <class Archive>
 void Inflation::serialize(Archive& archive) {
   for (Cloth& cloth : cloths_) {
-    serialize_values(archive, cloth.value, cloth.closed_with);
+    serialize_values(archive, cloth.value, cloth.closed_volume);
     if constexpr (Archive::kReads)
-      require(std::isfinite(cloth.value) && (cloth.closed_with == kOpen || cloth.closed_with >= 0), "enclosed air");
+      require(std::isfinite(cloth.value) && (cloth.closed_volume == kOpen || cloth.closed_volume >= 0), "enclosed air");
   }
 }
 

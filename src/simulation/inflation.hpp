@@ -14,40 +14,40 @@
 
 namespace weft::simulation {
 
-/// The pressure p inside, above that outside, pushes with p ∂V/∂x. If the scene gives p, the energy is −p V. If it
-/// gives an amount of air, as volume A at the pressure p₀ outside, the air is isothermal: (p₀ + p) V = p₀ A, with the
-/// energy p₀ (V − A − A ln(V / A)).
+/// The gauge pressure p (above the pressure outside) pushes with the force p ∂V/∂x. If the scene gives p, the energy is
+/// −p V. If it gives an amount of air, as the volume A that the air has at the outside pressure p₀, the air is
+/// isothermal: (p₀ + p) V = p₀ A, with the energy p₀ (V − A − A ln(V / A)).
 ///
-/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ. It does not get the change of ∂V/∂x, which is indefinite: a small part
-/// of the stiffness of cloth under tension (see Decisions in README.md).
+/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ, but not the change of ∂V/∂x, which is indefinite and small against the
+/// stiffness of cloth under tension.
 class Inflation {
  public:
   /// Pressure outside [Pa]: standard atmosphere.
   static constexpr double kAmbientPressure = 101325;
 
   Inflation() = default;
-  /// Of the cloths whose pressure acts; `first_particle`: of each cloth of the scene.
+  /// Keeps the cloths whose pressure acts. `first_particle`: of each cloth of the scene.
   Inflation(const scene::Scene& scene, const environment::Environment& environment,
             std::span<const Index> first_particle);
 
   bool empty() const { return cloths_.empty(); }
 
-  /// For a step that ends at time t of the scene [s]. Cloth that is not closed yet, as is_closed(cloth) says, has no
-  /// pressure inside; what it encloses at x [m] when it is closed is its air. Throws Error(scene_invalid) if an amount
-  /// is given of cloth that then encloses nothing.
+  /// Begins a step that ends at time t of the scene [s]. Cloth that is not closed yet, for which is_closed(cloth) is
+  /// false, has no pressure. When it is closed, the volume that it encloses at x [m] becomes its air. Throws
+  /// Error(scene_invalid) if the scene gives an amount of air, but the closed cloth encloses no volume.
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
-  /// Whether the scene gives the same at both times [s].
+  /// Whether the values of the scene are equal at t0 and t1 [s].
   bool stays(double t0, double t1) const;
 
   /// Positions, forces [N] and rows are those of all particles.
   void add_forces(std::span<const Vec3> x, std::span<Vec3> force) const;
   void linearise(std::span<const Vec3> x, std::span<Vec3> force, solver::LinearSystem& system) const;
 
-  /// Of all cloths [J].
+  /// Energy of the air in all cloths [J].
   double energy(std::span<const Vec3> x) const;
   std::vector<frame::EnclosedAir> measure(std::span<const Vec3> x) const;
 
-  /// Cloths of another scene, the ones that `numbers` names here, keep the air that they have there.
+  /// Copies the enclosed air from another simulation; `numbers`: number here of each cloth there.
   void take_over(const Inflation& there, std::span<const std::size_t> numbers);
 
   template <class Archive>
@@ -57,14 +57,14 @@ class Inflation {
   static constexpr double kOpen = -1;
   struct Cloth {
     std::string name;
-    std::string where;   // in the scene, for errors
-    std::size_t number;  // of the scene
+    std::string where;   // in the scene file, for errors
+    std::size_t number;  // of the cloth in the scene
     Index first, end;    // particles
     forces::EnclosedVolume volume;
     scene::PressureControl control;
     environment::Spline<1> track;
-    double value = 0;                      // of the track, in the step at hand
-    double closed_with = kOpen;            // volume at which it was closed [m³]; kOpen: it is not
+    double value = 0;                      // of the track, in the current step
+    double closed_volume = kOpen;          // volume when it was closed [m³]; kOpen: not closed yet
     mutable std::vector<Vec3> gradient{};  // scratch
 
     double air() const;

@@ -13,14 +13,14 @@
 namespace weft::simulation {
 namespace {
 
-// Places that a message names; a crumpled cloth can have hundreds.
-constexpr std::size_t kNamedPlaces = 6;
+// Largest number of places that a message lists; a crumpled cloth can have hundreds.
+constexpr std::size_t kMaxNamedPlaces = 6;
 
 }  // namespace
 
 std::vector<MeetingPlace> meeting_places(std::span<const collision::CornerPair> pairs, const collision::Bodies& bodies,
                                          std::span<const std::string> names, std::span<const Vec3> x) {
-  // Pairs of different objects join vertices that others join too: each pair of objects by itself.
+  // Groups each pair of objects by itself, because pairs of other objects may share vertices with it.
   std::map<std::pair<std::size_t, std::size_t>, std::vector<collision::CornerPair>> by_bodies;
   for (const collision::CornerPair& pair : pairs)
     by_bodies[{bodies.body_of(pair.a[0]), bodies.body_of(pair.b[0])}].push_back(pair);
@@ -40,7 +40,7 @@ std::vector<MeetingPlace> meeting_places(std::span<const collision::CornerPair> 
       Box3 box;
       for (const auto& [a, b] : group) {
         triangles.insert({a, b});
-        // A large triangle of a floor does not make a place large: the smaller one tells where it is.
+        // Uses the smaller triangle, since a large triangle of a floor does not make the place large.
         const auto box_of = [&](const collision::Triangle& t) { return Box3(x[t[0]]).extend(x[t[1]]).extend(x[t[2]]); };
         const Box3 box_a = box_of(a), box_b = box_of(b);
         box.extend(box_a.diagonal().norm() < box_b.diagonal().norm() ? box_a : box_b);
@@ -63,14 +63,14 @@ std::string describe(std::span<const MeetingPlace> places) {
   for (const MeetingPlace& place : places) pairs += place.pairs;
   std::string text = fmt::format("{} of triangles that touch or cross in {}: ", counted(pairs, "pair"),
                                  counted(places.size(), "place"));
-  for (std::size_t p = 0; p < std::min(places.size(), kNamedPlaces); ++p) {
+  for (std::size_t p = 0; p < std::min(places.size(), kMaxNamedPlaces); ++p) {
     const MeetingPlace& place = places[p];
     const std::string objects =
         place.a == place.b ? fmt::format("'{}' itself", place.a) : fmt::format("'{}' and '{}'", place.a, place.b);
     text += fmt::format("{}{} ({}) around ({:.3g}, {:.3g}, {:.3g}) m, {:.3g} m across", p > 0 ? "; " : "", objects,
                         counted(place.pairs, "pair"), place.centre.x(), place.centre.y(), place.centre.z(), place.size);
   }
-  if (places.size() > kNamedPlaces) text += fmt::format("; and {} more", places.size() - kNamedPlaces);
+  if (places.size() > kMaxNamedPlaces) text += fmt::format("; and {} more", places.size() - kMaxNamedPlaces);
   return text;
 }
 

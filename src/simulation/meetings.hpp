@@ -1,4 +1,4 @@
-// What touches or crosses at the start of a scene, place by place: for the refusal, and to be drawn.
+// Places where surfaces touch or cross at the start of a scene, for error messages and pictures.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace weft::simulation {
 
-/// The places where these pairs meet at x [m], those of most pairs first. Pairs of the same two objects are of one
-/// place where their triangles have common vertices. `names`: of the bodies.
+/// Groups pairs that meet at x [m] by place, largest number of pairs first. Pairs of the same two objects belong to one
+/// place if their triangles share vertices. `names`: of the bodies.
 std::vector<MeetingPlace> meeting_places(std::span<const collision::CornerPair> pairs, const collision::Bodies& bodies,
                                          std::span<const std::string> names, std::span<const Vec3> x);
 

@@ -16,22 +16,22 @@
 namespace weft::simulation {
 namespace {
 
-// Speed of a pin above which a sheet is torn along rather than led [m/s]; a hand reaches 10.
-constexpr double kFastest = 20;
-// Way of a pin in the first instant that is told of [m].
-constexpr double kJump = 1e-3;
-// Distance from the body that it follows at which a pin starts, beyond which nothing is worn [m]: capes are 5 cm off.
-constexpr double kFarPin = 0.1;
-// How deep a particle is in an obstacle that it enters [m].
-constexpr double kDepth = 1e-3;
-// Looks that are taken at each frame.
-constexpr int kLooks = 4;
-// Particles of a pin at most whose distances from those of others are looked at.
-constexpr std::size_t kMostLookedAt = 41;
+// Largest speed of a pin that cloth can follow [m/s]; a hand reaches 10.
+constexpr double kMaxPinSpeed = 20;
+// Smallest jump of a pin at the start that is reported [m].
+constexpr double kMinJump = 1e-3;
+// Largest distance at the start of a pin from the body that it follows, if it is worn [m]: capes are 5 cm off.
+constexpr double kMaxPinDistance = 0.1;
+// Depth in an obstacle from which on a particle counts as inside [m].
+constexpr double kEntryDepth = 1e-3;
+// Sampled times per frame.
+constexpr int kSamplesPerFrame = 4;
+// Largest number of particles of one pin whose distances from those of other pins are measured.
+constexpr std::size_t kMaxSampledParticles = 41;
 
-using Held = std::vector<integrator::HeldParticle>;
+using HeldParticles = std::vector<integrator::HeldParticle>;
 
-bool moves(const scene::Pin& pin) {
+bool has_keys(const scene::Pin& pin) {
   return !pin.motion.keys.empty();
 }
 
@@ -45,7 +45,7 @@ bool any_pin(const scene::Scene& scene, bool (*is)(const scene::Pin&)) {
 }
 
 struct MovingPins {
-  std::vector<Index> first;  // particle of each cloth, and their number
+  std::vector<Index> first;  // of each cloth, then the number of all particles
   Pins pins;
   std::vector<Vec3> start;  // of all particles
 
@@ -61,62 +61,62 @@ struct MovingPins {
     return first;
   }
   const scene::Pin& pin(const scene::Scene& scene, std::size_t number) const {
-    const Pins::About& about = pins.about(number);
-    return scene.cloths[about.cloth].pins[about.number];
+    const Pins::Info& info = pins.info(number);
+    return scene.cloths[info.cloth].pins[info.number];
   }
-  bool is_moved(const scene::Scene& scene, std::size_t number) const { return moves(pin(scene, number)); }
+  bool is_moved(const scene::Scene& scene, std::size_t number) const { return has_keys(pin(scene, number)); }
   std::string name(const scene::Scene& scene, std::size_t pin) const {
-    const Pins::About& about = pins.about(pin);
-    return fmt::format("cloth.{}.pin.{}", scene.cloths[about.cloth].name, about.number);
+    const Pins::Info& info = pins.info(pin);
+    return fmt::format("cloth.{}.pin.{}", scene.cloths[info.cloth].name, info.number);
   }
 };
 
-// Of a pin that holds what it has, on a rectangle of cloth: some of its particles now, and where they lie at rest [m].
-struct HeldPart {
+// What a pin without a strength holds on a rectangle of cloth: a sample of positions, now and at rest [m].
+struct HeldRegion {
   std::vector<Vec3> x;
   std::vector<Vec2> rest;
 };
 
-// By pin; of soft ones, and of those on other cloth, nothing.
-std::vector<HeldPart> held_parts(const scene::Scene& scene, const environment::Environment& environment,
-                                 const MovingPins& moving, const Held& held) {
-  std::vector<HeldPart> parts(moving.pins.size());
+// One region per pin; empty for pins with a strength, and for other cloth.
+std::vector<HeldRegion> held_regions(const scene::Scene& scene, const environment::Environment& environment,
+                                     const MovingPins& moving, const HeldParticles& held) {
+  std::vector<HeldRegion> regions(moving.pins.size());
   std::vector<std::size_t> seen(moving.pins.size(), 0);
   for (const integrator::HeldParticle& particle : held) {
-    const std::size_t pin = moving.pins.of(particle.constraint.particle);
-    const Pins::About& about = moving.pins.about(pin);
-    const scene::Cloth& cloth = scene.cloths[about.cloth];
-    const std::size_t every = (about.particles + kMostLookedAt - 1) / kMostLookedAt, number = seen[pin]++;
-    if (about.strength || rectangle_particles(cloth) == 0 || (number % every != 0 && number + 1 != about.particles))
+    const std::size_t pin = moving.pins.pin_of(particle.constraint.particle);
+    const Pins::Info& info = moving.pins.info(pin);
+    const scene::Cloth& cloth = scene.cloths[info.cloth];
+    const std::size_t every = (info.particles + kMaxSampledParticles - 1) / kMaxSampledParticles, number = seen[pin]++;
+    if (info.strength || rectangle_particles(cloth) == 0 || (number % every != 0 && number + 1 != info.particles))
       continue;
-    const auto at = static_cast<std::size_t>(particle.constraint.particle - moving.first[about.cloth]);
-    parts[pin].x.push_back(particle.x_end);
-    parts[pin].rest.push_back(environment.cloths[about.cloth].fractions[at].cwiseProduct(cloth.size));
+    const auto at = static_cast<std::size_t>(particle.constraint.particle - moving.first[info.cloth]);
+    regions[pin].x.push_back(particle.x_end);
+    regions[pin].rest.push_back(environment.cloths[info.cloth].fractions[at].cwiseProduct(cloth.size));
   }
-  return parts;
+  return regions;
 }
 
-// Whether some particle was chosen by both, numbers of pins of one cloth.
+// Whether some particle belongs to both pins; `a`, `b`: numbers within the cloth.
 bool overlap(const environment::ClothObject& cloth, std::size_t a, std::size_t b) {
   return std::ranges::any_of(cloth.pins[a], [&](const environment::Chosen& chosen) {
     return std::ranges::find(cloth.pins[b], chosen.particle, &environment::Chosen::particle) != cloth.pins[b].end();
   });
 }
 
-// Largest distance of two of their particles, over that at rest.
-double stretch_between(const HeldPart& a, const HeldPart& b) {
-  double most = 0;
+// Largest distance of particles of two regions, relative to their distance at rest.
+double stretch_between(const HeldRegion& a, const HeldRegion& b) {
+  double max_ratio = 0;
   for (std::size_t i = 0; i < a.x.size(); ++i)
     for (std::size_t j = 0; j < b.x.size(); ++j)
-      most = std::max(most, (a.x[i] - b.x[j]).norm() / (a.rest[i] - b.rest[j]).norm());
-  return most;
+      max_ratio = std::max(max_ratio, (a.x[i] - b.x[j]).norm() / (a.rest[i] - b.rest[j]).norm());
+  return max_ratio;
 }
 
-// Times to look at: some of every frame, and all keys of pins and halves of what is between them.
+// Sampled times: several in each frame, and the midpoints between neighbouring keys of pins.
 std::vector<double> times_of(const scene::Scene& scene) {
   std::set<double> times;
-  const int looks = kLooks * (scene.frame_count() - 1);
-  for (int k = 0; k <= looks; ++k) times.insert(k / (kLooks * scene.time.fps));
+  const int samples = kSamplesPerFrame * (scene.frame_count() - 1);
+  for (int k = 0; k <= samples; ++k) times.insert(k / (kSamplesPerFrame * scene.time.fps));
   for (const scene::Cloth& cloth : scene.cloths) {
     for (const scene::Pin& pin : cloth.pins) {
       const auto& keys = pin.motion.keys;
@@ -130,7 +130,7 @@ std::vector<double> times_of(const scene::Scene& scene) {
 }  // namespace
 
 bool has_moving_pins(const scene::Scene& scene) {
-  return any_pin(scene, moves) || any_pin(scene, follows);
+  return any_pin(scene, has_keys) || any_pin(scene, follows);
 }
 
 std::vector<std::string> find_jumps(const scene::Scene& scene, const environment::Environment& environment) {
@@ -138,37 +138,39 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
   if (!has_moving_pins(scene)) return found;
   const MovingPins moving(scene, environment);
   std::set<std::size_t> jumps, fast;
-  Held held;
+  HeldParticles held;
   const double start = -scene.preroll_frames() / scene.time.fps;
   moving.pins.held_at(start, environment, held);
   for (const integrator::HeldParticle& particle : held) {
-    const std::size_t pin = moving.pins.of(particle.constraint.particle);
-    const double way = (particle.x_end - moving.start[static_cast<std::size_t>(particle.constraint.particle)]).norm();
-    if (way > kJump && moving.is_moved(scene, pin) && jumps.insert(pin).second)
+    const std::size_t pin = moving.pins.pin_of(particle.constraint.particle);
+    const double distance =
+        (particle.x_end - moving.start[static_cast<std::size_t>(particle.constraint.particle)]).norm();
+    if (distance > kMinJump && moving.is_moved(scene, pin) && jumps.insert(pin).second)
       found.push_back(fmt::format(
           "{}: its keys begin {:.3g} m away from where its particles start, and they jump there in the first "
           "step; begin with offset = [0, 0, 0]",
-          moving.name(scene, pin), way));
+          moving.name(scene, pin), distance));
   }
   std::vector<Vec3> before = moving.start;
   double last = start;
   for (const double t : times_of(scene)) {
     moving.pins.held_at(t, environment, held);
     for (const integrator::HeldParticle& particle : held) {
-      const std::size_t number = moving.pins.of(particle.constraint.particle);
+      const std::size_t number = moving.pins.pin_of(particle.constraint.particle);
       Vec3& x = before[static_cast<std::size_t>(particle.constraint.particle)];
-      // A jump between two looks shows in the way alone.
+      // A jump between two samples shows only in the distance, not in the velocity.
       const double mean = t > last && last >= 0 ? (particle.x_end - x).norm() / (t - last) : 0;
       const double speed = std::max(particle.v_end.norm(), mean);
       x = particle.x_end;
       const scene::Pin& pin = moving.pin(scene, number);
-      if (speed <= kFastest || !(moves(pin) || follows(pin)) || !fast.insert(number).second) continue;
+      if (speed <= kMaxPinSpeed || !(has_keys(pin) || follows(pin)) || !fast.insert(number).second) continue;
       found.push_back(fmt::format(
           "{}: moves at {:.3g} m/s at {:.4g} s, which tears cloth along{}", moving.name(scene, number), speed, t,
-          moves(pin) ? ""
-                     : fmt::format("; '{}', which it follows, moves or jumps there: keys farther apart make it slower, "
-                                   "and a jump needs a scene of its own on either side",
-                                   pin.follow)));
+          has_keys(pin)
+              ? ""
+              : fmt::format("; '{}', which it follows, moves or jumps there: keys farther apart make it slower, "
+                            "and a jump needs a scene of its own on either side",
+                            pin.follow)));
     }
     last = t;
   }
@@ -188,50 +190,50 @@ std::vector<std::string> find_far_pins(const scene::Scene& scene, const environm
       if (body == environment.bodies.end() || body->infinite_floor || chosen.empty()) continue;
       x.resize(body->mesh.positions.size());
       environment.place(static_cast<std::size_t>(body - environment.bodies.begin()), start, x);
-      const std::size_t every = (chosen.size() + kMostLookedAt - 1) / kMostLookedAt;
-      double least = std::numeric_limits<double>::infinity();
+      const std::size_t every = (chosen.size() + kMaxSampledParticles - 1) / kMaxSampledParticles;
+      double nearest = std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < chosen.size(); k += every) {
         const Vec3& place = environment.cloths[c].start[static_cast<std::size_t>(chosen[k].particle)];
-        least = std::min(least, collision::nearest_point(place, body->mesh.topology.triangles, x).height);
+        nearest = std::min(nearest, collision::nearest_point(place, body->mesh.topology.triangles, x).height);
       }
-      if (least > kFarPin && std::isfinite(least))
+      if (nearest > kMaxPinDistance && std::isfinite(nearest))
         found.push_back(fmt::format(
             "cloth.{}.pin.{}: follows '{}' from {:.3g} m away at the start, where what is worn lies on it; position "
             "of the cloth brings it nearer",
-            scene.cloths[c].name, p, scene.cloths[c].pins[p].follow, least));
+            scene.cloths[c].name, p, scene.cloths[c].pins[p].follow, nearest));
     }
   return found;
 }
 
 std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::string> found;
-  if (!any_pin(scene, moves)) return found;
+  if (!any_pin(scene, has_keys)) return found;
   const MovingPins moving(scene, environment);
   struct Stretch {
-    double from = 0, most = 0, at = 0;  // times [s]; shares of the length at rest
+    double from = 0, max_ratio = 0, at = 0;  // `from`, `at`: times [s]; `max_ratio`: length / length at rest
   };
   std::map<std::pair<std::size_t, std::size_t>, Stretch> stretches;
-  Held held;
+  HeldParticles held;
   for (const double t : times_of(scene)) {
     moving.pins.held_at(t, environment, held);
-    const std::vector<HeldPart> parts = held_parts(scene, environment, moving, held);
-    for (std::size_t b = 1; b < parts.size(); ++b)
+    const std::vector<HeldRegion> regions = held_regions(scene, environment, moving, held);
+    for (std::size_t b = 1; b < regions.size(); ++b)
       for (std::size_t a = 0; a < b; ++a) {
-        const std::size_t cloth = moving.pins.about(a).cloth;
+        const std::size_t cloth = moving.pins.info(a).cloth;
         const bool apart = moving.is_moved(scene, a) || moving.is_moved(scene, b);
-        if (cloth != moving.pins.about(b).cloth || !apart) continue;
-        const double limit = scene.cloths[cloth].material.max_stretch, share = stretch_between(parts[a], parts[b]);
-        if (limit == 0 || share <= 1 + limit) continue;
+        if (cloth != moving.pins.info(b).cloth || !apart) continue;
+        const double limit = scene.cloths[cloth].material.max_stretch, ratio = stretch_between(regions[a], regions[b]);
+        if (limit == 0 || ratio <= 1 + limit) continue;
         Stretch& stretch = stretches.try_emplace({a, b}, Stretch{t}).first->second;
-        if (share > stretch.most) stretch.most = share, stretch.at = t;
+        if (ratio > stretch.max_ratio) stretch.max_ratio = ratio, stretch.at = t;
       }
   }
   for (const auto& [pins, stretch] : stretches) {
-    const Pins::About &a = moving.pins.about(pins.first), &b = moving.pins.about(pins.second);
+    const Pins::Info &a = moving.pins.info(pins.first), &b = moving.pins.info(pins.second);
     found.push_back(fmt::format(
         "{}: stretches the cloth between it and pin {} beyond its max_stretch from {:.4g} s on, by {:.3g} % at {:.4g} "
         "s{}",
-        moving.name(scene, pins.second), a.number, stretch.from, 100 * (stretch.most - 1), stretch.at,
+        moving.name(scene, pins.second), a.number, stretch.from, 100 * (stretch.max_ratio - 1), stretch.at,
         overlap(environment.cloths[a.cloth], a.number, b.number)
             ? fmt::format("; what both would hold pin {} holds", a.number)
             : ""));
@@ -241,9 +243,9 @@ std::vector<std::string> find_stretches(const scene::Scene& scene, const environ
 
 std::vector<std::string> find_entries(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::string> found;
-  if (!any_pin(scene, moves) || !scene.contact.obstacles) return found;
+  if (!any_pin(scene, has_keys) || !scene.contact.obstacles) return found;
   const MovingPins moving(scene, environment);
-  Held held;
+  HeldParticles held;
   std::vector<Vec3> x;
   for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
     const environment::BodyObject& body = environment.bodies[b];
@@ -251,7 +253,7 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
     std::set<std::size_t> entered, outside;
     x.resize(body.mesh.positions.size());
     Box3 box;
-    const auto look_at = [&](double t) {
+    const auto sample_at = [&](double t) {
       environment.place(b, t, x);
       box = mesh::bounding_box(x);
       moving.pins.held_at(t, environment, held);
@@ -260,20 +262,20 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
       const bool may_be_in = box.contains(p) || body.infinite_floor;
       return may_be_in ? collision::nearest_point(p, body.mesh.topology.triangles, x).height : 1;
     };
-    // Where particles start counts too: keys may begin inside.
-    look_at(-scene.preroll_frames() / scene.time.fps);
+    // The start positions count too, because keys may begin inside.
+    sample_at(-scene.preroll_frames() / scene.time.fps);
     for (const integrator::HeldParticle& particle : held)
       if (height_of(moving.start[static_cast<std::size_t>(particle.constraint.particle)]) > 0)
-        outside.insert(moving.pins.of(particle.constraint.particle));
+        outside.insert(moving.pins.pin_of(particle.constraint.particle));
     for (const double t : times_of(scene)) {
-      look_at(t);
+      sample_at(t);
       for (const integrator::HeldParticle& particle : held) {
-        const std::size_t pin = moving.pins.of(particle.constraint.particle);
+        const std::size_t pin = moving.pins.pin_of(particle.constraint.particle);
         if (entered.contains(pin) || !moving.is_moved(scene, pin)) continue;
-        // Of an open surface, as the floor is, what is behind it counts as inside where it was before it first.
+        // Behind an open surface, such as a floor, a pin counts as inside only if it was in front of it before.
         const double height = height_of(particle.x_end);
         if (height > 0) outside.insert(pin);
-        if (height > -kDepth || !outside.contains(pin)) continue;
+        if (height > -kEntryDepth || !outside.contains(pin)) continue;
         entered.insert(pin);
         found.push_back(fmt::format("{}: enters '{}' at {:.4g} s, and will lag behind there", moving.name(scene, pin),
                                     body.name, t));

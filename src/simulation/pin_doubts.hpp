@@ -1,4 +1,4 @@
-// What a scene's pins are about to do that its author may not mean.
+// Warns of pins whose motion the author of a scene may not intend.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace weft::simulation {
 
-/// A sentence for each pin moved by keys that jumps at the start, and for each, also of those that follow a body, that
-/// moves too fast for cloth to follow: "cloth.a.pin.0: ...". For all others nothing is computed.
+/// One warning ("cloth.a.pin.0: ...") for each key-framed pin that jumps at the start, and for each pin, key-framed or
+/// following a body, that moves too fast for cloth to follow. Computes nothing if no pin moves.
 std::vector<std::string> find_jumps(const scene::Scene& scene, const environment::Environment& environment);
 
-/// Likewise for each obstacle that such a pin enters, with the first time.
+/// One warning for each obstacle that a key-framed pin enters, with the first time.
 std::vector<std::string> find_entries(const scene::Scene& scene, const environment::Environment& environment);
 
-/// Likewise for each two pins on a rectangle of cloth, one of them such a pin, that move farther apart than the cloth
-/// between them can be stretched.
+/// One warning for each two pins on a rectangle of cloth, at least one of them key-framed, that move farther apart than
+/// the cloth between them can stretch.
 std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment);
 
-/// Likewise for each pin that follows a body from farther away than what is worn.
+/// One warning for each pin that follows a body from farther away than anything worn.
 std::vector<std::string> find_far_pins(const scene::Scene& scene, const environment::Environment& environment);
 
-/// Whether there is a pin that keys or a body move.
+/// Whether keys or a body move any pin.
 bool has_moving_pins(const scene::Scene& scene);
 
 }  // namespace weft::simulation

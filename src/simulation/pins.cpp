@@ -8,25 +8,25 @@
 namespace weft::simulation {
 namespace {
 
-/// A place and its velocity.
-struct Moving {
+/// Position and velocity of a point.
+struct MovingPoint {
   Vec3 x, v;
 };
 
-/// Unit vector along u, which changes by u_rate, and its own rate of change.
-Moving unit(const Vec3& u, const Vec3& u_rate) {
+/// Unit vector along u and its rate of change, for u that changes at u_rate.
+MovingPoint unit(const Vec3& u, const Vec3& u_rate) {
   const double length = u.norm();
   const Vec3 along = u / length;
   return {along, (u_rate - along.dot(u_rate) * along) / length};
 }
 
-/// Axes of a triangle: along its first side, its normal, and at right angles to both; with their rates of change.
+/// Axes of a triangle with their rates of change: its first side, its normal, and their vector product.
 struct TriangleAxes {
   Mat3 axes, rates;
 
-  TriangleAxes(const Moving& a, const Moving& b, const Moving& c) {
+  TriangleAxes(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c) {
     const Vec3 p = b.x - a.x, q = c.x - a.x, p_rate = b.v - a.v, q_rate = c.v - a.v;
-    const Moving side = unit(p, p_rate), normal = unit(p.cross(q), p_rate.cross(q) + p.cross(q_rate));
+    const MovingPoint side = unit(p, p_rate), normal = unit(p.cross(q), p_rate.cross(q) + p.cross(q_rate));
     axes << side.x, normal.x, side.x.cross(normal.x);
     rates << side.v, normal.v, side.v.cross(normal.x) + side.x.cross(normal.v);
   }
@@ -38,7 +38,7 @@ int body_named(const environment::Environment& environment, const std::string& n
   return found == environment.bodies.end() ? -1 : static_cast<int>(found - environment.bodies.begin());
 }
 
-/// Through the keys of a pin whose particles start around `middle`.
+/// Track through the keys of a pin. `middle`: mean start position of its particles.
 environment::Track track_of(const scene::PinTrack& motion, const Vec3& middle) {
   scene::PoseTrack track{motion.interpolation, {}};
   for (const scene::PinKey& key : motion.keys) {
@@ -48,7 +48,8 @@ environment::Track track_of(const scene::PinTrack& motion, const Vec3& middle) {
   return environment::Track(track, {.position = middle});
 }
 
-/// Of the part of a pin, whoever holds it; what its fade draws comes behind that and is not counted.
+/// Mean start position of the region of a pin, including particles that another pin holds. Particles of its fade come
+/// after those of the region, and do not count.
 Vec3 middle_of(std::span<const environment::Chosen> particles, std::span<const Vec3> start) {
   Vec3 middle = Vec3::Zero();
   std::size_t count = 0;
@@ -62,28 +63,28 @@ Vec3 middle_of(std::span<const environment::Chosen> particles, std::span<const V
 
 }  // namespace
 
-// Linear in the particles of all pins.
-std::vector<Pins::Owned> Pins::owners(const environment::Environment& environment,
+// Takes time linear in the particles of all pins.
+std::vector<Pins::Owner> Pins::owners(const environment::Environment& environment,
                                       const std::vector<Index>& first_particle) {
-  std::vector<Owned> owned;
+  std::vector<Owner> owner_of;
   for (const bool faded : {false, true}) {
     std::size_t pin = 0;
     for (std::size_t c = 0; c < environment.cloths.size(); ++c)
       for (const std::vector<environment::Chosen>& particles : environment.cloths[c].pins) {
         for (const environment::Chosen& chosen : particles) {
           const auto i = static_cast<std::size_t>(first_particle[c] + chosen.particle);
-          if (i >= owned.size()) owned.resize(i + 1);
-          if (chosen.faded == faded && owned[i].share == 0) owned[i] = {pin, chosen.share};
+          if (i >= owner_of.size()) owner_of.resize(i + 1);
+          if (chosen.faded == faded && owner_of[i].fraction == 0) owner_of[i] = {pin, chosen.share};
         }
         ++pin;
       }
   }
-  return owned;
+  return owner_of;
 }
 
 Pins::Pins(const scene::Scene& scene, const environment::Environment& environment,
            const std::vector<Index>& first_particle)
-    : owned_(owners(environment, first_particle)) {
+    : owner_of_(owners(environment, first_particle)) {
   const double start_time = -scene.preroll_frames() / scene.time.fps;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const environment::ClothObject& cloth = environment.cloths[c];
@@ -91,14 +92,14 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
       const scene::Pin& pin = scene.cloths[c].pins[number];
       Group& group = groups_.emplace_back();
       const std::vector<environment::Chosen>& all = cloth.pins[number];
-      std::vector<std::size_t> places;  // of the group's particles among all of the pin
+      std::vector<std::size_t> places;  // index of each particle of the group in `all`
       for (std::size_t k = 0; k < all.size(); ++k) {
         const Index particle = first_particle[c] + all[k].particle;
-        if (of(particle) != groups_.size() - 1) continue;
+        if (pin_of(particle) != groups_.size() - 1) continue;
         group.particles.push_back(particle);
         places.push_back(k);
       }
-      group.about = {c, number, group.particles.size(), pin.strength};
+      group.info = {c, number, group.particles.size(), pin.strength};
       if (group.particles.empty()) continue;
 
       const auto start = [&](Index particle) -> const Vec3& { return cloth.start[particle - first_particle[c]]; };
@@ -130,7 +131,7 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
 std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environment, std::size_t character, double t,
                                        std::span<const Vec3> places) {
   const mesh::Mesh& skin = environment.bodies[character].mesh;
-  std::vector<Moving> vertices;
+  std::vector<MovingPoint> vertices;
   std::vector<Vec3> x;
   for (std::size_t v = 0; v < skin.positions.size(); ++v) {
     vertices.push_back({environment.vertex(character, v, t).position, Vec3::Zero()});
@@ -165,8 +166,8 @@ void Pins::held_at(double t, const environment::Environment& environment,
     if (group.particles.empty() || (group.release >= 0 && t > group.release)) continue;
     for (std::size_t p = 0; p < group.anchors.size(); ++p) {
       const Anchor& anchor = group.anchors[p];
-      std::array<Moving, 3> corners;
-      Moving place{Vec3::Zero(), Vec3::Zero()};
+      std::array<MovingPoint, 3> corners;
+      MovingPoint place{Vec3::Zero(), Vec3::Zero()};
       for (std::size_t k = 0; k < 3; ++k) {
         const auto vertex = environment.vertex(static_cast<std::size_t>(group.follow), anchor.corners[k], t);
         corners[k] = {vertex.position, vertex.velocity};

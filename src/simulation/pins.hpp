@@ -1,4 +1,4 @@
-// Particles that the scene holds or moves.
+// Particles that pins of the scene hold or move.
 #pragma once
 
 #include <array>
@@ -15,62 +15,63 @@ namespace weft::simulation {
 /// All pins of a scene, evaluated at the end of each step.
 class Pins {
  public:
-  /// `first_particle`: number of the first particle of each cloth.
+  /// `first_particle`: of each cloth.
   Pins(const scene::Scene& scene, const environment::Environment& environment,
        const std::vector<Index>& first_particle);
 
   bool empty() const { return groups_.empty(); }
 
-  /// What a pin is, of those that hold particles.
-  struct About {
-    std::size_t cloth = 0, number = 0;  ///< of the scene; number in its cloth, from 0
+  /// What is known of one pin.
+  struct Info {
+    std::size_t cloth = 0, number = 0;  ///< of the cloth in the scene, and of the pin in its cloth; from 0
     std::size_t particles = 0;
-    std::optional<double> strength;  ///< of the spring to each particle [N/m]; none: it is held
+    std::optional<double> strength;  ///< stiffness of the spring to each particle [N/m]; none: the particles are held
   };
   std::size_t size() const { return groups_.size(); }
-  const About& about(std::size_t pin) const { return groups_[pin].about; }
-  /// The pin that a particle belongs to; only of particles that belong to one.
-  std::size_t of(Index particle) const { return owned_[static_cast<std::size_t>(particle)].pin; }
-  /// What its spring has of the strength of that pin, above 0 and at most 1; likewise.
-  double share(Index particle) const { return owned_[static_cast<std::size_t>(particle)].share; }
+  const Info& info(std::size_t pin) const { return groups_[pin].info; }
+  /// The pin that has this particle. The particle must belong to a pin.
+  std::size_t pin_of(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].pin; }
+  /// Fraction of that pin's strength for this particle, in (0, 1]. The particle must belong to a pin.
+  double strength_fraction(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].fraction; }
 
-  /// Particles held at time t [s]; pins that are released by then are left out. One entry per particle: where pins
-  /// overlap, the first of the scene wins, and the part of one over the fade of another.
+  /// Particles held at time t [s], without those of pins released before t. One entry per particle: where pins overlap,
+  /// the first pin of the scene wins, but the region of any pin wins over the fade of another.
   void held_at(double t, const environment::Environment& environment,
                std::vector<integrator::HeldParticle>& held) const;
-  /// Whether a pin that holds at t0 is released by t1 [s].
+  /// Whether a pin is released at a time in [t0, t1) [s].
   bool release_between(double t0, double t1) const;
 
  private:
-  /// A place beside a triangle of a body without bones, that moves with it as if it were rigid.
+  /// A point beside a triangle of a body without bones; it moves with the triangle as if rigidly attached.
   struct Anchor {
     std::array<std::size_t, 3> corners;
-    std::array<double, 3> weights;  // of the point of the triangle that was nearest at the start
-    Vec3 arm;                       // from there, along the triangle's axes [m]
+    std::array<double, 3> weights;  // barycentric, of the nearest point of the triangle at the start
+    Vec3 arm;                       // from that point, in the axes of the triangle [m]
   };
-  /// Whose a particle is, by its number among the groups, and its share.
-  struct Owned {
+  /// The pin that has a particle, and the particle's fraction of its strength.
+  struct Owner {
     std::size_t pin = 0;
-    double share = 0;  // 0: nobody's
+    double fraction = 0;  // 0: no pin
   };
-  static std::vector<Owned> owners(const environment::Environment& environment,
+  static std::vector<Owner> owners(const environment::Environment& environment,
                                    const std::vector<Index>& first_particle);
   static std::vector<Anchor> anchor(const environment::Environment& environment, std::size_t character, double t,
                                     std::span<const Vec3> places);
-  /// Particles that share one motion.
+  /// The particles of one pin, which share one motion.
   struct Group {
-    About about;
+    Info info;
     std::vector<Index> particles;
-    std::vector<Vec3> arms;                   // from the motion's origin at the start, in its own directions [m]
-    double release = -1;                      // [s]; negative: never
-    int follow = -1;                          // obstacle or character, or −1 for `track`
-    std::vector<Anchor> anchors;              // on a body without bones, instead of arms
-    std::vector<std::size_t> skinned;         // vertices of a character that has them, instead of arms
-    std::optional<environment::Track> track;  // of the middle of the particles
+    std::vector<Vec3> arms;       // from the origin of the motion at the start, in its axes [m]
+    double release = -1;          // [s]; negative: never
+    int follow = -1;              // number of the obstacle or character that it follows; −1: it follows `track`
+    std::vector<Anchor> anchors;  // in place of `arms`, if it follows a body without bones
+    // In place of `arms`, if it follows a body with bones: the vertices that represent its particles.
+    std::vector<std::size_t> skinned;
+    std::optional<environment::Track> track;  // of the mean position of the particles
   };
 
   std::vector<Group> groups_;
-  std::vector<Owned> owned_;  // per particle
+  std::vector<Owner> owner_of_;  // per particle
 };
 
 }  // namespace weft::simulation

@@ -1,4 +1,4 @@
-// What a simulation of a scene would be put together from.
+// Lists the parts of which a simulation of a scene consists, and warns of settings that may not be intended.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,52 +20,54 @@ namespace {
 using scene::Cloth;
 using scene::Scene;
 
-// "2 of 3 cloths", or why none.
+// Item of a part that some cloths need: "2 of 3 cloths", or why no cloth needs it.
 template <class Test>
-PlanItem of_cloths(std::string part, const Scene& scene, Test needs, std::string_view absent) {
+PlanItem cloth_item(std::string part, const Scene& scene, Test needs, std::string_view absent) {
   const auto count = std::count_if(scene.cloths.begin(), scene.cloths.end(), needs);
   if (count == 0) return {std::move(part), false, std::string(absent)};
   return {std::move(part), true,
           fmt::format("{} of {} cloth{}", count, scene.cloths.size(), scene.cloths.size() == 1 ? "" : "s")};
 }
 
-PlanItem when(std::string part, bool used, std::string present, std::string absent) {
+PlanItem item_if(std::string part, bool used, std::string present, std::string absent) {
   return {std::move(part), used, used ? std::move(present) : std::move(absent)};
 }
 
 void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
   const double gravity = scene.physics.gravity.norm();
-  items.push_back(when("force: gravity", gravity > 0, fmt::format("{:.4g} m/s²", gravity), "physics.gravity is zero"));
-  items.push_back(of_cloths(
+  items.push_back(
+      item_if("force: gravity", gravity > 0, fmt::format("{:.4g} m/s²", gravity), "physics.gravity is zero"));
+  items.push_back(cloth_item(
       "force: stretch", scene, [](const Cloth& c) { return !c.rope; }, "no cloth"));
-  items.push_back(of_cloths(
+  items.push_back(cloth_item(
       "force: shear", scene, [](const Cloth& c) { return c.material.shear > 0 || c.material.shear_viscosity > 0; },
       "shear and shear_viscosity are zero"));
-  items.push_back(of_cloths(
+  items.push_back(cloth_item(
       "force: limit to stretch", scene, [](const Cloth& c) { return locks(c.material); },
       "max_stretch and max_shear are zero"));
-  items.push_back(of_cloths(
+  items.push_back(cloth_item(
       "force: bending", scene, [](const Cloth& c) { return bends(c.material); }, "bend is zero"));
-  items.push_back(of_cloths(
+  items.push_back(cloth_item(
       "force: viscosity", scene,
       [](const Cloth& c) {
         const scene::Material& m = c.material;
         return m.stretch_viscosity > 0 || m.shear_viscosity > 0 || (bends(m) && m.bend_viscosity > 0);
       },
       "all viscosities of what is built are zero"));
-  items.push_back(of_cloths(
+  items.push_back(cloth_item(
       "force: bending friction", scene,
       [](const Cloth& c) { return bends(c.material) && c.material.bend_friction > 0; },
       "bend or bend_friction is zero"));
-  items.push_back(of_cloths(
+  items.push_back(cloth_item(
       "force: air", scene, [&](const Cloth& c) { return scene.physics.air_density > 0 && c.material.drag > 0; },
       "air_density or drag is zero"));
-  items.push_back(when("force: gusts", environment::blows_in_gusts(scene),
-                       fmt::format("{:g} m/s, eddies of {:g} m", scene.physics.gusts.speed, scene.physics.gusts.size),
-                       "physics.gusts.speed, air_density or drag is zero"));
+  items.push_back(
+      item_if("force: gusts", environment::has_gusts(scene),
+              fmt::format("{:g} m/s, eddies of {:g} m", scene.physics.gusts.speed, scene.physics.gusts.size),
+              "physics.gusts.speed, air_density or drag is zero"));
 }
 
-// Parts that only scenes which name them list.
+// Parts that are listed only if the scene uses them.
 void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
   const auto counted = [](std::size_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -98,17 +100,17 @@ void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {
     fading += std::ranges::count_if(cloth.pins, [](const scene::Pin& pin) { return pin.fade > 0; });
   }
   const auto groups = [](auto count) { return fmt::format("{} group{}", count, count == 1 ? "" : "s"); };
-  items.push_back(when("constraint: pins", pins > 0, groups(pins), "no pin"));
-  items.push_back(when("force: springs that fade around pins", fading > 0, groups(fading), "no pin has a fade"));
+  items.push_back(item_if("constraint: pins", pins > 0, groups(pins), "no pin"));
+  items.push_back(item_if("force: springs that fade around pins", fading > 0, groups(fading), "no pin has a fade"));
 }
 
-// The parts of the search for near surfaces, each of which can be switched.
+// The parts of the search for near surfaces that a scene can switch.
 void plan_search(const scene::Search& search, bool any, std::vector<PlanItem>& items) {
   constexpr std::array kBounds{"boxes", "18-DOPs", "26-DOPs"};
   constexpr std::array kTrees{"binary trees", "quadtrees", "octrees"};
   const auto part = [&](std::string name, bool on, std::string what) {
-    items.push_back(when("search: " + std::move(name), any && on, std::move(what),
-                         any ? "off in contact.search" : "nothing collides"));
+    items.push_back(item_if("search: " + std::move(name), any && on, std::move(what),
+                            any ? "off in contact.search" : "nothing collides"));
   };
   part("bounding volume hierarchy", true,
        fmt::format("{} of {}, {} triangle{} to a leaf", kTrees[static_cast<std::size_t>(search.tree)],
@@ -132,22 +134,22 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
   std::string bodies = fmt::format("{} obstacle{}", obstacles, obstacles == 1 ? "" : "s");
   if (characters > 0) bodies += fmt::format(", {} character{}", characters, characters == 1 ? "" : "s");
   const bool self = scene.contact.self && !scene.cloths.empty();
-  items.push_back(when("collision: cloth and obstacles", with_obstacles, bodies,
-                       obstacles + characters == 0 ? "no obstacle collides" : "contact.obstacles is false"));
-  items.push_back(when("collision: cloth and cloth", self, "itself and others", "contact.self is false"));
-  items.push_back(of_cloths(
+  items.push_back(item_if("collision: cloth and obstacles", with_obstacles, bodies,
+                          obstacles + characters == 0 ? "no obstacle collides" : "contact.obstacles is false"));
+  items.push_back(item_if("collision: cloth and cloth", self, "itself and others", "contact.self is false"));
+  items.push_back(cloth_item(
       "collision: friction", scene, [&](const Cloth& c) { return (with_obstacles || self) && c.material.friction > 0; },
       "no collision, or friction is zero"));
-  items.push_back(when("collision: velocity constraints",
-                       with_obstacles && scene.contact.response == scene::Response::velocity_constraints,
-                       "particles against obstacles",
-                       with_obstacles ? "contact.response is springs" : "no obstacle collides"));
+  items.push_back(item_if("collision: velocity constraints",
+                          with_obstacles && scene.contact.response == scene::Response::velocity_constraints,
+                          "particles against obstacles",
+                          with_obstacles ? "contact.response is springs" : "no obstacle collides"));
   plan_search(scene.contact.search, with_obstacles || self, items);
-  items.push_back(when("motion: key frames", moving > 0, fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"),
-                       "no obstacle moves"));
+  items.push_back(item_if("motion: key frames", moving > 0,
+                          fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"), "no obstacle moves"));
 }
 
-// Only the files of meshes tell what their shape at rest is.
+// The rest shapes are known only after reading the files of meshes and patterns.
 void plan_rest_shapes(const Scene& scene, std::vector<PlanItem>& items) {
   environment::Wearers wearers(scene);
   for (const Cloth& cloth : scene.cloths)
@@ -161,26 +163,27 @@ void plan_rest_shapes(const Scene& scene, std::vector<PlanItem>& items) {
 
 void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
   plan_rest_shapes(scene, items);
-  items.push_back(of_cloths(
+  items.push_back(cloth_item(
       "preparation: sewing", scene,
       [](const Cloth& c) {
         return c.shape == scene::ClothShape::pattern || (c.shape == scene::ClothShape::mesh && c.sewing > 0);
       },
       "no cloth is sewn from flat panels"));
-  items.push_back(of_cloths(
+  items.push_back(cloth_item(
       "preparation: untangling", scene, [](const Cloth& c) { return untangles(c); }, "every cloth starts as given"));
   const int frames = scene.preroll_frames();
   const std::vector<scene::Layer> layers = scene::list_layers(scene);
   std::string begins;
   for (const scene::Layer& layer : layers) begins += fmt::format("{}{}", begins.empty() ? "" : ", ", layer.first_frame);
-  items.push_back(when("preparation: layers", layers.size() > 1,
-                       fmt::format("{}, put on at frames {}", layers.size(), begins), "no cloth is worn over another"));
-  items.push_back(when("preparation: preroll", frames > 0,
-                       fmt::format("{} frame{} before the first", frames, frames == 1 ? "" : "s"),
-                       "time.preroll is 0"));
+  items.push_back(item_if("preparation: layers", layers.size() > 1,
+                          fmt::format("{}, put on at frames {}", layers.size(), begins),
+                          "no cloth is worn over another"));
+  items.push_back(item_if("preparation: preroll", frames > 0,
+                          fmt::format("{} frame{} before the first", frames, frames == 1 ? "" : "s"),
+                          "time.preroll is 0"));
 }
 
-// How much the key frames of characters hold; only their files tell.
+// Size of the key frames of characters, which is known only after reading their files.
 void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   if (scene.characters.empty()) items.push_back({"motion: characters", false, "no character"});
   for (const scene::Character& character : scene.characters) {
@@ -195,7 +198,7 @@ void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   }
 }
 
-// Whether it has a mass, and rolls or spins.
+// Whether forces move the obstacle, and it can roll or spins.
 bool turns_freely(const scene::Obstacle& obstacle) {
   const bool is_round = !std::holds_alternative<scene::BoxShape>(obstacle.shape) &&
                         !std::holds_alternative<scene::HalfPipe>(obstacle.shape);
@@ -221,18 +224,21 @@ std::vector<PlanItem> plan(const Scene& scene) {
   const std::string steps = scene.time.tolerance ? fmt::format("error of a step {:g} m", *scene.time.tolerance)
                                                  : fmt::format("step at most {:.4g} ms", 1e3 * scene.time.step);
   items.push_back({"integrator: " + std::string(method), true, fmt::format("{}, {} fps", steps, scene.time.fps)});
-  items.push_back(when("render: heat colours", scene.render.heat != scene::HeatQuantity::none,
-                       scene.render.heat == scene::HeatQuantity::strain ? "strain" : "speed", "render.heat is none"));
+  items.push_back(item_if("render: heat colours", scene.render.heat != scene::HeatQuantity::none,
+                          scene.render.heat == scene::HeatQuantity::strain ? "strain" : "speed",
+                          "render.heat is none"));
   constexpr const char* kLooks[] = {"studio", "stage", "daylight", "clay", "wire", "strain"};
   items.push_back({fmt::format("render: look {}", kLooks[static_cast<int>(scene.render.look)]), true, "render.look"});
-  items.push_back(when("render: motion blur", scene.render.motion_blur > 0,
-                       fmt::format("{:.4g} degrees of shutter", scene.render.motion_blur), "render.motion_blur is 0"));
-  items.push_back(when("render: depth of field",
-                       std::ranges::any_of(scene.cameras, [](const scene::Camera& each) { return each.aperture > 0; }),
-                       "a camera has an aperture", "no camera has an aperture"));
+  items.push_back(item_if("render: motion blur", scene.render.motion_blur > 0,
+                          fmt::format("{:.4g} degrees of shutter", scene.render.motion_blur),
+                          "render.motion_blur is 0"));
+  items.push_back(
+      item_if("render: depth of field",
+              std::ranges::any_of(scene.cameras, [](const scene::Camera& each) { return each.aperture > 0; }),
+              "a camera has an aperture", "no camera has an aperture"));
   const bool camera = !scene.cameras.empty();
-  items.push_back(when("render: automatic framing", !camera, "no camera named",
-                       fmt::format("{} camera{}", scene.cameras.size(), scene.cameras.size() == 1 ? "" : "s")));
+  items.push_back(item_if("render: automatic framing", !camera, "no camera named",
+                          fmt::format("{} camera{}", scene.cameras.size(), scene.cameras.size() == 1 ? "" : "s")));
   return items;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kParticles = mesh::RigidFrame::kParticles;
 
-// Adds a weight of a particle to those of a term that has few.
+// Adds a weight of a particle to a term, which has `count` particles so far.
 void add_weight(Index particle, double weight, std::size_t& count, solver::WideTerm& term) {
   std::size_t k = 0;
   while (k < count && term.particles[k] != particle) ++k;
@@ -20,13 +20,13 @@ void add_weight(Index particle, double weight, std::size_t& count, solver::WideT
 
 void RigidVertices::add(const mesh::RigidFrame& frame, Index first_of_frame) {
   bodies_.push_back({&frame, first_of_frame, end()});
-  of_vertex_.insert(of_vertex_.end(), frame.weights().size(), bodies_.size() - 1);
+  body_of_vertex_.insert(body_of_vertex_.end(), frame.weights().size(), bodies_.size() - 1);
 }
 
-// Calls visit(particle, weight) for the frame of a vertex.
+// Calls visit(particle, weight) for the frame particles of a vertex.
 template <class Visit>
 void RigidVertices::for_each_weight(Index vertex, const Visit& visit) const {
-  const Body& body = bodies_[of_vertex_[static_cast<std::size_t>(vertex - first_)]];
+  const Body& body = bodies_[body_of_vertex_[static_cast<std::size_t>(vertex - first_)]];
   const mesh::RigidFrame::Weights& weights =
       body.frame->weights()[static_cast<std::size_t>(vertex - body.first_vertex)];
   for (std::size_t k = 0; k < kParticles; ++k) visit(body.first_of_frame + static_cast<Index>(k), weights[k]);

@@ -1,4 +1,4 @@
-// Vertices of bodies that forces move: weighted sums of the particles of their frames.
+// Vertices of bodies that forces move: weighted sums of the particles of the bodies' frames.
 #pragma once
 
 #include <array>
@@ -11,30 +11,30 @@
 
 namespace weft::simulation {
 
-/// They stand behind all particles in arrays of positions. Contacts act on them as on particles; here what contacts
-/// make of that is passed on to the frames.
+/// In arrays of positions, these vertices come after all particles. Contacts act on them as on particles; this class
+/// passes the resulting forces and terms on to the frames.
 class RigidVertices {
  public:
-  /// `first`: the first vertex, which is the number of particles.
+  /// `first`: number of the first vertex, which equals the number of particles.
   explicit RigidVertices(Index first) : first_(first) {}
 
-  /// Appends the vertices of a body whose frame has this first particle. The frame must outlive this.
+  /// Appends the vertices of a body. `first_of_frame`: first particle of its frame. The frame must outlive this.
   void add(const mesh::RigidFrame& frame, Index first_of_frame);
 
   bool empty() const { return bodies_.empty(); }
   Index first() const { return first_; }
-  Index end() const { return first_ + static_cast<Index>(of_vertex_.size()); }
+  Index end() const { return first_ + static_cast<Index>(body_of_vertex_.size()); }
 
-  /// Writes the vertices, from the frames in the same array.
+  /// Computes the vertices in x from the frame particles in x.
   void place(std::span<Vec3> x) const;
-  /// force[frame] += weight · of_all[vertex] for all vertices.
+  /// force[frame particle] += weight · of_all[vertex], for all vertices.
   void gather(std::span<const Vec3> of_all, std::span<Vec3> force) const;
-  /// The same by absolute weights.
+  /// The same for bounds of forces, with absolute weights.
   void gather(std::span<const double> of_all, std::span<double> limit) const;
-  /// Mass of the body of a vertex [kg], from those of the particles. Contacts are as stiff as for all of it: with the
-  /// part that a corner moves at once, a stack of ten boxes sways for ten seconds.
+  /// Mass of the whole body of a vertex [kg]; `masses`: of the particles. Contacts use it for their stiffness
+  /// (measured: with the effective mass of a corner, a stack of ten boxes sways for ten seconds).
   double mass_of(Index vertex, std::span<const double> masses) const;
-  /// Terms of vertices become wide terms of frames, behind those that are there.
+  /// Replaces terms on vertices by wide terms on frame particles, and appends these to the existing wide terms.
   void spread(solver::LinearSystem& system) const;
 
  private:
@@ -48,7 +48,7 @@ class RigidVertices {
 
   Index first_;
   std::vector<Body> bodies_;
-  std::vector<std::size_t> of_vertex_;  // body of each
+  std::vector<std::size_t> body_of_vertex_;  // index of the body of each vertex
 };
 
 }  // namespace weft::simulation

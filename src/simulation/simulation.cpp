@@ -28,10 +28,10 @@
 namespace weft::simulation {
 namespace {
 
-// More than any scene has; what was read is held against it.
-constexpr int kMostFrames = 1 << 30;
+// Bound for frame numbers that are read from a saved state; no scene has more frames.
+constexpr int kMaxFrames = 1 << 30;
 
-// Times are not part of a state: two runs take different ones.
+// Computation times are not part of the state, because they differ between runs.
 template <class Archive>
 void serialize(Archive& archive, FrameReport& report) {
   serialize_values(archive, report.frame, report.time, report.steps, report.rejected_steps, report.inexact_steps,
@@ -50,8 +50,8 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
-// Arms that hang are in the way of most skirts.
-bool meets_arms(const scene::Scene& scene, const std::vector<MeetingPlace>& places) {
+// Whether something touches a character whose arms hang, where they are in the way of most skirts.
+bool touches_hanging_arms(const scene::Scene& scene, const std::vector<MeetingPlace>& places) {
   return std::ranges::any_of(scene.characters, [&](const scene::Character& character) {
     const auto* file = std::get_if<scene::CharacterFile>(&character.source);
     return file != nullptr && !file->stance_arms && character.dressing > 0 &&
@@ -61,22 +61,23 @@ bool meets_arms(const scene::Scene& scene, const std::vector<MeetingPlace>& plac
   });
 }
 
-// Throws Error(scene_invalid) where a run cannot begin so.
+// Throws Error(scene_invalid) if surfaces touch or cross at the start.
 void check_start(const scene::Scene& scene, StepLoop& steps) {
   const std::vector<MeetingPlace> places = steps.find_meetings();
   if (places.empty()) return;
-  throw Error(ExitCode::scene_invalid, "{}: expected surfaces that are apart at the start{}, got {}; {}{}",
-              scene.file.string(), untangles(scene) ? ", or can be untangled" : "", describe(places),
-              untangles(scene)
-                  ? "'weft thumbnail --start' draws it as it was; move one of them"
-                  : "'weft thumbnail --start' draws it; move one of them, leave it out of contact, or give "
-                    "a cloth start = \"untangle\"",
-              meets_arms(scene, places) ? "; where arms are in the way, stance_arms = 45 holds them off the body" : "");
+  throw Error(
+      ExitCode::scene_invalid, "{}: expected surfaces that are apart at the start{}, got {}; {}{}", scene.file.string(),
+      untangles(scene) ? ", or can be untangled" : "", describe(places),
+      untangles(scene) ? "'weft thumbnail --start' draws it as it was; move one of them"
+                       : "'weft thumbnail --start' draws it; move one of them, leave it out of contact, or give "
+                         "a cloth start = \"untangle\"",
+      touches_hanging_arms(scene, places) ? "; where arms are in the way, stance_arms = 45 holds them off the body"
+                                          : "");
 }
 
-// What is simulated of a scene while other cloths are not put on.
-struct DressedPart {
-  DressedPart(const scene::Scene& of, const environment::Environment& whole, std::span<const std::size_t> cloths)
+// The scene and its environment without the cloths that are not put on yet.
+struct DressedScene {
+  DressedScene(const scene::Scene& of, const environment::Environment& whole, std::span<const std::size_t> cloths)
       : scene(of), environment(whole.with_cloths(cloths)) {
     scene.cloths.clear();
     for (const std::size_t c : cloths) scene.cloths.push_back(of.cloths[c]);
@@ -85,9 +86,9 @@ struct DressedPart {
   environment::Environment environment;
 };
 
-// From when on cloths are there.
-void note_layers(const scene::Scene& scene, const std::vector<scene::Layer>& layers,
-                 environment::Environment& environment) {
+// Writes into the environment when each cloth is put on.
+void set_put_on_times(const scene::Scene& scene, const std::vector<scene::Layer>& layers,
+                      environment::Environment& environment) {
   for (const scene::Layer& layer : layers)
     for (const std::size_t c : layer.cloths)
       environment.cloths[c].put_on = (layer.first_frame + scene.preroll_frames()) / scene.time.fps;
@@ -118,15 +119,15 @@ struct Simulation::Impl {
   scene::Scene scene;
   environment::Environment environment;
   std::vector<scene::Layer> layers;
-  std::size_t layer = 0;              // the last one that is put on
-  std::unique_ptr<DressedPart> part;  // none where all are
-  int frame;                          // negative in the preroll
+  std::size_t layer = 0;                        // number of the last layer that is put on
+  std::unique_ptr<DressedScene> dressed_scene;  // null if all cloths are put on
+  int frame;                                    // negative during the preroll
   std::unique_ptr<StepLoop> steps;
   SnapshotMaker snapshots;
   frame::SnapshotPtr current;
   FrameReport start_report;  // of frame 0
   std::optional<EnergyBound> energy_bound;
-  std::map<std::size_t, std::array<scene::PoseKey, 2>> driven;  // obstacles, and their last way
+  std::map<std::size_t, std::array<scene::PoseKey, 2>> driven;  // obstacles, with their keys over the last frame
 };
 
 Simulation::Impl::Impl(const scene::Scene& s)
@@ -135,10 +136,10 @@ Simulation::Impl::Impl(const scene::Scene& s)
       layers(scene::list_layers(scene)),
       frame(-scene.preroll_frames()),
       snapshots(scene, environment) {
-  note_layers(scene, layers, environment);
-  // What is put on later stands in the way of nothing before, but a body that goes through it is told of now.
+  set_put_on_times(scene, layers, environment);
+  // A later layer obstructs no earlier one, but a body that crosses it is reported now.
   for (std::size_t later = 1; later < layers.size(); ++later) {
-    DressedPart alone(scene, environment, layers[later].cloths);
+    DressedScene alone(scene, environment, layers[later].cloths);
     StepLoop trial(alone.scene, alone.environment, time());
     trial.untangle();
     check_start(alone.scene, trial);
@@ -155,21 +156,22 @@ Simulation::Impl::Impl(const scene::Scene& s)
   for (const std::string& text : find_jumps(scene, environment)) log::warn(text);
 }
 
-// Makes the steps of all cloths up to this layer, as they start.
+// Makes the step loop of all cloths up to this layer, with these at their start.
 void Simulation::Impl::begin_layer(std::size_t number) {
   layer = number;
-  part = all_dressed() ? nullptr : std::make_unique<DressedPart>(scene, environment, layers[layer].dressed);
-  steps = std::make_unique<StepLoop>(part ? part->scene : scene, part ? part->environment : environment, time());
+  dressed_scene = all_dressed() ? nullptr : std::make_unique<DressedScene>(scene, environment, layers[layer].dressed);
+  steps = std::make_unique<StepLoop>(dressed_scene ? dressed_scene->scene : scene,
+                                     dressed_scene ? dressed_scene->environment : environment, time());
 }
 
-// Puts on the cloths whose time has come, outside of those that are dressed.
+// Puts on the cloths whose time has come, outside of those that are already dressed.
 void Simulation::Impl::put_on_next() {
   while (!all_dressed() && layers[layer + 1].first_frame <= frame) {
-    const std::unique_ptr<DressedPart> inner_part = std::move(part);  // which the steps below view
+    const std::unique_ptr<DressedScene> inner_scene = std::move(dressed_scene);  // the step loop refers to it
     const std::unique_ptr<StepLoop> inner = std::move(steps);
     begin_layer(layer + 1);
     const std::vector<std::size_t>&now = layers[layer].dressed, &before = layers[layer - 1].dressed;
-    std::vector<std::size_t> numbers;  // of what is dressed, among all that is now
+    std::vector<std::size_t> numbers;  // number of each cloth dressed before, among those dressed now
     for (const std::size_t c : before)
       numbers.push_back(static_cast<std::size_t>(std::ranges::find(now, c) - now.begin()));
     steps->take_over(*inner, numbers);
@@ -177,9 +179,9 @@ void Simulation::Impl::put_on_next() {
   }
 }
 
-// Throws Error(scene_invalid) where the cloths cannot start so.
+// Prepares the start of the dressed cloths. Throws Error(scene_invalid) if surfaces still touch or cross.
 void Simulation::Impl::make_start() {
-  const scene::Scene& dressed = part ? part->scene : scene;
+  const scene::Scene& dressed = dressed_scene ? dressed_scene->scene : scene;
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)
     log::info(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));
   if (untangles(dressed)) steps->untangle();
@@ -190,7 +192,7 @@ FrameReport Simulation::Impl::advance() {
   if (!all_dressed()) put_on_next();
   FrameReport report;
   report.frame = frame + 1;
-  // Frame k is at k / fps exactly, whatever the steps between.
+  // Frame k is at exactly k / fps, whatever the steps in between.
   report.time = report.frame / scene.time.fps;
   {
     const Stopwatch watch(report.simulate);
@@ -260,7 +262,7 @@ frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
   return snapshots.make(frame, time(), environment, now.particles(), std::move(heat), std::move(moved));
 }
 
-// [m]; what is not put on is where it starts.
+// Positions of the particles of all cloths [m]; a cloth that is not put on is at its start.
 std::vector<Vec3> Simulation::Impl::particles_of_all() const {
   std::vector<Vec3> all;
   const std::vector<std::size_t>& dressed = layers[layer].dressed;
@@ -282,22 +284,22 @@ void Simulation::Impl::drive(std::size_t obstacle, const scene::Pose& end) {
 }
 
 void Simulation::Impl::set_motion(std::size_t obstacle) {
-  const auto& way = driven.at(obstacle);
-  const scene::PoseTrack motion{scene::Interpolation::linear, {way.begin(), way.end()}};
+  const auto& keys = driven.at(obstacle);
+  const scene::PoseTrack motion{scene::Interpolation::linear, {keys.begin(), keys.end()}};
   environment.set_motion(obstacle, motion);
-  if (part) part->environment.set_motion(obstacle, motion);
+  if (dressed_scene) dressed_scene->environment.set_motion(obstacle, motion);
 }
 
 template <class Archive>
 void Simulation::Impl::serialize(Archive& archive) {
-  for (auto& [obstacle, way] : driven) {
-    for (scene::PoseKey& key : way) {
+  for (auto& [obstacle, keys] : driven) {
+    for (scene::PoseKey& key : keys) {
       serialize_values(archive, key.time);
       archive.raw(key.pose.position.data(), 3 * sizeof(double));
       archive.raw(key.pose.rotation.coeffs().data(), 4 * sizeof(double));
     }
     if constexpr (Archive::kReads) {
-      require(way[0].time < way[1].time, "a way forward in time");
+      require(keys[0].time < keys[1].time, "a way forward in time");
       set_motion(obstacle);
     }
   }
@@ -305,7 +307,7 @@ void Simulation::Impl::serialize(Archive& archive) {
   std::uint64_t last = layer;
   archive.value(last);
   if constexpr (Archive::kReads) {
-    require(frame >= -scene.preroll_frames() && frame < kMostFrames, "a frame of the scene");
+    require(frame >= -scene.preroll_frames() && frame < kMaxFrames, "a frame of the scene");
     require(last < layers.size(), "a layer of the scene");
     if (last != layer) begin_layer(last);
   }
@@ -324,10 +326,10 @@ StartView view_start(const scene::Scene& scene) {
   for (const environment::ClothObject& cloth : environment.cloths)
     particles.insert(particles.end(), cloth.start.begin(), cloth.start.end());
   view.snapshot = SnapshotMaker(scene, environment).make(frame, time, environment, particles, {});
-  // Layers are put on one after the other.
+  // Layers are put on one after the other, so each one is checked alone.
   for (const scene::Layer& layer : scene::list_layers(scene)) {
-    const DressedPart part(scene, environment, layer.cloths);
-    StepLoop steps(part.scene, part.environment, time);
+    const DressedScene dressed_scene(scene, environment, layer.cloths);
+    StepLoop steps(dressed_scene.scene, dressed_scene.environment, time);
     const std::vector<MeetingPlace> places = steps.find_meetings();
     view.places.insert(view.places.end(), places.begin(), places.end());
   }

@@ -1,4 +1,4 @@
-// A scene from frame to frame: snapshots, reports, and states to go on from.
+// Simulates a scene frame by frame: snapshots, reports, and saved states.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct ParticleState {
   std::span<const double> masses;               ///< [kg]
 };
 
-/// What a frame shows of a cloth besides its positions; empty until the cloth is put on.
+/// Velocities and strains of a cloth in a frame; empty until the cloth is put on.
 struct ClothMotion {
   std::span<const Vec3> velocities;  ///< per particle [m/s]
   std::vector<float> strains;        ///< per particle: largest relative change of length of the threads next to it
@@ -40,80 +40,80 @@ struct PlanItem {
   std::string reason;
 };
 
-/// What a simulation of this scene is put together from; builds nothing, and reads no file but those of characters,
-/// whose memory is known from them alone. Throws Error(asset_unreadable, scene_invalid) where they cannot be used.
+/// Lists the parts of which a simulation of this scene consists, without building it. Reads only the files of
+/// characters (size of key frames), meshes and fitted patterns (rest shapes). Throws Error(asset_unreadable,
+/// scene_invalid) if they cannot be used.
 std::vector<PlanItem> plan(const scene::Scene& scene);
 
-/// What may well end a run of this scene or is hardly meant, a sentence each: `weft check` says it beforehand. Throws
-/// as Simulation's constructor does, for scenes with pins that move by keys.
+/// Warnings of `weft check`, one text each: settings that may end a run, or that the author hardly intends. If the
+/// scene has moving pins, throws as Simulation's constructor does.
 std::vector<std::string> doubts(const scene::Scene& scene);
 
-/// Where two objects, or one and itself, touch or cross at the start.
+/// A place where two objects, or one object and itself, touch or cross at the start.
 struct MeetingPlace {
   std::string a, b;                            ///< the objects
-  std::size_t pairs = 0;                       ///< of triangles
+  std::size_t pairs = 0;                       ///< number of pairs of triangles
   Vec3 centre = Vec3::Zero();                  ///< [m]
-  double size = 0;                             ///< longest side of the box around it [m]
-  std::vector<std::array<Vec3, 3>> triangles;  ///< that meet there [m]
+  double size = 0;                             ///< longest side of the bounding box [m]
+  std::vector<std::array<Vec3, 3>> triangles;  ///< those that meet there [m]
 };
 
-/// How a scene starts, before its preroll, also where that would be refused.
+/// The start of a scene before its preroll, even if a run from it would be refused.
 struct StartView {
   frame::SnapshotPtr snapshot;
-  std::vector<MeetingPlace> places;  ///< of most pairs first; empty where a run may begin
-  std::string description;           ///< of the places, for a message; empty likewise
+  std::vector<MeetingPlace> places;  ///< largest number of pairs first; empty if a run may begin
+  std::string description;           ///< describes the places, for a message; empty if there are none
 };
 
-/// The start as the scene gives it: nothing is untangled, and layers do not meet each other. Throws
+/// Makes the start as the scene gives it, without untangling; layers are not checked against each other. Throws
 /// Error(asset_unreadable, scene_invalid).
 StartView view_start(const scene::Scene& scene);
 
-/// What the matrix of one iteration of Newton's method holds, contacts not counted.
+/// Size of the matrix of one Newton iteration, without contacts.
 struct MatrixSize {
-  std::size_t full_blocks = 0;       ///< 3×3, diagonal included
-  std::size_t isotropic_blocks = 0;  ///< multiples of the unit matrix, one number each
+  std::size_t full_blocks = 0;       ///< 3×3 blocks, diagonal included
+  std::size_t isotropic_blocks = 0;  ///< multiples of the identity, one number each
 };
 
 class Simulation {
  public:
-  /// Builds only what the scene names. Throws Error (asset_unreadable, scene_invalid).
+  /// Builds only what the scene needs. Throws Error(asset_unreadable, scene_invalid).
   explicit Simulation(const scene::Scene& scene);
   ~Simulation();
 
-  /// The current frame; frame 0 after construction.
+  /// The current frame. After construction: frame 0, or the first frame of the preroll (with a negative number).
   frame::SnapshotPtr snapshot() const;
 
-  /// Goes on to the next frame. Throws Error(simulation_failed) with a named reason if it cannot; the state is then
-  /// still that of the last good frame.
+  /// Simulates the next frame. If that fails, keeps the last good frame and throws Error(simulation_failed) with the
+  /// reason.
   FrameReport advance();
 
   /// The report of frame 0: energies and distances of the start.
   FrameReport initial_report() const;
 
-  /// Simulates time.preroll up to frame 0; without it advance() begins there. `proceed` is asked before each frame of
-  /// it. Returns false where it said no: then there is no frame yet. Throws as advance() does.
+  /// Simulates time.preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before
+  /// each frame, and returns false as soon as that does: frame 0 is then not reached. Throws as advance() does.
   bool run_preroll(const std::function<bool()>& proceed = [] { return true; });
   std::vector<ObjectInfo> objects() const;
   std::size_t particles() const;
   MatrixSize matrix() const;
-  /// Of the current frame, and of cloths that are put on by then; valid until the next advance().
+  /// State of the current frame, for the cloths that are put on; valid until the next advance().
   ParticleState state() const;
-  /// Of a cloth of the scene, by number; valid until the next advance().
+  /// `cloth`: number in the scene. The result is valid until the next advance().
   ClothMotion motion_of(std::size_t cloth) const;
-  /// Per cloth of the scene and particle, of all that it touches, at the end of the last step [N]; empty until the
-  /// cloth is put on.
+  /// Total contact force on each particle [N] at the end of the last step, per cloth; empty until the cloth is put on.
   std::vector<std::vector<Vec3>> contact_forces() const;
 
-  /// In the next frame the obstacle, by its number in the scene, goes to `end` at constant velocity and stays there,
-  /// whatever the scene says of its motion. Only for an obstacle that has two keys or more.
+  /// Moves an obstacle (number in the scene) to `end` at constant velocity during the next frame, whatever the scene
+  /// says of its motion; it then stays there. The obstacle must have two keys or more.
   void drive(std::size_t obstacle, const scene::Pose& end);
 
-  /// Appends all that later frames depend on, in a form for machines of one kind and one version of the program. Not
-  /// after a failed advance().
+  /// Appends everything that later frames depend on. Only machines of one kind and one version of the program can read
+  /// it. Not allowed after a failed advance().
   void save(std::string& bytes) const;
-  /// Goes on from what a simulation of the same scene has saved: what follows has the same bits. Before it, each
-  /// obstacle that was driven must be driven once, to anywhere. Only before the first advance(). Throws
-  /// std::runtime_error where the bytes are none of this scene; the simulation is then of no use.
+  /// Restores what a simulation of the same scene has saved; the frames that follow have the same bits. Only allowed
+  /// before the first advance(). Before, call drive() once, to any pose, for each obstacle that was driven. Throws
+  /// std::runtime_error if the bytes do not fit this scene; the simulation is then unusable.
   void restore(std::string_view bytes);
 
  private:

@@ -21,13 +21,13 @@ namespace {
 using CameraValue = environment::Spline<7>::Value;
 using LightValue = environment::Spline<10>::Value;
 
-// Bodies of characters are round: what is modelled with few faces is drawn smooth up to this angle [degrees].
+// Characters are round: faces that meet below this angle are shaded smoothly [degrees].
 constexpr double kCharacterCrease = 80;
 
-// A camera of a file that is tilted by less stands level but for rounding [degrees].
-constexpr double kLeastRoll = 0.1;
+// Largest roll of a camera in a file that counts as rounding [degrees].
+constexpr double kMinRoll = 0.1;
 
-// How much paler the back of a cloth is than its front where the scene does not say.
+// Default paleness of the back of a cloth: fraction of the way from the front's colour to white.
 constexpr double kBackPaleness = 0.35;
 
 frame::Appearance appearance(const scene::Look& look) {
@@ -43,20 +43,20 @@ frame::Appearance appearance(const scene::Look& look) {
   return result;
 }
 
-/// Widths of hems where the scene does not say [m].
+/// Default widths of hems: of garments and of other cloth [m].
 constexpr double kGarmentHem = 0.015, kHem = 0.010;
-// Of fabrics without a name, as estimated of the others: thickness for a weight [m for kg/m²].
-constexpr double kThicknessByWeight = 2.2e-3;
-// Length in which a strand of a rope goes around once, in diameters; ropes thinner than this [m] are drawn smooth,
-// since strands finer than pixels flicker.
-constexpr double kLay = 3.2, kLeastTwisted = 0.009;
+// Thickness per density of fabrics without a name, estimated from the named ones [m per kg/m²].
+constexpr double kThicknessPerDensity = 2.2e-3;
+// Turn of a strand in a rope, in diameters. Smallest diameter with strands [m]: those finer than pixels flicker.
+constexpr double kStrandTurnLength = 3.2, kMinTwistedDiameter = 0.009;
 
-/// With the finish of the fabric where the scene leaves it open.
+/// The look of a cloth. Values that the scene does not set come from the finish of its fabric.
 scene::Look look_of(const scene::Cloth& cloth) {
   scene::Look look = cloth.look;
   if (cloth.rope) {
     look.cloth_thickness = cloth.rope->diameter;
-    look.thread_spacing = look.strands && cloth.rope->diameter >= kLeastTwisted ? kLay * cloth.rope->diameter : 0;
+    look.thread_spacing =
+        look.strands && cloth.rope->diameter >= kMinTwistedDiameter ? kStrandTurnLength * cloth.rope->diameter : 0;
     return look;
   }
   const scene::Fabric* fabric = scene::find_fabric(cloth.material.fabric);
@@ -66,14 +66,14 @@ scene::Look look_of(const scene::Cloth& cloth) {
   look.sheer = look.sheer.value_or(finish.sheer);
   look.warp_share = finish.warp_share;
   look.threads = finish.threads;
-  look.cloth_thickness = fabric ? fabric->measured.thickness.value : kThicknessByWeight * cloth.material.density;
+  look.cloth_thickness = fabric ? fabric->measured.thickness.value : kThicknessPerDensity * cloth.material.density;
   const double hem = cloth.shape == scene::ClothShape::pattern ? kGarmentHem : kHem;
   look.hem = look.hem.value_or(!fabric || fabric->frays ? hem : 0);
   return look;
 }
 
-/// Lays a picture along weft and warp, or leaves colours alone.
-void lay_on(frame::Appearance& look, const scene::Paint& paint, Pictures& pictures) {
+/// Sets the colours of a look and, if there is a picture, lays it along weft and warp.
+void apply_paint(frame::Appearance& look, const scene::Paint& paint, Pictures& pictures) {
   look.color = paint.color;
   look.back_color = paint.back_color.value_or(paint.color + kBackPaleness * (Vec3::Ones() - paint.color));
   look.back_painted = !paint.back_color;
@@ -90,9 +90,9 @@ void lay_on(frame::Appearance& look, const scene::Paint& paint, Pictures& pictur
   if (paint.cutout) look.color.setOnes();
 }
 
-/// Leaves a picture without holes on a floor, and the mean of its light as the colour: of what the floor sends to
-/// others.
-void fill(frame::Appearance& look) {
+/// Makes the picture on a floor opaque, and sets the floor's colour to the mean light of the picture: the light that
+/// the floor reflects to other objects.
+void make_opaque(frame::Appearance& look) {
   auto filled = std::make_shared<frame::Texture>(*look.paint.texture);
   const Vec3 below = image::linear_from_srgb(look.color);
   Vec3 sum = Vec3::Zero();
@@ -110,27 +110,27 @@ void fill(frame::Appearance& look) {
   look.color = image::srgb_from_linear(Vec3(sum * 4 / static_cast<double>(look.paint.texture->rgba.size())));
 }
 
-void dress(frame::Surface& surface, const scene::Look& look, Pictures& pictures) {
+void apply_look(frame::Surface& surface, const scene::Look& look, Pictures& pictures) {
   surface.visible = look.visible;
   surface.appearance = appearance(look);
-  lay_on(surface.appearance, look, pictures);
+  apply_paint(surface.appearance, look, pictures);
   if (surface.kind != frame::ObjectKind::cloth && surface.kind != frame::ObjectKind::rope)
     surface.appearance.thread_spacing = 0;
-  // Places of pictures on obstacles are measured in pictures.
+  // On obstacles, texture coordinates are in units of the picture.
   if (surface.kind == frame::ObjectKind::obstacle) {
     surface.appearance.paint.texture_from_uv.setIdentity();
     surface.appearance.coat = look.gloss.value_or(0);
   }
-  if (surface.infinite_floor && look.image) fill(surface.appearance);
-  // What a character's file says is in its parts already.
+  if (surface.infinite_floor && look.image) make_opaque(surface.appearance);
+  // The parts already have the materials of the character's file.
   if (surface.kind == frame::ObjectKind::character && look.as_file) return;
   for (frame::SurfacePart& part : surface.parts) {
     const frame::Paint figure = part.appearance.paint;
     part.appearance = surface.appearance;
-    // The mannequin's hair, face and shoes lie over whatever colour it has.
+    // The mannequin's hair, face and shoes are painted over any colour.
     if (surface.kind == frame::ObjectKind::character) part.appearance.paint = figure;
     for (const scene::PanelPaint& panel : look.panels)
-      if (panel.name == part.name) lay_on(part.appearance, panel, pictures);
+      if (panel.name == part.name) apply_paint(part.appearance, panel, pictures);
   }
 }
 
@@ -152,7 +152,7 @@ std::shared_ptr<frame::Surface> make_cloth_surface(const environment::ClothObjec
   for (const std::string& panel : cloth.panels) surface->parts.push_back({panel, {}});
   surface->part_of_triangle = cloth.panel_of;
   surface->paint_uv = cloth.paint_uv;
-  dress(*surface, look, pictures);
+  apply_look(*surface, look, pictures);
   return surface;
 }
 
@@ -160,7 +160,7 @@ std::shared_ptr<const frame::Texture> texture_of(image::Picture picture) {
   return std::make_shared<const frame::Texture>(frame::Texture{picture.width, picture.height, std::move(picture.rgba)});
 }
 
-/// A material of a file. A picture that cannot be decoded is left out with a warning.
+/// Surface part with a material of a file. Warns if a picture cannot be decoded, and leaves it out.
 frame::SurfacePart part_of(const character::Material& material, const std::string& body) {
   frame::SurfacePart part{material.name, {}};
   part.appearance.color = part.appearance.back_color = image::srgb_from_linear(material.color);
@@ -201,11 +201,11 @@ std::shared_ptr<frame::Surface> make_body_surface(const environment::BodyObject&
     surface->part_of_triangle = body.coloring->material_of_triangle;
     surface->paint_uv = body.coloring->uv;
   }
-  dress(*surface, look, pictures);
+  apply_look(*surface, look, pictures);
   return surface;
 }
 
-/// Where the picture of an obstacle lies, which has one.
+/// Where the picture of an obstacle lies; the obstacle must have one.
 environment::PicturePlaces places_of(const scene::Scene& scene, const scene::Obstacle& obstacle, Pictures& pictures) {
   std::optional<Vec2> tile;
   if (obstacle.look.tile_width) {
@@ -245,19 +245,19 @@ Box3 box_around(std::span<const Vec3> positions) {
   return box;
 }
 
-/// Of a body, from time 0 on.
+/// Bounding box of a body from time 0 on.
 Box3 bounds_over_run(const environment::Environment& environment, std::size_t body, double duration) {
-  constexpr int kMoments = 100;
+  constexpr int kSamples = 100;
   std::vector<Vec3> positions(environment.bodies[body].mesh.positions.size());
   Box3 bounds;
-  for (int k = 0; k <= (environment.bodies[body].moving ? kMoments : 0); ++k) {
-    environment.place(body, duration * k / kMoments, positions);
+  for (int k = 0; k <= (environment.bodies[body].moving ? kSamples : 0); ++k) {
+    environment.place(body, duration * k / kSamples, positions);
     bounds.extend(box_around(positions));
   }
   return bounds;
 }
 
-/// Height of the sensor of a camera that has a focal length [mm], else 0. Its width lies along the longer side.
+/// Sensor height of a camera with a focal length [mm], else 0. The sensor's width lies along the longer side.
 double sensor_height(const scene::Camera& camera, const scene::Render& render) {
   if (!scene::has_focal_length(camera)) return 0;
   return camera.sensor_width * std::min(1.0, static_cast<double>(render.height) / render.width);
@@ -274,21 +274,22 @@ environment::Spline<7> camera_track(const scene::Camera& camera) {
   return {camera.interpolation, std::move(times), std::move(values)};
 }
 
-// Of a file, in which y is up and the front toward z.
+// Track of a camera from a file, where y is up and the front faces z.
 environment::Spline<7> camera_track(const scene::Scene& scene, const scene::Camera& camera) {
   const std::string where =
       fmt::format("{}:{}:{}: camera.{}", scene.file.string(), camera.line, camera.column, camera.name);
   const assets::LoadedCamera loaded = assets::load_camera(camera.file, camera.object, where);
-  if (loaded.roll > kLeastRoll)
+  if (loaded.roll > kMinRoll)
     log::warn(fmt::format("{}: it is tilted to a side by up to {:.2g} degrees, which is left out", where, loaded.roll));
   const auto turned = [&](const Vec3& x) { return scene.up == scene::UpAxis::z ? Vec3(x.x(), -x.z(), x.y()) : x; };
-  const double ahead = camera.focus > 0 ? camera.focus : 1;  // [m], of the target
+  const double target_distance = camera.focus > 0 ? camera.focus : 1;  // distance of the target [m]
   std::vector<double> times;
   std::vector<CameraValue> values;
   for (std::size_t i = 0; i < loaded.times.size(); ++i) {
     const Vec3 eye = camera.scale * turned(loaded.positions[i]);
     times.push_back(camera.start + loaded.times[i]);
-    values.push_back((CameraValue() << eye, eye + ahead * turned(loaded.forward[i]), loaded.field_of_view).finished());
+    values.push_back(
+        (CameraValue() << eye, eye + target_distance * turned(loaded.forward[i]), loaded.field_of_view).finished());
   }
   return {scene::Interpolation::linear, std::move(times), std::move(values)};
 }
@@ -337,9 +338,9 @@ Looks::Looks(const scene::Scene& scene, const environment::Environment* environm
                                                                     : camera_track(camera));
     orbits_.push_back(camera.orbit);
     sensor_heights_.push_back(sensor_height(camera, scene.render));
-    // The renderer takes all films for 24 mm high: it gets the number that has the same opening there.
-    constexpr double kFilm = 24;  // [mm]
-    if (sensor_heights_.back() > 0) cameras_.back().aperture *= kFilm / sensor_heights_.back();
+    // The renderer assumes a film 24 mm high: scale the f-number so that the aperture has the same diameter there.
+    constexpr double kFilmHeight = 24;  // [mm]
+    if (sensor_heights_.back() > 0) cameras_.back().aperture *= kFilmHeight / sensor_heights_.back();
   }
   for (const scene::Light& light : scene.lights) {
     frame::Light result;
@@ -404,7 +405,7 @@ frame::SnapshotPtr Looks::put_on(const frame::FrameSnapshot& snapshot) {
 
 std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surface) {
   auto copy = std::make_shared<frame::Surface>(surface);
-  dress(*copy, looks_.at(surface.name), pictures_);
+  apply_look(*copy, looks_.at(surface.name), pictures_);
   place_picture(*copy);
   return copy;
 }

@@ -1,4 +1,4 @@
-// From the environment to what a frame shows.
+// Makes what frames show from the environment and the state of the particles.
 #pragma once
 
 #include <filesystem>
@@ -18,27 +18,27 @@
 
 namespace weft::simulation {
 
-/// Pictures of files, each decoded once.
+/// Textures from picture files, each decoded once.
 class Pictures {
  public:
-  /// Throws Error(scene_invalid) where the file cannot be read any more: scenes are checked for that.
+  /// Throws Error(scene_invalid) if the file can no longer be read; scenes are checked for that when they are read.
   std::shared_ptr<const frame::Texture> of_file(const std::filesystem::path& file);
 
  private:
   std::map<std::filesystem::path, std::shared_ptr<const frame::Texture>> known_;
 };
 
-/// What of a scene is drawn and not simulated: colours, surroundings, cameras and lights.
+/// What is drawn of a scene but not simulated: colours, surroundings, cameras and lights.
 class Looks {
  public:
-  /// `environment`: of the scene; null: made where a camera follows something.
+  /// `environment`: that of the scene. If it is null and a camera follows something, the environment is made here.
   explicit Looks(const scene::Scene& scene, const environment::Environment* environment = nullptr);
 
-  /// The same frame with these looks; it is of a scene that has the same objects.
+  /// A copy of the snapshot with these looks. The snapshot must have the same objects as the scene.
   frame::SnapshotPtr put_on(const frame::FrameSnapshot& snapshot);
-  /// Stage, cameras and lights; of a frame that has its positions.
+  /// Sets stage, cameras and lights of a snapshot whose positions are set.
   void surround(frame::FrameSnapshot& snapshot) const;
-  /// Where the picture of an obstacle lies; leaves all else.
+  /// Sets where the picture of an obstacle lies, and nothing else.
   void place_picture(frame::Surface& surface) const;
 
  private:
@@ -46,28 +46,29 @@ class Looks {
   std::vector<frame::Camera> cameras_at(double time) const;
   std::vector<frame::Light> lights_at(double time) const;
 
-  std::map<std::string, scene::Look> looks_;                          // by the name of the object
-  std::map<std::string, environment::PicturePlaces> picture_places_;  // of obstacles that have one, likewise
+  std::map<std::string, scene::Look> looks_;                          // by name of the object
+  std::map<std::string, environment::PicturePlaces> picture_places_;  // of obstacles with a picture, by name
   Pictures pictures_;
   std::shared_ptr<const frame::Stage> stage_;
-  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;  // dressed for the first snapshot, shared by the others
+  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;  // made for the first snapshot, shared by the others
   std::vector<frame::Camera> cameras_;
   std::vector<frame::Light> lights_;
-  // Through their keys: position, target, field of view or focal length [mm]; direction, position, target, intensity.
+  // Camera keys: position, target, field of view [degrees] or focal length [mm]. Light keys: direction, position,
+  // target, intensity.
   std::vector<environment::Spline<7>> camera_tracks_;
   std::vector<environment::Spline<10>> light_tracks_;
   std::vector<double> orbits_;          // of the cameras [degrees/s]
-  std::vector<double> sensor_heights_;  // likewise [mm]; 0: they have a field of view
+  std::vector<double> sensor_heights_;  // of the cameras [mm]; 0 for cameras with a field of view
   std::optional<CameraMounts> mounts_;
 };
 
-/// Makes the snapshots of a run; what stays the same over the run is made once and shared.
+/// Makes the snapshots of a run. Makes what stays the same over the run once, and shares it.
 class SnapshotMaker {
  public:
   SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// `particles`: of all cloths [m]; `heat`: one list per cloth, empty where none is asked for; `moved`: vertices of
-  /// each body that forces have moved, empty for those that are where their keys have them [m].
+  /// `particles`: of all cloths [m]; `heat`: one list per cloth, or none; `moved`: vertices of each body that forces
+  /// have moved [m], empty for bodies that are where their keys place them.
   frame::SnapshotPtr make(int frame, double time, const environment::Environment& environment,
                           std::span<const Vec3> particles, std::vector<std::vector<float>> heat,
                           std::vector<std::vector<Vec3>> moved = {}) const;

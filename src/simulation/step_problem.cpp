@@ -21,24 +21,24 @@ StepProblem::StepProblem(ClothSystem& cloth) : cloth_(cloth) {
   memory_.assembly = solver::Assembly(memory_.system.matrix);
   memory_.v.resize(masses().size());
   memory_.force.resize(masses().size());
-  chosen_.resize(cloth.parts());
-  forget();
+  is_active_.resize(cloth.parts());
+  reset_memory();
 }
 
-// A step depends on where it starts alone, so that equal steps have the same bits in frames of any length.
-void StepProblem::forget() {
+// A step depends only on the state at its start, so that equal steps have the same bits in frames of any length.
+void StepProblem::reset_memory() {
   memory_.linearised_at.clear();
-  const double nowhere = std::numeric_limits<double>::quiet_NaN();  // equals nothing
+  const double nowhere = std::numeric_limits<double>::quiet_NaN();  // unequal to any number
   memory_.x.assign(masses().size(), solver::quad_of(nowhere, nowhere, nowhere));
 }
 
 void StepProblem::begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
                              std::span<const Pull> pulls) {
   pulls_ = pulls;
-  forget();
+  reset_memory();
   cloth_.sew(t);
   cloth_.inflate(t, x);
-  if (cloth_.hold(pinned)) memory_.rate = 0;  // what the matrix begins with has changed
+  if (cloth_.hold(pinned)) memory_.rate = 0;  // the constant part of the matrix has changed
   memory_.contacts = {};
   cloth_.begin_locks(x, memory_.locks);
 }
@@ -57,7 +57,7 @@ void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force
   });
 }
 
-// Positions, or velocities, with those of the vertices of bodies behind them.
+// Positions or velocities of the particles, followed by those of the vertices of bodies.
 std::vector<Vec3> StepProblem::with_vertices(std::span<const Vec3> of_particles) const {
   std::vector<Vec3> of_all(static_cast<std::size_t>(vertices_->end()));
   std::ranges::copy(of_particles.first(masses().size()), of_all.begin());
@@ -65,7 +65,7 @@ std::vector<Vec3> StepProblem::with_vertices(std::span<const Vec3> of_particles)
   return of_all;
 }
 
-// Calls add(x, force) for all that contacts know, and passes on to the frames of bodies what their vertices get.
+// Calls add(x, force) for particles and vertices, and passes forces on vertices on to the frames of their bodies.
 template <class Add>
 void StepProblem::add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3> force, const Add& add) {
   if (vertices_ == nullptr) return add(x_end, force);
@@ -91,9 +91,9 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   use_rate(at.rate);
   const bool all = memory_.linearised_at.empty();
   if (all) memory_.linearised_at.assign(at.x.begin(), at.x.end());
-  for (std::size_t c = 0; c < cloth_.parts(); ++c) chosen_[c] = all || is_stale(c, at.x);
+  for (std::size_t c = 0; c < cloth_.parts(); ++c) is_active_[c] = all || is_stale(c, at.x);
   if (!memory_.locks.empty()) cloth_.update_locks(at.x, iteration == 0, memory_.locks);
-  put_together(at, iteration);
+  assemble_rows(at, iteration);
   add_cloth_forces(at, force);
   if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
   cloth_.inflation().linearise(at.x, force, system);
@@ -162,7 +162,7 @@ void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> fo
 }
 
 void StepProblem::add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
-  parallel_for(cloth_.parts(), 1, [&](std::size_t c, std::size_t) { chosen_[c] = move_to(c, at); });
+  parallel_for(cloth_.parts(), 1, [&](std::size_t c, std::size_t) { is_active_[c] = update_positions(c, at); });
   evaluate(at, false);
   parallel_for(force.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) force[i] += solver::vec3_of(memory_.force[i]);
@@ -176,8 +176,8 @@ void StepProblem::use_rate(double rate) {
   memory_.rate = rate;
 }
 
-// Whether the forces within a cloth are not those that were evaluated last.
-bool StepProblem::move_to(std::size_t cloth, const integrator::StagePoint& at) {
+// Updates the remembered positions and velocities of a part. Returns whether any of them has changed.
+bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoint& at) {
   const solver::Part& part = memory_.system.parts[cloth];
   return parallel_sum(size_of(part), kGrainSize, [&](std::size_t begin, std::size_t end) {
            bool moved = false;
@@ -193,12 +193,12 @@ bool StepProblem::move_to(std::size_t cloth, const integrator::StagePoint& at) {
          }) > 0;
 }
 
-// Evaluates the forces within the chosen cloths where they are now; with what the matrix is written from, or without.
+// Evaluates forces within the active parts at the remembered positions; with `assemble`, also their matrix rows.
 void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int iteration) {
   const auto ranges = cloth_.ranges();
   parallel_for(ranges.size(), 1, [&](std::size_t r, std::size_t) {
     const auto& [cloth, begin, end, number] = ranges[r];
-    if (!chosen_[cloth]) return;
+    if (!is_active_[cloth]) return;
     forces::Evaluation evaluation{memory_.x, memory_.v, forces::ForceRows(memory_.force, begin, end)};
     evaluation.rate = at.rate;
     evaluation.past = at.past;
@@ -216,7 +216,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
   });
 }
 
-// Whether a cloth has moved too far from where its rows of the matrix were put together.
+// Whether a part has moved too far from where its rows of the matrix were assembled.
 bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   const solver::Part& part = memory_.system.parts[cloth];
   const double most = part.is_small ? 0 : numerics.newton.stale_motion * cloth_.spacing();
@@ -225,18 +225,18 @@ bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   return false;
 }
 
-// Puts the rows of the chosen cloths together anew.
-void StepProblem::put_together(const integrator::StagePoint& at, int iteration) {
+// Assembles the rows of the active parts anew.
+void StepProblem::assemble_rows(const integrator::StagePoint& at, int iteration) {
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
-    if (!chosen_[c]) continue;
+    if (!is_active_[c]) continue;
     solver::Part& part = memory_.system.parts[c];
     std::copy_n(at.x.begin() + part.begin, part.end - part.begin, memory_.linearised_at.begin() + part.begin);
-    move_to(c, at);
+    update_positions(c, at);
     ++part.version;
   }
   evaluate(at, true, iteration);
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
-    if (!chosen_[c]) continue;
+    if (!is_active_[c]) continue;
     const solver::Part& part = memory_.system.parts[c];
     parallel_for(size_of(part), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
       memory_.assembly.write_rows(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end),

@@ -1,4 +1,4 @@
-// The equation of one step as the integrator sees it: cloth, what it meets, and what is remembered between evaluations.
+// The equation of one step as the integrator sees it: forces of cloth, contacts and attachments, and their memory.
 #pragma once
 
 #include <algorithm>
@@ -14,62 +14,62 @@
 
 namespace weft::simulation {
 
-/// All that evaluations leave behind for those that follow: with the same of it the same arguments give the same bits.
+/// What evaluations keep for later ones. Evaluations with equal memory and equal arguments give the same bits.
 struct SolveMemory {
-  // Changed by linearisations. Cloth at rest does with the rows of the matrix that it has.
+  // Changed by linearisations. Cloth at rest keeps its rows of the matrix.
   solver::LinearSystem system;
-  solver::Assembly assembly;        ///< what its matrix is written from
-  double rate = 0;                  ///< of both [1/s]; 0: of none
-  std::vector<Vec3> linearised_at;  ///< where each cloth's rows were put together; empty: nowhere
+  solver::Assembly assembly;        ///< from which the matrix is written
+  double rate = 0;                  ///< of system and assembly [1/s]; 0: not set
+  std::vector<Vec3> linearised_at;  ///< positions where each cloth's rows were assembled; empty: not assembled
   collision::ContactLag contacts;
-  ClothSystem::LockLags locks;  ///< none before the first step
+  ClothSystem::LockLags locks;  ///< empty before the first step
 
-  // Saves time only. Of the forces within the cloths: most cloths of a scene are solved, and do not move, while one
-  // goes on.
+  // Internal forces of cloths, kept to save time: most cloths of a scene stop moving in a solve before the last one.
   using Quads = std::vector<solver::Quad<double>>;
-  Quads x, v;   ///< where each cloth's forces were last evaluated; not a number: nowhere
-  Quads force;  ///< what they were [N]
+  Quads x, v;   ///< where each cloth's forces were last evaluated; NaN: nowhere
+  Quads force;  ///< the forces there [N]
 };
 
-/// What draws a particle to a place.
+/// A damped spring that pulls a particle to a point.
 struct Pull {
   Index particle;
-  Vec3 x, v;         ///< the place and its velocity at the end of the step [m], [m/s]
+  Vec3 x, v;         ///< the point and its velocity at the end of the step [m], [m/s]
   double stiffness;  ///< [N/m]
   double damping;    ///< [N·s/m]
 };
 
-/// ClothSystem computes, ContactResponse too; here is what they are given of the past.
+/// Combines ClothSystem, Attachments and ContactResponse, and keeps their memory between evaluations.
 class StepProblem final : public integrator::System {
  public:
   /// The cloth must outlive it.
   explicit StepProblem(ClothSystem& cloth);
 
-  /// What the cloth meets, and the vertices of bodies that forces move, if there are some. Must outlive the steps.
+  /// Sets the contacts, and the vertices of bodies that forces move, if there are any. Both must outlive the steps.
   void use_contacts(const collision::ContactResponse& contacts, const RigidVertices* vertices = nullptr) {
     contacts_ = &contacts;
     vertices_ = vertices;
   }
 
-  /// Springs between cloths and to bodies. Must outlive the steps.
+  /// Sets the springs between cloths and to bodies. They must outlive the steps.
   void use_attachments(const Attachments& attachments) { attachments_ = &attachments; }
 
-  /// Before the first solve of a step that ends at time t [s] of the simulation, with what pins hold until then: sews
-  /// cloth on to there, and friction goes by the loads at the start, threads lock by their tensions there (at x). The
-  /// next linearisation puts the matrix together anew. `pulls` must outlive the step.
+  /// Begins a step that ends at time t [s since the start of the run], before its first solve. `pinned`: particles that
+  /// pins hold until then. Updates rest shapes and enclosed air; starts friction from the normal forces, and thread
+  /// locks from the tensions, at the start x [m]. The next linearisation assembles the matrix anew. `pulls` must
+  /// outlive the step.
   void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
                   std::span<const Pull> pulls = {});
 
-  /// Velocities of the air at all particles for the step that begins [m/s]; without, it is the same everywhere.
+  /// Sets the air velocity at each particle in the step that begins [m/s]. Without it, the air velocity is uniform.
   void blow(SolveMemory::Quads air);
 
-  /// Within a step, where its contacts are others now: their loads are followed for half as many updates as those of
-  /// the first ones, or more if there were less so far.
+  /// Called within a step whose contacts have changed: friction follows the normal forces for numerics.newton.patience
+  /// / 2 more updates, or longer if there were fewer updates so far.
   void forget_contacts() {
     memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.patience / 2)};
   }
 
-  /// Before a step is solved anew: friction goes by the loads of its start, whatever they become.
+  /// Before a step is solved again: friction uses the normal forces at its start, even if they change.
   void keep_loads() { memory_.contacts = {{}, {}, {}, numerics.newton.patience}; }
 
   const SolveMemory& memory() const { return memory_; }
@@ -86,26 +86,26 @@ class StepProblem final : public integrator::System {
   solver::LinearSystem& linear_system() override { return memory_.system; }
 
  private:
-  void forget();
+  void reset_memory();
   void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
-  bool move_to(std::size_t cloth, const integrator::StagePoint& at);
+  bool update_positions(std::size_t cloth, const integrator::StagePoint& at);
   void evaluate(const integrator::StagePoint& at, bool assemble, int iteration = 0);
   void use_rate(double rate);
   bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
   template <class Add>
   void add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3> force, const Add& add);
   std::vector<Vec3> with_vertices(std::span<const Vec3> of_particles) const;
-  void put_together(const integrator::StagePoint& at, int iteration);
+  void assemble_rows(const integrator::StagePoint& at, int iteration);
 
   ClothSystem& cloth_;
-  const collision::ContactResponse* contacts_ = nullptr;  // nullptr where the scene has nothing that meets
-  const RigidVertices* vertices_ = nullptr;               // likewise, of bodies that forces move
+  const collision::ContactResponse* contacts_ = nullptr;  // nullptr if nothing in the scene can collide
+  const RigidVertices* vertices_ = nullptr;               // nullptr if there are none
   const Attachments* attachments_ = nullptr;
   std::span<const Pull> pulls_;
   SolveMemory::Quads air_;
   SolveMemory memory_;
-  std::vector<char> chosen_;  // per cloth: is to be evaluated; scratch
+  std::vector<char> is_active_;  // scratch, per part: whether to evaluate it
 };
 
 }  // namespace weft::simulation

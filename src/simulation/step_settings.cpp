@@ -26,7 +26,7 @@ integrator::NewtonParameters newton_of(const scene::Scene& scene) {
 
 std::optional<integrator::StepControl> step_control_of(const scene::Scene& scene) {
   if (!scene.time.tolerance) return std::nullopt;
-  // The first step is one of Euler's, whose error in free fall is ½ h² g.
+  // The first step is an implicit Euler step, whose error in free fall is ½ h² g.
   const double first = std::sqrt(2 * *scene.time.tolerance / std::max(scene.physics.largest_gravity(), 1.0));
   return integrator::StepControl(method_of(scene.time.integrator), *scene.time.tolerance, first);
 }
@@ -39,10 +39,10 @@ std::vector<Index> first_particles(const ClothSystem& cloth) {
 
 namespace {
 
-// Difference of times that counts as none [s].
+// Times that differ by less count as equal [s].
 constexpr double kSameTime = 1e-9;
 
-// Of the particles of the frame of a body, where its keys have it; with its own velocity and spin if it is free.
+// Velocities of the frame particles of a body where its keys place it; if it is free, with its own velocity and spin.
 std::array<Vec3, mesh::RigidFrame::kParticles> velocities_of_frame(const environment::Environment& environment,
                                                                    std::size_t number, double t, bool is_free) {
   const environment::Dynamics& body = *environment.bodies[number].dynamics;

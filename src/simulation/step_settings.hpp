@@ -1,4 +1,4 @@
-// What the steps of a scene are begun with: method, tolerances, and the state of the cloths.
+// How the steps of a scene begin: method, tolerances, and the state at the start.
 #pragma once
 
 #include <optional>
@@ -15,26 +15,26 @@ namespace weft::simulation {
 
 integrator::Method method_of(scene::Integrator integrator);
 integrator::NewtonParameters newton_of(const scene::Scene& scene);
-/// Of a scene that has a tolerance instead of a step.
+/// None if the scene has a fixed step instead of a tolerance.
 std::optional<integrator::StepControl> step_control_of(const scene::Scene& scene);
 
 /// First particle of each cloth.
 std::vector<Index> first_particles(const ClothSystem& cloth);
 
-/// Where cloths start, as fast as the scene says, at time t [s].
+/// Positions of all particles at the start, and their velocities as the scene gives them, at time t [s].
 Moment start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
                 double t);
 
-/// Appends the frames of bodies that are not yet released at the end t [s] of a step, where keys have them then.
+/// Appends the frame particles of bodies that keys still move at t [s], the end of a step, where the keys place them.
 void hold_frames(const environment::Environment& environment, const ClothSystem& cloth, double t,
                  std::vector<integrator::HeldParticle>& held);
 
-/// Gives frames that are released in the step from t over h [s] the velocities of their keys, and their own. Returns
-/// whether there is one.
+/// Sets the velocities of frames that are released in the step from t to t + h [s] to those of their keys plus the
+/// body's own. Returns whether there are any.
 bool release_frames(const environment::Environment& environment, const ClothSystem& cloth, double t, double h,
                     std::span<Vec3> v);
 
-/// Whether bodies that are not yet released stay where they are between these times [s], and none is released.
+/// Whether no body is released or moved by its keys between t0 and t1 [s], of those not yet released at t0.
 bool frames_stay(const environment::Environment& environment, double t0, double t1);
 
 }  // namespace weft::simulation

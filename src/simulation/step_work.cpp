@@ -7,7 +7,7 @@ namespace {}  // namespace
 
 StepWork measure_work(const integrator::Stepper& stepper, std::span<const integrator::HeldParticle> pinned,
                       std::span<const double> masses, const integrator::State& start, const integrator::State& end) {
-  // The force of a constraint is what is missing in the equation of motion: on a free particle, what the solver left.
+  // The force of a constraint is the residual of the equation of motion; on a free particle, it is the solver's error.
   const auto missing_work = [&](std::size_t i) {
     return stepper.constraint_force(static_cast<Index>(i), masses[i]).dot(end.x[i] - start.x[i]);
   };
@@ -20,8 +20,8 @@ StepWork measure_work(const integrator::Stepper& stepper, std::span<const integr
   for (const integrator::HeldParticle& held : pinned) {
     const auto i = static_cast<std::size_t>(held.constraint.particle);
     work.solver -= missing_work(i);
-    // A held particle has the velocity of its pin, whatever the method makes of it: its kinetic energy is counted as it
-    // is, and not by its acceleration.
+    // A held particle has the velocity of its pin, not the one that the method computes. Its kinetic energy is
+    // therefore counted from its velocities, not from its acceleration.
     work.pins += stepper.constraint_force(held.constraint.particle, 0).dot(end.x[i] - start.x[i]) +
                  0.5 * masses[i] * (end.v[i].squaredNorm() - start.v[i].squaredNorm());
   }

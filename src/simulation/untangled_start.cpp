@@ -1,4 +1,4 @@
-// What CollisionStage does before the first step for cloth that may be taken apart.
+// CollisionStage::untangle(): moves cloth apart before the first step.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace weft::simulation {
 namespace {
 
-// Edges of one triangle only, as a share of all, up to which a body counts as closed: eyes and soles of characters.
+// Largest fraction of border edges of a body that counts as closed: characters are open at eyes and soles.
 constexpr double kClosedBorder = 0.02;
 
 untangle::Kind kind_of(const environment::BodyObject& body) {
@@ -24,7 +24,7 @@ untangle::Kind kind_of(const environment::BodyObject& body) {
   return closed && !edges.edges.empty() ? untangle::Kind::solid : untangle::Kind::open;
 }
 
-// A cloth is a layer to others where one of them is worn over it.
+// Whether a cloth that is not dressed yet is worn over this one.
 bool is_layer(const scene::Scene& scene, std::size_t cloth, std::span<const std::size_t> dressed) {
   for (std::size_t c = 0; c < scene.cloths.size(); ++c)
     if (std::ranges::find(dressed, c) == dressed.end() &&
@@ -45,8 +45,8 @@ bool untangles(const scene::Scene& scene) {
 
 void CollisionStage::untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
                               std::span<const std::size_t> dressed, Moment& start) {
-  // What is dressed stands still like obstacles, and comes behind them: what gets out of a body gets out of that then.
-  std::vector<std::size_t> order;  // of the engine's bodies
+  // Dressed cloths stand still, like obstacles. They come last, so that cloth that leaves a body then leaves them too.
+  std::vector<std::size_t> order;  // numbers of the engine's bodies
   const std::size_t cloths = environment_.cloths.size();
   for (std::size_t c = 0; c < cloths; ++c)
     if (std::ranges::find(dressed, c) == dressed.end()) order.push_back(c);

@@ -12,7 +12,7 @@
 namespace weft::simulation {
 namespace {
 
-// From its place, at which a particle is held again [m].
+// Distance from its target at which a particle is held again [m].
 double arrived_distance() {
   return 0.5 * numerics.separation.restored_gap;
 }
@@ -29,27 +29,27 @@ YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environ
       forced_(masses.size(), 0),
       lagging_particles_(pins_.size(), 0) {
   for (std::size_t pin = 0; pin < pins_.size(); ++pin) {
-    const Pins::About& about = pins_.about(pin);
-    const auto begin = static_cast<std::size_t>(first_particle[about.cloth]);
-    const std::size_t count = environment.cloths[about.cloth].start.size();
+    const Pins::Info& info = pins_.info(pin);
+    const auto begin = static_cast<std::size_t>(first_particle[info.cloth]);
+    const std::size_t count = environment.cloths[info.cloth].start.size();
     double weight = 0;
     for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * scene.physics.largest_gravity();
-    load_.push_back(numerics.pins.weights * weight);
+    pull_force_.push_back(numerics.pins.weights * weight);
   }
 }
 
 void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
-  if (t != begun_t_ || h != begun_h_) {
+  if (t != forced_t_ || h != forced_h_) {
     std::ranges::fill(forced_, std::uint8_t{0});
     obstructions_.clear();
   }
-  begun_t_ = t;
-  begun_h_ = h;
+  forced_t_ = t;
+  forced_h_ = h;
   pins_.held_at(t + h, environment_, targets_);
   const bool any_lagged = std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; });
   if (any_lagged) pins_.held_at(t, environment_, at_start_);
   std::ranges::fill(lags_, std::uint8_t{0});
-  // Those that have arrived are held again; what is let go by then is not in `targets_`.
+  // Particles that have arrived are held again. Those that their pin releases by then are not in `targets_`.
   if (any_lagged)
     for (const integrator::HeldParticle& start : at_start_) {
       const auto i = static_cast<std::size_t>(start.constraint.particle);
@@ -62,12 +62,12 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   for (const integrator::HeldParticle& target : targets_) {
     const auto i = static_cast<std::size_t>(target.constraint.particle);
     lags_[i] |= forced_[i];
-    lagging_particles_[pins_.of(target.constraint.particle)] += lags_[i];
+    lagging_particles_[pins_.pin_of(target.constraint.particle)] += lags_[i];
   }
   any_lags_ = std::ranges::any_of(lagging_particles_, [](std::size_t count) { return count > 0; });
   for (const integrator::HeldParticle& target : targets_) {
     const auto i = static_cast<std::size_t>(target.constraint.particle);
-    if (lags_[i] != 0 || pins_.about(pins_.of(target.constraint.particle)).strength)
+    if (lags_[i] != 0 || pins_.info(pins_.pin_of(target.constraint.particle)).strength)
       pull(target, h, x);
     else
       held_.push_back(target);
@@ -83,14 +83,14 @@ bool YieldingPins::stay(double t0, double t1) {
   });
 }
 
-// A damped spring; or for what lags a force that is its most at no speed and nothing at the speed that it is to have: a
-// load slows it down, but does not keep it from arriving.
+// A pin with a strength is a damped spring. The force on a lagging particle falls linearly with its speed, from the
+// maximum at rest to zero at the target speed: a load slows the particle but cannot stop it.
 void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x) {
   const Index particle = target.constraint.particle;
   const auto i = static_cast<std::size_t>(particle);
-  const std::size_t pin = pins_.of(particle);
-  if (const auto& whole = pins_.about(pin).strength) {
-    const double strength = *whole * pins_.share(particle);
+  const std::size_t pin = pins_.pin_of(particle);
+  if (const auto& pin_strength = pins_.info(pin).strength) {
+    const double strength = *pin_strength * pins_.strength_fraction(particle);
     pulls_.push_back({particle, target.x_end, target.v_end, strength, 2 * std::sqrt(strength * masses_[i])});
     return;
   }
@@ -98,16 +98,17 @@ void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::s
   if (const double size = speed.norm(); size > numerics.pins.return_velocity)
     speed *= numerics.pins.return_velocity / size;
   speed += target.v_end;
-  const double most = std::max({load_[pin] / static_cast<double>(std::max<std::size_t>(pins_.about(pin).particles, 1)),
-                                std::min(load_[pin] / static_cast<double>(lagging_particles_[pin]),
-                                         numerics.pins.most_acceleration * masses_[i]),
-                                numerics.pins.acceleration * masses_[i]});
-  pulls_.push_back({particle, x[i], speed, 0, most / std::max(numerics.pins.slowest, speed.norm())});
+  const double max_force =
+      std::max({pull_force_[pin] / static_cast<double>(std::max<std::size_t>(pins_.info(pin).particles, 1)),
+                std::min(pull_force_[pin] / static_cast<double>(lagging_particles_[pin]),
+                         numerics.pins.most_acceleration * masses_[i]),
+                numerics.pins.acceleration * masses_[i]});
+  pulls_.push_back({particle, x[i], speed, 0, max_force / std::max(numerics.pins.slowest, speed.norm())});
 }
 
 void YieldingPins::let_go(Index particle, const std::string& obstruction) {
   forced_[static_cast<std::size_t>(particle)] = 1;
-  obstructions_.emplace(pins_.of(particle), obstruction);
+  obstructions_.emplace(pins_.pin_of(particle), obstruction);
 }
 
 void YieldingPins::accept() {
@@ -116,11 +117,11 @@ void YieldingPins::accept() {
     const Index particle = target.constraint.particle;
     if (lags_[static_cast<std::size_t>(particle)] == 0) continue;
     ++count;
-    const std::size_t pin = pins_.of(particle);
+    const std::size_t pin = pins_.pin_of(particle);
     if (!lagging_.insert(pin).second || lagging_before_.contains(pin)) continue;
-    const Pins::About& about = pins_.about(pin);
-    seen_.turns.push_back(fmt::format("pin {} of '{}' gives way to {}", about.number,
-                                      environment_.cloths[about.cloth].name, obstructions_[pin]));
+    const Pins::Info& info = pins_.info(pin);
+    seen_.turns.push_back(fmt::format("pin {} of '{}' gives way to {}", info.number,
+                                      environment_.cloths[info.cloth].name, obstructions_[pin]));
   }
   seen_.particles = std::max(seen_.particles, count);
   std::swap(lagged_, lags_);
@@ -131,9 +132,9 @@ void YieldingPins::accept() {
 YieldingPins::Lags YieldingPins::take_lags() {
   for (std::size_t pin : lagging_before_) {
     if (lagging_.contains(pin)) continue;
-    const Pins::About& about = pins_.about(pin);
+    const Pins::Info& info = pins_.info(pin);
     seen_.turns.push_back(
-        fmt::format("pin {} of '{}' is held again", about.number, environment_.cloths[about.cloth].name));
+        fmt::format("pin {} of '{}' is held again", info.number, environment_.cloths[info.cloth].name));
   }
   lagging_before_ = std::move(lagging_);
   lagging_.clear();
@@ -144,8 +145,8 @@ void YieldingPins::take_over(const YieldingPins& there, Index first_there, Index
   std::copy_n(there.lagged_.begin() + first_there, count, lagged_.begin() + first);
   if (there.lagging_before_.empty()) return;
   for (Index i = 0; i < count; ++i)
-    if (pins_.share(first + i) > 0 && there.lagging_before_.contains(there.pins_.of(first_there + i)))
-      lagging_before_.insert(pins_.of(first + i));
+    if (pins_.strength_fraction(first + i) > 0 && there.lagging_before_.contains(there.pins_.pin_of(first_there + i)))
+      lagging_before_.insert(pins_.pin_of(first + i));
 }
 
 template <class Archive>

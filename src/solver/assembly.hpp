@@ -1,4 +1,4 @@
-// What the matrix of a cloth is put together from, half of it: one block for each pair of particles.
+// Half of a cloth's matrix while it is assembled: one block for each pair of particles.
 #pragma once
 
 #include <span>
@@ -10,38 +10,39 @@
 
 namespace weft::solver {
 
-/// A symmetric matrix of forces that do not change where all particles move alike: its block (i, j) for each pair of
-/// particles i < j, and what each particle has of its own (its mass, drag of air). Block (j, i) is the transpose, and
-/// the block on the diagonal what is left for the row to have the sum of its own: forces add nothing there. A third of
-/// the sums of a full matrix.
+/// A symmetric matrix of forces that do not change if all particles translate together. It stores block (i, j) for each
+/// pair of particles i < j, and the own block of each particle (its mass, drag of air). Block (j, i) is the transpose.
+/// The diagonal block follows from the condition that the row sums to the particle's own block, so forces add nothing
+/// there. That takes a third of the additions of a full matrix.
 ///
-/// Pairs have a number besides for multiples of the unit matrix, of which bending consists; part of it is constant.
+/// Bending adds scalar multiples of the identity; each pair stores that scalar, part of which is constant.
 class Assembly {
  public:
   Assembly() = default;
-  /// For matrices of the pattern of this one.
+  /// For matrices with the pattern of `matrix`.
   explicit Assembly(const BlockMatrix& matrix);
 
-  /// Where the block of rows i and columns j of a pair, i < j, is summed up. The pattern must hold it, as a full block.
+  /// Index of the block of rows i and columns j of a pair, i < j. The pattern must hold it as a full block.
   Index block(Index i, Index j) const;
-  /// Where multiples of the unit matrix are, in either order.
+  /// Index of a pair's scalar, in either order.
   Index scalar(Index i, Index j) const;
 
-  /// Nothing at all, and no constant part.
+  /// Sets all values to zero, the constant part included.
   void clear();
-  /// What has been added of multiples of the unit matrix is the constant part.
+  /// Makes the scalars added so far the constant part.
   void keep_constant();
-  /// Begins the pairs of the rows [begin, end) with their larger ones, and these rows, anew: with the constant part.
+  /// Resets the rows [begin, end), and the pairs whose smaller index is there: scalars to the constant part, all else
+  /// to zero.
   void start(Index begin, Index end);
 
   void add_constant_to_own(Index row, double value) { constant_own_[static_cast<std::size_t>(row)] += value; }
   void add_scalar(Index scalar, double value) { scalars_[static_cast<std::size_t>(scalar)] += value; }
   void add(Index block, const PackedBlock& value) { add_at(blocks_, block, value); }
   void add(Index block, const Mat3& value) { add(block, packed(value)); }
-  /// To what a row has of its own, symmetric.
+  /// Adds a symmetric block to a row's own block.
   void add_to_own(Index row, const PackedBlock& value) { add_at(own_, row, value); }
 
-  /// Rows [begin, end) of the matrix, of the same pattern.
+  /// Writes the rows [begin, end) of a matrix that has the pattern of this assembly.
   void write_rows(Index begin, Index end, BlockMatrix& matrix) const;
 
  private:
@@ -56,20 +57,20 @@ class Assembly {
     at[8] += value.last[0];
   }
 
-  // Patterns: of full blocks above the diagonal, and of all pairs.
+  // Patterns of the full blocks above the diagonal, and of all pairs.
   BlockMatrix::Pattern full_, pairs_;
-  std::vector<double> blocks_;   // 9 each, column by column
+  std::vector<double> blocks_;   // 9 per full block, column by column
   std::vector<double> scalars_;  // per pair
   std::vector<double> constant_scalars_;
-  std::vector<double> own_;           // 9 per row, beside the constant part
-  std::vector<double> constant_own_;  // per row, of the unit matrix
-  // Where the matrix has it from: per full block (−1 on the diagonal), and per multiple of the unit matrix.
+  std::vector<double> own_;           // 9 per row, without the constant part
+  std::vector<double> constant_own_;  // per row, a multiple of the identity
+  // Source of each block of the matrix: per full block (−1 on the diagonal), and per isotropic block.
   std::vector<Index> block_of_, scalar_of_full_, scalar_of_isotropic_;
 };
 
-/// The rows [begin, end) of an assembly, with the pairs whose smaller row is there, or none: what is added to others is
-/// left out. Who adds all elements in their order to each of several such ranges, in threads, gets the same sums as in
-/// one go.
+/// The rows [begin, end) of an assembly, and the pairs whose smaller index is there; what is added elsewhere is
+/// ignored. If several threads each add all elements, in their order, to a range of their own, the sums have the bits
+/// of one thread. A default-constructed object holds no rows.
 class AssemblyRows {
  public:
   AssemblyRows() = default;
@@ -84,7 +85,6 @@ class AssemblyRows {
 
   explicit operator bool() const { return assembly_ != nullptr; }
 
-  /// As Assembly::block().
   Index block(Index i, Index j) const { return assembly_->block(i, j); }
 
   void add_scalar(Index scalar, double value) const {

@@ -10,8 +10,8 @@ namespace weft::solver {
 
 namespace {
 
-// Both directions of each, sorted, without repeats.
-void mirror(BlockMatrix::Couplings& couplings) {
+// Adds (j, i) for each (i, j); sorts, and removes repeats.
+void add_transposes(BlockMatrix::Couplings& couplings) {
   const std::size_t count = couplings.size();
   couplings.reserve(2 * count);
   for (std::size_t c = 0; c < count; ++c) couplings.emplace_back(couplings[c].second, couplings[c].first);
@@ -43,8 +43,8 @@ Index BlockMatrix::Pattern::find(Index row, Index column) const {
 
 BlockMatrix::BlockMatrix(Index rows, Couplings couplings, Couplings isotropic) {
   for (Index i = 0; i < rows; ++i) couplings.emplace_back(i, i);
-  mirror(couplings);
-  mirror(isotropic);
+  add_transposes(couplings);
+  add_transposes(isotropic);
   Couplings others;
   std::ranges::set_difference(isotropic, couplings, std::back_inserter(others));
   blocks_ = Pattern::of(rows, couplings);
@@ -72,7 +72,7 @@ void BlockMatrix::multiply(std::span<const Vector> x, std::span<Vector> y, std::
   const double* value = values_.data() + 9 * static_cast<std::size_t>(blocks_.start[begin]);
   const auto entry = [&](Index column) -> const Vector& { return x[static_cast<std::size_t>(column)]; };
   for (std::size_t row = begin; row < end; ++row) {
-    // Lane 3 holds the first entry of the next column and is thrown away.
+    // Lane 3 holds the first entry of the next column and is ignored.
     Lanes sum0{}, sum1{}, sum2{};
     for (Index s = blocks_.start[row]; s < blocks_.start[row + 1]; ++s, value += 9) {
       const Vector& xj = entry(blocks_.columns[s]);

@@ -1,4 +1,4 @@
-// Symmetric sparse matrix of 3×3 blocks whose pattern is fixed while its values change with every linearisation.
+// Symmetric sparse matrix of 3×3 blocks. Its pattern is fixed; its values change with every linearisation.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace weft::solver {
 
-/// Position of one block among the values of a BlockMatrix; negative where it is a multiple of the unit matrix.
+/// Position of one block among the values of a BlockMatrix; negative if the block is a multiple of the identity.
 using Slot = Index;
 
 using Lanes = Quad<double>;
@@ -23,7 +23,7 @@ inline void store_lanes(double* p, const Lanes& lanes) {
   store_quad(p, lanes);
 }
 
-/// A 3×3 block as the matrix stores it, column by column, in registers: entries 0 to 3, 4 to 7, and 8.
+/// A 3×3 block in registers, column by column as the matrix stores it: entries 0 to 3, 4 to 7, and 8.
 struct PackedBlock {
   Lanes low, high, last;  // of `last` only lane 0 counts
 
@@ -36,33 +36,33 @@ struct PackedBlock {
   PackedBlock operator-() const { return {-low, -high, -last}; }
 };
 
-/// a bᵀ.
+/// a bᵀ
 inline PackedBlock packed_outer(const Vec3& a, const Vec3& b) {
   return {Lanes{a[0], a[1], a[2], a[0]} * Lanes{b[0], b[0], b[0], b[1]},
           Lanes{a[1], a[2], a[0], a[1]} * Lanes{b[1], b[1], b[2], b[2]}, Lanes{a[2] * b[2], 0, 0, 0}};
 }
-/// `value` times the unit matrix.
+/// `value` times the identity
 inline PackedBlock packed_scalar(double value) {
   return {Lanes{value, 0, 0, 0}, Lanes{value, 0, 0, 0}, Lanes{value, 0, 0, 0}};
 }
 
-/// Block rows with both triangles stored: the product is then one gather per row, free of write conflicts, so it
-/// gives the same bits on any number of threads. Blocks that can only be multiples of the unit matrix are kept as one
-/// number: of a garment's row with its 37 blocks 30 are of bending alone, and a product reads a third of the memory.
+/// Stores both triangles, so that the product is one gather per row without write conflicts and has the same bits on
+/// any number of threads. A block that can only be a multiple of the identity is stored as one number: 30 of the 37
+/// blocks in a garment's row come from bending alone, and a product reads a third of the memory.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
 
   using Couplings = std::vector<std::pair<Index, Index>>;
 
-  /// Pattern of `rows` block rows: the diagonal, and (i, j) and (j, i) for each of `couplings`; likewise for those of
-  /// `isotropic` that are not among them, which take multiples of the unit matrix only. Repeats are welcome.
+  /// Pattern of `rows` block rows: the diagonal, and (i, j) and (j, i) for each pair in `couplings`. Pairs in
+  /// `isotropic` that are not in `couplings` hold multiples of the identity only. Pairs may repeat.
   BlockMatrix(Index rows, Couplings couplings, Couplings isotropic = {});
 
   Index rows() const { return static_cast<Index>(diagonal_.size()); }
   std::size_t blocks() const { return blocks_.columns.size() + isotropic_.columns.size(); }
 
-  /// Where block (row, column) lives. The pattern must hold it.
+  /// Slot of block (row, column). The pattern must hold it.
   Slot slot(Index row, Index column) const;
   Slot diagonal(Index row) const { return diagonal_[row]; }
 
@@ -83,7 +83,7 @@ class BlockMatrix {
     store_lanes(value + 4, load_lanes(value + 4) + block.high);
     value[8] += block.last[0];
   }
-  /// Adds `value` times the unit matrix.
+  /// Adds `value` times the identity.
   void add_scalar(Slot slot, double value) {
     if (slot < 0) {
       scalars_[~slot] += value;
@@ -99,7 +99,7 @@ class BlockMatrix {
     return Eigen::Map<const Mat3>(values_.data() + 9 * static_cast<std::size_t>(slot));
   }
 
-  /// Calls body(row, column, block) for every block of the rows [begin, end), row by row, by ascending column.
+  /// Calls body(row, column, block) for every block of the rows [begin, end), row by row in ascending columns.
   template <class Body>
   void for_each_block(Index begin, Index end, const Body& body) const {
     for (Index row = begin; row < end; ++row) {
@@ -116,27 +116,26 @@ class BlockMatrix {
     }
   }
 
-  /// y = A x over the rows [begin, end); x and y have one entry per block row, Vec3 or Quad<double>, and must not
-  /// overlap.
+  /// y = A x over the rows [begin, end). x and y hold Vec3 or Quad<double> per block row, and must not overlap.
   template <class Vector>
   void multiply(std::span<const Vector> x, std::span<Vector> y, std::size_t begin, std::size_t end) const;
 
-  /// Where blocks are.
+  /// Positions of the blocks, in compressed rows.
   struct Pattern {
     std::vector<Index> start;    ///< rows + 1 entries into columns
     std::vector<Index> columns;  ///< ascending within a row
 
-    /// Of sorted pairs without repeats.
+    /// `pairs` must be sorted and must not repeat.
     static Pattern of(Index rows, const Couplings& pairs);
-    /// Where (row, column) is, −1 where it is not.
+    /// Index of (row, column); −1 if the pattern does not hold it.
     Index find(Index row, Index column) const;
   };
-  /// Of full blocks, whose entries are in values(), nine for each and column by column; three more follow the last, so
-  /// that a column loads as four.
+  /// Pattern of the full blocks. values() holds nine numbers for each, column by column, and three more after the last,
+  /// so that every column can be loaded as four numbers.
   const Pattern& full() const { return blocks_; }
   std::span<const double> values() const { return values_; }
   std::span<double> values() { return values_; }
-  /// Of multiples of the unit matrix, which are in scalars().
+  /// Pattern of the multiples of the identity, which scalars() holds.
   const Pattern& isotropic() const { return isotropic_; }
   std::span<const double> scalars() const { return scalars_; }
   std::span<double> scalars() { return scalars_; }
@@ -144,7 +143,7 @@ class BlockMatrix {
  private:
   Pattern blocks_, isotropic_;
   std::vector<Slot> diagonal_;   // per row
-  std::vector<double> values_;   // 9 per block, and 3
+  std::vector<double> values_;   // 9 per block, and 3 of padding
   std::vector<double> scalars_;  // per isotropic block
 };
 

@@ -10,28 +10,28 @@
 namespace weft::solver {
 namespace {
 
-// Stiffness of a particle against its entry of the metric (rate² m) up to which single precision will do: it rounds
-// stiffness by a share of 6e-8. Sheets that swing on threads of 1e6, 1e7 and 1e8 N/m (shares of 8e5, 8e6 and 8e7) take
-// as many iterations of Newton's method as in double: 361, 1,018 and 2,345 for 355, 1,126 and 2,932.
-constexpr double kSingleStiffness = 1e7;
+// Largest stiffness of a particle, relative to its entry of the mass-weighted norm (rate² m), for single precision,
+// which rounds stiffness by 6e-8 (measured: sheets that swing on threads of 1e6, 1e7 and 1e8 N/m, ratios 8e5, 8e6 and
+// 8e7, take 361, 1,018 and 2,345 Newton iterations; in double 355, 1,126 and 2,932).
+constexpr double kMaxSingleStiffness = 1e7;
 
-// Whether no particle is held more stiffly than that.
-bool suits_single(const LinearSystem& system) {
+// Whether all particles are below kMaxSingleStiffness. False without a mass-weighted norm.
+bool allows_single_precision(const LinearSystem& system) {
   if (system.metric.empty()) return false;
   const auto fits = [&](Index particle, double stiffness) {
-    return stiffness <= kSingleStiffness * system.metric[static_cast<std::size_t>(particle)];
+    return stiffness <= kMaxSingleStiffness * system.metric[static_cast<std::size_t>(particle)];
   };
   const auto particle_fits = [&](Index i) {
     const double* block = system.matrix.values().data() + 9 * static_cast<std::size_t>(system.matrix.diagonal(i));
     return fits(i, block[0] + block[4] + block[8]);
   };
-  const int misfits =
+  const int any_misfit =
       parallel_sum(static_cast<std::size_t>(system.matrix.rows()), kGrainSize, [&](std::size_t begin, std::size_t end) {
         int any = 0;
         for (std::size_t i = begin; i < end; ++i) any |= particle_fits(static_cast<Index>(i)) ? 0 : 1;
         return any;
       });
-  if (misfits > 0) return false;
+  if (any_misfit > 0) return false;
   for (const DiagonalTerm& term : system.diagonal_terms)
     if (!fits(term.particle, term.stiffness.trace())) return false;
   bool all_fit = true;
@@ -43,7 +43,7 @@ bool suits_single(const LinearSystem& system) {
 }
 
 template <class Quad>
-void copy_into(std::span<const Quad> from, std::vector<Vec3>& to) {
+void copy_as_vec3(std::span<const Quad> from, std::vector<Vec3>& to) {
   to.resize(from.size());
   parallel_for(from.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) to[i] = vec3_of(from[i]);
@@ -60,9 +60,9 @@ void ConjugateGradient::filter(std::span<Vec3> b) const {
 }
 
 template <class Real>
-Recurrence<Real>& ConjugateGradient::prepared(InPrecision<Real>& in) {
-  if (!in.is_prepared) in.recurrence.prepare(*system_, in.has_sums ? Sums::kept : Sums::anew);
-  in.is_prepared = in.has_sums = true;
+Recurrence<Real>& ConjugateGradient::prepare_recurrence(PrecisionState<Real>& in) {
+  if (!in.is_prepared) in.recurrence.prepare(*system_, in.has_aggregate_sums ? Sums::kept : Sums::anew);
+  in.is_prepared = in.has_aggregate_sums = true;
   return in.recurrence;
 }
 
@@ -70,16 +70,16 @@ void ConjugateGradient::prepare(const LinearSystem& system, Sums sums) {
   system_ = &system;
   all_parts_.resize(parts_of(system).size());
   std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
-  is_single_ = suits_single(system);
+  allows_single_ = allows_single_precision(system);
   single_.is_prepared = double_.is_prepared = false;
-  if (sums == Sums::anew) single_.has_sums = double_.has_sums = false;
+  if (sums == Sums::anew) single_.has_aggregate_sums = double_.has_aggregate_sums = false;
 }
 
 std::span<const Vec3> ConjugateGradient::precondition(std::span<const Vec3> b) {
-  if (is_single_)
-    copy_into(prepared(single_).precondition(b), preconditioned_);
+  if (allows_single_)
+    copy_as_vec3(prepare_recurrence(single_).precondition(b), preconditioned_);
   else
-    copy_into(prepared(double_).precondition(b), preconditioned_);
+    copy_as_vec3(prepare_recurrence(double_).precondition(b), preconditioned_);
   return preconditioned_;
 }
 
@@ -95,20 +95,20 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
   Progress progress;
   progress.parts.resize(all_parts_.size());
   End end = End::needs_double;
-  if (is_single_ && goal.relative >= kTightGoal) {
-    end = prepared(single_).solve(b, goal, max_iterations, x, directions, parts, progress);
+  if (allows_single_ && goal.relative >= kTightGoal) {
+    end = prepare_recurrence(single_).solve(b, goal, max_iterations, x, directions, parts, progress);
     filter(x);
-    copy_into(single_.recurrence.residual(), residual_);
+    copy_as_vec3(single_.recurrence.residual(), residual_);
   }
   if (end == End::needs_double) {
-    end = prepared(double_).solve(b, goal, max_iterations, x, directions, parts, progress);
-    copy_into(double_.recurrence.residual(), residual_);
+    end = prepare_recurrence(double_).solve(b, goal, max_iterations, x, directions, parts, progress);
+    copy_as_vec3(double_.recurrence.residual(), residual_);
   }
   LinearReport report{progress.iterations, {}, end == End::converged, end != End::indefinite};
-  // Where nothing is left nothing is to be estimated.
+  // If the residual is zero there is no error to estimate.
   for (const Progress::OfPart& part : progress.parts)
     report.errors.push_back(
-        part.gains.empty() || progress.nothing_left ? 0 : std::sqrt(part.error_energy() * part.error_share()));
+        part.gains.empty() || progress.is_exact ? 0 : std::sqrt(part.error_energy() * part.error_norm_ratio()));
   return report;
 }
 

@@ -7,16 +7,16 @@
 namespace weft::solver {
 namespace {
 
-constexpr double kLargestShift = 10;
+constexpr double kMaxShift = 10;
 
 }  // namespace
 
-// The lower triangle of S (A + diagonal blocks of the terms) S + (I − S).
+// Reads the lower triangle of S (A + diagonal blocks of the terms) S + (I − S).
 void IncompleteCholesky::read(const LinearSystem& system) {
   const Index rows = system.matrix.rows();
   std::vector<const Mat3*> free(at(rows), nullptr);
   for (const ParticleConstraint& c : system.constraints) free[at(c.particle)] = &c.free;
-  // Of both triangles' blocks the lower one has half, and the diagonal.
+  // The lower triangle has half of the off-diagonal blocks, and the diagonal.
   const std::size_t blocks = (system.matrix.blocks() + at(rows)) / 2;
   row_start_.assign(1, 0);
   row_start_.reserve(at(rows) + 1);
@@ -47,7 +47,7 @@ void IncompleteCholesky::read(const LinearSystem& system) {
 }
 
 bool IncompleteCholesky::factorise(const LinearSystem& system) {
-  for (double shift = 0; shift <= kLargestShift; shift = shift == 0 ? numerics.linear.factor_shift : 4 * shift) {
+  for (double shift = 0; shift <= kMaxShift; shift = shift == 0 ? numerics.linear.factor_shift : 4 * shift) {
     read(system);
     y_.resize(row_start_.size() - 1);
     if (try_factorise(shift)) return true;

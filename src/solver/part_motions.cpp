@@ -7,25 +7,25 @@
 namespace weft::solver {
 namespace {
 
-// Of the energy of a motion, what is left of it beside other directions below which it is one of them.
-constexpr double kSameDirection = 1e-4;
+// A motion is independent of the directions before it if more than this fraction of its energy is left without them.
+constexpr double kMinIndependentEnergy = 1e-4;
 
 using Block = Eigen::Matrix<double, kDirections, kDirections>;
 
-// What a term makes of the directions of a part: forces along them are this times its stiffness times a displacement.
-using OfTerm = Eigen::Matrix<double, kDirections, 3>;
+// Forces along the directions of a diagonal block are this times the term's stiffness times a displacement.
+using TermForces = Eigen::Matrix<double, kDirections, 3>;
 
-// The blocks of terms between parts, the lower ones, and their products with the motions of all parts.
+// Blocks of terms in the projected system (lower triangle), and their products with the motions, per diagonal block.
 class TermBlocks {
  public:
   explicit TermBlocks(std::size_t parts) : products(parts, PartMotions::Products::Zero()) {}
 
-  void add(std::span<const std::pair<int, OfTerm>> of_parts, const Mat3& stiffness) {
-    OfTerm all = OfTerm::Zero();
+  void add(std::span<const std::pair<int, TermForces>> of_parts, const Mat3& stiffness) {
+    TermForces all = TermForces::Zero();
     for (const auto& [part, of_part] : of_parts) all += of_part;
     for (const auto& [row, of_row] : of_parts) {
-      const OfTerm forces = of_row * stiffness;
-      products[static_cast<std::size_t>(row)] += forces * all.bottomRows<kMotions>().transpose();
+      const TermForces forces = of_row * stiffness;
+      products[static_cast<std::size_t>(row)] += forces * all.bottomRows<kMaxMotions>().transpose();
       for (const auto& [column, of_column] : of_parts)
         if (column <= row) block(row, column) += forces * of_column.transpose();
     }
@@ -36,10 +36,10 @@ class TermBlocks {
   std::vector<PartMotions::Products> products;
 };
 
-// Numbers of the selected parts by particle; -1 for others.
-class Numbers {
+// Position of a particle's diagonal block among the selected ones; -1 if it is not selected.
+class SelectionIndex {
  public:
-  Numbers(std::vector<Part> parts, std::span<const std::size_t> selected)
+  SelectionIndex(std::vector<Part> parts, std::span<const std::size_t> selected)
       : parts_(std::move(parts)), numbers_(parts_.size(), -1) {
     for (std::size_t s = 0; s < selected.size(); ++s) numbers_[selected[s]] = static_cast<int>(s);
   }
@@ -55,7 +55,7 @@ class Numbers {
 
 }  // namespace
 
-// Whether a direction of a part is new beside those before it.
+// Finds the directions of a diagonal block that are independent of those before them.
 void PartMotions::find_used(std::size_t part, const Block& block) {
   std::vector<int> used;
   for (int k = 0; k < kDirections; ++k) {
@@ -66,7 +66,7 @@ void PartMotions::find_used(std::size_t part, const Block& block) {
         const Eigen::VectorXd coupling = block(used, k);
         shared = coupling.dot(Eigen::MatrixXd(block(used, used)).ldlt().solve(coupling));
       }
-      is_used = block(k, k) - shared > kSameDirection * block(k, k);
+      is_used = block(k, k) - shared > kMinIndependentEnergy * block(k, k);
     }
     if (is_used) used.push_back(k);
   }
@@ -74,9 +74,9 @@ void PartMotions::find_used(std::size_t part, const Block& block) {
 
 template <class Real>
 void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_t> selected,
-                          const std::array<std::span<const Quad<Real>>, kMotions>& motions,
+                          const std::array<std::span<const Quad<Real>>, kMaxMotions>& motions,
                           std::span<const Mat3> row_sums, std::span<const Products> products) {
-  const Numbers numbers(parts_of(system), selected);
+  const SelectionIndex numbers(parts_of(system), selected);
   std::array<bool, kDirections> all;
   for (int k = 0; k < kDirections; ++k) all[static_cast<std::size_t>(k)] = k < 3 || !motions[k - 3].empty();
   is_used_.assign(selected.size(), all);
@@ -84,18 +84,18 @@ void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_
     if (const int part = numbers.of(c.particle); part >= 0)
       std::fill_n(is_used_[static_cast<std::size_t>(part)].begin(), 3, false);
 
-  const auto of_particle = [&](Index particle) {
-    OfTerm result = OfTerm::Zero();
+  const auto directions_at = [&](Index particle) {
+    TermForces result = TermForces::Zero();
     result.template topRows<3>() = Mat3::Identity();
-    for (int m = 0; m < kMotions; ++m)
+    for (int m = 0; m < kMaxMotions; ++m)
       if (!motions[m].empty()) result.row(3 + m) = vec3_of(motions[m][static_cast<std::size_t>(particle)]);
     return result;
   };
   TermBlocks terms(selected.size());
-  std::vector<std::pair<int, OfTerm>> of_parts;
+  std::vector<std::pair<int, TermForces>> of_parts;
   for (const DiagonalTerm& term : system.diagonal_terms)
     if (const int part = numbers.of(term.particle); part >= 0) {
-      of_parts.assign(1, {part, of_particle(term.particle)});
+      of_parts.assign(1, {part, directions_at(term.particle)});
       terms.add(of_parts, term.stiffness);
     }
   for_each_term(system, [&](const auto& term) {
@@ -103,9 +103,9 @@ void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_
     for (std::size_t k = 0; k < term.particles.size(); ++k) {
       const int part = term.weights[k] == 0 ? -1 : numbers.of(term.particles[k]);
       if (part < 0) continue;
-      auto entry = std::ranges::find(of_parts, part, &std::pair<int, OfTerm>::first);
-      if (entry == of_parts.end()) entry = of_parts.insert(entry, {part, OfTerm::Zero()});
-      entry->second += term.weights[k] * of_particle(term.particles[k]);
+      auto entry = std::ranges::find(of_parts, part, &std::pair<int, TermForces>::first);
+      if (entry == of_parts.end()) entry = of_parts.insert(entry, {part, TermForces::Zero()});
+      entry->second += term.weights[k] * directions_at(term.particles[k]);
     }
     terms.add(of_parts, term.stiffness);
   });
@@ -114,18 +114,18 @@ void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_
     if (part < 0) continue;
     AlongMotions along = AlongMotions::Zero();
     for (std::size_t i = 0; i < term.direction.size(); ++i)
-      along += of_particle(term.begin + static_cast<Index>(i)) * term.direction[i];
+      along += directions_at(term.begin + static_cast<Index>(i)) * term.direction[i];
     terms.block(part, part) += term.stiffness * along * along.transpose();
     terms.products[static_cast<std::size_t>(part)] +=
-        term.stiffness * along * along.template tail<kMotions>().transpose();
+        term.stiffness * along * along.template tail<kMaxMotions>().transpose();
   }
 
   for (std::size_t s = 0; s < selected.size(); ++s) {
     Block& block = terms.block(static_cast<int>(s), static_cast<int>(s));
     const Products of_matrix = products[s] - terms.products[s];
     block.topLeftCorner<3, 3>() += row_sums[s];
-    block.template rightCols<kMotions>() += of_matrix;
-    block.template bottomLeftCorner<kMotions, 3>() += of_matrix.template topRows<3>().transpose();
+    block.template rightCols<kMaxMotions>() += of_matrix;
+    block.template bottomLeftCorner<kMaxMotions, 3>() += of_matrix.template topRows<3>().transpose();
     find_used(s, block);
   }
   const auto is_used = [&](int row) {
@@ -160,10 +160,10 @@ std::vector<AlongMotions> PartMotions::solve(std::span<const AlongMotions> force
 }
 
 template void PartMotions::prepare<float>(const LinearSystem&, std::span<const std::size_t>,
-                                          const std::array<std::span<const Quad<float>>, kMotions>&,
+                                          const std::array<std::span<const Quad<float>>, kMaxMotions>&,
                                           std::span<const Mat3>, std::span<const Products>);
 template void PartMotions::prepare<double>(const LinearSystem&, std::span<const std::size_t>,
-                                           const std::array<std::span<const Quad<double>>, kMotions>&,
+                                           const std::array<std::span<const Quad<double>>, kMaxMotions>&,
                                            std::span<const Mat3>, std::span<const Products>);
 
 }  // namespace weft::solver

@@ -1,4 +1,4 @@
-// A few directions of each part of a system: its translations, and motions that are given.
+// Galerkin correction along a few directions of each diagonal block: its translations, and given motions.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -11,34 +11,35 @@
 
 namespace weft::solver {
 
-/// Motions at most.
-inline constexpr int kMotions = 2;
-/// Directions of one part: its translations, and the motions.
-inline constexpr int kDirections = 3 + kMotions;
-/// Coordinates of one part along these, or forces along them.
+/// Largest number of given motions.
+inline constexpr int kMaxMotions = 2;
+/// Directions of one diagonal block: three translations, then the motions.
+inline constexpr int kDirections = 3 + kMaxMotions;
+/// Coordinates of one diagonal block along these directions, or forces along them.
 using AlongMotions = Eigen::Matrix<double, kDirections, 1>;
 
-/// The system on the space of these directions. A part has translations if no constraint holds any of its particles. A
-/// motion that is a combination of those before it, but for roundings, does not count twice.
+/// The linear system, projected on these directions. A diagonal block has translations if no constraint acts on any of
+/// its particles. A motion is skipped if it is a combination of the directions before it, up to rounding.
 class PartMotions {
  public:
-  /// Of each motion, what the product of the whole system with it is along the directions of one part.
-  using Products = Eigen::Matrix<double, kDirections, kMotions>;
+  /// Column m: the product of the whole system with motion m, along the directions of one diagonal block.
+  using Products = Eigen::Matrix<double, kDirections, kMaxMotions>;
 
-  /// Reads the system. `motions`: of each row, as constraints let it, and zero outside of the selected parts; empty if
-  /// there is none. `row_sums`: of each selected part, the sum of all blocks of the matrix.
+  /// Builds and factorises the projected system. `motions`: one entry per row, filtered by the constraints, zero
+  /// outside of the selected blocks; empty if absent. `row_sums`: the sum of all 3×3 blocks of the matrix, per selected
+  /// block. `products`: per selected block.
   template <class Real>
   void prepare(const LinearSystem& system, std::span<const std::size_t> selected,
-               const std::array<std::span<const Quad<Real>>, kMotions>& motions, std::span<const Mat3> row_sums,
+               const std::array<std::span<const Quad<Real>>, kMaxMotions>& motions, std::span<const Mat3> row_sums,
                std::span<const Products> products);
 
-  /// The coordinates at which these forces are balanced; both of each selected part.
+  /// Returns the coordinates that balance `forces`, both per selected block.
   std::vector<AlongMotions> solve(std::span<const AlongMotions> forces) const;
 
  private:
   void find_used(std::size_t part, const Eigen::Matrix<double, kDirections, kDirections>& block);
 
-  std::vector<std::array<bool, kDirections>> is_used_;  // of each selected part
+  std::vector<std::array<bool, kDirections>> is_used_;  // per selected block
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 

@@ -1,4 +1,4 @@
-// Additive multilevel preconditioner: particles, groups of particles, and patches solved together.
+// Additive multilevel preconditioner: particles, aggregates of particles, and the coarsest aggregates solved together.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -12,101 +12,102 @@
 
 namespace weft::solver {
 
-/// Whether sums over groups are made of the matrix as it is, or may be those of the same constraints and an earlier
-/// matrix. Particles have their blocks, and terms are seen, either way.
+/// Whether sums over aggregates are made from the current matrix, or kept from an earlier matrix with the same
+/// constraints. Particle blocks and terms are always current.
 enum class Sums { anew, kept };
 
-/// P⁻¹ = S Σ_l P_l A_l⁻¹ P_lᵀ S, S the projection on the free directions. P_0 is the identity, A_0 the diagonal of 3×3
-/// blocks of A, prefiltered: of S A S + (I − S) (Tamstorf, Jones & McCormick, "Smoothed Aggregation Multigrid for Cloth
-/// Simulation", 2015). Each further level sees motion about as long as its groups are wide (Bramble, Pasciak & Xu,
-/// "Parallel Multilevel Preconditioners", 1990): P_l interpolates from groups, P_l = Q_1 Q_2 … Q_l, where Q_k takes to
-/// each member of a group the average of the groups that it and its neighbours are in, as a step of damped Jacobi on
-/// the graph of the matrix makes it of constants (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
+/// P⁻¹ = S Σ_l P_l A_l⁻¹ P_lᵀ S, where S is the projection on the free directions. P_0 is the identity, and A_0 the
+/// diagonal of 3×3 blocks of S A S + (I − S) (prefiltered, Tamstorf, Jones & McCormick, "Smoothed Aggregation Multigrid
+/// for Cloth Simulation", 2015). Each further level acts on motion about as long as its aggregates are wide (Bramble,
+/// Pasciak & Xu, "Parallel Multilevel Preconditioners", 1990). P_l = Q_1 Q_2 … Q_l interpolates from aggregates: Q_k
+/// averages, for each member, its own aggregate and those of its neighbours. That is a step of damped Jacobi on the
+/// graph of the matrix, applied to constants (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
 ///
-/// A_l should be the diagonal of P_lᵀ A P_l, and on the last level all of it. That is dear, and known well enough from
-/// sums over groups, R_l A R_lᵀ: where groups move as wholes all strain is in the seams between them, and where it is
-/// spread over the width of a group there is half as much of it, each time that the width doubles. Of the matrix but
-/// its metric a share of 1/2^l is taken, of the metric all. Terms know no neighbours: what they hold particles with is
-/// taken to groups by the weights of interpolation, which is no less than P_lᵀ A P_l has on its diagonal, and for
-/// patches that itself is made.
+/// Ideally A_l is the diagonal of P_lᵀ A P_l, and the whole of it on the last level, which is expensive. It is
+/// approximated by sums over aggregates, R_l A R_lᵀ. Aggregates that move as wholes strain only the seams between them;
+/// strain that is spread over the width of an aggregate takes half of that stiffness, for each doubling of the width.
+/// Therefore the matrix without its mass-weighted norm enters with the factor `level_stiffness` per level (1/2^l), the
+/// norm with factor 1. Terms have no neighbours: their stiffness enters aggregates by the interpolation weights, which
+/// bounds the diagonal of P_lᵀ A P_l from above. The last level has P_lᵀ A P_l of the terms exactly.
 ///
-/// Threads far stiffer than mass stay constant on groups, P_l = R_lᵀ with all of the sums: interpolation bends folds,
-/// and then sums over seams say nothing of threads that run elsewhere within groups.
+/// If threads are far stiffer than mass, levels do not interpolate: P_l = R_lᵀ with the full sums. Interpolation would
+/// bend folds, and sums over seams contain nothing of threads that run inside aggregates.
 ///
-/// It is set up in double and applied in `Real`.
+/// Set up in double, applied in `Real`.
 template <class Real>
 class Preconditioner {
  public:
-  /// Reads the system, which must outlive the calls that follow. What has not changed since the last time is kept.
+  /// Reads `system`, which must outlive the following calls. Keeps what has not changed since the last call.
   void prepare(const LinearSystem& system, Sums sums = Sums::anew);
 
-  /// z = P⁻¹ r on the rows of these parts, as if r were zero on the others. r obeys the constraints, and so does z.
+  /// z = P⁻¹ r on the rows of these diagonal blocks, as if r were zero on all others. r must obey the constraints; z
+  /// then does too.
   void apply(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, std::span<const std::size_t> parts);
 
  private:
-  /// Groups between single particles and patches.
+  /// One level of aggregates.
   struct Level {
-    std::vector<Index> group_of;           // per particle
-    std::vector<Index> parent;             // per group, on the next level
-    Weights<Real> of_groups;               // per member (a particle, a group of the level before)
-    Weights<Real> of_members;              // per group
-    std::vector<RowRange> of_part;         // groups of each part
-    RowChunks groups;                      // of the selected parts
-    std::vector<Mat3> of_matrix;           // per group, without terms
-    std::vector<char> touched;             // per group: by terms, when `inverse` was made
-    std::vector<QuadBlock<Real>> inverse;  // with them
+    std::vector<Index> aggregate_of;       // per particle
+    std::vector<Index> parent;             // per aggregate: its aggregate on the next level
+    Weights<Real> interpolation;           // per member (a particle, or an aggregate of the finer level)
+    Weights<Real> restriction;             // per aggregate
+    std::vector<RowRange> of_part;         // aggregates of each diagonal block
+    RowChunks chunks;                      // of aggregates, in the selected blocks
+    std::vector<Mat3> of_matrix;           // per aggregate, without terms
+    std::vector<char> touched;             // per aggregate: terms acted on it when `inverse` was made
+    std::vector<QuadBlock<Real>> inverse;  // per aggregate, with terms
     std::vector<Quad<Real>> residual, correction;
   };
-  bool is_stiff() const;
-  void prepare_levels();
-  void find_weights();
-  void find_shared_levels();
-  void sum_blocks(std::size_t part);
+  bool has_stiff_threads() const;
+  void allocate_levels();
+  void compute_weights();
+  void find_common_levels();
+  void sum_aggregate_blocks(std::size_t part);
   void scale_sums(std::size_t part);
-  void mark_touched();
+  void mark_touched_particles();
   void invert_particles();
-  /// A block of each particle that terms act on.
+  /// A 3×3 block for each particle that terms act on.
   struct TouchedBlocks {
     std::vector<Index> place;  // per particle, −1 for none
     std::vector<Mat3> blocks;
     Mat3& of(Index i) { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
     const Mat3& of(Index i) const { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
   };
-  TouchedBlocks touched_blocks() const;
-  TouchedBlocks lumped_terms() const;
-  void invert_groups();
-  void factorise_patches();
+  TouchedBlocks make_touched_blocks() const;
+  TouchedBlocks lump_terms() const;
+  void invert_aggregates();
+  void factorise_coarsest();
   void select(std::span<const std::size_t> parts);
   void restrict_residual(std::span<const Quad<Real>> r);
-  void correct_groups();
+  void correct_aggregates();
   bool is_free(Index i) const { return constraint_of_[i] < 0; }
   Mat3 own_block(Index i) const { return system_->matrix.block(system_->matrix.diagonal(i)); }
   Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
   const LinearSystem* system_ = nullptr;
-  bool smooth_ = true;                           // levels interpolate
-  std::vector<Part> parts_;                      // as the sums were made
-  std::vector<std::uint64_t> summed_;            // per part, its version then
-  std::vector<char> changed_, sums_changed_;     // per part: its rows, its sums over groups
-  std::vector<ParticleConstraint> constraints_;  // as the sums were made
-  std::vector<Index> constraint_of_;             // per particle, −1 for none
+  bool interpolates_ = true;                       // levels interpolate
+  std::vector<Part> parts_;                        // when the sums were made
+  std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
+  std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: its rows, its sums over aggregates
+  std::vector<ParticleConstraint> constraints_;    // when the sums were made
+  std::vector<Index> constraint_of_;               // per particle, −1 for none
   struct Filter {
     Index particle;
     QuadBlock<Real> free;
   };
-  std::vector<std::vector<Filter>> filters_;    // per part
-  std::vector<char> touched_, touched_before_;  // per particle: by terms
-  std::vector<QuadBlock<Real>> inverse_;        // per particle, already filtered: S P⁻¹ S
-  std::vector<Level> levels_;                   // the last one is that of the patches
-  Weights<Real> of_patches_;                    // per particle
-  // Per block of the matrix the first level on which row and column are in the same group, or the number of levels.
-  std::vector<std::uint8_t> shared_full_, shared_isotropic_;
-  std::vector<std::vector<Index>> members_of_patch_;  // particles
-  std::vector<std::size_t> selected_;                 // parts that were applied to last
-  RowChunks rows_;                                    // of them
-  Eigen::MatrixXd patches_of_matrix_, patch_matrix_;
-  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> patch_factor_;
-  Eigen::Vector<Real, Eigen::Dynamic> patch_vector_;
+  std::vector<std::vector<Filter>> filters_;    // per diagonal block
+  std::vector<char> touched_, touched_before_;  // per particle: terms act on it
+  std::vector<QuadBlock<Real>> inverse_;        // per particle, filtered: S P⁻¹ S
+  std::vector<Level> levels_;                   // the last one is the coarsest
+  Weights<Real> coarse_weights_;                // per particle, from the coarsest aggregates
+  // Per block of the matrix: first level that has row and column in one aggregate, or the number of levels.
+  std::vector<std::uint8_t> common_level_full_, common_level_isotropic_;
+  std::vector<std::vector<Index>> members_of_coarse_;  // particles
+  std::vector<std::size_t> selected_;                  // diagonal blocks of the last apply()
+  RowChunks rows_;                                     // their rows
+  Eigen::MatrixXd coarse_matrix_without_terms_, coarse_matrix_;
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> coarse_factor_;
+  Eigen::Vector<Real, Eigen::Dynamic> coarse_vector_;
 };
 
 extern template class Preconditioner<float>;

@@ -9,8 +9,8 @@
 namespace weft::solver {
 namespace {
 
-// Without the diagonal.
-BlockMatrix::Pattern beside_diagonal(const BlockMatrix::Pattern& pattern) {
+// The pattern without its diagonal.
+BlockMatrix::Pattern without_diagonal(const BlockMatrix::Pattern& pattern) {
   BlockMatrix::Pattern result;
   result.start.assign(1, 0);
   result.columns.reserve(pattern.columns.size());
@@ -24,21 +24,21 @@ BlockMatrix::Pattern beside_diagonal(const BlockMatrix::Pattern& pattern) {
 
 using Octet = float __attribute__((vector_size(32)));
 
-Octet in_single(const Quad<double>& low, const Quad<double>& high) {
+Octet to_octet(const Quad<double>& low, const Quad<double>& high) {
   return __builtin_shufflevector(__builtin_convertvector(low, Quad<float>), __builtin_convertvector(high, Quad<float>),
                                  0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-// What the first eight entries of a block, column by column, are multiplied with.
-Octet thrice(const Quad<float>& v) {
+// Factors of the first eight entries of a block, column by column.
+Octet repeat_per_column(const Quad<float>& v) {
   return __builtin_shufflevector(v, v, 0, 0, 0, 1, 1, 1, 2, 2);
 }
 
 }  // namespace
 
-void DifferenceMatrix::take_pattern(const BlockMatrix& matrix) {
-  full_ = beside_diagonal(matrix.full());
-  isotropic_ = beside_diagonal(matrix.isotropic());
+void DifferenceMatrix::copy_pattern(const BlockMatrix& matrix) {
+  full_ = without_diagonal(matrix.full());
+  isotropic_ = without_diagonal(matrix.isotropic());
   octets_.assign(full_.columns.size(), Octet{});
   ninths_.assign(full_.columns.size(), 0);
   octets_of_sum_.assign(static_cast<std::size_t>(matrix.rows()), Octet{});
@@ -46,7 +46,7 @@ void DifferenceMatrix::take_pattern(const BlockMatrix& matrix) {
   scalars_.assign(isotropic_.columns.size(), 0);
 }
 
-void DifferenceMatrix::take_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end) {
+void DifferenceMatrix::copy_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end) {
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
   for (std::size_t row = begin; row < end; ++row) {
     const double* from = matrix.values().data() + 9 * static_cast<std::size_t>(full.start[row]);
@@ -59,15 +59,15 @@ void DifferenceMatrix::take_rows(const BlockMatrix& matrix, std::size_t begin, s
       high += high_of_block;
       last += from[8];
       if (full.columns[s] == static_cast<Index>(row)) continue;
-      octets_[to] = in_single(low_of_block, high_of_block);
+      octets_[to] = to_octet(low_of_block, high_of_block);
       ninths_[to++] = static_cast<float>(from[8]);
     }
-    // Its diagonal is full.
+    // A row's own block is always full, never isotropic.
     for (Index s = isotropic.start[row]; s < isotropic.start[row + 1]; ++s) {
       scalars += matrix.scalars()[s];
       scalars_[s] = static_cast<float>(matrix.scalars()[s]);
     }
-    octets_of_sum_[row] = in_single(low + Quad<double>{scalars, 0, 0, 0}, high + Quad<double>{scalars, 0, 0, 0});
+    octets_of_sum_[row] = to_octet(low + Quad<double>{scalars, 0, 0, 0}, high + Quad<double>{scalars, 0, 0, 0});
     ninths_of_sum_[row] = static_cast<float>(last + scalars);
   }
 }
@@ -76,13 +76,13 @@ void DifferenceMatrix::multiply(std::span<const Quad<float>> x, std::span<Quad<f
                                 std::size_t end) const {
   for (std::size_t row = begin; row < end; ++row) {
     const Quad<float> own = x[row];
-    // Products with the columns, one after the other; in `ninth` only the third number counts.
-    Octet sum = octets_of_sum_[row] * thrice(own);
+    // Products with all columns side by side; in `ninth` only lane 2 counts.
+    Octet sum = octets_of_sum_[row] * repeat_per_column(own);
     Quad<float> ninth = ninths_of_sum_[row] * own, isotropic{};
     for (Index s = full_.start[row]; s < full_.start[row + 1]; ++s) {
-      const Quad<float> apart = x[full_.columns[s]] - own;
-      sum += octets_[s] * thrice(apart);
-      ninth += ninths_[s] * apart;
+      const Quad<float> difference = x[full_.columns[s]] - own;
+      sum += octets_[s] * repeat_per_column(difference);
+      ninth += ninths_[s] * difference;
     }
     for (Index s = isotropic_.start[row]; s < isotropic_.start[row + 1]; ++s)
       isotropic += scalars_[s] * (x[isotropic_.columns[s]] - own);
@@ -90,7 +90,7 @@ void DifferenceMatrix::multiply(std::span<const Quad<float>> x, std::span<Quad<f
                       of_second = __builtin_shufflevector(sum, sum, 3, 4, 5, 6),
                       of_third = __builtin_shufflevector(sum, sum, 6, 7, 6, 7);
     const Quad<float> third = __builtin_shufflevector(of_third, ninth, 0, 1, 6, 7);
-    y[row] = three_of((of_first + of_second) + (third + isotropic));
+    y[row] = clear_last_lane((of_first + of_second) + (third + isotropic));
   }
 }
 
@@ -103,22 +103,22 @@ Mat3 DifferenceMatrix::sum_of_row(std::size_t row) const {
 
 template <class Real>
 void Product<Real>::prepare(const LinearSystem& system) {
-  const bool anew = system_ != &system;
+  const bool is_new_system = system_ != &system;
   system_ = &system;
-  read_matrix(anew);
+  read_matrix(is_new_system);
 }
 
 template <class Real>
-void Product<Real>::read_matrix(bool anew) {
+void Product<Real>::read_matrix(bool is_new_system) {
   const std::vector<Part> before = std::exchange(parts_, parts_of(*system_));
   metric_.assign(system_->metric.begin(), system_->metric.end());
   if constexpr (std::is_same_v<Real, float>) {
-    if (anew) matrix_.take_pattern(system_->matrix);
+    if (is_new_system) matrix_.copy_pattern(system_->matrix);
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-      if (!anew && parts_[p].version == before[p].version) continue;
+      if (!is_new_system && parts_[p].version == before[p].version) continue;
       const auto first = static_cast<std::size_t>(parts_[p].begin), end = static_cast<std::size_t>(parts_[p].end);
       parallel_for(end - first, kFineGrainSize,
-                   [&](std::size_t a, std::size_t b) { matrix_.take_rows(system_->matrix, first + a, first + b); });
+                   [&](std::size_t a, std::size_t b) { matrix_.copy_rows(system_->matrix, first + a, first + b); });
     }
   }
 }
@@ -155,7 +155,8 @@ void Product<Real>::select(std::span<const std::size_t> parts) {
 }
 
 template <class Real>
-double Product<Real>::multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q, std::span<double> moved) const {
+double Product<Real>::multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q,
+                               std::span<double> norms_sq) const {
   const auto sums = rows_.sums([&](std::size_t begin, std::size_t end) {
     Quad<double> of_product{}, of_metric{};
     for (std::size_t from = begin; from < end; from += kFineGrainSize) {
@@ -168,17 +169,17 @@ double Product<Real>::multiply(std::span<const Quad<Real>> p, std::span<Quad<Rea
       if (!metric_.empty())
         for (std::size_t i = from; i < to; ++i) of_metric += products(metric_[i] * p[i], p[i]);
     }
-    return Quad<double>{sum_of_three(of_product), sum_of_three(of_metric), 0, 0};
+    return Quad<double>{sum_of_first_three(of_product), sum_of_first_three(of_metric), 0, 0};
   });
   double curvature = 0;
   for (std::size_t part = 0; part < selected_.size(); ++part) {
     curvature += sums[part][0];
-    moved[part] = sums[part][1];
+    norms_sq[part] = sums[part][1];
   }
-  for (const OfParticle& term : terms_) {
+  for (const ParticleBlock& term : terms_) {
     const Quad<Real> force = term.block * p[term.particle];
     q[term.particle] += force;
-    curvature += sum_of_three(products(p[term.particle], force));
+    curvature += sum_of_first_three(products(p[term.particle], force));
   }
   for (const auto& term : stencils_) curvature += term.add_product(p, q);
   for (const auto& term : wide_stencils_) curvature += term.add_product(p, q);
@@ -215,7 +216,7 @@ std::vector<Mat3> Product<Real>::row_sums() const {
 
 template <class Real>
 void Product<Real>::filter(std::span<Quad<Real>> b) const {
-  for (const OfParticle& c : filters_) b[c.particle] = c.block * b[c.particle];
+  for (const ParticleBlock& c : filters_) b[c.particle] = c.block * b[c.particle];
 }
 
 template class Product<float>;

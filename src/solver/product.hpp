@@ -1,4 +1,4 @@
-// What conjugate gradients multiply with: the matrix and the terms of a system, in double or in single precision.
+// Product of a system's matrix and terms with a vector, in double or in single precision.
 #pragma once
 
 #include <span>
@@ -10,46 +10,46 @@
 namespace weft::solver {
 
 /// A block matrix in single precision, half the memory to read: y_i = D_i x_i + Σ_j A_ij (x_j − x_i). The sum D_i of a
-/// row's blocks is made in double. So stiffness is rounded where particles move against each other, while what moves
-/// them together, their mass, is not lost beside it.
+/// row's blocks is made in double. Rounding thus affects only the stiffness of relative motion, while common motion
+/// keeps its mass, which is small beside the stiffness.
 class DifferenceMatrix {
  public:
-  void take_pattern(const BlockMatrix& matrix);
-  /// Takes over the rows [begin, end).
-  void take_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end);
+  void copy_pattern(const BlockMatrix& matrix);
+  /// Copies the rows [begin, end).
+  void copy_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end);
   void multiply(std::span<const Quad<float>> x, std::span<Quad<float>> y, std::size_t begin, std::size_t end) const;
-  /// D_i.
+  /// D_i
   Mat3 sum_of_row(std::size_t row) const;
 
  private:
   BlockMatrix::Pattern full_, isotropic_;  // without the diagonal
-  /// Of a block, column by column, eight numbers that load at once, and the ninth.
+  /// The first eight numbers of a block, column by column, which load at once; the ninth is stored apart.
   using Octet = float __attribute__((vector_size(32)));
   std::vector<Octet> octets_;  // of full blocks
   std::vector<float> ninths_;
-  std::vector<Octet> octets_of_sum_;  // D_i of a row
+  std::vector<Octet> octets_of_sum_;  // D_i of each row
   std::vector<float> ninths_of_sum_;
   std::vector<float> scalars_;
 };
 
-/// S A, A being the matrix with all terms.
+/// q = S A p, where A is the matrix with all terms and S the projection on the free directions.
 template <class Real>
 class Product {
  public:
-  /// Reads the system, which must outlive the calls that follow.
+  /// Reads `system`, which must outlive the following calls.
   void prepare(const LinearSystem& system);
 
-  /// Products from here on are for vectors that are zero outside of these parts.
+  /// Restricts the following products to vectors that are zero outside of these diagonal blocks.
   void select(std::span<const std::size_t> parts);
 
-  /// q = S A p on the rows of the selected parts; returns p·q, and Σ metric ‖p‖² of each part goes into `moved`, in
-  /// their order. p obeys the constraints.
-  double multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q, std::span<double> moved) const;
+  /// q = S A p on the rows of the selected blocks; returns p·q, and writes Σ metric ‖p‖² of each selected block, in
+  /// their order, into `norms_sq`. p must obey the constraints.
+  double multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q, std::span<double> norms_sq) const;
 
-  /// Of each selected part, the sum of all blocks of the matrix, terms and constraints apart.
+  /// Sum of all 3×3 blocks of the matrix, without terms and constraints, per selected block.
   std::vector<Mat3> row_sums() const;
 
-  /// S b in place, on the rows of the selected parts.
+  /// S b in place, on the rows of the selected blocks.
   void filter(std::span<Quad<Real>> b) const;
 
  private:
@@ -59,16 +59,16 @@ class Product {
     std::array<Real, N> weights;
     QuadBlock<Real> stiffness;
 
-    /// Adds its product with p to q, and returns what it adds to p·q.
+    /// Adds the term's product with p to q; returns the increase of p·q.
     double add_product(std::span<const Quad<Real>> p, std::span<Quad<Real>> q) const {
-      Quad<Real> together = weights[0] * p[particles[0]];
-      for (std::size_t k = 1; k < N; ++k) together += weights[k] * p[particles[k]];
-      const Quad<Real> force = stiffness * together;
+      Quad<Real> combined = weights[0] * p[particles[0]];
+      for (std::size_t k = 1; k < N; ++k) combined += weights[k] * p[particles[k]];
+      const Quad<Real> force = stiffness * combined;
       for (std::size_t k = 0; k < N; ++k) q[particles[k]] += weights[k] * force;
-      return sum_of_three(products(together, force));
+      return sum_of_first_three(products(combined, force));
     }
   };
-  struct OfParticle {
+  struct ParticleBlock {
     Index particle;
     QuadBlock<Real> block;
   };
@@ -78,14 +78,14 @@ class Product {
   Mat3 sum_of_row(std::size_t row) const;
 
   const LinearSystem* system_ = nullptr;
-  std::vector<Part> parts_;  // as the matrix was read
-  DifferenceMatrix matrix_;  // in single precision
+  std::vector<Part> parts_;  // when the matrix was read
+  DifferenceMatrix matrix_;  // used in single precision only
   std::vector<Real> metric_;
   std::vector<std::size_t> selected_;
-  RowChunks rows_;                           // of the selected parts
-  std::vector<Stencil<4>> stencils_;         // of the selected parts
-  std::vector<Stencil<8>> wide_stencils_;    // likewise
-  std::vector<OfParticle> terms_, filters_;  // likewise
+  RowChunks rows_;  // of the selected blocks
+  std::vector<Stencil<4>> stencils_;
+  std::vector<Stencil<8>> wide_stencils_;
+  std::vector<ParticleBlock> terms_, filters_;
 };
 
 extern template class Product<float>;

@@ -1,4 +1,4 @@
-// Vectors of the inner loops: four numbers a particle in one register, the last of them zero.
+// Vectors of the inner loops: four numbers per particle in one register, the last one zero.
 #pragma once
 
 #include <cstring>
@@ -19,7 +19,7 @@ template <>
 struct QuadOf<double> {
   using Type = double __attribute__((vector_size(32)));
 };
-/// Four numbers that the compiler keeps in one register where the CPU has it, and splits where it does not.
+/// Four numbers in one register; the compiler splits them if the CPU has no such register.
 template <class Real>
 using Quad = typename QuadOf<Real>::Type;
 
@@ -34,11 +34,11 @@ void store_quad(Real* p, const Quad& quad) {
   static_assert(sizeof quad == 4 * sizeof(Real));
   std::memcpy(p, &quad, sizeof quad);
 }
-/// With zero for the last number.
-inline Quad<float> three_of(Quad<float> q) {
+/// The same with zero as last number.
+inline Quad<float> clear_last_lane(Quad<float> q) {
   return __builtin_shufflevector(q, Quad<float>{}, 0, 1, 2, 4);
 }
-inline Quad<double> three_of(Quad<double> q) {
+inline Quad<double> clear_last_lane(Quad<double> q) {
   return __builtin_shufflevector(q, Quad<double>{}, 0, 1, 2, 4);
 }
 
@@ -57,7 +57,7 @@ Vec3 vec3_of(const Quad& q) {
   return {q[0], q[1], q[2]};
 }
 
-/// A 3×3 block by its columns.
+/// A 3×3 block, stored by columns.
 template <class Real>
 struct QuadBlock {
   Quad<Real> columns[3]{};
@@ -69,13 +69,13 @@ struct QuadBlock {
   Quad<Real> operator*(const Quad<Real>& v) const { return columns[0] * v[0] + columns[1] * v[1] + columns[2] * v[2]; }
 };
 
-/// Entry by entry, in double whatever the numbers are.
+/// Products entry by entry, computed in double.
 template <class Quad>
 weft::solver::Quad<double> products(const Quad& a, const Quad& b) {
   return __builtin_convertvector(a, weft::solver::Quad<double>) *
          __builtin_convertvector(b, weft::solver::Quad<double>);
 }
-inline double sum_of_three(const Quad<double>& q) {
+inline double sum_of_first_three(const Quad<double>& q) {
   return q[0] + q[1] + q[2];
 }
 

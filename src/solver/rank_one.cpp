@@ -52,7 +52,7 @@ double RankOneTerms<Real>::dot(const Term& term, std::span<const Quad<Real>> v) 
   return parallel_sum(term.direction.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     Quad<double> sum{};
     for (std::size_t i = begin; i < end; ++i) sum += products(term.direction[i], v[term.begin + i]);
-    return sum_of_three(sum);
+    return sum_of_first_three(sum);
   });
 }
 
@@ -76,7 +76,7 @@ void RankOneTerms<Real>::correct(std::span<Quad<Real>> z) const {
   correct(z, terms_.size());
 }
 
-// By the first terms alone.
+// Corrects by the first `terms` terms only.
 template <class Real>
 void RankOneTerms<Real>::correct(std::span<Quad<Real>> z, std::size_t terms) const {
   for (std::size_t t = 0; t < terms; ++t) {

@@ -1,4 +1,4 @@
-// The terms of a system that are outer products: in its product and in its preconditioner.
+// Outer products in a system's matrix: their contribution to products and to the preconditioner.
 #pragma once
 
 #include <functional>
@@ -10,26 +10,26 @@
 
 namespace weft::solver {
 
-/// A preconditioner P of the rest of the matrix becomes one of the whole by Sherman and Morrison's formula, term after
-/// term: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P is within bounds of the rest, the sum is
-/// within the same bounds of the whole, however large k is.
+/// Extends a preconditioner P of the other terms to the whole matrix by the formula of Sherman and Morrison, term by
+/// term: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P bounds the rest of the matrix, the sum bounds
+/// the whole matrix with the same constants, however large k is.
 template <class Real>
 class RankOneTerms {
  public:
   using Apply = std::function<void(std::span<const Quad<Real>> r, std::span<Quad<Real>> z)>;
 
-  /// Reads the system, which must outlive the calls that follow.
+  /// Reads `system`, which must outlive the following calls.
   void prepare(const LinearSystem& system);
 
-  /// What follows is for vectors that are zero outside of these parts.
+  /// Restricts the following calls to vectors that are zero outside of these diagonal blocks.
   void select(std::span<const std::size_t> parts);
-  /// And for the preconditioner of the rest that `apply` applies to these parts.
+  /// Computes w with `apply`, the preconditioner of the rest of the matrix on the selected blocks.
   void use(const Apply& apply);
 
-  /// Adds k d dᵀ p of each selected term to q, filtered; returns p·q of them.
+  /// Adds k d dᵀ p of each selected term to q, filtered; returns their part of p·q.
   double multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q) const;
 
-  /// z = P⁻¹ r becomes that of the sum.
+  /// Corrects z = P⁻¹ r to the preconditioner of the whole matrix.
   void correct(std::span<Quad<Real>> z) const;
 
   bool empty() const { return terms_.empty(); }
@@ -46,7 +46,7 @@ class RankOneTerms {
   static double dot(const Term& term, std::span<const Quad<Real>> v);
   void correct(std::span<Quad<Real>> z, std::size_t terms) const;
 
-  std::size_t rows_ = 0;  // of the system
+  std::size_t rows_ = 0;
   std::vector<Term> terms_;
 };
 

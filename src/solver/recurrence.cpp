@@ -12,9 +12,10 @@
 namespace weft::solver {
 namespace {
 
-// Whether an error that fell from `before` to `now` times what it may be, in as many iterations as the factor costs,
-// needs more than 2.5 times as many to get there.
-bool factor_pays(double before, double now) {
+// Whether the incomplete factor repays its cost. `before` and `now` are errors relative to the goal, before and after
+// as many iterations as the factor costs. It pays off if, at this rate, more than 2.5 times as many are still
+// necessary.
+bool factor_pays_off(double before, double now) {
   return !(std::log(now) < 2.5 * std::log(before / now));
 }
 
@@ -23,7 +24,7 @@ double absolute_goal(const LinearGoal& goal, std::size_t part) {
 }
 
 template <class Real>
-void take(std::span<const Vec3> from, std::span<Quad<Real>> to) {
+void convert_to_quads(std::span<const Vec3> from, std::span<Quad<Real>> to) {
   parallel_for(from.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) to[i] = quad_of<Real>(from[i]);
   });
@@ -31,18 +32,18 @@ void take(std::span<const Vec3> from, std::span<Quad<Real>> to) {
 
 }  // namespace
 
-// The coarsest level of the preconditioner couples parts: what one gains by it may be lost by another.
+// Gains are summed as absolute values: the coarsest level couples diagonal blocks, so one may lose what another gains.
 double Progress::OfPart::error_energy() const {
-  return std::accumulate(gains.end() - recent(), gains.end(), 0.0,
+  return std::accumulate(gains.end() - count_recent(), gains.end(), 0.0,
                          [](double sum, double gain) { return sum + std::abs(gain); });
 }
 
-double Progress::OfPart::error_share() const {
-  return *std::max_element(shares.end() - recent(), shares.end());
+double Progress::OfPart::error_norm_ratio() const {
+  return *std::max_element(norm_ratios.end() - count_recent(), norm_ratios.end());
 }
 
-// How many of the last iterations tell the error.
-std::ptrdiff_t Progress::OfPart::recent() const {
+// Number of last iterations from which the error is estimated.
+std::ptrdiff_t Progress::OfPart::count_recent() const {
   const std::ptrdiff_t all = std::ssize(gains);
   return std::min<std::ptrdiff_t>(
       all, std::max<std::ptrdiff_t>(numerics.linear.least_delay, all / numerics.linear.delay_fraction));
@@ -52,21 +53,21 @@ bool Progress::meets(const LinearGoal& goal, std::span<const std::size_t> select
   return std::ranges::all_of(selected, [&](std::size_t p) {
     const double error_sq = parts[p].error_energy(), absolute = absolute_goal(goal, p);
     return error_sq <= goal.relative * goal.relative * parts[p].energy ||
-           error_sq * parts[p].error_share() <= absolute * absolute;
+           error_sq * parts[p].error_norm_ratio() <= absolute * absolute;
   });
 }
 
-double Progress::farthest_from(const LinearGoal& goal, std::span<const std::size_t> selected) const {
-  double farthest = 0;
+double Progress::largest_error_ratio(const LinearGoal& goal, std::span<const std::size_t> selected) const {
+  double largest_ratio = 0;
   for (std::size_t p : selected) {
     const double allowed = std::max(absolute_goal(goal, p), goal.relative * std::sqrt(parts[p].energy));
-    farthest = std::max(farthest, std::sqrt(parts[p].error_energy()) / allowed);
+    largest_ratio = std::max(largest_ratio, std::sqrt(parts[p].error_energy()) / allowed);
   }
-  return farthest;
+  return largest_ratio;
 }
 
-// Of the energy of the step along `start`, what is left by single precision where that was all: uneven motion to solve
-// for would come of it, micrometres in a fall of 5 m.
+// If the step along `start` is the solution, single precision leaves at most this fraction of its energy. Iterating on
+// that rounding would add uneven motion, of micrometres in a fall of 5 m.
 constexpr double kRoundedEnergy = 1e-11;
 
 template <class Real>
@@ -86,7 +87,7 @@ void Recurrence<Real>::prepare(const LinearSystem& system, Sums sums) {
 
 template <class Real>
 std::span<const Quad<Real>> Recurrence<Real>::precondition(std::span<const Vec3> b) {
-  take<Real>(b, q_);
+  convert_to_quads<Real>(b, q_);
   if (!rank_one_.empty()) {
     selected_ = all_parts_;
     rank_one_.select(selected_);
@@ -97,7 +98,7 @@ std::span<const Quad<Real>> Recurrence<Real>::precondition(std::span<const Vec3>
   return z_;
 }
 
-// Whether there is a factor of the system as prepared.
+// Makes the factor if necessary; returns whether one exists for the prepared system.
 template <class Real>
 bool Recurrence<Real>::make_factor() {
   if (factor_state_ == Factor::not_made) factor_state_ = factor_.factorise(*system_) ? Factor::made : Factor::none;
@@ -106,10 +107,10 @@ bool Recurrence<Real>::make_factor() {
 
 template <class Real>
 void Recurrence<Real>::apply_levels_and_factor(std::span<const Quad<Real>> r, std::span<Quad<Real>> z,
-                                               bool with_factor) {
+                                               bool uses_factor) {
   preconditioner_.apply(r, z, selected_);
   if constexpr (std::is_same_v<Real, double>) {
-    if (with_factor) {
+    if (uses_factor) {
       factor_parts_.clear();
       for (std::size_t part : selected_) factor_parts_.push_back(parts_[part]);
       factor_.add(numerics.linear.factor_weight, r, z, factor_parts_);
@@ -118,14 +119,14 @@ void Recurrence<Real>::apply_levels_and_factor(std::span<const Quad<Real>> r, st
   }
 }
 
-// Before the preconditioner is applied to the selected parts, with or without the factor.
+// Prepares the outer products for the preconditioner of the selected blocks, with or without the factor.
 template <class Real>
-void Recurrence<Real>::precondition_rank_one(bool with_factor) {
+void Recurrence<Real>::precondition_rank_one(bool uses_factor) {
   rank_one_.use(
-      [&](std::span<const Quad<Real>> r, std::span<Quad<Real>> z) { apply_levels_and_factor(r, z, with_factor); });
+      [&](std::span<const Quad<Real>> r, std::span<Quad<Real>> z) { apply_levels_and_factor(r, z, uses_factor); });
 }
 
-// a·b of each selected part.
+// a·b of each selected block
 template <class Real>
 std::vector<double> Recurrence<Real>::dots(std::span<const Quad<Real>> a, std::span<const Quad<Real>> b) const {
   std::vector<double> result;
@@ -134,45 +135,45 @@ std::vector<double> Recurrence<Real>::dots(std::span<const Quad<Real>> a, std::s
          for (std::size_t i = first; i < end; ++i) of_chunk += products(a[i], b[i]);
          return of_chunk;
        }))
-    result.push_back(sum_of_three(of_part));
+    result.push_back(sum_of_first_three(of_part));
   return result;
 }
 
 // z = P⁻¹ r, with or without the factor; returns r·z.
 template <class Real>
-double Recurrence<Real>::apply_preconditioner(std::span<Quad<Real>> z, bool with_factor) {
-  apply_levels_and_factor(r_, z, with_factor);
+double Recurrence<Real>::apply_preconditioner(std::span<Quad<Real>> z, bool uses_factor) {
+  apply_levels_and_factor(r_, z, uses_factor);
   rank_one_.correct(z);
   rz_ = dots(r_, z);
   return std::accumulate(rz_.begin(), rz_.end(), 0.0);
 }
 
-// r = b − A x and no direction yet.
+// Sets r = b − A x; there is no search direction yet.
 template <class Real>
 void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start,
                              Progress& progress) {
-  along_ = along_energy_ = 0;
+  start_multiple_ = start_gain_ = 0;
   product_.select(selected_);
   rank_one_.select(selected_);
-  moved_.resize(selected_.size());
+  norms_sq_.resize(selected_.size());
   rz_.resize(selected_.size());
   for (auto* vector : {&x_, &p_, &q_}) std::fill(vector->begin(), vector->end(), Quad<Real>{});
-  take<Real>(b, r_);
+  convert_to_quads<Real>(b, r_);
   product_.filter(r_);
   if (progress.iterations > 0) {
-    take<Real>(x, p_);
+    convert_to_quads<Real>(x, p_);
     multiply();
     rows_.for_each([&](std::size_t first, std::size_t end) {
       for (std::size_t i = first; i < end; ++i) r_[i] -= q_[i];
     });
   } else if (!start.empty()) {
-    begin_along(start);
+    step_along_start(start);
   }
 }
 
-// A step along `start`, which stays beside x_, in double.
+// Takes a step along `start`, which is kept apart from x_, in double: start_multiple_ times start_.
 template <class Real>
-void Recurrence<Real>::begin_along(std::span<const Vec3> start) {
+void Recurrence<Real>::step_along_start(std::span<const Vec3> start) {
   start_.assign(start.begin(), start.end());
   for (const ParticleConstraint& c : system_->constraints)
     start_[static_cast<std::size_t>(c.particle)] = c.free * start_[static_cast<std::size_t>(c.particle)];
@@ -183,15 +184,15 @@ void Recurrence<Real>::begin_along(std::span<const Vec3> start) {
   if (!(curvature > 0)) return;
   const std::vector<double> slopes = dots(p_, r_);
   const double slope = std::accumulate(slopes.begin(), slopes.end(), 0.0);
-  along_ = slope / curvature;
-  along_energy_ = along_ * slope;
-  const Real alpha = static_cast<Real>(along_);
+  start_multiple_ = slope / curvature;
+  start_gain_ = start_multiple_ * slope;
+  const Real alpha = static_cast<Real>(start_multiple_);
   rows_.for_each([&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) r_[i] -= alpha * q_[i];
   });
 }
 
-// A step of length alpha along p, and what it has gained.
+// Takes a step of length alpha along p, and records its gains.
 template <class Real>
 void Recurrence<Real>::advance(double alpha, Progress& progress) {
   const Real step = static_cast<Real>(alpha);
@@ -204,9 +205,9 @@ void Recurrence<Real>::advance(double alpha, Progress& progress) {
   for (std::size_t k = 0; k < selected_.size(); ++k) {
     Progress::OfPart& part = progress.parts[selected_[k]];
     const double gain = alpha * rz_[k];
-    const bool weighed = !system_->metric.empty() && gain > 0;
+    const bool has_norm = !system_->metric.empty() && gain > 0;
     part.gains.push_back(gain);
-    part.shares.push_back(weighed ? std::min(1.0, alpha * alpha * moved_[k] / gain) : 1);
+    part.norm_ratios.push_back(has_norm ? std::min(1.0, alpha * alpha * norms_sq_[k] / gain) : 1);
     part.energy += gain;
   }
   ++progress.iterations;
@@ -215,35 +216,35 @@ void Recurrence<Real>::advance(double alpha, Progress& progress) {
 template <class Real>
 End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progress& progress) {
   constexpr bool kSingle = std::is_same_v<Real, float>;
-  if (goal.relative < kTightGoal && goal.absolute.empty()) progress.with_factor = true;
-  if (progress.with_factor) {
+  if (goal.relative < kTightGoal && goal.absolute.empty()) progress.uses_factor = true;
+  if (progress.uses_factor) {
     if (kSingle) return End::needs_double;
-    progress.with_factor = make_factor();
+    progress.uses_factor = make_factor();
   }
-  precondition_rank_one(progress.with_factor);
-  double rz = apply_preconditioner(p_, progress.with_factor);
-  progress.nothing_left = rz <= (kSingle ? kRoundedEnergy * along_energy_ : 0);
-  if (progress.nothing_left) return End::converged;
+  precondition_rank_one(progress.uses_factor);
+  double rz = apply_preconditioner(p_, progress.uses_factor);
+  progress.is_exact = rz <= (kSingle ? kRoundedEnergy * start_gain_ : 0);
+  if (progress.is_exact) return End::converged;
   while (progress.iterations < max_iterations) {
     end_if_stopped();
     const double curvature = multiply();
     if (!(curvature > 0)) return kSingle ? End::needs_double : End::indefinite;
     advance(rz / curvature, progress);
     if (progress.meets(goal, selected_)) return End::converged;
-    // Directions made without the factor say nothing about those with it.
+    // With the factor, the search directions made without it are no longer conjugate: restart.
     bool restart = false;
-    if (progress.iterations == 1) progress.paced_from = progress.farthest_from(goal, selected_);
-    if (!progress.with_factor && progress.iterations % numerics.linear.factor_cost == 0) {
-      const double far = progress.farthest_from(goal, selected_);
-      restart = progress.with_factor = factor_pays(progress.paced_from, far);
+    if (progress.iterations == 1) progress.last_error_ratio = progress.largest_error_ratio(goal, selected_);
+    if (!progress.uses_factor && progress.iterations % numerics.linear.factor_cost == 0) {
+      const double error_ratio = progress.largest_error_ratio(goal, selected_);
+      restart = progress.uses_factor = factor_pays_off(progress.last_error_ratio, error_ratio);
       if (restart && kSingle) return End::needs_double;
-      if (restart) restart = progress.with_factor = make_factor();
+      if (restart) restart = progress.uses_factor = make_factor();
       if (restart) precondition_rank_one(true);
-      progress.paced_from = far;
+      progress.last_error_ratio = error_ratio;
     }
-    const double rz_before = std::exchange(rz, apply_preconditioner(z_, progress.with_factor));
-    progress.nothing_left = rz == 0;
-    if (progress.nothing_left) return End::converged;
+    const double rz_before = std::exchange(rz, apply_preconditioner(z_, progress.uses_factor));
+    progress.is_exact = rz == 0;
+    if (progress.is_exact) return End::converged;
     const Real beta = static_cast<Real>(restart ? 0 : rz / rz_before);
     rows_.for_each([&](std::size_t first, std::size_t end) {
       for (std::size_t i = first; i < end; ++i) p_[i] = z_[i] + beta * p_[i];
@@ -252,7 +253,7 @@ End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progre
   return End::out_of_iterations;
 }
 
-// Forces v along the directions of each selected part, the motions being p_ and, if there is a second one, z_.
+// Forces v along the directions of each selected block. The motions are p_ and, if there is a second one, z_.
 template <class Real>
 std::vector<AlongMotions> Recurrence<Real>::along_motions(std::span<const Quad<Real>> v, bool has_second) const {
   const std::vector<double> first = dots(p_, v),
@@ -267,9 +268,9 @@ std::vector<AlongMotions> Recurrence<Real>::along_motions(std::span<const Quad<R
   return result;
 }
 
-// Galerkin's condition: what is left is orthogonal to the translations of each part and to its motions. Without it,
-// forces that the iteration leaves in stiff directions do work: a viscosity of 1e3 N·s/m gains energy, and cloth that
-// begins to slide is held back.
+// Galerkin's condition: makes the residual orthogonal to the translations and motions of each diagonal block. Without
+// it, forces left in stiff directions do work: a viscosity of 1e3 N·s/m gains energy, and cloth that begins to slide is
+// held back.
 template <class Real>
 void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) {
   const bool has_second = !directions.drift.empty();
@@ -280,18 +281,18 @@ void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) 
   });
   product_.filter(p_);
   std::vector<PartMotions::Products> products(selected_.size(), PartMotions::Products::Zero());
-  const auto take_products = [&](int motion) {
+  const auto store_products = [&](int motion) {
     const std::vector<AlongMotions> along = along_motions(q_, has_second);
     for (std::size_t k = 0; k < selected_.size(); ++k) products[k].col(motion) = along[k];
   };
   multiply();
-  take_products(0);
+  store_products(0);
   if (has_second) {
     product_.filter(z_);
     std::swap(p_, z_);
     multiply();
     std::swap(p_, z_);
-    take_products(1);
+    store_products(1);
   }
   part_motions_.prepare<Real>(*system_, selected_, {p_, has_second ? z_ : std::span<const Quad<Real>>()},
                               product_.row_sums(), products);
@@ -323,11 +324,11 @@ End Recurrence<Real>::solve(std::span<const Vec3> b, const LinearGoal& goal, int
   rows_ = RowChunks(ranges_of(parts_, selected_), kGrainSize);
   begin(b, x, directions.start, progress);
   const End end = iterate(goal, max_iterations, progress);
-  if (end == End::needs_double && progress.iterations == 0) return end;  // that begins anew
+  if (end == End::needs_double && progress.iterations == 0) return end;  // starts anew in double
   rows_.for_each([&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) x[i] += vec3_of(x_[i]);
-    if (along_ == 0) return;
-    for (std::size_t i = first; i < last; ++i) x[i] += along_ * start_[i];
+    if (start_multiple_ == 0) return;
+    for (std::size_t i = first; i < last; ++i) x[i] += start_multiple_ * start_[i];
   });
   const bool is_end = end == End::converged || end == End::out_of_iterations;
   if (is_end && progress.iterations > 0 && !directions.motion.empty()) balance(directions, x);

@@ -1,4 +1,4 @@
-// The recurrence of conjugate gradients in double or in single precision.
+// The recurrence of conjugate gradients, in double or in single precision.
 #pragma once
 
 #include <span>
@@ -14,88 +14,88 @@
 
 namespace weft::solver {
 
-/// Part of a solution that single precision leaves without telling it from roundings: in the energy norm 6e-8 times the
-/// root of the largest stiffness that it is used for, and a factor of five. Tighter goals are worth an incomplete
-/// factor.
+/// Relative residual that single precision can still tell from rounding: in the energy norm 6e-8 times the root of the
+/// largest stiffness that it is used for, times a safety factor of five. Tighter goals repay an incomplete factor.
 inline constexpr double kTightGoal = 1e-3;
 
-/// How exact the solution x must be in each part of the system: its error e as measured below is at most the larger of
-/// a share of ‖x‖_A, of what the iteration adds to its start, and of an absolute size.
+/// Allowed error e of the solution x, per diagonal block: the larger of `relative` times the energy norm of what the
+/// iteration adds to its start, and of an absolute bound in the mass-weighted norm.
 struct LinearGoal {
   double relative = 0;
-  std::span<const double> absolute = {};  ///< of each part of the system; empty: none
+  std::span<const double> absolute = {};  ///< per diagonal block; empty: none
 };
 
-/// What is known of the solution before it is computed; each may be missing.
+/// Known directions of the solution; each may be empty.
 struct Directions {
-  /// Along which the solution is looked for first: x begins with the multiple of it that is best in the energy norm, at
-  /// the price of one product.
+  /// The solve starts along this direction, with the multiple that is best in the energy norm. Costs one product.
   std::span<const Vec3> start = {};
-  /// Motion to which the solution is added. In the end, forces that are left do no work along the sum, and sum to zero
-  /// over each part that no constraint holds: Galerkin's condition for these directions of each part.
+  /// Motion to which the solution is added. At the end, the residual does no work along their sum, and sums to zero
+  /// over each diagonal block that no constraint holds (Galerkin's condition for these directions of each diagonal
+  /// block).
   std::span<const Vec3> motion = {};
-  /// Another motion along which they do no work either; only beside the first.
+  /// Second motion along which the residual does no work; needs the first.
   std::span<const Vec3> drift = {};
 };
 
-/// What a solve has done so far, in whatever precision.
+/// State of a solve, in either precision.
 struct Progress {
-  /// What is known of the error of one part.
+  /// Error data of one diagonal block.
   struct OfPart {
-    double energy = 0;                  ///< ‖x‖²_A
-    std::vector<double> gains, shares;  ///< of each iteration: what it took off ‖e‖²_A, the share of the metric in it
-    double error_energy() const;        ///< estimate of ‖e‖²_A
-    double error_share() const;
+    double energy = 0;  ///< ‖x‖²_A
+    std::vector<double> gains,
+        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A, and ratio of the mass-weighted norm to it, both squared
+    double error_energy() const;  ///< estimate of ‖e‖²_A
+    double error_norm_ratio() const;
 
    private:
-    std::ptrdiff_t recent() const;
+    std::ptrdiff_t count_recent() const;
   };
   std::vector<OfPart> parts;  ///< of the whole system
   int iterations = 0;
-  bool with_factor = false;
-  bool nothing_left = false;
-  double paced_from = 0;  ///< error at the last look at the pace, in shares of what it may be
+  bool uses_factor = false;
+  bool is_exact = false;
+  double last_error_ratio = 0;  ///< error relative to the goal, when the factor was last considered
 
   bool meets(const LinearGoal& goal, std::span<const std::size_t> selected) const;
-  /// The largest error of these parts, in shares of what it may be: the square of it in the energy norm.
-  double farthest_from(const LinearGoal& goal, std::span<const std::size_t> selected) const;
+  /// Largest error of these diagonal blocks relative to the goal, in the energy norm.
+  double largest_error_ratio(const LinearGoal& goal, std::span<const std::size_t> selected) const;
 };
 
 enum class End {
   converged,
   out_of_iterations,
-  indefinite,    ///< a direction of no or negative curvature came up
-  needs_double,  ///< single precision only: what is left is for double, begun anew
+  indefinite,    ///< a direction without positive curvature
+  needs_double,  ///< single precision only: continue in double, with a new direction
 };
 
 template <class Real>
 class Recurrence {
  public:
-  /// Reads the system, which must outlive the calls that follow.
+  /// Reads `system`, which must outlive the following calls.
   void prepare(const LinearSystem& system, Sums sums);
 
-  /// P⁻¹ b, valid until the next call.
+  /// P⁻¹ b. Valid until the next call.
   std::span<const Quad<Real>> precondition(std::span<const Vec3> b);
 
-  /// Adds to x what solves A x = b on these parts, the others being held.
+  /// Adds the solution of A x = b on these diagonal blocks to x; all others are held.
   End solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
             const Directions& directions, std::span<const std::size_t> parts, Progress& progress);
 
-  /// b − A x of the last solve, on the rows that it was for.
+  /// b − A x of the last solve, on the rows that it solved for.
   std::span<const Quad<Real>> residual() const { return r_; }
 
  private:
   void begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start, Progress& progress);
-  void begin_along(std::span<const Vec3> start);
+  void step_along_start(std::span<const Vec3> start);
   End iterate(const LinearGoal& goal, int max_iterations, Progress& progress);
   double multiply() {
-    const double curvature = product_.multiply(p_, q_, moved_);
+    const double curvature = product_.multiply(p_, q_, norms_sq_);
     return curvature + rank_one_.multiply(p_, q_);
   }
-  void apply_levels_and_factor(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, bool with_factor);
-  void precondition_rank_one(bool with_factor);
+  void apply_levels_and_factor(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, bool uses_factor);
+  void precondition_rank_one(bool uses_factor);
   void advance(double alpha, Progress& progress);
-  double apply_preconditioner(std::span<Quad<Real>> z, bool with_factor);
+  double apply_preconditioner(std::span<Quad<Real>> z, bool uses_factor);
   bool make_factor();
   void balance(const Directions& directions, std::span<Vec3> x);
   std::vector<double> dots(std::span<const Quad<Real>> a, std::span<const Quad<Real>> b) const;
@@ -104,19 +104,19 @@ class Recurrence {
   const LinearSystem* system_ = nullptr;
   std::vector<Part> parts_;
   std::vector<std::size_t> all_parts_, selected_;
-  RowChunks rows_;  // of those selected
+  RowChunks rows_;  // of the selected blocks
   Product<Real> product_;
   Preconditioner<Real> preconditioner_;
   RankOneTerms<Real> rank_one_;
   PartMotions part_motions_;
   IncompleteCholesky factor_;                                                   // in double only
-  enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // of the system as prepared
+  enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // for the prepared system
   std::vector<Part> factor_parts_;                                              // scratch
   std::vector<Quad<Real>> x_, r_, z_, p_, q_;
-  std::vector<Vec3> start_;         // as far as constraints let it
-  double along_ = 0;                // what the solution has of it, beside x_
-  double along_energy_ = 0;         // and what that gains
-  std::vector<double> moved_, rz_;  // of each selected part: Σ metric ‖p‖², r·z
+  std::vector<Vec3> start_;            // filtered by the constraints
+  double start_multiple_ = 0;          // multiple of start_ in the solution, beside x_
+  double start_gain_ = 0;              // decrease of ‖e‖²_A by it
+  std::vector<double> norms_sq_, rz_;  // per selected block: Σ metric ‖p‖², r·z
 };
 
 extern template class Recurrence<float>;

@@ -1,4 +1,4 @@
-// Rows of several ranges, cut for threads.
+// Row ranges, divided into chunks for threads.
 #pragma once
 
 #include <algorithm>
@@ -15,18 +15,18 @@ struct RowRange {
   std::size_t begin = 0, end = 0;
 };
 
-/// Ranges of rows in chunks of fixed size, each within its range, so that sums come out the same on any number of
-/// threads; small ones, of many small cloths, are handed out several at a time.
+/// Divides row ranges into chunks of fixed size that never cross a range, so that sums have the same bits on any number
+/// of threads. Small chunks, of many small cloths, are handed to threads several at a time.
 class RowChunks {
  public:
   RowChunks() = default;
-  /// `at_once`: rows that are worth a thread's while, and of a chunk at most.
-  RowChunks(std::span<const RowRange> ranges, std::size_t at_once) : ranges_(ranges.size()) {
+  /// `max_rows`: maximum number of rows per chunk; a task for a thread joins chunks until it has as many.
+  RowChunks(std::span<const RowRange> ranges, std::size_t max_rows) : ranges_(ranges.size()) {
     std::size_t rows = 0;  // of the last task
     for (std::size_t r = 0; r < ranges.size(); ++r)
-      for (std::size_t begin = ranges[r].begin; begin < ranges[r].end; begin += at_once) {
-        if (chunks_.empty() || rows >= at_once) tasks_.push_back(chunks_.size()), rows = 0;
-        chunks_.push_back({begin, std::min(begin + at_once, ranges[r].end), r});
+      for (std::size_t begin = ranges[r].begin; begin < ranges[r].end; begin += max_rows) {
+        if (chunks_.empty() || rows >= max_rows) tasks_.push_back(chunks_.size()), rows = 0;
+        chunks_.push_back({begin, std::min(begin + max_rows, ranges[r].end), r});
         rows += chunks_.back().end - begin;
       }
     tasks_.push_back(chunks_.size());
@@ -38,7 +38,7 @@ class RowChunks {
     for_each_chunk([&](std::size_t c) { body(chunks_[c].begin, chunks_[c].end); });
   }
 
-  /// Σ body(begin, end) of each range, chunk after chunk.
+  /// Σ body(begin, end) of each range, in the order of its chunks.
   template <class Body>
   std::vector<Quad<double>> sums(const Body& body) const {
     std::vector<Quad<double>> of_chunks(chunks_.size()), of_ranges(ranges_);
@@ -61,7 +61,7 @@ class RowChunks {
 
   std::size_t ranges_ = 0;
   std::vector<Chunk> chunks_;
-  std::vector<std::size_t> tasks_;  // first chunk of each, and the end
+  std::vector<std::size_t> tasks_;  // first chunk of each task, and the end
 };
 
 }  // namespace weft::solver

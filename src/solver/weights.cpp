@@ -46,8 +46,8 @@ Weights<Real> Weights<Real>::times(const Weights& next) const {
 }
 
 template <class Real>
-Weights<Real> Weights<Real>::interpolating(const Grouping& grouping, double smoothing,
-                                           std::vector<std::vector<Index>>& neighbours) {
+Weights<Real> Weights<Real>::make_interpolation(const Grouping& grouping, double smoothing,
+                                                std::vector<std::vector<Index>>& neighbours) {
   std::vector<std::vector<Index>> next(static_cast<std::size_t>(grouping.count));
   Weights weights;
   weights.start.assign(1, 0);
@@ -55,15 +55,15 @@ Weights<Real> Weights<Real>::interpolating(const Grouping& grouping, double smoo
     const Index own = grouping.of[m];
     std::vector<Index> groups;
     for (Index n : neighbours[m]) groups.push_back(grouping.of[n]);
-    const double share = groups.empty() ? 0 : smoothing / static_cast<double>(groups.size());
+    const double neighbour_weight = groups.empty() ? 0 : smoothing / static_cast<double>(groups.size());
     groups.push_back(own);
     std::ranges::sort(groups);
     for (auto first = groups.begin(); first != groups.end();) {
       const auto last = std::upper_bound(first, groups.end(), *first);
       const auto count = static_cast<double>(last - first);
-      const double weight = *first != own        ? share * count
+      const double weight = *first != own        ? neighbour_weight * count
                             : groups.size() == 1 ? 1
-                                                 : 1 - smoothing + share * (count - 1);
+                                                 : 1 - smoothing + neighbour_weight * (count - 1);
       if (weight > 0) {
         weights.columns.push_back(*first);
         weights.values.push_back(static_cast<Real>(weight));

@@ -1,4 +1,4 @@
-// Sparse weights by which the preconditioner interpolates.
+// Sparse interpolation weights of the preconditioner.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace weft::solver {
 
-/// Rows of weights: of a member of groups in each of them, or the other way round.
+/// Rows of weights: per member the weights of its aggregates, or the transpose.
 template <class Real>
 struct Weights {
   std::vector<Index> start;  // rows + 1 entries into columns
@@ -22,12 +22,14 @@ struct Weights {
     for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
     return result;
   }
-  /// From groups to their members. A member follows its own group, and by a share `smoothing` those of its neighbours.
-  /// `neighbours`: of each member; becomes those of the groups.
-  static Weights interpolating(const Grouping& grouping, double smoothing, std::vector<std::vector<Index>>& neighbours);
-  /// With `rows` rows.
+  /// Interpolation from aggregates to their members. A member takes the fraction `smoothing` from the aggregates of its
+  /// neighbours, and the rest from its own. `neighbours`: neighbours of each member; replaced by those of the
+  /// aggregates.
+  static Weights make_interpolation(const Grouping& grouping, double smoothing,
+                                    std::vector<std::vector<Index>>& neighbours);
+  /// The transpose, with `rows` rows.
   Weights transposed(std::size_t rows) const;
-  /// Of members in the groups of `next`, where these are of members in groups that are the members of `next`.
+  /// The product of this interpolation with `next`, the interpolation between this level and the next coarser one.
   Weights times(const Weights& next) const;
 };
 

@@ -7,34 +7,36 @@
 namespace weft::untangle {
 namespace {
 
-struct Pierced {
-  double share;
+struct SegmentHit {
+  double fraction;
   std::array<double, 3> weights;
 };
 
-// Where the segment from p to q goes through a triangle; empty also where it lies in its plane.
-std::optional<Pierced> pierce(const Vec3& p, const Vec3& q, const collision::Triangle& t, std::span<const Vec3> x) {
+// Where the segment from p to q crosses a triangle. Empty also if it lies in the plane of the triangle.
+std::optional<SegmentHit> intersect_segment(const Vec3& p, const Vec3& q, const collision::Triangle& t,
+                                            std::span<const Vec3> x) {
   const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
   const Vec3 n = (b - a).cross(c - a);
   const double from = n.dot(p - a), to = n.dot(q - a);
   if (from * to > 0 || from == to) return std::nullopt;
-  const Vec3 way = q - p;
-  const double u = way.dot((b - p).cross(c - p)), v = way.dot((c - p).cross(a - p)), w = way.dot((a - p).cross(b - p));
+  const Vec3 segment = q - p;
+  const double u = segment.dot((b - p).cross(c - p)), v = segment.dot((c - p).cross(a - p)),
+               w = segment.dot((a - p).cross(b - p));
   const double sum = u + v + w;
   if (sum == 0 || std::min({u / sum, v / sum, w / sum}) < 0) return std::nullopt;
-  return Pierced{from / (from - to), {u / sum, v / sum, w / sum}};
+  return SegmentHit{from / (from - to), {u / sum, v / sum, w / sum}};
 }
 
-bool of_solid(const Fabric& fabric, Index vertex) {
+bool is_solid(const Fabric& fabric, Index vertex) {
   const Kind kind = fabric.kinds[fabric.bodies.body_of(vertex)];
   return kind == Kind::solid || kind == Kind::floor || kind == Kind::layer;
 }
 
 }  // namespace
 
-bool with_solid(const Fabric& fabric, const Crossing& crossing) {
-  return of_solid(fabric, fabric.edges.edges[crossing.edge].vertices[0]) ||
-         of_solid(fabric, fabric.bodies.triangles()[crossing.triangle][0]);
+bool involves_solid(const Fabric& fabric, const Crossing& crossing) {
+  return is_solid(fabric, fabric.edges.edges[crossing.edge].vertices[0]) ||
+         is_solid(fabric, fabric.bodies.triangles()[crossing.triangle][0]);
 }
 
 CrossingFinder::CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles)
@@ -57,16 +59,16 @@ std::span<const collision::TrianglePair> CrossingFinder::near(std::span<const Ve
   return candidates_.apart.view();
 }
 
-// The edges of one triangle against another, but those that end in the vertex `without`, which both have.
+// Tests the edges of one triangle against another. Skips edges that end in `without`, the vertex that both share.
 bool CrossingFinder::test(Index of_edge, Index triangle, Index without, std::span<const Vec3> x) {
   bool any = false;
   for (const Index e : fabric_.edges.of_triangle[of_edge]) {
     const auto [i, j] = fabric_.edges.edges[e].vertices;
     if (i == without || j == without) continue;
-    const auto pierced = pierce(x[i], x[j], fabric_.bodies.triangles()[triangle], x);
-    if (!pierced) continue;
+    const auto hit = intersect_segment(x[i], x[j], fabric_.bodies.triangles()[triangle], x);
+    if (!hit) continue;
     any = true;
-    crossings_.push_back({e, triangle, pierced->share, pierced->weights});
+    crossings_.push_back({e, triangle, hit->fraction, hit->weights});
   }
   return any;
 }

@@ -1,4 +1,4 @@
-// Where edges go through triangles.
+// Finds where edges cross triangles.
 #pragma once
 
 #include <array>
@@ -13,25 +13,25 @@ namespace weft::untangle {
 struct Crossing {
   Index edge;                     ///< of Fabric::edges
   Index triangle;                 ///< global number
-  double share;                   ///< of the way from the edge's first to its second vertex
-  std::array<double, 3> weights;  ///< of the triangle's corners
+  double fraction;                ///< position on the edge, from its first vertex (0) to its second (1)
+  std::array<double, 3> weights;  ///< of the corners of the triangle
 };
 
-/// Whether one of the two is of an obstacle with an inside, or a layer.
-bool with_solid(const Fabric& fabric, const Crossing& crossing);
+/// Whether the edge or the triangle belongs to an obstacle with an inside, or to a layer.
+bool involves_solid(const Fabric& fabric, const Crossing& crossing);
 
-/// Of the surfaces of which one at least is cloth.
+/// Crossings between surfaces of which at least one is cloth.
 class CrossingFinder {
  public:
-  /// `self`: cloth with cloth; `obstacles`: cloth with obstacles. The fabric must outlive it.
+  /// `self`: cloth with cloth. `obstacles`: cloth with obstacles. The fabric must outlive it.
   CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles);
 
-  /// All at x [m], sorted by edge and triangle, each once. Touching counts.
+  /// All crossings at x [m], sorted by edge and triangle, each once. Touching counts.
   std::span<const Crossing> find(std::span<const Vec3> x);
-  /// Pairs of triangles among the last that were found.
+  /// Number of crossing pairs of triangles in the last find().
   int pairs() const { return pairs_; }
 
-  /// Pairs of triangles without a common vertex whose boxes are within `distance` [m] of each other.
+  /// Pairs of triangles without a common vertex whose bounding boxes are within `distance` [m] of each other.
   std::span<const collision::TrianglePair> near(std::span<const Vec3> x, double distance);
 
   const collision::BroadPhase& surfaces() const { return broad_phase_; }

@@ -6,8 +6,8 @@
 namespace weft::untangle {
 namespace {
 
-// Threads may be pressed to this part of their length: what is left over buckles when the run begins.
-constexpr double kLeastLength = 0.6;
+// Threads may be compressed to this fraction of their length; the excess buckles when the run begins.
+constexpr double kMinLengthRatio = 0.6;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Fabric::Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, s
   for (std::size_t b = 0; b < bodies.size(); ++b) thickness.push_back(bodies[b].thickness);
   const auto add = [&](Index i, Index j, bool bend) {
     const double at_start = (x[i] - x[j]).norm(), at_rest = (rest[i] - rest[j]).norm();
-    links.push_back({i, j, kLeastLength * std::min(at_start, at_rest), std::max(at_start, at_rest), bend});
+    links.push_back({i, j, kMinLengthRatio * std::min(at_start, at_rest), std::max(at_start, at_rest), bend});
   };
   const auto third = [&](Index triangle, const mesh::Edge& edge) {
     for (const Index v : bodies.triangles()[triangle])
@@ -50,9 +50,9 @@ double stretch_cost(const Fabric& fabric, std::span<const Move> moves, std::span
   double sum = 0;
   std::size_t count = 0;
   for (const Fabric::Link& link : fabric.links) {
-    if (link.bend || (!targets.contains(link.i) && !targets.contains(link.j))) continue;
+    if (link.is_bend || (!targets.contains(link.i) && !targets.contains(link.j))) continue;
     const double now = (x[link.i] - x[link.j]).norm(), then = (at(link.i) - at(link.j)).norm();
-    const double beyond = then / std::max(link.most, now) - 1, below = 1 - then / std::min(link.least, now);
+    const double beyond = then / std::max(link.max_length, now) - 1, below = 1 - then / std::min(link.min_length, now);
     const double error = std::max({beyond, below, 0.0});
     sum += error * error;
     ++count;

@@ -8,8 +8,8 @@ namespace weft::untangle {
 namespace {
 
 constexpr int kSweepsPerRaise = 5;
-// Share of its error that a link between opposite corners is put right by.
-constexpr double kBendShare = 0.2;
+// Fraction of the error by which a link between opposite corners is corrected.
+constexpr double kBendFraction = 0.2;
 constexpr std::size_t kParticlesPerTask = 256;
 
 }  // namespace
@@ -21,7 +21,7 @@ void raise(const Fabric& fabric, std::span<const Solid> solids, std::span<const 
                    if (!fabric.movable[i]) continue;
                    const double height = above[fabric.bodies.body_of(static_cast<Index>(i))];
                    for (const Solid& solid : solids) {
-                     if (!solid.reaches(x[i], height)) continue;
+                     if (!solid.is_near(x[i], height)) continue;
                      const Solid::Exit exit = solid.exit(x[i]);
                      if (exit.height < height) x[i] = exit.place + height * exit.normal;
                    }
@@ -35,12 +35,12 @@ void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const 
     for (const Fabric::Link& link : fabric.links) {
       const Vec3 between = x[link.j] - x[link.i];
       const double sq = between.squaredNorm();
-      if (sq <= link.most * link.most && sq >= link.least * link.least) continue;
+      if (sq <= link.max_length * link.max_length && sq >= link.min_length * link.min_length) continue;
       const int ends = (fabric.movable[link.i] ? 1 : 0) + (fabric.movable[link.j] ? 1 : 0);
       if (ends == 0 || sq == 0) continue;
       const double length = std::sqrt(sq);
-      const double error = length - std::clamp(length, link.least, link.most);
-      const Vec3 push = (link.bend ? kBendShare : 1.0) * error / (length * ends) * between;
+      const double error = length - std::clamp(length, link.min_length, link.max_length);
+      const Vec3 push = (link.is_bend ? kBendFraction : 1.0) * error / (length * ends) * between;
       if (fabric.movable[link.i]) x[link.i] += push;
       if (fabric.movable[link.j]) x[link.j] -= push;
     }
@@ -49,11 +49,11 @@ void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const 
 }
 
 void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, int times, std::span<Vec3> x) {
-  std::vector<std::uint8_t> in(static_cast<std::size_t>(fabric.particles()), 0);
+  std::vector<std::uint8_t> in_region(static_cast<std::size_t>(fabric.particles()), 0);
   std::vector<Index> region;
   const auto take = [&](Index i) {
-    if (!fabric.is_cloth(i) || in[i]) return;
-    in[i] = 1;
+    if (!fabric.is_cloth(i) || in_region[i]) return;
+    in_region[i] = 1;
     region.push_back(i);
   };
   for (const Index i : particles) take(i);
@@ -65,7 +65,7 @@ void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, i
   for (int time = 0; time < times; ++time) {
     for (const Index i : region) {
       if (!fabric.movable[i]) continue;
-      // A border stays one: along it alone.
+      // Move border particles only along the border.
       Vec3 sum = Vec3::Zero();
       int count = 0;
       for (const Index j : fabric.neighbours[i]) {

@@ -1,4 +1,4 @@
-// Cloth gives way to what was moved: threads and folds get back to lengths that they may have, particle by particle.
+// Relaxation: the rest of the cloth follows moved particles, so that threads and folds regain allowed lengths.
 #pragma once
 
 #include <span>
@@ -8,16 +8,16 @@
 
 namespace weft::untangle {
 
-/// Sweeps over all links in their order, each put right at once (position-based dynamics without time: Müller et al.,
-/// "Position Based Dynamics", 2007). After every few sweeps what is too low over a solid is raised to `above` its
-/// surface (per body of cloth, [m]).
+/// Sweeps over all links in order and corrects each at once (position-based dynamics without time: Müller et al.,
+/// "Position Based Dynamics", 2007). After every few sweeps, particles that are too low over a solid are raised to
+/// `above` its surface (per body of cloth, [m]).
 void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, int sweeps,
            std::span<Vec3> x);
 
-/// Particles that are lower than that, the nearest way out.
+/// Moves particles that are lower than `above` the nearest way out.
 void raise(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, std::span<Vec3> x);
 
-/// Moves movable particles around these, as far as `rings` edges away, to the middle of their neighbours, `times` over.
+/// Moves movable particles within `rings` edges of the given ones to the centre of their neighbours, `times` times.
 void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, int times, std::span<Vec3> x);
 
 }  // namespace weft::untangle

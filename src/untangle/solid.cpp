@@ -9,13 +9,12 @@
 namespace weft::untangle {
 namespace {
 
-// Above a face by this part of the body's size is what that face has outside: less than any detail, more than rounding.
-constexpr double kRaised = 1e-6;
-// Weight of a corner up to which the nearest point of a face is on the opposite edge.
-constexpr double kOnCorner = 1e-9;
-// Rays look this way: nearly along an axis, so that boxes around them are thin, and along no edge that a modeller
-// draws.
-const Vec3 kRay(1, 0.00137, 0.00211);
+// Offset at which a face's outside is probed, relative to the size of the body: below any detail, above rounding.
+constexpr double kProbeOffset = 1e-6;
+// Corner weight below which the nearest point of a face counts as on the opposite edge.
+constexpr double kMaxZeroWeight = 1e-9;
+// Direction of rays: nearly along an axis, so that boxes around them are thin, but along no edge that a modeller draws.
+const Vec3 kRayDirection(1, 0.00137, 0.00211);
 
 }  // namespace
 
@@ -29,7 +28,7 @@ Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kin
     place_ = x[surface.triangles.front()[0]];
     return;
   }
-  const double above = kRaised * box_.diagonal().norm();
+  const double above = kProbeOffset * box_.diagonal().norm();
   for (const collision::Triangle& t : surface.triangles)
     buried_.push_back(inside((x[t[0]] + x[t[1]] + x[t[2]]) / 3 + above * collision::face_normal(t, x)));
 }
@@ -40,7 +39,7 @@ Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, std::spa
   const collision::Surface& surface = surfaces.surface(number);
   for (const collision::Triangle& t : surface.triangles)
     for (const Index v : t) box_.extend(x[v]);
-  double outward = 0;  // area that faces outward less that which faces inward [m²]
+  double outward = 0;  // area facing outward minus area facing inward [m²]
   for (const collision::Triangle& t : surface.triangles) {
     const Vec3 centre = (x[t[0]] + x[t[1]] + x[t[2]]) / 3;
     Vec3 away = (centre - box_.center()).stableNormalized();
@@ -53,15 +52,15 @@ Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, std::spa
     }
     outward += 0.5 * (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).dot(away);
   }
-  if (outward < 0) outer_ = -1;
+  if (outward < 0) outer_sign_ = -1;
 }
 
-bool Solid::reaches(const Vec3& p, double distance) const {
+bool Solid::is_near(const Vec3& p, double distance) const {
   if (kind_ == Kind::floor) return normal_.dot(p - place_) < distance;
   return box_.squaredExteriorDistance(p) <= distance * distance;
 }
 
-// Where the way from p goes through faces, in order.
+// Where the segment from p along `way` crosses faces, in order.
 std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
   const collision::Surface& surface = surfaces_.surface(number_);
   std::vector<Index> numbers;
@@ -78,9 +77,9 @@ std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
     const double along = n.dot(way);
     if (along == 0) continue;
     const double at = n.dot(a - p) / along;
-    if (at > 0 && at <= 1) found.push_back({at, along > 0 ? -outer_ : outer_});
+    if (at > 0 && at <= 1) found.push_back({at, along > 0 ? -outer_sign_ : outer_sign_});
   }
-  std::ranges::stable_sort(found, {}, &Hit::at);
+  std::ranges::stable_sort(found, {}, &Hit::fraction);
   return found;
 }
 
@@ -89,20 +88,20 @@ bool Solid::inside(const Vec3& p) const {
   if (kind_ == Kind::layer) return exit_of_layer(p).height < 0;
   if (!box_.contains(p)) return false;
   int turns = 0;
-  for (const Hit& hit : hits(p, 1.01 * box_.diagonal().norm() * kRay)) turns += hit.turn;
+  for (const Hit& hit : hits(p, 1.01 * box_.diagonal().norm() * kRayDirection)) turns += hit.winding;
   return turns < 0;
 }
 
-// What has the border as its nearest point is beside the cloth, and so outside.
+// Points whose nearest point is on the border are next to the cloth, and so outside.
 Solid::Exit Solid::exit_of_layer(const Vec3& p) const {
   const collision::SurfacePoint point = collision::nearest_point(p, surfaces_, number_, x_);
   const Vec3 place = p - point.height * point.normal;
   bool beside = true;
   for (std::size_t c = 0; c < 3; ++c)
-    beside = beside && (point.weights[c] <= kOnCorner || on_border_[point.face[c]] != 0);
-  if (!beside) return {place, outer_ * point.normal, outer_ * point.height};
+    beside = beside && (point.weights[c] <= kMaxZeroWeight || on_border_[point.face[c]] != 0);
+  if (!beside) return {place, outer_sign_ * point.normal, outer_sign_ * point.height};
   const Vec3 arm = p - place;
-  return {place, arm.isZero() ? Vec3(outer_ * point.normal) : arm.normalized(), arm.norm()};
+  return {place, arm.isZero() ? Vec3(outer_sign_ * point.normal) : arm.normalized(), arm.norm()};
 }
 
 Solid::Exit Solid::exit(const Vec3& p) const {
@@ -125,37 +124,37 @@ Solid::Exit Solid::exit(const Vec3& p) const {
   for (const Index number : numbers) nearest.push_back(surface.triangles[number - surface.first_triangle]);
   collision::SurfacePoint point = collision::nearest_point(p, nearest, x_);
   const Vec3 place = p - point.height * point.normal;
-  // The nearest point's own sign is wrong where shells cross.
+  // Where shells cross, the sign at the nearest point is wrong.
   const double side = inside(p) ? -1 : 1;
   if (side * point.height < 0) point.normal = -point.normal;
   return {place, point.normal, side * std::abs(point.height)};
 }
 
-double Solid::way_out(const Vec3& p, const Vec3& d) const {
+double Solid::distance_out(const Vec3& p, const Vec3& d) const {
   if (kind_ == Kind::floor) {
     const double rise = normal_.dot(d);
     return rise > 0 ? -normal_.dot(p - place_) / rise : std::numeric_limits<double>::infinity();
   }
   const double length = 1.01 * box_.diagonal().norm();
-  int depth = 0, least = 0;
+  int depth = 0, shells = 0;
   const std::vector<Hit> found = hits(p, length * d);
   if (kind_ == Kind::layer) {
     for (const Hit& hit : found)
-      if (hit.turn < 0) return length * hit.at;
+      if (hit.winding < 0) return length * hit.fraction;
     return std::numeric_limits<double>::infinity();
   }
-  for (const Hit& hit : found) least -= hit.turn;
-  depth = least;  // shells around p: all that the ray leaves more often than it enters
+  for (const Hit& hit : found) shells -= hit.winding;
+  depth = shells;  // shells around p: the ray leaves them more often than it enters
   for (const Hit& hit : found) {
-    depth += hit.turn;
-    if (depth <= 0) return length * hit.at;
+    depth += hit.winding;
+    if (depth <= 0) return length * hit.fraction;
   }
   return 0;
 }
 
-double Solid::depth_between(const Vec3& p, const Vec3& q) const {
+double Solid::midpoint_depth(const Vec3& p, const Vec3& q) const {
   const Vec3 middle = 0.5 * (p + q);
-  return reaches(middle, 0) && inside(middle) ? -exit(middle).height / (p - q).norm() : 0;
+  return is_near(middle, 0) && inside(middle) ? -exit(middle).height / (p - q).norm() : 0;
 }
 
 }  // namespace weft::untangle

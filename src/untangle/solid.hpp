@@ -1,4 +1,4 @@
-// The inside of an obstacle, and ways out of it.
+// The inside of an obstacle, and exits from it.
 #pragma once
 
 #include <cstdint>
@@ -11,41 +11,41 @@
 
 namespace weft::untangle {
 
-/// A body of closed shells, which may cross each other, or all that is below a plane, or behind cloth that is worn:
-/// what that has as its nearest point, and not its border. Does not move.
+/// The region where cloth may not be: inside a body of closed shells, which may cross each other; below a floor; or
+/// behind worn cloth (a layer), for points whose nearest point is not on its border. Does not move.
 class Solid {
  public:
   /// Body `number` of the broad phase, which must outlive it, at x [m].
   Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kind, std::span<const Vec3> x);
-  /// Cloth that is worn over what others have inside, or around its own middle where there are none: its outer side is
-  /// the one that faces away from that, on the whole. `on_border`: per vertex; must outlive it.
+  /// A layer: cloth that is worn over the bodies `below`, or around its own centre if there are none. Its outer side is
+  /// the one that mostly faces away from them. `on_border`: per vertex; must outlive it.
   Solid(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
         std::span<const std::uint8_t> on_border, std::span<const Solid> below);
 
   std::size_t number() const { return number_; }
-  /// Whether p is near enough to be inside, or within `distance` [m] of it.
-  bool reaches(const Vec3& p, double distance) const;
-  /// By the winding number: what the shells of a body have in common is inside, whichever of their faces is near.
+  /// Whether p lies in the bounds of the solid or within `distance` [m] of them.
+  bool is_near(const Vec3& p, double distance) const;
+  /// By the winding number, so points where shells of the body overlap are inside, whichever face is nearest.
   bool inside(const Vec3& p) const;
 
-  /// The nearest point of what is seen from outside.
+  /// The nearest point of the outer surface. Faces buried in another shell do not count.
   struct Exit {
-    Vec3 place, normal;  ///< normal: outward, unit
-    double height;       ///< of p above it [m], negative inside
+    Vec3 place, normal;  ///< unit, outward
+    double height;       ///< signed distance of p [m], negative inside
   };
   Exit exit(const Vec3& p) const;
-  /// How far from p, inside, it is along the unit direction d until the body ends [m]; infinite where it does not.
-  double way_out(const Vec3& p, const Vec3& d) const;
-  /// Whether the straight way between these goes through its surface.
-  bool meets(const Vec3& p, const Vec3& q) const { return kind_ != Kind::floor && !hits(p, q - p).empty(); }
-  /// How deep the middle of the straight way between these is inside, in its lengths; 0 outside. Over a round body it
-  /// is 0.21 after a quarter of a turn, and 0.5 after a half.
-  double depth_between(const Vec3& p, const Vec3& q) const;
+  /// Distance along the unit direction d from p, inside, to the end of the body [m]; infinite if it does not end.
+  double distance_out(const Vec3& p, const Vec3& d) const;
+  /// Whether the segment from p to q crosses the surface; false for a floor.
+  bool crosses_surface(const Vec3& p, const Vec3& q) const { return kind_ != Kind::floor && !hits(p, q - p).empty(); }
+  /// Depth of the segment's midpoint inside the solid, divided by the length of the segment; 0 outside. For a segment
+  /// around a round body: 0.21 for a quarter turn, 0.5 for half a turn.
+  double midpoint_depth(const Vec3& p, const Vec3& q) const;
 
  private:
   struct Hit {
-    double at;  // in lengths of the way
-    int turn;   // +1 into the body, −1 out of it
+    double fraction;  // fraction of the segment
+    int winding;      // +1 into the body, −1 out of it
   };
   std::vector<Hit> hits(const Vec3& p, const Vec3& way) const;
   Exit exit_of_layer(const Vec3& p) const;
@@ -56,9 +56,9 @@ class Solid {
   std::span<const Vec3> x_;
   Box3 box_;
   Vec3 normal_ = Vec3::UnitZ(), place_ = Vec3::Zero();  // of a floor
-  std::vector<std::uint8_t> buried_;                    // per triangle: another shell hides it
+  std::vector<std::uint8_t> buried_;                    // per triangle: inside another shell
   std::span<const std::uint8_t> on_border_;             // of a layer, per vertex
-  int outer_ = 1;                                       // of a layer: −1 where its back is its outer side
+  int outer_sign_ = 1;                                  // of a layer: −1 if its back is its outer side
 };
 
 }  // namespace weft::untangle

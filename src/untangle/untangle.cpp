@@ -12,40 +12,40 @@
 namespace weft::untangle {
 namespace {
 
-// Height of cloth over an obstacle and over cloth that it is moved to, in thicknesses.
-constexpr double kAbove = 0.75;
-// Of cloth with nothing in between, in thicknesses: far above what counts as touching.
-constexpr double kApart = 0.1;
-// Nearer than this cloth is on no side of the other [m].
-constexpr double kTouch = 1e-9;
-constexpr int kMostRounds = 400;
-// Rounds without fewer crossings after which the cloth around those left is smoothed, each time farther around; and
-// times that this is done.
-constexpr int kPatience = 12, kMostSmoothings = 12;
-// Parts that are tried one by one.
-constexpr std::size_t kSingleParts = 12;
+// Height of cloth over an obstacle, and over cloth that it is moved to, in thicknesses.
+constexpr double kHeightInThicknesses = 0.75;
+// Minimum gap between surfaces, in thicknesses: far above the limit of touching.
+constexpr double kGapInThicknesses = 0.1;
+// Cloth closer than this to other cloth is on neither side of it [m].
+constexpr double kTouchDistance = 1e-9;
+constexpr int kMaxRounds = 400;
+// After kPatience rounds without fewer crossings, the cloth around the remaining ones is smoothed, each time over a
+// larger area, at most kMaxSmoothings times.
+constexpr int kPatience = 12, kMaxSmoothings = 12;
+// Maximum number of islands tried one by one.
+constexpr std::size_t kMaxSingleIslands = 12;
 constexpr int kSweepsAfterMove = 120, kSweeps = 8;
-// A region in a body that would have to move farther, in its own sizes, has the body go through it.
-constexpr double kLongestWay = 1.5;
-// Times that this is done: what leaves one body can get into another.
-constexpr int kPasses = 3;
-// Regions no deeper than this, in heights over the obstacle, are not asked.
-constexpr double kShallow = 4;
-// Threads that would be longer by more than this share of their length show that the body goes through: of starts that
-// could be meant up to 0.44 (a tube 4 cm too small), of trousers with a leg through their seat 4.9.
-constexpr double kMostStretch = 1.5;
-// Share of its threads that the body may still block: those around its border find their way.
-constexpr double kMostBlocked = 0.2;
+// Maximum displacement of a region inside a body, relative to its size. Beyond it the region is locked.
+constexpr double kMaxDisplacementRatio = 1.5;
+// Number of passes, because a region that leaves one body may enter another.
+constexpr int kMaxPasses = 3;
+// Regions no deeper than this are never locked; in heights over the obstacle.
+constexpr double kShallowDepth = 4;
+// Maximum strain of a thread; beyond it the body goes through the cloth (measured: 0.44 for a tube 4 cm too small, the
+// largest of the valid starts; 4.9 for trousers with a leg through the seat).
+constexpr double kMaxStrain = 1.5;
+// Maximum fraction of the threads of a region that the body may still block: those at its border recover.
+constexpr double kMaxBlockedFraction = 0.2;
 // Step along the gradients of contours, in mean lengths of the threads.
 constexpr double kStep = 0.12;
-constexpr int kApartRounds = 60;
+constexpr int kMaxGapRounds = 60;
 
 class Untangling {
  public:
   Untangling(const Fabric& fabric, const Options& options, std::span<Vec3> x)
       : fabric_(fabric), x_(x), start_(x.begin(), x.end()), finder_(fabric, x, options.self, options.obstacles) {
     for (std::size_t b = 0; b < fabric.bodies.size(); ++b) {
-      above_.push_back(kAbove * fabric.thickness[b]);
+      above_.push_back(kHeightInThicknesses * fabric.thickness[b]);
       const bool solid = fabric.kinds[b] == Kind::solid || fabric.kinds[b] == Kind::floor;
       if (solid && options.obstacles) solids_.emplace_back(finder_.surfaces(), b, fabric.kinds[b], x);
     }
@@ -55,8 +55,8 @@ class Untangling {
     double sum = 0;
     std::size_t count = 0;
     for (const Fabric::Link& link : fabric.links) {
-      if (link.bend) continue;
-      sum += link.most;
+      if (link.is_bend) continue;
+      sum += link.max_length;
       ++count;
     }
     step_ = kStep * sum / static_cast<double>(std::max<std::size_t>(count, 1));
@@ -65,25 +65,25 @@ class Untangling {
   Report run() {
     finder_.find(x_);
     report_.pairs_before = finder_.pairs();
-    part_touching();
-    if (leave_solids()) {
-      cross_over();
-      if (report_.pairs_after == 0) keep_apart();
+    separate_touching();
+    if (move_out_of_solids()) {
+      reduce_crossings();
+      if (report_.pairs_after == 0) restore_gaps();
     }
     measure();
     return report_;
   }
 
  private:
-  // Cloth inside of bodies goes out, region by region; false where there is no way, and then nothing moves.
-  bool leave_solids() {
-    for (int pass = 0; pass < kPasses && report_.locked.empty(); ++pass) {
+  // Moves cloth out of bodies, region by region. If a region has no way out, restores the start and returns false.
+  bool move_out_of_solids() {
+    for (int pass = 0; pass < kMaxPasses && report_.locked.empty(); ++pass) {
       std::vector<InsideRegion> regions;
       for (const Solid& solid : solids_) {
         for (InsideRegion& region : find_inside(fabric_, solid, above_, x_)) {
-          const bool shallow = region.farthest < kShallow * above_[region.cloth];
-          const bool free =
-              !region.moves.empty() && region.farthest <= kLongestWay * region.size && region.blocked <= kMostBlocked;
+          const bool shallow = region.farthest < kShallowDepth * above_[region.cloth];
+          const bool free = !region.moves.empty() && region.farthest <= kMaxDisplacementRatio * region.size &&
+                            region.blocked <= kMaxBlockedFraction;
           (shallow || free ? regions : report_.locked).push_back(std::move(region));
         }
       }
@@ -103,8 +103,8 @@ class Untangling {
     std::vector<std::uint8_t> in(static_cast<std::size_t>(fabric_.particles()), 0);
     for (const Move& move : region.moves) in[move.particle] = 1;
     return std::ranges::any_of(fabric_.links, [&](const Fabric::Link& link) {
-      return !link.bend && (in[link.i] || in[link.j]) &&
-             (x_[link.i] - x_[link.j]).norm() > (1 + kMostStretch) * link.most;
+      return !link.is_bend && (in[link.i] || in[link.j]) &&
+             (x_[link.i] - x_[link.j]).norm() > (1 + kMaxStrain) * link.max_length;
     });
   }
 
@@ -118,15 +118,15 @@ class Untangling {
     return any;
   }
 
-  // What lies exactly in other cloth has no side yet: the cloth that comes later gets on the front of the other.
-  void part_touching() {
+  // Coincident cloths have no side yet: moves the later one to the front of the other.
+  void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
-    for (const collision::TrianglePair& pair : finder_.near(x_, kTouch)) {
+    for (const collision::TrianglePair& pair : finder_.near(x_, kTouchDistance)) {
       const collision::CornerPair corners{fabric_.bodies.triangles()[pair.a], fabric_.bodies.triangles()[pair.b]};
       if (!fabric_.is_cloth(corners.b[0]) ||
           fabric_.bodies.body_of(corners.a[0]) == fabric_.bodies.body_of(corners.b[0]))
         continue;
-      if (collision::closest_features(corners, x_).points.distance_sq > kTouch * kTouch) continue;
+      if (collision::closest_features(corners, x_).points.distance_sq > kTouchDistance * kTouchDistance) continue;
       const bool later = fabric_.movable[corners.b[0]];
       const collision::Triangle &still = later ? corners.a : corners.b, &moves = later ? corners.b : corners.a;
       for (const Index v : moves)
@@ -134,63 +134,63 @@ class Untangling {
     }
     for (Index i = 0; i < fabric_.particles(); ++i)
       if (fabric_.movable[i])
-        x_[i] += 1.1 * kApart * fabric_.thickness[fabric_.bodies.body_of(i)] * normals[i].stableNormalized();
+        x_[i] += 1.1 * kGapInThicknesses * fabric_.thickness[fabric_.bodies.body_of(i)] * normals[i].stableNormalized();
   }
 
-  // Until nothing crosses, or nothing gets better.
-  void cross_over() {
+  // Repeats until nothing crosses, or nothing improves.
+  void reduce_crossings() {
     find();
-    best_.assign(x_.begin(), x_.end());
-    least_ = finder_.pairs();
-    for (int waited = 0, smoothings = 0; report_.rounds < kMostRounds && least_ > 0; ++report_.rounds) {
-      if (waited == 0 && change_sides()) continue;
-      push_off(fabric_, crossings_, solids_, above_, x_);
+    best_x_.assign(x_.begin(), x_.end());
+    fewest_pairs_ = finder_.pairs();
+    for (int waited = 0, smoothings = 0; report_.rounds < kMaxRounds && fewest_pairs_ > 0; ++report_.rounds) {
+      if (waited == 0 && move_islands()) continue;
+      push_out_of_solids(fabric_, crossings_, solids_, above_, x_);
       shorten_contours(fabric_, crossings_, step_, x_);
       relax(fabric_, solids_, above_, kSweeps, x_);
       find();
-      waited = is_better() ? 0 : waited + 1;
+      waited = keep_if_better() ? 0 : waited + 1;
       if (waited < kPatience) continue;
-      if (++smoothings > kMostSmoothings) break;
+      if (++smoothings > kMaxSmoothings) break;
       smooth_around(smoothings);
       waited = 0;
     }
     return_to_best();
-    report_.pairs_after = least_;
+    report_.pairs_after = fewest_pairs_;
   }
 
-  // Parts that are cut off: all of them; of one cloth and another all that longer lines cut off; each of these. Whether
-  // fewer triangles cross then; else nothing has changed.
-  bool change_sides() {
+  // Tries to move cut-off islands: all of them; then, for each cloth and the surface it crosses, all; then each of
+  // these alone. Returns whether fewer triangles cross; if not, nothing has changed.
+  bool move_islands() {
     const std::vector<Vec3> before(x_.begin(), x_.end());
-    const auto helps = [&](std::span<const std::vector<Move>> parts) {
+    const auto try_moves = [&](std::span<const std::vector<Move>> islands) {
       bool any = false;
-      for (const std::vector<Move>& moves : parts) any = apply(moves) || any;
+      for (const std::vector<Move>& moves : islands) any = apply(moves) || any;
       if (!any) return false;
       relax(fabric_, solids_, above_, kSweepsAfterMove, x_);
       find();
-      if (is_better()) return true;
+      if (keep_if_better()) return true;
       std::ranges::copy(before, x_.begin());
       find();
       return false;
     };
-    const auto parts_of = [&](const std::optional<Through>& only) {
-      return move_cut_off_parts(fabric_, crossings_, finder_.surfaces(), above_, only, x_);
+    const auto islands_of = [&](const std::optional<CrossedPair>& only) {
+      return move_cut_off_islands(fabric_, crossings_, finder_.surfaces(), above_, only, x_);
     };
-    if (helps(parts_of(std::nullopt))) return true;
-    for (const Through& only : list_through(fabric_, crossings_)) {
-      const auto parts = parts_of(only);
-      if (helps(parts)) return true;
-      for (std::size_t p = 0; parts.size() > 1 && p < std::min(parts.size(), kSingleParts); ++p)
-        if (helps(std::span(parts).subspan(p, 1))) return true;
+    if (try_moves(islands_of(std::nullopt))) return true;
+    for (const CrossedPair& only : list_crossed_pairs(fabric_, crossings_)) {
+      const auto islands = islands_of(only);
+      if (try_moves(islands)) return true;
+      for (std::size_t p = 0; islands.size() > 1 && p < std::min(islands.size(), kMaxSingleIslands); ++p)
+        if (try_moves(std::span(islands).subspan(p, 1))) return true;
     }
     return false;
   }
 
-  // Cloth around cloth that it crosses, the farther the more often. Over a body it would go back into that.
+  // Smooths cloth around its crossings with cloth, over a growing area. Not around bodies: cloth would go back inside.
   void smooth_around(int smoothings) {
     std::vector<Index> around;
     for (const Crossing& c : crossings_) {
-      if (with_solid(fabric_, c)) continue;
+      if (involves_solid(fabric_, c)) continue;
       const auto& edge = fabric_.edges.edges[c.edge].vertices;
       const auto& t = fabric_.bodies.triangles()[c.triangle];
       around.insert(around.end(), {edge[0], edge[1], t[0], t[1], t[2]});
@@ -198,30 +198,30 @@ class Untangling {
     smooth(fabric_, around, 1 + smoothings, 4 * smoothings, x_);
     relax(fabric_, solids_, above_, kSweepsAfterMove, x_);
     find();
-    is_better();
+    keep_if_better();
   }
 
   void find() {
     const std::span<const Crossing> found = finder_.find(x_);
     crossings_.assign(found.begin(), found.end());
   }
-  // Whether fewer cross than ever; then this is kept.
-  bool is_better() {
-    if (finder_.pairs() >= least_) return false;
-    least_ = finder_.pairs();
-    best_.assign(x_.begin(), x_.end());
+  // Keeps the present state if fewer pairs cross than ever before.
+  bool keep_if_better() {
+    if (finder_.pairs() >= fewest_pairs_) return false;
+    fewest_pairs_ = finder_.pairs();
+    best_x_.assign(x_.begin(), x_.end());
     return true;
   }
-  void return_to_best() { std::ranges::copy(best_, x_.begin()); }
+  void return_to_best() { std::ranges::copy(best_x_, x_.begin()); }
 
-  // Nothing crosses, but some may touch: what is closer than that is pushed apart, as long as nothing crosses.
-  void keep_apart() {
+  // Nothing crosses any more, but surfaces may touch: pushes close pairs apart until none is left or some would cross.
+  void restore_gaps() {
     std::vector<Vec3> good(x_.begin(), x_.end());
-    double most = 0;
-    for (const double thickness : fabric_.thickness) most = std::max(most, kApart * thickness);
-    for (int round = 0; round < kApartRounds; ++round) {
+    double max_gap = 0;
+    for (const double thickness : fabric_.thickness) max_gap = std::max(max_gap, kGapInThicknesses * thickness);
+    for (int round = 0; round < kMaxGapRounds; ++round) {
       int close = 0;
-      for (const collision::TrianglePair& pair : finder_.near(x_, most)) {
+      for (const collision::TrianglePair& pair : finder_.near(x_, max_gap)) {
         const collision::CornerPair corners{fabric_.bodies.triangles()[pair.a], fabric_.bodies.triangles()[pair.b]};
         close += push(corners);
       }
@@ -234,8 +234,8 @@ class Untangling {
   }
 
   bool push(const collision::CornerPair& pair) {
-    const double wanted = kApart * std::max(fabric_.thickness[fabric_.bodies.body_of(pair.a[0])],
-                                            fabric_.thickness[fabric_.bodies.body_of(pair.b[0])]);
+    const double wanted = kGapInThicknesses * std::max(fabric_.thickness[fabric_.bodies.body_of(pair.a[0])],
+                                                       fabric_.thickness[fabric_.bodies.body_of(pair.b[0])]);
     const collision::ClosestFeatures closest = collision::closest_features(pair, x_);
     const double distance = std::sqrt(closest.points.distance_sq);
     if (distance >= wanted) return false;
@@ -256,7 +256,8 @@ class Untangling {
     for (Index i = 0; i < fabric_.particles(); ++i)
       report_.farthest = std::max(report_.farthest, (x_[i] - start_[i]).norm());
     for (const Fabric::Link& link : fabric_.links)
-      if (!link.bend) report_.stretch = std::max(report_.stretch, (x_[link.i] - x_[link.j]).norm() / link.most - 1);
+      if (!link.is_bend)
+        report_.stretch = std::max(report_.stretch, (x_[link.i] - x_[link.j]).norm() / link.max_length - 1);
   }
 
   const Fabric& fabric_;
@@ -267,8 +268,8 @@ class Untangling {
   std::vector<double> above_;  // per body [m]
   double step_ = 0;            // [m]
   std::vector<Crossing> crossings_;
-  std::vector<Vec3> best_;  // where the fewest triangles crossed
-  int least_ = 0;           // how many pairs
+  std::vector<Vec3> best_x_;  // state with the fewest crossing pairs
+  int fewest_pairs_ = 0;      // number of these pairs
   Report report_;
 };
 

@@ -1,9 +1,9 @@
-// Starts that touch or cross are taken apart, before anything is simulated.
+// Separates surfaces that touch or cross at the start, before the simulation.
 //
-//   Solid             the inside of an obstacle, and ways out of it
-//   find_inside       cloth inside of it, and where that goes as a whole
-//   CrossingFinder    where edges go through triangles
-//   contours          cloth through cloth: parts that are cut off change sides, lines of crossing get shorter
+//   Solid             the inside of an obstacle, and exits from it
+//   find_inside       regions of cloth inside it, and a common way out for each
+//   CrossingFinder    edges that cross triangles
+//   contours          cloth through cloth: islands change sides, lines of crossing are shortened
 //   relax             the rest of the cloth follows
 #pragma once
 
@@ -23,15 +23,15 @@ struct Options {
 };
 
 struct Report {
-  int pairs_before = 0, pairs_after = 0;  ///< of triangles that cross
+  int pairs_before = 0, pairs_after = 0;  ///< crossing pairs of triangles
   int rounds = 0;
-  double farthest = 0;               ///< most that a particle was moved [m]
-  double stretch = 0;                ///< most that a thread is longer than at rest and at the start, as a share
-  std::vector<InsideRegion> locked;  ///< regions for which there is no way out; then nothing was moved
+  double farthest = 0;               ///< largest displacement of a particle [m]
+  double stretch = 0;                ///< largest strain of a thread beyond its maximum length
+  std::vector<InsideRegion> locked;  ///< regions without a way out; if any, nothing was moved
 };
 
-/// Moves particles among x [m] until no triangle of cloth crosses another or an obstacle, and none touches: less than a
-/// tenth of cloth's thickness apart. In a bounded number of rounds; the best place found is kept. Deterministic.
+/// Moves particles in x [m] until no triangle of cloth crosses or touches another one or an obstacle. Triangles touch
+/// if they are closer than a tenth of the cloth's thickness. Bounded rounds; keeps the best state. Deterministic.
 Report untangle(const Fabric& fabric, const Options& options, std::span<Vec3> x);
 
 }  // namespace weft::untangle

@@ -8,20 +8,20 @@
 namespace weft::untangle {
 namespace {
 
-// What a thread that would still go through the body costs, in squares of a stretch.
+// Cost of a thread that would still go through the body, in units of squared strain.
 constexpr double kBlockedCost = 25;
-// Depth of the middle of a thread in the body, in its lengths, from which on it goes through and does not only cut a
-// corner; up to which it does so for certain.
+// Depth of a thread's midpoint in the body, relative to its length: from kBlockedDepth on it goes through the body and
+// does not just cut a corner; below kFreeDepth it certainly does not go through.
 constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
-// Of ways that stretch cloth alike the shorter: cost of a way as long as the region.
-constexpr double kWayCost = 0.05;
-// What moving all of a cloth costs, so that it stays where it is if the region can do without, and the farthest that it
-// goes, in sizes of the region.
-constexpr double kShiftCost = 0.3, kLongestShift = 1.1;
-// Share of its particles that may go through the body on that way: more, and cloth around the body would be taken off.
-constexpr double kMostThrough = 0.1;
+// Cost of a way as long as the region. Prefers the shorter of ways that stretch cloth alike.
+constexpr double kDisplacementCost = 0.05;
+// Cost of moving a whole cloth, so that it stays if the region can leave alone; and the longest such move, in sizes of
+// the region.
+constexpr double kWholeMeshCost = 0.3, kMaxWholeMeshRatio = 1.1;
+// Maximum fraction of the particles that may go through the body on that way: more would take off cloth worn around it.
+constexpr double kMaxThroughFraction = 0.1;
 
-// Steps to all neighbours on a cube, the nearest first, and so the same for each run.
+// Directions to the 26 neighbours on a cube, the nearest first, so that the order is the same in each run.
 std::vector<Vec3> directions() {
   std::vector<Vec3> all;
   for (const int steps : {1, 2, 3})
@@ -32,10 +32,10 @@ std::vector<Vec3> directions() {
   return all;
 }
 
-/// Of the threads of the particles that move.
+/// State, after a move, of the threads of the moved particles.
 struct Threads {
-  double blocked = 0;  // share that the body would block
-  bool free = true;    // none would go through it
+  double blocked = 0;  // fraction that the body blocks
+  bool free = true;    // none goes through the body
 };
 Threads threads_after(const Fabric& fabric, const Solid& solid, std::span<const Move> moves,
                       const std::vector<Index>& move_of, std::span<const Vec3> x) {
@@ -44,7 +44,7 @@ Threads threads_after(const Fabric& fabric, const Solid& solid, std::span<const 
   for (const Move& move : moves) {
     for (const Index j : fabric.neighbours[move.particle]) {
       if (move_of[j] >= 0 && j < move.particle) continue;
-      const double depth = solid.depth_between(move.target, move_of[j] >= 0 ? moves[move_of[j]].target : x[j]);
+      const double depth = solid.midpoint_depth(move.target, move_of[j] >= 0 ? moves[move_of[j]].target : x[j]);
       ++all;
       blocked += depth > kBlockedDepth;
       threads.free = threads.free && depth < kFreeDepth;
@@ -54,7 +54,7 @@ Threads threads_after(const Fabric& fabric, const Solid& solid, std::span<const 
   return threads;
 }
 
-// Mean normal of the cloth around these particles; by the triangles that have one of them as their first corner in it.
+// Mean normal of the triangles around these particles.
 Vec3 mean_normal(const collision::Surface& cloth, const std::vector<Index>& move_of, std::span<const Vec3> x) {
   Vec3 sum = Vec3::Zero();
   for (const collision::Triangle& t : cloth.triangles)
@@ -63,18 +63,18 @@ Vec3 mean_normal(const collision::Surface& cloth, const std::vector<Index>& move
   return sum.stableNormalized();
 }
 
-// All particles of the mesh that this one is in.
-std::vector<Index> piece_of(const Fabric& fabric, Index first) {
-  std::vector<Index> piece{first};
+// All particles of the mesh that contains this one.
+std::vector<Index> mesh_of(const Fabric& fabric, Index first) {
+  std::vector<Index> mesh{first};
   std::vector<std::uint8_t> in(static_cast<std::size_t>(fabric.particles()), 0);
   in[first] = 1;
-  for (std::size_t m = 0; m < piece.size(); ++m)
-    for (const Index j : fabric.neighbours[piece[m]])
+  for (std::size_t m = 0; m < mesh.size(); ++m)
+    for (const Index j : fabric.neighbours[mesh[m]])
       if (!in[j]) {
         in[j] = 1;
-        piece.push_back(j);
+        mesh.push_back(j);
       }
-  return piece;
+  return mesh;
 }
 
 }  // namespace
@@ -83,12 +83,12 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
                                       std::span<const Vec3> x) {
   const Index particles = fabric.particles();
   std::vector<std::uint8_t> inside(particles, 0);
-  for (Index i = 0; i < particles; ++i) inside[i] = solid.reaches(x[i], 0) && solid.inside(x[i]);
-  std::vector<Index> move_of(x.size(), -1);  // per vertex: its place among the moves of the region at hand
+  for (Index i = 0; i < particles; ++i) inside[i] = solid.is_near(x[i], 0) && solid.inside(x[i]);
+  std::vector<Index> move_of(x.size(), -1);  // per vertex: index among the moves of the present region
   std::vector<InsideRegion> regions;
   for (Index first = 0; first < particles; ++first) {
     if (!inside[first]) continue;
-    // All that hangs together with the first.
+    // Collect the connected region of the first particle.
     std::vector<Index> members{first};
     inside[first] = 0;
     for (std::size_t m = 0; m < members.size(); ++m)
@@ -101,7 +101,7 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
     region.cloth = fabric.bodies.body_of(first);
     region.body = solid.number();
     for (std::size_t m = 0; m < members.size(); ++m) move_of[members[m]] = static_cast<Index>(m);
-    // It ends half-way to its neighbours: one particle of a coarse mesh is a region as wide as its cells.
+    // Extend the box half-way to neighbours, so that a single particle of a coarse mesh is as wide as its cells.
     Box3 box;
     for (const Index i : members) {
       box.extend(x[i]);
@@ -122,7 +122,8 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
       }
       const double cost = stretch_cost(fabric, moves, x);
       const Threads threads = threads_after(fabric, solid, moves, move_of, x);
-      const double whole = cost + kBlockedCost * threads.blocked + kWayCost * farthest / std::max(region.size, height);
+      const double whole =
+          cost + kBlockedCost * threads.blocked + kDisplacementCost * farthest / std::max(region.size, height);
       if (threads.free) region.shortest = std::min(region.shortest, farthest);
       if (whole >= best) return;
       best = whole;
@@ -135,24 +136,24 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
       const Solid::Exit exit = solid.exit(p);
       return exit.place + height * exit.normal;
     });
-    // All that hangs together with the region goes along, where that takes it out of the body and nothing else into it.
-    const auto shift_whole = [&](const Vec3& d) {
+    // Move the whole mesh of the region, if that takes it out of the body and nothing else into it.
+    const auto consider_whole_mesh = [&](const Vec3& d) {
       double way = 0;
-      for (const Index i : members) way = std::max(way, solid.way_out(x[i], d) + height);
-      const double whole = kShiftCost + kWayCost * way / std::max(region.size, height);
-      if (!(way <= kLongestShift * region.size) || whole >= best) return;
+      for (const Index i : members) way = std::max(way, solid.distance_out(x[i], d) + height);
+      const double whole = kWholeMeshCost + kDisplacementCost * way / std::max(region.size, height);
+      if (!(way <= kMaxWholeMeshRatio * region.size) || whole >= best) return;
       std::vector<Move> moves;
       std::size_t through = 0;
-      for (const Index i : piece_of(fabric, members.front())) {
+      for (const Index i : mesh_of(fabric, members.front())) {
         const Vec3 target = x[i] + way * d;
-        if (!fabric.movable[i] || (solid.reaches(target, 0) && solid.inside(target))) return;
-        through += move_of[i] < 0 && solid.meets(x[i], target);
+        if (!fabric.movable[i] || (solid.is_near(target, 0) && solid.inside(target))) return;
+        through += move_of[i] < 0 && solid.crosses_surface(x[i], target);
         moves.push_back({i, target});
       }
-      if (static_cast<double>(through) > kMostThrough * static_cast<double>(moves.size())) return;
+      if (static_cast<double>(through) > kMaxThroughFraction * static_cast<double>(moves.size())) return;
       for (const Move& move : moves)
         for (const Index j : fabric.neighbours[move.particle])
-          if (solid.depth_between(move.target, x[j] + way * d) > kBlockedDepth) return;
+          if (solid.midpoint_depth(move.target, x[j] + way * d) > kBlockedDepth) return;
       best = whole;
       region.cost = region.blocked = 0;
       region.farthest = way;
@@ -162,9 +163,10 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
     std::vector<Vec3> ways = directions();
     const Vec3 normal = mean_normal(fabric.bodies.surfaces()[region.cloth], move_of, x);
     if (!normal.isZero()) ways.insert(ways.begin(), {normal, -normal});
-    for (const Vec3& d : ways) consider([&](const Vec3& p) -> Vec3 { return p + (solid.way_out(p, d) + height) * d; });
-    if (best > kShiftCost) {
-      for (const Vec3& d : ways) shift_whole(d);
+    for (const Vec3& d : ways)
+      consider([&](const Vec3& p) -> Vec3 { return p + (solid.distance_out(p, d) + height) * d; });
+    if (best > kWholeMeshCost) {
+      for (const Vec3& d : ways) consider_whole_mesh(d);
     }
     for (const Index i : members) move_of[i] = -1;
     regions.push_back(std::move(region));

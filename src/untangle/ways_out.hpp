@@ -1,4 +1,4 @@
-// Ways out of obstacles for cloth that begins inside of them, the same for all that hangs together.
+// Finds ways out of obstacles for cloth that starts inside, one for each connected region.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,22 @@
 
 namespace weft::untangle {
 
-/// Particles inside an obstacle that hang together, and how they would best get out.
+/// A connected region of particles inside an obstacle, and its best way out.
 struct InsideRegion {
   std::size_t cloth = 0, body = 0;
   Vec3 centre = Vec3::Zero();  ///< [m]
-  double size = 0;             ///< longest side of the box to half-way to its neighbours [m]
-  double farthest = 0;         ///< most that a particle has to move [m]
-  double shortest = std::numeric_limits<double>::infinity();  ///< the same on the shortest way that nothing blocks [m]
+  double size = 0;             ///< longest side of its box, extended half-way to neighbours [m]
+  double farthest = 0;         ///< largest displacement of a particle [m]
+  double shortest = std::numeric_limits<double>::infinity();  ///< likewise, on the shortest unblocked way [m]
   double cost = 0;                                            ///< see stretch_cost
-  double blocked = 0;       ///< share of its threads that would still go through the body
-  std::vector<Move> moves;  ///< out of it, to `above` its surface
+  double blocked = 0;       ///< fraction of its threads that would still go through the body
+  std::vector<Move> moves;  ///< out of the body, to `above` its surface
 };
 
-/// All regions of cloth inside of `solid` at x [m]. Each goes the nearest way, particle by particle, or all in one
-/// direction, whichever stretches cloth less: a sheet through the middle of a ball goes over to one side, the smaller
-/// one, and a garment that is too small goes outward all round. `above`: height over the surface, per body of cloth
-/// [m].
+/// Finds all regions of cloth inside `solid` at x [m]. In each, either every particle takes its nearest way out, or all
+/// move in one direction, or the whole mesh moves; the way that costs least is chosen. For example, a sheet through a
+/// ball goes over to the side of its smaller part, and a garment that is too small goes outward all round. `above`:
+/// height over the surface, per body of cloth [m].
 std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, std::span<const double> above,
                                       std::span<const Vec3> x);
 

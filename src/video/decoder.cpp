@@ -27,7 +27,7 @@ int check_read(int code, const std::filesystem::path& file) {
   fail_to_read(file, reason.data());
 }
 
-// Colours of another matrix than the file names would be off by tens of levels; without a name we take ours.
+// Uses the colour matrix that the file names, as a wrong one changes colours by tens of levels; without a name, BT.709.
 ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   ScalerPtr scaler(sws_getContext(
       frame.width, frame.height, static_cast<AVPixelFormat>(frame.format), frame.width, frame.height, AV_PIX_FMT_RGB24,
@@ -35,14 +35,14 @@ ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   if (!scaler) fail_to_read(file, "its colour format is not known");
   const bool named = frame.colorspace != AVCOL_SPC_UNSPECIFIED && frame.colorspace != AVCOL_SPC_RGB;
   const int* from = sws_getCoefficients(named ? static_cast<int>(frame.colorspace) : SWS_CS_ITU709);
-  constexpr int kUnit = 1 << 16;  // contrast and saturation 1 in 16.16 fixed point
-  // Formats that are RGB already have nothing to set.
+  constexpr int kUnit = 1 << 16;  // contrast and saturation of 1 in 16.16 fixed point
+  // Ignored for RGB formats.
   sws_setColorspaceDetails(scaler.get(), from, frame.color_range == AVCOL_RANGE_JPEG,
                            sws_getCoefficients(SWS_CS_ITU709), 1, 0, kUnit, kUnit);
   return scaler;
 }
 
-/// Matroska keeps keys in capitals; ours have none.
+/// Matroska stores keys in capitals; Weft's are lower case.
 std::string lower_case(std::string key) {
   std::ranges::transform(key, key.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return key;
@@ -57,7 +57,7 @@ struct Decoder::Impl {
   CodecPtr codec;
   PacketPtr packet{av_packet_alloc()};
   FramePtr frame{av_frame_alloc()};
-  ScalerPtr scaler;  // made for the first frame
+  ScalerPtr scaler;  // created for the first frame
   std::map<std::string, std::string> metadata;
   bool at_end = false;  // of the file; the decoder may still hold frames
 
@@ -69,10 +69,10 @@ struct Decoder::Impl {
     } catch (const std::runtime_error& error) {
       fail_to_read(file, error.what());
     }
-    // Playlists, which libav knows by their content, would open other files.
+    // Playlists, which libav detects by content, could open other files.
     AVDictionary* options = nullptr;
     av_dict_set(&options, "format_whitelist", "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi", 0);
-    // Absolute: libav takes what comes before a colon for a protocol.
+    // Absolute, as libav takes the text before a colon for a protocol.
     const int code = avformat_open_input(&opened, std::filesystem::absolute(file).c_str(), nullptr, &options);
     av_dict_free(&options);
     check_read(code, file);
@@ -90,7 +90,7 @@ struct Decoder::Impl {
       metadata[lower_case(entry->key)] = entry->value;
   }
 
-  // Hands the decoder the next packet of the stream, or the news that there is none.
+  // Sends the next packet of the stream to the decoder, or signals the end of the file.
   void feed() {
     for (;;) {
       const int code = av_read_frame(input.get(), packet.get());
@@ -134,7 +134,7 @@ bool Decoder::lossy() const {
   const AVCodecDescriptor* codec = avcodec_descriptor_get(impl_->codec->codec_id);
   const bool lossless = codec && codec->props & AV_CODEC_PROP_LOSSLESS;
   if (!lossless || !(codec->props & AV_CODEC_PROP_LOSSY)) return !lossless;
-  // H.264 can be both; RGB is only written to keep all.
+  // H.264 can be both; Weft writes RGB only for lossless video.
   const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(impl_->codec->pix_fmt);
   return !(format && format->flags & AV_PIX_FMT_FLAG_RGB);
 }

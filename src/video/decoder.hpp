@@ -1,4 +1,4 @@
-// Video files, frame by frame.
+// Reads video files frame by frame.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,7 @@
 
 namespace weft::video {
 
-/// Reads the pictures of a video in the order in which they are shown. Errors are Error(asset_unreadable) with libav's
-/// words.
+/// Reads the pictures of a video in display order. Errors are Error(asset_unreadable) with libav's message.
 class Decoder {
  public:
   explicit Decoder(const std::filesystem::path& file);
@@ -20,14 +19,14 @@ class Decoder {
   Decoder(const Decoder&) = delete;
   Decoder& operator=(const Decoder&) = delete;
 
-  int width() const;   ///< pixels
-  int height() const;  ///< pixels
-  /// Whether its encoder has changed the pictures.
+  int width() const;   ///< [pixels]
+  int height() const;  ///< [pixels]
+  /// Whether the encoder has changed the pictures.
   bool lossy() const;
-  double fps() const;  ///< frames a second, 0 where the file does not tell
+  double fps() const;  ///< frames per second, 0 if the file does not state it
   const std::map<std::string, std::string>& metadata() const;
 
-  /// The next picture; none past the last one.
+  /// Returns the next picture, or nullopt after the last one.
   std::optional<image::Image> next();
 
  private:

@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kCodecName = "libx264";
 
-/// How libav is asked for a codec, and files that may hold it: first the one that takes it by default.
+/// Names of a codec and its encoder, and the extensions that may contain it, the default one first.
 struct CodecKind {
   Codec codec;
   const char *name, *encoder;
@@ -42,13 +42,13 @@ const std::vector<CodecKind>& codec_kinds() {
 const CodecKind& kind_of(Codec codec) {
   return *std::ranges::find(codec_kinds(), codec, &CodecKind::codec);
 }
-constexpr int kMaxSide = 16384;  // pixels; the limit of x264
+constexpr int kMaxSide = 16384;  // [pixels]; limit of x264
 
 constexpr std::array<std::string_view, 10> kPresets = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
                                                        "medium",    "slow",      "slower",   "veryslow", "placebo"};
 
-// Players jump to key frames only, so one every two seconds keeps a video pleasant to step through. Bounded for very
-// slow and very fast rates; 250 is x264's own default.
+// A key frame every two seconds, since players seek only to key frames. Limited for very low and very high rates; 250
+// is the default of x264.
 int key_frame_distance(double fps) {
   return std::clamp(static_cast<int>(std::lround(2 * fps)), 12, 250);
 }
@@ -62,7 +62,7 @@ void check_settings(const std::filesystem::path& file, const Settings& settings)
   require(settings.height >= 1 && settings.height <= kMaxSide, "height", sides, settings.height);
   // 0 is lossless, in a profile that browsers do not play.
   require(settings.crf >= 1 && settings.crf <= 51, "crf", "1 to 51", settings.crf);
-  // 0 would take the machine's cores, and the bytes would follow the machine.
+  // 0 would use all cores, and the output would depend on the machine.
   require(settings.threads >= 1 && settings.threads <= 128, "encoder threads", "1 to 128", settings.threads);
   if (std::find(kPresets.begin(), kPresets.end(), settings.preset) == kPresets.end()) {
     throw Error(ExitCode::output_failed, "{}: preset: expected one of {}, got {}", file.string(),
@@ -91,15 +91,15 @@ CodecPtr open_codec(const std::filesystem::path& file, const Settings& settings,
   context->time_base = av_inv_q(rate);
   context->gop_size = key_frame_distance(settings.fps);
   context->thread_count = settings.threads;
-  context->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // MP4 keeps the stream's parameters in its header
+  context->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // MP4 stores the parameters of the stream in its header
   const bool x264 = settings.codec == Codec::h264 || settings.codec == Codec::h264_lossless;
   if (x264) check(av_opt_set(context->priv_data, "preset", settings.preset.c_str(), 0), file, "choose the x264 preset");
   switch (settings.codec) {
     case Codec::h264:
       check(av_opt_set_double(context->priv_data, "crf", settings.crf, 0), file, "choose the quality");
-      // The macroblock tree of x264 (build 164) reads memory that it has not written, at most sizes: equal pictures
-      // gave other bits. Without it a film of 1280x720 is larger by 38 % and 0.5 dB closer to its pictures, at the same
-      // crf.
+      // The macroblock tree of x264 (build 164) reads uninitialised memory at most sizes, so that equal pictures gave
+      // different bits. (Measured without it: at the same crf, a film of 1280x720 is 38 % larger and 0.5 dB closer to
+      // its pictures.)
       check(av_opt_set_int(context->priv_data, "mbtree", 0, 0), file, "choose the rate control");
       break;
     case Codec::h264_lossless:
@@ -107,7 +107,7 @@ CodecPtr open_codec(const std::filesystem::path& file, const Settings& settings,
       break;
     case Codec::ffv1:
       context->level = 3;     // slices with checksums
-      context->gop_size = 1;  // every frame stands alone
+      context->gop_size = 1;  // every frame is a key frame
       break;
     default:
       check(av_opt_set(context->priv_data, "profile", "hq", 0), file, "choose the profile");
@@ -123,14 +123,14 @@ struct Encoder::Impl {
   std::filesystem::path file;
   Settings settings;
   AVRational rate;
-  std::optional<TemporaryFile> fragments;  // until the finished file is made out of them
+  std::optional<TemporaryFile> fragments;  // until the finished file is made from them
   FrameConverter converter;
   FramePtr frame;
   PacketPtr packet;
   CodecPtr codec;
   std::unique_ptr<Mp4Writer> writer;
-  int frames = 0;   // given to the encoder
-  int packets = 0;  // got back from it
+  int frames = 0;   // sent to the encoder
+  int packets = 0;  // received from it
   bool finished = false;
 
   Impl(const std::filesystem::path& f, const Settings& s);
@@ -153,7 +153,7 @@ Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
       std::make_unique<Mp4Writer>(fragments->path(), file, Mp4Layout::fragmented, *parameters, rate, settings.metadata);
 }
 
-// Gives the encoder a frame, or nullptr for the end, and writes the packets that are ready.
+// Sends a frame to the encoder, or nullptr for the end, and writes the packets that are ready.
 void Encoder::Impl::send(const AVFrame* next) {
   check(avcodec_send_frame(codec.get(), next), file, "encode a frame");
   while (true) {
@@ -166,7 +166,7 @@ void Encoder::Impl::send(const AVFrame* next) {
   }
 }
 
-// Makes the finished file out of the fragments.
+// Makes the finished file from the fragments.
 void Encoder::Impl::publish() {
   TemporaryFile whole(file);
   copy_to_fast_start({&fragments->path(), 1}, whole.path(), file, rate, settings.metadata);
@@ -192,7 +192,7 @@ void Encoder::add(const image::Image& image) {
     throw Error(ExitCode::internal, "{}: frame {}: expected {}x{} pixels, got {}x{}", self.file.string(), self.frames,
                 self.settings.width, self.settings.height, image.width, image.height);
   }
-  // x264 may still hold the frame before.
+  // x264 may still use the previous frame.
   check(av_frame_make_writable(self.frame.get()), self.file, "get memory for a frame");
   self.converter.convert(image, *self.frame);
   self.frame->pts = self.frames++;
@@ -214,7 +214,7 @@ void Encoder::finish() {
     self.publish();
     self.fragments.reset();
   } catch (const Error& error) {
-    // The copy needs its own room on the disk. The fragments are whole and play, so they are not thrown away.
+    // The copy needs additional disk space. The fragments are complete and playable, so they are kept.
     self.fragments->commit();
     throw Error(error.code(), "{}; all {} frames are kept in {}", error.what(), self.frames,
                 partial_name(self.file).string());

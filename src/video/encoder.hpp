@@ -1,4 +1,4 @@
-// Video files through libav.
+// Writes video files through libav.
 #pragma once
 
 #include <filesystem>
@@ -10,39 +10,39 @@
 
 namespace weft::video {
 
-/// h264: 8 bits with a quarter of the colours' places, in .mp4 or .mov, for players. Others are for cutting:
-/// h264_lossless and ffv1 keep the bytes of the pictures, in .mkv; prores is ProRes 422 HQ of 10 bits, in .mov.
-/// automatic: by the file's ending, h264, ffv1 or prores.
+/// h264: 8 bits, 4:2:0, in .mp4, .mov or .mkv, for players. The others are for editing: h264_lossless (.mkv, .mp4,
+/// .mov) and ffv1 (.mkv) keep the bytes of the pictures; prores is ProRes 422 HQ with 10 bits (.mov, .mkv). automatic:
+/// h264, ffv1 or prores, chosen by the extension.
 enum class Codec { automatic, h264, h264_lossless, ffv1, prores };
 
 struct Settings {
-  int width = 1280, height = 720;  ///< pixels; odd sizes are padded by one repeated column or row for yuv420p
-  double fps = 25;                 ///< frames a second; frame k is shown at exactly k / fps (23.976: 24000/1001)
+  int width = 1280, height = 720;  ///< [pixels]; for yuv420p, odd sizes are padded by repeating one column or row
+  double fps = 25;                 ///< frames per second; frame k is shown at exactly k / fps (23.976: 24000/1001)
   Codec codec = Codec::automatic;
-  int crf = 18;                     ///< of h264: x264 constant quality, 1 to 51; smaller is better
+  int crf = 18;                     ///< for h264: x264 constant quality, 1 to 51; smaller is better
   std::string preset = "veryfast";  ///< x264 preset
-  int threads = 1;                  ///< of the encoder; fixed, because x264's bytes depend on it
+  int threads = 1;                  ///< of the encoder; fixed, as the output of x264 depends on it
   std::map<std::string, std::string> metadata;
 };
 
-/// Writes one video: by default MP4 with H.264, yuv420p, BT.709, fast start. Nothing appears under the final name
-/// before finish(). Until then a hidden temporary file beside it holds the frames in fragments, which play even if the
-/// process is killed.
+/// Writes one video: by default MP4 with H.264, yuv420p, BT.709, fast start. The file gets its final name only in
+/// finish(). Until then, a hidden temporary file beside it holds the frames in fragments, which can be played even if
+/// the process is killed.
 class Encoder {
  public:
-  /// Opens the temporary file. Throws Error(output_failed) for settings out of range and places not to be written.
+  /// Opens the temporary file. Throws Error(output_failed) if settings are out of range or the file cannot be written.
   Encoder(const std::filesystem::path& file, const Settings& wanted);
   ~Encoder();  ///< without finish(): removes the temporary file
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
-  /// Appends the next frame. Throws Error(internal) if its size is not that of the settings, Error(output_failed) with
-  /// libav's words, as for a full disk.
+  /// Appends the next frame. Throws Error(internal) if its size differs from the settings, Error(output_failed) with
+  /// libav's message, for example if the disk is full.
   void add(const image::Image& image);
 
-  /// Flushes, moves the index to the front, reads the file again to see that each frame is there at its time, renames
-  /// to the final name. At least one frame must have been added. Throws Error(output_failed); if all frames are encoded
-  /// but the finished file cannot be made, they stay as `<name>.partial.mp4` and the error says so.
+  /// Flushes the encoder, moves the index to the front, verifies by reading that each frame has its time, and renames
+  /// the file to its final name. At least one frame must have been added. Throws Error(output_failed); if all frames
+  /// are encoded but the finished file cannot be made, they are kept as `<name>.partial.mp4`, as the error states.
   void finish();
 
   int frames() const;
@@ -52,13 +52,13 @@ class Encoder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Whether videos of this ending, such as ".mp4", are written.
+/// Whether videos with this extension, such as ".mp4", can be written.
 bool is_written(const std::string& ending);
 
-/// What the codec is for a file of this name. Throws Error(usage) for a codec that such files do not hold.
+/// The codec for a file of this name. Throws Error(usage) if such files cannot contain `codec`.
 Codec codec_of(const std::filesystem::path& file, Codec codec);
 
-/// `<name>.partial.mp4`: where the frames go first, under a temporary name, and stay if no finished file can be made.
+/// `<name>.partial.mp4`: where frames are kept if no finished file can be made; until then under a temporary name.
 std::filesystem::path partial_name(const std::filesystem::path& file);
 
 /// Name and version of the encoder that would be used, for `weft doctor`.

@@ -28,7 +28,7 @@ ScalerPtr make_scaler(int width, int height, AVPixelFormat format, bool rgb, con
   set("dstw", width);
   set("dsth", height);
   set("dst_format", format);
-  // Full chroma input: the filter sees every column. It is the faster way too: 1.5 against 2.6 ms at 1280×720.
+  // Full chroma input: the filter uses every column. (Measured: also faster, 1.5 instead of 2.6 ms at 1280×720.)
   set("sws_flags", SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP);
   set("src_range", 1);
   set("dst_range", rgb);
@@ -37,7 +37,7 @@ ScalerPtr make_scaler(int width, int height, AVPixelFormat format, bool rgb, con
     set("dst_v_chr_pos", kChromaBetweenRows);
   }
   const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
-  constexpr int kUnit = 1 << 16;  // contrast and saturation 1 in 16.16 fixed point
+  constexpr int kUnit = 1 << 16;  // contrast and saturation of 1 in 16.16 fixed point
   check(sws_setColorspaceDetails(scaler.get(), bt709, 1, bt709, rgb, 0, kUnit, kUnit), file, "choose BT.709 colours");
   check(sws_init_context(scaler.get(), nullptr, nullptr), file, "set up the colour conversion");
   return scaler;
@@ -63,7 +63,7 @@ FramePtr FrameConverter::make_frame() const {
   frame->color_range = rgb_ ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
   frame->colorspace = rgb_ ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
   frame->color_primaries = AVCOL_PRI_BT709;
-  // BT.709 and sRGB share their primaries; players show this transfer tag as they show sRGB.
+  // BT.709 and sRGB share their primaries; players treat this transfer tag like sRGB.
   frame->color_trc = AVCOL_TRC_BT709;
   if (!rgb_) frame->chroma_location = AVCHROMA_LOC_LEFT;
   check(av_frame_get_buffer(frame.get(), 0), file_, "get memory for a frame");

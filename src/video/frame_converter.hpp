@@ -1,4 +1,4 @@
-// sRGB pictures to the colours of H.264 video.
+// Conversion of sRGB pictures to the colours of video frames.
 #pragma once
 
 #include <filesystem>
@@ -8,20 +8,19 @@
 
 namespace weft::video {
 
-/// RGB to the BT.709 matrix in limited range, chroma sited left as H.264 has it by default, or to RGB as it is.
+/// Converts RGB to BT.709 in limited range, with the chroma siting (left) that H.264 assumes by default, or keeps RGB.
 class FrameConverter {
  public:
-  /// `file` names the video in errors. Sizes in pixels; odd ones grow by one, but not as RGB.
+  /// `file` names the video in errors. Sizes are in pixels; unless the format is RGB, odd ones are padded by one.
   FrameConverter(int width, int height, std::filesystem::path file, AVPixelFormat format = AV_PIX_FMT_YUV420P);
 
   int padded_width() const { return rgb_ ? width_ : width_ + width_ % 2; }
   int padded_height() const { return rgb_ ? height_ : height_ + height_ % 2; }
 
-  /// A frame of the padded size with its colours declared and pixels not set. Throws Error(output_failed).
+  /// Returns a frame of the padded size with declared colours and unset pixels. Throws Error(output_failed).
   FramePtr make_frame() const;
 
-  /// Writes the picture into `frame`, repeating the last column and row where the size is odd. Throws
-  /// Error(output_failed).
+  /// Writes the picture into `frame`; repeats the last column or row if the size is odd. Throws Error(output_failed).
   void convert(const image::Image& image, AVFrame& frame);
 
  private:

@@ -7,11 +7,11 @@
 namespace weft::video {
 namespace {
 
-// The broadcast rates are written with three decimals, which is within 1.1e-6 of n * 1000/1001; the nearest plain
-// decimals such as 23.98 are 1e-4 away.
+// Broadcast rates with three decimals are within 1.1e-6 of n * 1000/1001; the nearest other decimals, such as 23.98,
+// are 1e-4 away.
 constexpr double kBroadcastTolerance = 5e-6;
 
-// Keeps the ticks of MP4, a power of two times the numerator, well inside 32 bits.
+// Keeps the time unit of MP4, a power of two times the numerator, well inside 32 bits.
 constexpr int kMaxTerm = 100000;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Videos one after another as one, every picture as it is: nothing is encoded anew.
+// Joins videos without encoding them again.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace weft::video {
 
-/// Writes `file` from `parts`, of one encoder with the same settings, `frames` pictures in all, picture k shown at
-/// k / `fps`. Nothing appears under the name before it is whole. Throws Error(output_failed).
+/// Writes `file` from `parts`, which must come from one encoder with the same settings and have `frames` pictures in
+/// total; picture k is shown at k / `fps`. The file gets its name when it is complete. Throws Error(output_failed).
 void join_videos(std::span<const std::filesystem::path> parts, const std::filesystem::path& file, double fps,
                  int frames, const std::map<std::string, std::string>& metadata);
 

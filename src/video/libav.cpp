@@ -11,7 +11,7 @@
 namespace weft::video {
 namespace {
 
-// The lines before a failure that may explain it.
+// Number of log lines before a failure that are reported with it.
 constexpr std::size_t kRememberedLines = 4;
 
 std::mutex g_log_mutex;  // encoder threads log too
@@ -20,7 +20,7 @@ std::deque<std::string> g_log_lines;
 void remember(void* source, int level, const char* format, va_list arguments) {
   if (level > AV_LOG_WARNING) return;
   std::array<char, 512> text{};
-  int print_prefix = 0;  // it would hold an address of memory
+  int print_prefix = 0;  // the prefix would contain a memory address
   av_log_format_line2(source, level, format, arguments, text.data(), static_cast<int>(text.size()), &print_prefix);
   std::string line(text.data());
   while (!line.empty() && line.back() == '\n') line.pop_back();

@@ -1,4 +1,4 @@
-// What every use of libav shares: ownership, checked return codes, its log.
+// Shared by all uses of libav: ownership, checks of return codes, log.
 #pragma once
 
 extern "C" {
@@ -22,7 +22,7 @@ struct LibavDeleter {
   void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
 };
 
-/// Closes the file too, without looking at errors: close_output() does that where they matter.
+/// Also closes the file, ignoring errors; Mp4Writer::close() reports them.
 struct OutputDeleter {
   void operator()(AVFormatContext* output) const;
 };
@@ -39,17 +39,17 @@ using ScalerPtr = std::unique_ptr<SwsContext, LibavDeleter>;
 using OutputPtr = std::unique_ptr<AVFormatContext, OutputDeleter>;
 using InputPtr = std::unique_ptr<AVFormatContext, InputDeleter>;
 
-/// Sends libav's log, and that of x264, to a short memory of warnings and errors instead of standard error, and empties
-/// that memory. The log belongs to the process, and so does the memory. Safe from any thread.
+/// Redirects the log of libav and x264 from standard error to a buffer of the latest warnings and errors, and empties
+/// it. The buffer belongs to the process. Thread-safe.
 void collect_log();
 
 /// Throws Error(output_failed): "file: cannot <step>: <reason>", followed by libav's latest warnings.
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view step, std::string_view reason);
 
-/// Returns `code` if it is no error, else fails with av_strerror's words.
+/// Returns `code` if it is not an error; otherwise fails with the text of av_strerror.
 int check(int code, const std::filesystem::path& file, std::string_view step);
 
-/// Returns `pointer` if it is not null, else fails for want of memory.
+/// Returns `pointer` if it is not null; otherwise fails with "out of memory".
 template <class Pointer>
 Pointer check_allocated(Pointer pointer, const std::filesystem::path& file) {
   if (!pointer) fail(file, "start libav", "out of memory");

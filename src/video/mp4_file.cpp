@@ -11,11 +11,11 @@
 namespace weft::video {
 namespace {
 
-// use_metadata_tags: without it only iTunes' own keys are written.
+// Without use_metadata_tags, libav writes only the keys of iTunes.
 constexpr const char* kFragmentedFlags = "+frag_every_frame+empty_moov+default_base_moof+use_metadata_tags";
 constexpr const char* kFastStartFlags = "+faststart+use_metadata_tags";
 
-/// The container that the ending of the user's name stands for.
+/// The container for the extension of the user's file name.
 const char* container_of(const std::filesystem::path& file) {
   const std::filesystem::path ending = file.extension();
   return ending == ".mkv" ? "matroska" : ending == ".mov" ? "mov" : "mp4";
@@ -43,7 +43,7 @@ InputPtr open_video(const std::filesystem::path& file, const std::filesystem::pa
   return input;
 }
 
-// False at the end of the file.
+// Returns false at the end of the file.
 bool read_packet(AVFormatContext& input, AVPacket& packet, const std::filesystem::path& reported_file) {
   const int code = av_read_frame(&input, &packet);
   if (code == AVERROR_EOF) return false;
@@ -51,7 +51,7 @@ bool read_packet(AVFormatContext& input, AVPacket& packet, const std::filesystem
   return true;
 }
 
-// The header of an MP4 file describes one kind of packets.
+// The header of an MP4 file describes all packets, so they must share one codec configuration.
 bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   const auto bytes = [](const AVCodecParameters& codec) {
     return std::basic_string_view<std::uint8_t>(codec.extradata, static_cast<std::size_t>(codec.extradata_size));
@@ -59,7 +59,7 @@ bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
 }
 
-// Between decoding and showing the first frame.
+// Delay between decoding and showing the first frame, in frames.
 std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
   const InputPtr input = open_video(file, reported_file);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
@@ -80,21 +80,21 @@ Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path re
 
   AVStream* stream = check_allocated(avformat_new_stream(output_.get(), nullptr), reported_file_);
   check(avcodec_parameters_copy(stream->codecpar, &codec), reported_file_, "describe the video");
-  stream->codecpar->codec_tag = 0;  // the tag of the container it came from need not suit this one
+  stream->codecpar->codec_tag = 0;  // the tag of the source container may not suit this one
   stream->time_base = frame_duration_;
   stream->avg_frame_rate = rate;
   for (const auto& [key, value] : metadata) {
     check(av_dict_set(&output_->metadata, key.c_str(), value.c_str(), 0), reported_file_, "set metadata");
   }
 
-  // Each packet reaches the system at once, so that a kill loses the encoder's look-ahead and no more.
+  // Writes each packet to the system at once, so that a kill loses only the encoder's look-ahead.
   output_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
-  // Matroska files have random numbers otherwise, and equal runs would not give equal bytes.
+  // Otherwise Matroska files contain random numbers, and equal runs would not give equal bytes.
   if (is_matroska(reported_file_)) output_->flags |= AVFMT_FLAG_BITEXACT;
   check(avio_open(&output_->pb, output_->url, AVIO_FLAG_WRITE), reported_file_, "create the file");
   Dictionary options;
   const char* flags = layout == Mp4Layout::fragmented ? kFragmentedFlags : kFastStartFlags;
-  // Matroska is played from whatever of it is there.
+  // Incomplete Matroska files are playable without flags.
   if (!is_matroska(reported_file_))
     check(av_dict_set(&options.entries, "movflags", flags, 0), reported_file_, "choose the layout of the file");
   check(avformat_write_header(output_.get(), &options.entries), reported_file_, "write the header");
@@ -123,7 +123,7 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
   Mp4Writer writer(to, reported_file, Mp4Layout::fast_start, codec, rate, metadata);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
 
-  // Frames are decoded at k minus the delay of the B-frames, which a file of one frame does not have.
+  // Frame k is decoded at k minus the delay of the B-frames, which a file with one frame does not have.
   std::int64_t delay = 0;
   for (const std::filesystem::path& file : from) delay = std::max(delay, delay_of(file, reported_file, rate));
 
@@ -133,8 +133,8 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
     const AVStream& stream = *input->streams[0];
     if (!same_codec(codec, *stream.codecpar))
       fail(reported_file, fmt::format("join {}", file.string()), "it is not encoded as the first one is");
-    // A fragmented file cannot hold times below zero, so libav moved all of them by the delay. The first packet is
-    // frame 0, because the stream starts with a key frame.
+    // A fragmented file cannot contain negative times, so libav has shifted all times by the delay. The first packet is
+    // frame 0, as the stream starts with a key frame.
     const std::int64_t before = written;
     std::optional<std::int64_t> first_time;
     for (; read_packet(*input, *packet, reported_file); ++written) {
@@ -159,7 +159,7 @@ void verify_frames(const std::filesystem::path& file, const std::filesystem::pat
   int count = 0;
   while (read_packet(*input, *packet, reported_file)) {
     const std::int64_t frame = av_rescale_q(packet->pts, unit, av_inv_q(rate));
-    // Matroska counts milliseconds.
+    // Matroska rounds times to milliseconds.
     const bool on_time = is_matroska(reported_file) || av_compare_ts(packet->pts, unit, frame, av_inv_q(rate)) == 0;
     const bool new_frame = frame >= 0 && frame < frames && !seen[frame];
     if (!on_time || !new_frame) {

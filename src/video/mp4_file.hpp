@@ -1,5 +1,5 @@
-// MP4 files with one H.264 stream: written in fragments while frames arrive, then copied into the form that plays
-// from the first byte on.
+// MP4, MOV and Matroska files with one video stream: written in fragments while frames arrive, then copied to a file
+// that can be played while it loads. Matroska needs no such layouts.
 #pragma once
 
 #include <filesystem>
@@ -12,20 +12,20 @@
 namespace weft::video {
 
 enum class Mp4Layout {
-  fragmented,  ///< every frame complete in itself: what is on disk can be played whenever the process is killed
-  fast_start,  ///< the index stands before the frames: browsers start and seek without the whole file
+  fragmented,  ///< every frame is a fragment: the file can be played even if the process is killed
+  fast_start,  ///< the index precedes the frames: browsers can start and seek before the whole file is loaded
 };
 
-/// An MP4 file being written.
+/// A video file that is being written.
 class Mp4Writer {
  public:
-  /// Opens `file`, an absolute path lest libav take a colon in it for a protocol, and writes its header. Packets come
-  /// in units of one frame, 1 / `rate` seconds. Errors name `reported_file`, the name that the user knows. Throws
-  /// Error(output_failed).
+  /// Opens `file` and writes its header. The path must be absolute, as libav takes the text before a colon for a
+  /// protocol. Packet times are in units of one frame, 1 / `rate` seconds. Errors name `reported_file`, which the user
+  /// knows. Throws Error(output_failed).
   Mp4Writer(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
             const AVCodecParameters& codec, AVRational rate, const std::map<std::string, std::string>& metadata);
 
-  /// Appends a packet, in decoding order; changes its times to the file's unit. Throws Error(output_failed).
+  /// Appends a packet, in decoding order; rescales its times to the unit of the file. Throws Error(output_failed).
   void write(AVPacket& packet);
 
   /// Writes the index and closes the file. Throws Error(output_failed).
@@ -37,13 +37,13 @@ class Mp4Writer {
   OutputPtr output_;
 };
 
-/// Copies the packets of the files `from`, one after the other, into a new fast start file `to`, so that the first
-/// frame is shown at time zero. Throws Error(output_failed), also where they are not encoded alike.
+/// Copies the packets of the files `from`, one after the other, into a new fast-start file `to`, with the first frame
+/// at time zero. Throws Error(output_failed), also if the files are not encoded alike.
 void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::filesystem::path& to,
                         const std::filesystem::path& reported_file, AVRational rate,
                         const std::map<std::string, std::string>& metadata);
 
-/// Reads `file` again: throws Error(output_failed) unless it has each of `frames` frames once, frame k at k / `rate`.
+/// Reads `file`; throws Error(output_failed) unless it has each of `frames` frames once, frame k at k / `rate`.
 void verify_frames(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate,
                    int frames);
 

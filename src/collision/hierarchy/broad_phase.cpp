@@ -32,10 +32,10 @@ class TreesOf final : public BroadPhase::Trees {
     else
       trees_[surface].refit(motion, margin);
     if (!options_.normal_cones) return;
-    // Only of a known motion can it be told that nothing comes near.
+    // Normal cones need a known end position of each vertex. Without one, an infinite distance disables them.
     const bool is_known = std::ranges::equal(motion.low_t1, motion.high_t1);
-    const double reach = is_known ? 2 * margin : std::numeric_limits<double>::infinity();
-    cones_[surface].update(trees_[surface], motion.x_t0, motion.low_t1, reach);
+    const double detection_distance = is_known ? 2 * margin : std::numeric_limits<double>::infinity();
+    cones_[surface].update(trees_[surface], motion.x_t0, motion.low_t1, detection_distance);
   }
 
   void self_pairs(std::size_t surface, CandidatePairs& out) override {
@@ -58,19 +58,19 @@ class TreesOf final : public BroadPhase::Trees {
 
   void forget() override {
     for (auto& tree : trees_) tree.forget();
-    lists_.clear();
+    separation_lists_.clear();
   }
 
  private:
   Traversal traversal(std::size_t a, std::size_t b) {
-    return {options_.open_longer_side, options_.separation_list ? &lists_[{a, b}] : nullptr,
+    return {options_.open_longer_side, options_.separation_list ? &separation_lists_[{a, b}] : nullptr,
             options_.normal_cones && a == b ? &cones_[a].regions() : nullptr, options_.one_shared};
   }
 
   BroadPhaseOptions options_;
   std::vector<Tree<K>> trees_;
-  std::vector<NormalCones<K>> cones_;                                    // by surface, where wanted
-  std::map<std::pair<std::size_t, std::size_t>, SeparationList> lists_;  // by surfaces
+  std::vector<NormalCones<K>> cones_;                                               // by surface, if enabled
+  std::map<std::pair<std::size_t, std::size_t>, SeparationList> separation_lists_;  // by pair of surfaces
 };
 
 std::unique_ptr<BroadPhase::Trees> make_trees(std::span<const Surface> surfaces, std::span<const Vec3> x,

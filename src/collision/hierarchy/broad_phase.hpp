@@ -1,13 +1,13 @@
-// The broad phase of a run: a hierarchy for each surface, and how they are kept and walked, chosen at run time.
+// Broad phase of a run: one hierarchy per surface. Run-time options say how to refit and traverse.
 //
 //   BroadPhase broad_phase(surfaces, x, options);      // once; surfaces are then named by their place in the span
 //   broad_phase.refit(s, x_t0, x_t1, margin);          // each step, each surface that moved
 //   broad_phase.self_pairs(s, candidates);             // appends, as often as needed
 //   broad_phase.pairs(a, b, candidates);
 //
-// Whatever the options, every two triangles that come closer than 2 · margin anywhere on the linear way from x_t0 to
-// x_t1 are among the pairs, except those sharing two corners or more, and, with normal_cones, pairs of one surface in
-// which no two features without a common vertex come closer than 2 · margin.
+// With any options, the pairs include every two triangles that come closer than 2 · margin on the linear trajectory
+// from x_t0 to x_t1, with two exceptions: triangles that share two corners or more and, with normal_cones, pairs of one
+// surface in which no two features without a common vertex come closer than 2 · margin.
 #pragma once
 
 #include <cstddef>
@@ -22,32 +22,32 @@
 
 namespace weft::collision {
 
-/// The defaults walk fastest on falling_band and multi_sheet (measured with tests/bench): leaves of 8 instead of 1 are
-/// worth a factor of 3, 8 children instead of 2 a fifth, separation lists a tenth at most; velocity and normal cones
-/// cost what they save or more. k = 18 walks and refits longer but lists a quarter fewer candidates: with the search
-/// for proximities 4 to 9 % less in all, a fifth less where layers lie slanted to the axes. k = 26, the seed's, lists
-/// the fewest; k = 14 was worse than 6 or 18 in every measurement.
+/// The defaults are fastest on falling_band and multi_sheet (measured with tests/bench): leaves of 8 instead of 1 gain
+/// a factor of 3, 8 children instead of 2 gain a fifth, separation lists at most a tenth; velocity and normal cones
+/// cost what they save or more. k = 18 takes longer to refit and traverse but lists a quarter fewer candidates: with
+/// the narrow phase it gains 4 to 9 % in all, a fifth where layers lie slanted to the axes. k = 26, the seed's choice,
+/// lists the fewest. k = 14 was worse than 6 or 18 in every measurement.
 struct BroadPhaseOptions {
-  /// Directions of the bounds: 6, 18 or 26. More of them list fewer pairs and cost more (fewest: all pairs that 26-DOPs
-  /// list are also listed by boxes).
+  /// Directions of the bounds: 6, 18 or 26. More directions cost more and list fewer pairs. Boxes list every pair that
+  /// 26-DOPs list.
   int directions = 6;
-  /// Children per node, 2 to 8. Changes the order of the pairs only.
+  /// Children per node, 2 to 8. Changes only the order of the pairs.
   int children = 8;
-  /// Most triangles per leaf, 1 to 8. Changes the order of the pairs only.
+  /// Maximum number of triangles per leaf, 1 to 8. Changes only the order of the pairs.
   int leaf = 8;
-  /// Of two overlapping nodes open the one with the longer k-DOP side, as the seed does, instead of both. Changes the
-  /// order of the pairs only.
+  /// Of two overlapping nodes, descend only into the one with the longer k-DOP side, as the seed does, instead of both.
+  /// Changes only the order of the pairs.
   bool open_longer_side = false;
-  /// Walk on from where the last walk stopped. Lists exactly the same pairs; their order depends on the walks before.
+  /// Resume each traversal where the last one stopped. Lists the same pairs, in an order that depends on earlier
+  /// traversals.
   bool separation_list = false;
-  /// Bounds of slow vertices get slack (an eighth of the margin at most) and are left as they are while the vertices
-  /// stay inside. Lists all pairs within 2 · margin, and some that the bounds without slack would drop. To reuse whole
-  /// detection results by velocity cones see collision/proximity/coherence.hpp.
+  /// Give the bounds of slow vertices slack (at most an eighth of the margin) and keep them while the vertices stay
+  /// inside. Lists all pairs within 2 · margin, and some that bounds without slack would exclude. CoherentDetection
+  /// (collision/proximity/coherence.hpp) reuses whole detection results by velocity cones.
   bool velocity_cones = false;
-  /// Leaves out pairs in regions of a surface that are provably flat enough. Lists all other pairs.
+  /// Skip pairs in regions of a surface that are provably flat enough. Lists all other pairs.
   bool normal_cones = false;
-  /// Pairs that share one vertex are listed, too. In smooth cloth they are three times as many as the others, and all
-  /// are known beforehand.
+  /// Also list pairs that share one vertex. In smooth cloth they are three times as many as the others.
   bool one_shared = true;
 };
 
@@ -55,12 +55,12 @@ class BroadPhase {
  public:
   BroadPhase() = default;
 
-  /// Builds over the surfaces at x (global array, [m]) and fits them there without margin; the triangles must outlive
-  /// the broad phase. Throws Error(internal) for options or indices out of range.
+  /// Builds over the surfaces at x (global array, [m]) and fits them there without margin. The triangles must outlive
+  /// the broad phase. Throws Error(internal) if an option or index is out of range.
   BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options = {});
 
-  /// As Tree::refit: bounds for this motion, enlarged by margin [m]. Pairs hold for every other one, too, whose ends
-  /// are no farther than that from those, along any axis.
+  /// As Tree::refit: bounds for this motion, enlarged by margin [m]. The pairs also hold for every motion whose ends
+  /// differ from this one by at most the margin along each axis.
   void refit(std::size_t surface, const Motion& motion, double margin);
   void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit(surface, {x_t0, x_t1}, margin);
@@ -72,8 +72,7 @@ class BroadPhase {
   /// Appends pairs (a of surface a, b of surface b).
   void pairs(std::size_t a, std::size_t b, CandidatePairs& out);
 
-  /// As collision::nearest_triangles and triangles_in_box (query.hpp), of one surface anywhere on the way that its
-  /// bounds were last fitted to.
+  /// As collision::nearest_triangles and triangles_in_box (query.hpp), for one surface, at positions inside its bounds.
   void nearest_triangles(std::size_t surface, const Vec3& p, const DistanceSq& distance_sq,
                          std::vector<Index>& out) const;
   void triangles_in_box(std::size_t surface, const Vec3& low, const Vec3& high, std::vector<Index>& out) const;
@@ -81,12 +80,12 @@ class BroadPhase {
   std::size_t size() const { return surfaces_.size(); }
   const Surface& surface(std::size_t number) const { return surfaces_[number]; }
 
-  /// Whether bounds and the order of the pairs depend on the steps before.
+  /// Whether bounds and the order of the pairs depend on earlier steps.
   static bool remembers(const BroadPhaseOptions& options) { return options.separation_list || options.velocity_cones; }
-  /// From here on they no longer do.
+  /// Drops this dependence.
   void forget();
 
-  /// One kind of tree; the only place that knows its type.
+  /// Interface that hides the number of directions, a template parameter of the trees.
   struct Trees {
     virtual ~Trees() = default;
     virtual void refit(std::size_t surface, const Motion& motion, double margin) = 0;

@@ -1,9 +1,9 @@
 // Discrete oriented polytopes (k-DOPs): bounds by k fixed directions (seed, "Bounding Volume Hierarchy", Eq. 3).
 //
-// A set is kept as its k support values: row r holds the least value of direction_r · x over the set. Directions come
-// in opposite pairs, rows 2d and 2d + 1, so the interval along pair d is [row(2d), -row(2d + 1)]. With this one sign
-// convention the hull of two sets is the smaller value row by row, and row_a(r) + row_b(opposite of r) is the gap
-// between the sets along that direction: they overlap where no gap is positive.
+// A set is stored as its k support values: row r holds the minimum of direction_r · x over the set. Directions come in
+// opposite pairs, rows 2d and 2d + 1, so the interval along pair d is [row(2d), -row(2d + 1)]. With this sign
+// convention the hull of two sets is the row-wise minimum, and row_a(r) + row_b(opposite of r) is the gap between the
+// sets along that direction. Two k-DOPs overlap if no gap is positive.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 
 namespace weft::collision {
 
-/// Rows are stored in multiples of eight floats, so that a hull is whole AVX registers.
+/// Rows are padded to multiples of eight floats, so that joining two k-DOPs uses whole AVX registers.
 template <int K>
 inline constexpr int kRows = (K + 7) / 8 * 8;
 
-/// The directions of a k-DOP by component; not normalised, so that projections stay short sums. Rows past K are zero.
+/// The directions of a k-DOP by component. Not normalised: projections stay short sums. Rows past K are zero.
 template <int K>
 struct Directions {
   static_assert(K == 6 || K == 18 || K == 26, "box; with edges; with corners and edges");
@@ -48,22 +48,22 @@ struct Directions {
 template <int K>
 inline constexpr Directions<K> kDirections{};
 
-/// Support values of a set in float, rounded away from the set: the bound may be too large, never too small.
+/// Support values of a set in float, rounded outward: the bound may be too large, never too small.
 template <int K>
 struct alignas(32) KDop {
   float row[kRows<K>];
 
-  /// Eq. (3): the k-DOP of a union is the hull of the parts' k-DOPs.
+  /// Eq. (3): the k-DOP of a union is the hull of the k-DOPs of its sets.
   void join(const KDop& other) {
     for (int r = 0; r < kRows<K>; ++r) row[r] = std::min(row[r], other.row[r]);
   }
 
-  /// Distance of the opposite faces of direction pair d [m].
+  /// Distance between the opposite faces of direction pair d [m].
   double side(int d) const {
     return (-static_cast<double>(row[2 * d]) - static_cast<double>(row[2 * d + 1])) / kDirections<K>.length[2 * d];
   }
 
-  /// Distance of the opposite faces that are furthest apart [m].
+  /// Largest distance between two opposite faces [m].
   double longest_side() const {
     double longest = side(0);
     for (int d = 1; d < K / 2; ++d) longest = std::max(longest, side(d));
@@ -77,13 +77,13 @@ struct alignas(32) KDop {
   }
 };
 
-/// The k-DOP of the segment from p to q, the path of a vertex in one step, enlarged by `margin` [m] on every side.
-/// Coordinates are finite and below 1e37 m.
+/// The k-DOP of the segment from p to q, the trajectory of a vertex in one step, enlarged by `margin` [m] on every
+/// side. Coordinates must be finite and below 1e37 m.
 template <int K>
 inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
   constexpr const Directions<K>& dir = kDirections<K>;
-  // Rounding to float moves a value by at most 2^-24 of itself, and the sums of three products in double by less
-  // than 2^-50 of the coordinates; both are given away on the safe side, with 1e-38 for numbers near zero.
+  // Rounding to float moves a value by at most 2^-24 of itself, and rounding the sums of three products in double by
+  // less than 2^-50 of the coordinates. Subtract both, and 1e-38 for numbers near zero.
   const double cancel = K == 6 ? 1e-38 : 1e-38 + 0x1p-50 * (p.cwiseAbs().sum() + q.cwiseAbs().sum() + margin);
   KDop<K> bound;
   for (int r = 0; r < kRows<K>; ++r) {
@@ -95,9 +95,9 @@ inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
   return bound;
 }
 
-/// Support values of a set that moves linearly, at the start in rows 0 to K − 1 and at the end in the K that follow.
-/// Along any direction the gap between two such sets is concave in time: where it is positive at the start and at the
-/// end, it is all the way. What moves along with each other is told from what meets by nothing less.
+/// Support values of a set that moves linearly: at the start in rows 0 to K − 1, at the end in the next K rows. Along
+/// any direction the gap between two such sets is concave in time, so if it is positive at the start and at the end, it
+/// is positive throughout. So sets that move together do not overlap.
 template <int K>
 struct alignas(32) MovingKDop {
   float row[(2 * K + 7) / 8 * 8];
@@ -106,14 +106,14 @@ struct alignas(32) MovingKDop {
     for (std::size_t r = 0; r < std::size(row); ++r) row[r] = std::min(row[r], other.row[r]);
   }
 
-  /// Distance of the opposite faces that are furthest apart, of the whole way [m].
+  /// Largest distance between two opposite faces over start and end [m].
   double longest_side() const {
     double longest = 0;
-    for (int d = 0; d < K / 2; ++d) longest = std::max(longest, (-least(2 * d) - least(2 * d + 1)) / length(d));
+    for (int d = 0; d < K / 2; ++d) longest = std::max(longest, (-min_row(2 * d) - min_row(2 * d + 1)) / length(d));
     return longest;
   }
 
-  /// False only where the two are apart all the way.
+  /// False only if one direction separates the two sets during the whole motion.
   bool overlaps(const MovingKDop& other) const {
     for (int r = 0; r < K; ++r)
       if (row[r] + other.row[r ^ 1] > 0 && row[K + r] + other.row[(K + r) ^ 1] > 0) return false;
@@ -121,11 +121,11 @@ struct alignas(32) MovingKDop {
   }
 
  private:
-  double least(int r) const { return static_cast<double>(std::min(row[r], row[K + r])); }
+  double min_row(int r) const { return static_cast<double>(std::min(row[r], row[K + r])); }
   static double length(int d) { return kDirections<K>.length[2 * d]; }
 };
 
-/// Of a vertex that moves from p to somewhere in the box from `low` to `high`, enlarged by `margin` [m] at both ends.
+/// Bound of a vertex that moves from p to anywhere in the box `low` to `high`, enlarged by `margin` [m].
 template <int K>
 inline MovingKDop<K> moving_point(const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
   const KDop<K> start = swept_point<K>(p, p, margin);

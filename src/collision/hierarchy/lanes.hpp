@@ -1,4 +1,4 @@
-// Tests of one k-DOP against several at once: bounds stored by row, one lane per bound.
+// Tests one k-DOP against several at once: bounds stored by row, one lane per bound.
 #pragma once
 
 #include <bit>
@@ -13,10 +13,10 @@
 
 namespace weft::collision {
 
-/// Sets that are tested at once: one per lane of an AVX register of floats.
+/// Number of sets tested at once: one per lane of an AVX register of floats.
 inline constexpr int kLanes = 8;
 
-/// The lanes below `count`.
+/// Mask of the lanes below `count`.
 inline std::uint32_t first_lanes(int count) {
   return (1U << count) - 1;
 }
@@ -27,15 +27,14 @@ void for_each_bit(std::uint32_t mask, const Visit& visit) {
   for (; mask != 0; mask &= mask - 1) visit(std::countr_zero(mask));
 }
 
-/// Bounds of eight moving sets, structure of arrays: row r of set l is row[r][l].
+/// Bounds of eight moving sets as a structure of arrays: row r of set l is row[r][l].
 template <int K>
 struct alignas(32) LaneBounds {
   float row[2 * K][kLanes];
 };
 
-/// Bit l is set where set l of `bounds` overlaps (or touches) the moving k-DOP whose row r is query[r * stride].
-/// The largest over all directions of the smaller gap of both ends decides; a sum of two floats never has the wrong
-/// sign.
+/// Bit l is set if set l of `bounds` overlaps or touches the moving k-DOP whose row r is query[r * stride]. Two sets
+/// overlap unless some direction has a positive gap at both ends. The sign of a sum of two floats is exact.
 template <int K>
 inline std::uint32_t overlap_mask(const LaneBounds<K>& bounds, const float* query, std::size_t stride) {
 #if defined(__AVX__)
@@ -69,12 +68,12 @@ inline std::uint32_t overlap_mask(const LaneBounds<K>& bounds, const float* quer
 #endif
 }
 
-/// Four or eight numbers side by side.
+/// Vectors of four or eight numbers.
 typedef float Lanes4 __attribute__((vector_size(16)));
 typedef float Lanes8 __attribute__((vector_size(32)));
 typedef std::int32_t IntLanes8 __attribute__((vector_size(32)));
 
-/// Lane by lane the smaller (larger) one of both. A vector returned by value would have another ABI without AVX.
+/// Lane-wise minimum (maximum), in place: without AVX, returning a vector by value would use another ABI.
 inline void lower_to(Lanes8& a, const Lanes8& b) {
   a = a < b ? a : b;
 }
@@ -82,7 +81,7 @@ inline void raise_to(Lanes8& a, const Lanes8& b) {
   a = a > b ? a : b;
 }
 
-/// Bit l is set where lane l is negative.
+/// Bit l is set if lane l is negative.
 inline std::uint32_t sign_mask(const Lanes8& lanes) {
 #if defined(__AVX__)
   return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(lanes)));
@@ -93,18 +92,18 @@ inline std::uint32_t sign_mask(const Lanes8& lanes) {
 #endif
 }
 
-/// Bit l is set where lane l is negative; all bits of a lane are set where a comparison of whole numbers holds.
+/// Bit l is set if lane l is negative. A comparison of integer vectors sets all bits of each lane where it holds.
 inline std::uint32_t sign_mask(const IntLanes8& lanes) {
   return sign_mask(reinterpret_cast<const Lanes8&>(lanes));
 }
 
-/// x, y and z of eight points that come as rows (x, y, z, unused).
+/// Coordinates x, y, z of eight points, transposed from rows (x, y, z, unused).
 struct Points8 {
   Lanes8 axis[3];
 };
 
 inline Points8 transpose(const Lanes4* const (&row)[8]) {
-  Lanes8 pair[4];  // row l beside row l + 4
+  Lanes8 pair[4];  // row l next to row l + 4
   for (int l = 0; l < 4; ++l) pair[l] = __builtin_shufflevector(*row[l], *row[l + 4], 0, 1, 2, 3, 4, 5, 6, 7);
   const Lanes8 &a = pair[0], &b = pair[1], &c = pair[2], &d = pair[3];
   const Lanes8 xy_ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
@@ -121,12 +120,12 @@ struct alignas(32) LaneCorners {
   std::int32_t corner[3][8];
 };
 
-/// For eight triangles against one: which share exactly one vertex with it, and which share more.
+/// Of eight triangles: which share exactly one vertex with a given triangle, and which share more.
 struct SharedMasks {
   std::uint32_t one, more;
 };
 
-/// Triangle `own` of `query` against all of `lanes`. A corner that a triangle names twice counts once.
+/// Compares triangle `own` of `query` with all triangles of `lanes`. A corner that a triangle names twice counts once.
 inline SharedMasks shared_vertices(const LaneCorners& lanes, const LaneCorners& query, int own) {
   const std::int32_t c0 = query.corner[0][own];
   std::int32_t c1 = query.corner[1][own], c2 = query.corner[2][own];

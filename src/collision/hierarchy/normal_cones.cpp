@@ -18,7 +18,7 @@ bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis
   centre_t0 /= static_cast<double>(contour.size());
   centre_t1 /= static_cast<double>(contour.size());
 
-  // Some direction in the plane; the chain crosses it as often as it runs around.
+  // Count how often the chain crosses one direction of the plane: that is how often it runs around.
   const Vec3 up = axis.unitOrthogonal();
   int turns = 0;
   for (const auto& edge : contour) {
@@ -33,11 +33,11 @@ bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis
   return turns == 1;
 }
 
-/// Finds P⁺, its contour and the leaves around for each node.
+/// Finds the contour of P⁺ and the surrounding leaves for each node.
 template <int K>
 class NormalCones<K>::Builder {
  public:
-  Builder(const Tree<K>& tree, std::vector<Patch>& patches) : tree_(tree), patches_(patches) {
+  Builder(const Tree<K>& tree, std::vector<Subtree>& subtrees) : tree_(tree), subtrees_(subtrees) {
     const Surface& surface = tree.surface();
     const auto vertices = static_cast<std::size_t>(surface.vertex_count);
     around_.resize(vertices);
@@ -50,7 +50,7 @@ class NormalCones<K>::Builder {
     find_border();
   }
 
-  /// The triangles below ref; patches of all subtrees in it are written.
+  /// Returns the triangles below ref, and fills the data of all its subtrees.
   std::vector<Index> build(Ref ref) {
     std::vector<Index> below;
     if (ref < 0) {
@@ -63,7 +63,7 @@ class NormalCones<K>::Builder {
         below.insert(below.end(), part.begin(), part.end());
       }
     }
-    describe(ref, below);
+    fill_subtree(ref, below);
     return below;
   }
 
@@ -78,7 +78,7 @@ class NormalCones<K>::Builder {
   std::size_t local(Index v) const { return static_cast<std::size_t>(v - tree_.surface().first_vertex); }
   const Triangle& triangle(Index t) const { return tree_.surface().triangles[t]; }
 
-  /// A vertex is on the border where an edge at it has not exactly one triangle on each side.
+  /// A vertex is on the border if an edge at it does not have exactly one triangle on each side.
   void find_border() {
     std::unordered_set<Edge, EdgeHash> all;
     border_.assign(around_.size(), 0);
@@ -95,12 +95,12 @@ class NormalCones<K>::Builder {
     });
   }
 
-  void describe(Ref ref, const std::vector<Index>& below) {
-    Patch& patch = patches_[NormalCones::slot(tree_, ref)];
+  void fill_subtree(Ref ref, const std::vector<Index>& below) {
+    Subtree& subtree = subtrees_[NormalCones::slot(tree_, ref)];
     for (const Index t : below)
       for (const Index v : triangle(t))
         if (border_[local(v)] != 0) return;
-    patch.closed = true;
+    subtree.closed = true;
 
     std::vector<Index> all;  // P⁺
     for (const Index t : below)
@@ -114,7 +114,7 @@ class NormalCones<K>::Builder {
     for (const Index t : all)
       for (std::size_t c = 0; c < 3; ++c)
         if (!edges.contains({triangle(t)[(c + 1) % 3], triangle(t)[c]}))
-          patch.contour.push_back({triangle(t)[c], triangle(t)[(c + 1) % 3]});
+          subtree.contour.push_back({triangle(t)[c], triangle(t)[(c + 1) % 3]});
 
     std::vector<std::size_t> own, ring;
     for (const Index t : below) own.push_back(leaf_of_[t]);
@@ -124,11 +124,11 @@ class NormalCones<K>::Builder {
       leaves->erase(std::unique(leaves->begin(), leaves->end()), leaves->end());
     }
     for (const std::size_t leaf : ring)
-      if (!std::binary_search(own.begin(), own.end(), leaf)) patch.ring.push_back(~static_cast<Ref>(leaf));
+      if (!std::binary_search(own.begin(), own.end(), leaf)) subtree.ring.push_back(~static_cast<Ref>(leaf));
   }
 
   const Tree<K>& tree_;
-  std::vector<Patch>& patches_;
+  std::vector<Subtree>& subtrees_;
   std::vector<std::vector<Index>> around_;  // triangles at each vertex
   std::vector<std::size_t> leaf_of_;        // by triangle
   std::vector<std::uint8_t> border_;        // by vertex
@@ -142,17 +142,17 @@ std::size_t NormalCones<K>::slot(const Tree<K>& tree, Ref ref) {
 template <int K>
 NormalCones<K>::NormalCones(const Tree<K>& tree) {
   const std::size_t slots = tree.nodes().size() + tree.leaves().size();
-  patches_.resize(slots);
+  subtrees_.resize(slots);
   cones_.resize(slots);
   regions_.node.resize(tree.nodes().size());
   regions_.leaf.resize(tree.leaves().size());
-  if (!tree.empty()) Builder(tree, patches_).build(tree.root());
+  if (!tree.empty()) Builder(tree, subtrees_).build(tree.root());
 }
 
 template <int K>
 void NormalCones<K>::fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<const Vec3> x_t0,
                               std::span<const Vec3> x_t1, Cone& cone) const {
-  // The normal of a triangle over time is a quadratic whose Bernstein coefficients are these three.
+  // The normal of a triangle is quadratic in time. These three are its Bernstein coefficients.
   std::array<std::array<Vec3, 3>, kLanes> normals;
   Vec3 sum = Vec3::Zero();
   cone.altitude = 1e300;
@@ -183,20 +183,20 @@ void NormalCones<K>::fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<cons
   cone.sine = std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine));
 }
 
-/// The cone around the mean axis that holds all parts.
+/// The cone around the mean axis that holds all given cones.
 template <int K>
-typename NormalCones<K>::Cone NormalCones<K>::join(std::span<const Cone* const> parts) {
+typename NormalCones<K>::Cone NormalCones<K>::join(std::span<const Cone* const> cones) {
   Cone all;
   all.altitude = 1e300;
-  for (const Cone* part : parts) {
+  for (const Cone* part : cones) {
     if (part->cosine <= 0) return {};
     all.axis += part->axis;
     all.altitude = std::min(all.altitude, part->altitude);
   }
   all.axis.normalize();
   all.cosine = 1;
-  for (const Cone* part : parts) {
-    // cos(α + β) with β between the axes; both are below 90° where the cosine of the sum decides.
+  for (const Cone* part : cones) {
+    // cos(α + β), with β the angle between the axes. Both angles are below 90°, so the cosine of the sum decides.
     const double between = all.axis.dot(part->axis);
     if (!(between > 0)) return {};
     const double across = std::sqrt(std::max(0.0, 1 - between * between));
@@ -208,44 +208,45 @@ typename NormalCones<K>::Cone NormalCones<K>::join(std::span<const Cone* const> 
 }
 
 template <int K>
-void NormalCones<K>::update(const Tree<K>& tree, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double reach) {
+void NormalCones<K>::update(const Tree<K>& tree, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                            double detection_distance) {
   if (tree.empty()) return;
   const std::size_t nodes = tree.nodes().size();
   for (std::size_t n = 0; n < tree.leaves().size(); ++n) fit_leaf(tree.leaves()[n], x_t0, x_t1, cones_[nodes + n]);
   for (std::size_t n = nodes; n-- > 0;) {
     const auto& node = tree.nodes()[n];
-    std::array<const Cone*, kLanes> parts;
-    for (int i = 0; i < node.count; ++i) parts[i] = &cones_[slot(tree, node.child[i])];
-    cones_[n] = join(std::span(parts).first(static_cast<std::size_t>(node.count)));
+    std::array<const Cone*, kLanes> cones;
+    for (int i = 0; i < node.count; ++i) cones[i] = &cones_[slot(tree, node.child[i])];
+    cones_[n] = join(std::span(cones).first(static_cast<std::size_t>(node.count)));
   }
   std::fill(regions_.node.begin(), regions_.node.end(), std::uint8_t{0});
   std::fill(regions_.leaf.begin(), regions_.leaf.end(), std::uint8_t{0});
-  mark(tree, tree.root(), x_t0, x_t1, reach);
+  mark_flat_regions(tree, tree.root(), x_t0, x_t1, detection_distance);
 }
 
 template <int K>
 bool NormalCones<K>::nothing_near(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                                  double reach) const {
+                                  double detection_distance) const {
   const Cone& own = cones_[slot(tree, ref)];
-  const Patch& patch = patches_[slot(tree, ref)];
-  const double needed = reach * (1 + kRoundoff);
-  if (!patch.closed || own.cosine * own.altitude <= needed || own.cosine <= 0) return false;
-  std::vector<const Cone*> parts{&own};
-  for (const Ref leaf : patch.ring) parts.push_back(&cones_[slot(tree, leaf)]);
-  const Cone all = join(parts);
-  return all.cosine > 0 && all.cosine * all.altitude > needed && star_shaped(patch.contour, all.axis, x_t0, x_t1);
+  const Subtree& subtree = subtrees_[slot(tree, ref)];
+  const double needed = detection_distance * (1 + kRoundoff);
+  if (!subtree.closed || own.cosine * own.altitude <= needed || own.cosine <= 0) return false;
+  std::vector<const Cone*> cones{&own};
+  for (const Ref leaf : subtree.ring) cones.push_back(&cones_[slot(tree, leaf)]);
+  const Cone all = join(cones);
+  return all.cosine > 0 && all.cosine * all.altitude > needed && star_shaped(subtree.contour, all.axis, x_t0, x_t1);
 }
 
-/// From the top down; what is below a marked subtree is never asked for.
+/// Marks flat regions top-down. The traversal never enters a marked subtree, so what is below it stays unmarked.
 template <int K>
-void NormalCones<K>::mark(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                          double reach) {
-  const bool nothing = nothing_near(tree, ref, x_t0, x_t1, reach);
+void NormalCones<K>::mark_flat_regions(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0,
+                                       std::span<const Vec3> x_t1, double detection_distance) {
+  const bool is_flat = nothing_near(tree, ref, x_t0, x_t1, detection_distance);
   auto& flags = ref >= 0 ? regions_.node : regions_.leaf;
-  flags[ref >= 0 ? ref : ~ref] = static_cast<std::uint8_t>(nothing);
-  if (nothing || ref < 0) return;
+  flags[ref >= 0 ? ref : ~ref] = static_cast<std::uint8_t>(is_flat);
+  if (is_flat || ref < 0) return;
   const auto& node = tree.nodes()[ref];
-  for (int i = 0; i < node.count; ++i) mark(tree, node.child[i], x_t0, x_t1, reach);
+  for (int i = 0; i < node.count; ++i) mark_flat_regions(tree, node.child[i], x_t0, x_t1, detection_distance);
 }
 
 template class NormalCones<6>;

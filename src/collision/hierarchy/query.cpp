@@ -7,20 +7,20 @@
 namespace weft::collision {
 namespace {
 
-/// Row r of bound l anywhere on its way; rows 0 to 5 are the axes.
+/// Minimum of row r of bound l over start and end of the motion. Rows 0 to 5 are the axes.
 template <int K>
-float row_on_way(const LaneBounds<K>& bounds, int r, int l) {
+float row_over_motion(const LaneBounds<K>& bounds, int r, int l) {
   return std::min(bounds.row[r][l], bounds.row[K + r][l]);
 }
 
-/// Squared distances of a point from the boxes of eight bounds.
+/// Squared distances of a point from the boxes of eight bounds [m²].
 template <int K>
 std::array<double, kLanes> box_distances_sq(const LaneBounds<K>& bounds, const Vec3& p) {
   std::array<double, kLanes> all{};
   for (int axis = 0; axis < 3; ++axis)
     for (int l = 0; l < kLanes; ++l) {
-      const double below = row_on_way(bounds, 2 * axis, l) - p[axis],
-                   above = row_on_way(bounds, 2 * axis + 1, l) + p[axis];
+      const double below = row_over_motion(bounds, 2 * axis, l) - p[axis],
+                   above = row_over_motion(bounds, 2 * axis + 1, l) + p[axis];
       const double gap = std::max({below, above, 0.0});
       all[l] += gap * gap;
     }
@@ -35,22 +35,22 @@ class NearestQuery {
   NearestQuery(const Tree<K>& tree, const Vec3& p, const DistanceSq& distance_sq)
       : tree_(tree), p_(p), distance_sq_(distance_sq) {}
 
-  void below(Ref ref) {
-    if (ref < 0) return leaf(tree_.leaves()[~ref]);
+  void visit(Ref ref) {
+    if (ref < 0) return visit_leaf(tree_.leaves()[~ref]);
     const auto& node = tree_.nodes()[ref];
     const auto lower_bound_sq = box_distances_sq(node.bounds, p_);
-    // The nearest child first: what it holds may rule out the others.
+    // Visit the nearest child first, because its triangles may exclude the others.
     std::array<int, kLanes> order{0, 1, 2, 3, 4, 5, 6, 7};
     std::sort(order.begin(), order.begin() + node.count,
               [&](int i, int j) { return lower_bound_sq[i] < lower_bound_sq[j]; });
     for (int i = 0; i < node.count; ++i)
-      if (counts(lower_bound_sq[order[i]])) below(node.child[order[i]]);
+      if (is_candidate(lower_bound_sq[order[i]])) visit(node.child[order[i]]);
   }
 
   void finish(std::vector<Index>& out) const {
     out.clear();
     for (const Found& found : found_)
-      if (counts(found.distance_sq)) out.push_back(found.triangle);
+      if (is_candidate(found.distance_sq)) out.push_back(found.triangle);
     std::sort(out.begin(), out.end());
   }
 
@@ -60,14 +60,14 @@ class NearestQuery {
     double distance_sq;
   };
 
-  bool counts(double distance_sq) const { return distance_sq < kNone && distance_sq <= (1 + kAsNear) * best_sq_; }
+  bool is_candidate(double distance_sq) const { return distance_sq < kNone && distance_sq <= (1 + kAsNear) * best_sq_; }
 
-  void leaf(const typename Tree<K>::Leaf& leaf) {
+  void visit_leaf(const typename Tree<K>::Leaf& leaf) {
     const auto lower_bound_sq = box_distances_sq(leaf.bounds, p_);
     for (int l = 0; l < leaf.count; ++l) {
-      if (!counts(lower_bound_sq[l])) continue;
+      if (!is_candidate(lower_bound_sq[l])) continue;
       const double distance_sq = distance_sq_(leaf.triangle[l]);
-      if (!counts(distance_sq)) continue;
+      if (!is_candidate(distance_sq)) continue;
       found_.push_back({leaf.triangle[l], distance_sq});
       best_sq_ = std::min(best_sq_, distance_sq);
     }
@@ -82,14 +82,15 @@ class NearestQuery {
   std::vector<Found> found_;
 };
 
-/// Bit l is set where the box of bound l meets the one from low to high.
+/// Bit l is set if the box of bound l meets the box from low to high.
 template <int K>
-std::uint32_t boxes_met(const LaneBounds<K>& bounds, const Vec3& low, const Vec3& high) {
+std::uint32_t overlapping_boxes(const LaneBounds<K>& bounds, const Vec3& low, const Vec3& high) {
   std::uint32_t mask = 0;
   for (int l = 0; l < kLanes; ++l) {
     bool meets = true;
     for (int axis = 0; axis < 3; ++axis)
-      meets &= row_on_way(bounds, 2 * axis, l) <= high[axis] && -row_on_way(bounds, 2 * axis + 1, l) >= low[axis];
+      meets &=
+          row_over_motion(bounds, 2 * axis, l) <= high[axis] && -row_over_motion(bounds, 2 * axis + 1, l) >= low[axis];
     mask |= static_cast<std::uint32_t>(meets) << l;
   }
   return mask;
@@ -100,12 +101,12 @@ void append_below(const Tree<K>& tree, typename Tree<K>::Ref ref, const Vec3& lo
                   std::vector<Index>& out) {
   if (ref < 0) {
     const auto& leaf = tree.leaves()[~ref];
-    for_each_bit(boxes_met(leaf.bounds, low, high) & first_lanes(leaf.count),
+    for_each_bit(overlapping_boxes(leaf.bounds, low, high) & first_lanes(leaf.count),
                  [&](int l) { out.push_back(leaf.triangle[l]); });
     return;
   }
   const auto& node = tree.nodes()[ref];
-  for_each_bit(boxes_met(node.bounds, low, high) & first_lanes(node.count),
+  for_each_bit(overlapping_boxes(node.bounds, low, high) & first_lanes(node.count),
                [&](int i) { append_below(tree, node.child[i], low, high, out); });
 }
 
@@ -114,7 +115,7 @@ void append_below(const Tree<K>& tree, typename Tree<K>::Ref ref, const Vec3& lo
 template <int K>
 void nearest_triangles(const Tree<K>& tree, const Vec3& p, const DistanceSq& distance_sq, std::vector<Index>& out) {
   NearestQuery<K> query(tree, p, distance_sq);
-  if (!tree.empty()) query.below(tree.root());
+  if (!tree.empty()) query.visit(tree.root());
   query.finish(out);
 }
 

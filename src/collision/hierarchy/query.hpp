@@ -1,4 +1,4 @@
-// Which triangles of one surface are near a place: queries of a single hierarchy.
+// Queries of a single hierarchy: the triangles of one surface near a point or in a box.
 #pragma once
 
 #include <functional>
@@ -8,20 +8,19 @@
 
 namespace weft::collision {
 
-/// Squared distance of a triangle, by its global number, from the place that is asked about [m²]; infinite where the
-/// triangle is not to count.
+/// Squared distance [m²] of a triangle (by global number) from the query point; infinite to exclude it.
 using DistanceSq = std::function<double(Index)>;
 
-/// Triangles are as near as the nearest one if their squared distance is no larger by more than this part.
+/// Triangles count as nearest if their squared distance exceeds the minimum by at most this fraction.
 inline constexpr double kAsNear = 1e-6;
 
-/// Replaces `out` by the triangles, sorted by number, whose distance from p is least or as near as that; by none where
-/// no triangle counts. Branch and bound: what is below a bound that is farther than the best so far is not looked at.
-/// Triangles must lie inside their bounds; bounds that are too large only cost time.
+/// Replaces `out` by the nearest triangles to p (within kAsNear), sorted by number; empty if every triangle is
+/// excluded. Branch and bound: subtrees whose bounds are farther than the best triangle so far are skipped. Triangles
+/// must lie inside their bounds; larger bounds only cost time.
 template <int K>
 void nearest_triangles(const Tree<K>& tree, const Vec3& p, const DistanceSq& distance_sq, std::vector<Index>& out);
 
-/// Replaces `out` by the triangles, sorted by number, the boxes of whose bounds meet the one from `low` to `high` [m].
+/// Replaces `out` by the triangles whose bounding boxes meet the box from `low` to `high` [m], sorted by number.
 template <int K>
 void triangles_in_box(const Tree<K>& tree, const Vec3& low, const Vec3& high, std::vector<Index>& out);
 

@@ -1,4 +1,4 @@
-// Where the walk over two hierarchies stopped last time (Li & Chen, "Incremental 3D collision detection with
+// Remembers where the last traversal of two hierarchies stopped (Li & Chen, "Incremental 3D collision detection with
 // hierarchical data structures", 1998; seed, "Detection Process").
 #pragma once
 
@@ -7,25 +7,25 @@
 
 namespace weft::collision {
 
-/// Pairs of subtrees that cover all pairs of triangles between two trees, or of one tree with itself. Each stays valid
-/// whatever the bounds become, so a walk may begin here instead of at the roots. Entries only move down: one whose
-/// bounds have come to overlap is replaced by those below it. One that could move up again costs an overlap test per
-/// walk until the list is rebuilt, which is due
-///   - after kWalks walks, or
-///   - once it has grown by half.
+/// Pairs of subtrees that together cover all pairs of triangles between two trees, or within one tree. Each entry stays
+/// valid whatever the bounds become, so a traversal may start here instead of at the roots. Entries only move down: if
+/// the bounds of an entry overlap now, the entries below replace it. An entry that could move up again costs one
+/// overlap test per traversal until the list is rebuilt. A rebuild is due
+///   - after kWalks traversals, or
+///   - once the list has grown by half.
 /// Both limits are chosen, not tuned: they bound the useless tests to about half of the useful ones.
 class SeparationList {
  public:
   using Ref = std::int32_t;  ///< node (≥ 0) or leaf ~ref (< 0), as in Tree
 
-  /// Subtree `query` of one tree missed the children `lanes` (bits) of inner node `node` of the other.
+  /// Subtree `query` of one tree does not overlap the children `lanes` (bits) of inner node `node` of the other.
   struct Missed {
     Ref query, node;
     std::uint16_t lanes;
     bool query_in_a;
   };
 
-  /// Two leaves whose bounds overlapped.
+  /// Two leaves whose bounds overlap.
   struct LeafPair {
     Ref a, b;
   };
@@ -35,7 +35,7 @@ class SeparationList {
   bool due() const { return walks_ == 0 || walks_ >= kWalks || 2 * size() > 3 * size_when_built_; }
   std::size_t size() const { return missed.size() + leaf_pairs.size(); }
 
-  /// Empties the list for a walk from the roots.
+  /// Empties the list before a traversal from the roots.
   void restart() {
     missed.clear();
     leaf_pairs.clear();
@@ -43,7 +43,7 @@ class SeparationList {
     closed.clear();
     walks_ = 0;
   }
-  /// Called at the end of each walk.
+  /// Must be called at the end of each traversal.
   void walked() {
     if (walks_++ == 0) size_when_built_ = size();
   }
@@ -51,7 +51,7 @@ class SeparationList {
   std::vector<Missed> missed;
   std::vector<LeafPair> leaf_pairs;
   std::vector<Ref> self_leaves;  ///< leaves tested with themselves
-  std::vector<Ref> closed;       ///< subtrees not opened against themselves because nothing in them was near
+  std::vector<Ref> closed;       ///< subtrees skipped against themselves because they are flat regions
 
  private:
   int walks_ = 0;

@@ -1,4 +1,4 @@
-// What the hierarchy and the proximity search are given: surfaces in one global numbering of vertices and triangles.
+// Input of the hierarchy and the proximity search: surfaces in one global numbering of vertices and triangles.
 #pragma once
 
 #include <algorithm>
@@ -11,25 +11,25 @@
 
 namespace weft::collision {
 
-/// Three vertices of the global vertex array, counter-clockwise from the front. A piece of rope is (a, b, b): its edge
-/// and its ends are its only features.
+/// Three vertices of the global vertex array, counter-clockwise from the front. A piece of rope is (a, b, b): its only
+/// features are its edge and its ends.
 using Triangle = std::array<Index, 3>;
 
-/// A piece of cloth or an obstacle: a range of the global vertex array and the triangles over it.
+/// A cloth or an obstacle: a range of the global vertex array and the triangles over it.
 struct Surface {
   std::span<const Triangle> triangles;  ///< corners are global vertex indices inside the range below
-  Index first_triangle = 0;             ///< number of triangles.front() where all surfaces are counted together
+  Index first_triangle = 0;             ///< global number of triangles.front()
   Index first_vertex = 0;
   Index vertex_count = 0;
 };
 
-/// Two triangles by their global number; a < b where both are of one surface.
+/// Two triangles by their global numbers; a < b if both belong to one surface.
 struct TrianglePair {
   Index a, b;
   friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
 };
 
-/// A growing list of pairs that keeps its memory when cleared and is written without a check per pair.
+/// A growing list of pairs. Keeps its memory when cleared; pairs are written without a capacity check for each.
 class PairList {
  public:
   void clear() { size_ = 0; }
@@ -39,7 +39,7 @@ class PairList {
   const TrianglePair* begin() const { return storage_.data(); }
   const TrianglePair* end() const { return storage_.data() + size_; }
 
-  /// Room for `count` more pairs; write them from the returned place on, then call grow().
+  /// Makes room for `count` more pairs. Write them to the returned place, then call grow().
   TrianglePair* reserve_more(std::size_t count) {
     if (size_ + count > storage_.size()) storage_.resize(size_ + count + (size_ + count) / 2);
     return storage_.data() + size_;

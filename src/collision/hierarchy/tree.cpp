@@ -12,7 +12,7 @@ namespace weft::collision {
 
 namespace {
 
-/// Past this depth sets are halved by number: centre splits of a badly graded surface may peel off one triangle each.
+/// Beyond this depth sets are halved by number, because centre splits may split off one triangle each.
 constexpr int kMaxCentreSplits = 64;
 
 void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
@@ -30,12 +30,12 @@ void check(const Surface& surface, std::size_t positions, const TreeShape& shape
         throw Error(ExitCode::internal, "hierarchy: expected corners in [{}, {}), got {}", first, last, corner);
 }
 
-// Lazy refits. The bound of a vertex gets slack for so many steps at its present speed, and at least so much of the
-// margin against jitter, if that is not more than kSlackPart of the margin: farther apart pairs that a wider bound
-// lists cost more in the search for proximities than the refit saves.
-constexpr double kSteps = 8;
-constexpr double kLeastSlackPart = 1.0 / 64;
-constexpr double kSlackPart = 1.0 / 8;
+// Slack of lazy refits: enough for kSlackSteps steps at the present speed, plus a fraction of the margin against
+// jitter. Bounds get no slack if that exceeds kMaxSlackFraction of the margin: the extra pairs would then cost more in
+// the narrow phase than the refit saves.
+constexpr double kSlackSteps = 8;
+constexpr double kMinSlackFraction = 1.0 / 64;
+constexpr double kMaxSlackFraction = 1.0 / 8;
 
 /// Writes one bound into lane l.
 template <int K>
@@ -45,7 +45,7 @@ void set_lane(LaneBounds<K>& bounds, int l, const MovingKDop<K>& bound) {
 
 }  // namespace
 
-/// Splits a range of triangles into the children of a node, again and again.
+/// Splits a range of triangles recursively into the children of nodes.
 template <int K>
 struct Tree<K>::Builder {
   struct Group {
@@ -55,11 +55,11 @@ struct Tree<K>::Builder {
   };
 
   Tree& tree;
-  std::size_t most_children, most_triangles;
+  std::size_t max_children, max_triangles;
   std::vector<KDop<K>> bounds;  // of each triangle
-  std::vector<Index> order;     // triangles, those of a group side by side
+  std::vector<Index> order;     // triangles; those of a group are contiguous
 
-  /// Cuts group in two; it keeps the first half and the second is returned.
+  /// Splits group in two. It keeps the first half; the second is returned.
   Group split(Group& group) {
     const std::span<Index> items = std::span(order).subspan(group.begin, group.size());
     const bool deep = ++group.depth > kMaxCentreSplits;
@@ -83,15 +83,15 @@ struct Tree<K>::Builder {
   }
 
   Ref add(const Group& whole) {
-    if (whole.size() <= most_triangles) return add_leaf(whole);
-    // The child with the most triangles is split until the node is full, so that nodes and leaves come out full.
+    if (whole.size() <= max_triangles) return add_leaf(whole);
+    // Split the largest child until the node is full, so that nodes and leaves come out full.
     std::array<Group, kLanes> children{whole};
     std::size_t count = 1;
-    while (count < most_children) {
+    while (count < max_children) {
       const auto by_size = [](const Group& a, const Group& b) { return a.size() < b.size(); };
       Group& largest =
           *std::max_element(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), by_size);
-      if (largest.size() <= most_triangles) break;
+      if (largest.size() <= max_triangles) break;
       children[count++] = split(largest);
     }
     const auto number = static_cast<Ref>(tree.nodes_.size());
@@ -139,16 +139,16 @@ void Tree<K>::refit(const Motion& motion, double margin) {
           moving_point<K>(motion.x_t0[first + v], motion.low_t1[first + v], motion.high_t1[first + v], margin);
   });
   parallel_for(leaves_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) fit(n);
+    for (std::size_t n = begin; n < end; ++n) fit_leaf(n);
   });
   // Children have larger numbers than their parent.
   for (std::size_t n = nodes_.size(); n-- > 0;) fit_node(n);
   resting_margin_ = -1;
 }
 
-/// A leaf from its triangles' corners.
+/// Fits a leaf to its triangles' corners.
 template <int K>
-void Tree<K>::fit(std::size_t n) {
+void Tree<K>::fit_leaf(std::size_t n) {
   Leaf& leaf = leaves_[n];
   for (int l = 0; l < leaf.count; ++l) {
     const auto corner = [&](int c) -> const Bound& {
@@ -165,7 +165,7 @@ void Tree<K>::fit(std::size_t n) {
   }
 }
 
-/// A node from its children, Eq. (3).
+/// Fits a node to its children, Eq. (3).
 template <int K>
 void Tree<K>::fit_node(std::size_t n) {
   Node& node = nodes_[n];
@@ -177,18 +177,19 @@ void Tree<K>::fit_node(std::size_t n) {
   }
 }
 
-/// Whether the vertex v gets another bound for its way from p to somewhere between two corners.
+/// Updates the bound of vertex v, which moves from p to anywhere between two corners. False if the old bound still
+/// holds.
 template <int K>
-bool Tree<K>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
+bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
   Resting& resting = resting_[v];
   const double slack_sq = resting.slack * resting.slack;
   const bool to_one_place = low == high;
   if (resting.slack >= 0 && to_one_place && (p - resting.place).squaredNorm() <= slack_sq &&
       (low - resting.place).squaredNorm() <= slack_sq)
     return false;
-  // The ball must hold both ends now; where that is more slack than is given, the bound is as tight as refit makes it.
-  const double slack = kSteps * (low - p).norm() + kLeastSlackPart * margin;
-  if (slack <= kSlackPart * margin && to_one_place) {
+  // The ball must hold both ends of this step. If that needs too much slack, the bound is as tight as after refit.
+  const double slack = kSlackSteps * (low - p).norm() + kMinSlackFraction * margin;
+  if (slack <= kMaxSlackFraction * margin && to_one_place) {
     resting = {low, slack};
     vertex_bounds_[v] = moving_point<K>(low, low, low, margin + slack * (1 + 1e-12));
   } else {
@@ -208,7 +209,7 @@ void Tree<K>::refit_lazily(const Motion& motion, double margin) {
   leaf_changed_.resize(leaves_.size());
   for (std::size_t v = 0; v < vertex_bounds_.size(); ++v)
     moved_[v] = static_cast<std::uint8_t>(
-        stay_or_move(v, motion.x_t0[first + v], motion.low_t1[first + v], motion.high_t1[first + v], margin));
+        update_vertex_bound(v, motion.x_t0[first + v], motion.low_t1[first + v], motion.high_t1[first + v], margin));
 
   for (std::size_t n = 0; n < leaves_.size(); ++n) {
     const Leaf& leaf = leaves_[n];
@@ -216,7 +217,7 @@ void Tree<K>::refit_lazily(const Motion& motion, double margin) {
     for (int l = 0; l < leaf.count; ++l)
       for (const auto& row : leaf.corners.corner) any |= moved_[row[l] - surface_.first_vertex];
     leaf_changed_[n] = any;
-    if (any != 0) fit(n);
+    if (any != 0) fit_leaf(n);
   }
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     const Node& node = nodes_[n];

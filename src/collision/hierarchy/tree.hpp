@@ -13,37 +13,37 @@
 
 namespace weft::collision {
 
-/// Where vertices go, by global number [m]: from x_t0 to anywhere in the box between two corners, which may be one.
+/// Motion of vertices, by global number [m]: from x_t0 to anywhere in the box low_t1 to high_t1 (possibly a point).
 struct Motion {
   std::span<const Vec3> x_t0, low_t1, high_t1;
 
   Motion(std::span<const Vec3> start, std::span<const Vec3> low, std::span<const Vec3> high)
       : x_t0(start), low_t1(low), high_t1(high) {}
-  /// To one place each; the same twice for a still surface.
+  /// Motion to one end position each. For a still surface pass the same positions twice.
   Motion(std::span<const Vec3> start, std::span<const Vec3> end) : Motion(start, end, end) {}
 };
 
-/// How many children a node and how many triangles a leaf has at most, one per lane.
+/// Maximum number of children per node and of triangles per leaf. Each takes one lane.
 struct TreeShape {
   int children = kLanes;  ///< 2 to 8
   int leaf = kLanes;      ///< 1 to 8
 };
 
-/// A tree of k-DOPs. The bounds of a node's children, and of a leaf's triangles, lie side by side so that all are
-/// tested at once; a shape with fewer of them leaves lanes empty. Nodes are numbered depth first, parents before
-/// children: refitting is one pass from the last to the first.
+/// A tree of k-DOPs. The bounds of a node's children, and of a leaf's triangles, are stored side by side so that all
+/// are tested at once; smaller nodes leave lanes empty. Nodes are numbered depth first, parents before children, so
+/// refitting is one pass from the last to the first.
 template <int K>
 class Tree {
  public:
   using Bound = MovingKDop<K>;
 
-  /// A child or the root: a node (≥ 0) or leaf ~ref (< 0).
+  /// A child or the root: node number (≥ 0) or ~leaf number (< 0).
   using Ref = std::int32_t;
 
   struct Node {
     LaneBounds<K> bounds;
     Ref child[kLanes];
-    std::int32_t count = 0;  ///< children used
+    std::int32_t count = 0;  ///< children in use
   };
 
   struct Leaf {
@@ -55,8 +55,8 @@ class Tree {
 
   Tree() = default;
 
-  /// Builds over the surface at `positions` (global array, [m]) and fits it there without margin. Split by the longest
-  /// side until the triangles left fit into a leaf. Throws Error(internal) where an index or the shape is out of range.
+  /// Builds over the surface at `positions` (global array, [m]) and fits it there without margin. Splits along the
+  /// longest side until each group fits into a leaf. Throws Error(internal) if an index or the shape is out of range.
   Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape = {});
 
   /// Fits all bounds to linear motion, enlarged by `margin` [m] in every direction at both ends. With margin ε/2 on
@@ -65,15 +65,15 @@ class Tree {
   void refit(const Motion& motion, double margin);
   void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) { refit({x_t0, x_t1}, margin); }
 
-  /// As refit, but only where something left the bounds it has: vertices that move little get bounds that hold for a
-  /// few steps ahead (see kSlackPart in tree.cpp), and nodes below which every vertex is still inside its own are left
-  /// as they are. Bounds are never smaller than after refit.
+  /// As refit, but only where a vertex left its bound. Slow vertices get bounds with slack that lasts for a few steps
+  /// (see kMaxSlackFraction in tree.cpp). Nodes below which every vertex is still inside its bound are not refitted.
+  /// Bounds are never smaller than after refit.
   void refit_lazily(const Motion& motion, double margin);
   void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit_lazily({x_t0, x_t1}, margin);
   }
 
-  /// Makes the next lazy refit give all bounds anew.
+  /// Makes the next lazy refit renew all bounds.
   void forget() { resting_margin_ = -1; }
 
   bool empty() const { return leaves_.empty(); }
@@ -88,14 +88,14 @@ class Tree {
  private:
   struct Builder;
 
-  /// Where a vertex may be without leaving its bound: within `slack` [m] of `place`; nowhere where slack < 0.
+  /// A vertex stays inside its bound while it is within `slack` [m] of `place`; slack < 0: no such ball.
   struct Resting {
     Vec3 place = Vec3::Zero();
     double slack = -1;
   };
 
-  bool stay_or_move(std::size_t v, const Vec3& p, const Vec3& low, const Vec3& high, double margin);
-  void fit(std::size_t n);
+  bool update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low, const Vec3& high, double margin);
+  void fit_leaf(std::size_t n);
   void fit_node(std::size_t n);
 
   Surface surface_;
@@ -103,13 +103,13 @@ class Tree {
   std::vector<Node> nodes_;
   std::vector<Leaf> leaves_;
   std::vector<Bound> node_bounds_, leaf_bounds_;
-  std::vector<Bound> vertex_bounds_;  ///< path of each vertex of the surface; kept between lazy refits only
+  std::vector<Bound> vertex_bounds_;  ///< bound of the trajectory of each vertex; only lazy refits reuse it
 
-  // Of lazy refits only.
+  // Used only by lazy refits.
   std::vector<Resting> resting_;                      // by vertex
-  std::vector<std::uint8_t> moved_;                   // by vertex: has another bound than before
+  std::vector<std::uint8_t> moved_;                   // by vertex: has a new bound
   std::vector<std::uint8_t> changed_, leaf_changed_;  // by node, by leaf
-  double resting_margin_ = -1;                        // margin that the resting bounds have [m]
+  double resting_margin_ = -1;                        // margin of the bounds with slack [m]
 };
 
 }  // namespace weft::collision

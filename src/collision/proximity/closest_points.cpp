@@ -8,14 +8,14 @@ namespace weft::collision {
 
 namespace {
 
-/// Weights below this count as zero, so that a point above a shared edge is on the edge for both faces whatever the
-/// last bits say. Moves the closest point by 1e-13 of an edge; rounding is 1e-16 times a few.
+/// Weights below this count as zero, so that a point above a shared edge is on the edge for both faces despite
+/// rounding. Moves the closest point by up to 1e-13 of an edge; rounding is a few times 1e-16.
 constexpr double kSnap = 1e-13;
 
-/// Relative rounding error of a squared distance, and of a distance in lengths of the edges.
+/// Relative rounding error of a squared distance, and of a distance relative to the edge lengths.
 constexpr double kRounding = 2e-15;
 
-/// Parameter in [0, 1] of the point of segment o + t e closest to o + w.
+/// Parameter in [0, 1] of the point of the segment o + t e that is closest to o + w.
 double along_segment(const Vec3& e, const Vec3& w) {
   const double length_sq = e.squaredNorm();
   if (!(length_sq > 0)) return 0;
@@ -23,8 +23,7 @@ double along_segment(const Vec3& e, const Vec3& w) {
   return t < kSnap ? 0 : t > 1 - kSnap ? 1 : t;
 }
 
-/// Takes a candidate if it is closer. A point inside an edge is in truth no farther than the edge's ends, so it wins
-/// where rounding leaves the two equal.
+/// Keeps the closer solution. Up to rounding, a point inside an edge wins, because the ends are never closer.
 void keep_closer(ClosestPoints& best, const std::array<double, 4>& weights, const Vec3& difference, double parameter) {
   const double distance_sq = difference.squaredNorm();
   const bool inner = parameter > 0 && parameter < 1;
@@ -32,20 +31,20 @@ void keep_closer(ClosestPoints& best, const std::array<double, 4>& weights, cons
     best = {weights, difference, distance_sq};
 }
 
-ClosestPoints nothing_yet() {
+ClosestPoints infinitely_far() {
   return {{}, Vec3::Zero(), std::numeric_limits<double>::infinity()};
 }
 
-/// Of the boundary's best and the inner solution of a nearly degenerate pair: the inner one only where it is closer by
-/// more than rounding, so that what lies in one line always comes out at an end or corner.
-ClosestPoints closer_inside(const ClosestPoints& boundary, const ClosestPoints& inside, double length) {
+/// Chooses between the boundary solution and the interior solution of a nearly degenerate pair. The interior one must
+/// be closer by more than rounding, so that collinear points always give an end or a corner.
+ClosestPoints choose_closer(const ClosestPoints& boundary, const ClosestPoints& inside, double length) {
   return std::sqrt(inside.distance_sq) < std::sqrt(boundary.distance_sq) - kRounding * length ? inside : boundary;
 }
 
 }  // namespace
 
 ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2) {
-  // Everything relative to t0, so that the place in space costs no digits.
+  // Relative to t0, so that large coordinates cost no digits.
   const Vec3 e1 = t1 - t0, e2 = t2 - t0, w = p - t0;
   const Vec3 n = e1.cross(e2);
   const double n_sq = n.squaredNorm(), sizes = e1.squaredNorm() * e2.squaredNorm();
@@ -54,12 +53,12 @@ ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1,
   const bool inside = n_sq > 0 && b1 > snap && b2 > snap && b1 + b2 < n_sq - snap;
   double u1 = b1 / n_sq, u2 = b2 / n_sq;
   if (inside && n_sq > kNearlyParallelSq * sizes) {
-    // The difference along the normal has all its digits where w - u1 e1 - u2 e2 would cancel.
+    // Project on the normal: w - u1 e1 - u2 e2 would lose digits by cancellation.
     const Vec3 difference = n * (w.dot(n) / n_sq);
     return {{1, -(1 - u1 - u2), -u1, -u2}, difference, difference.squaredNorm()};
   }
 
-  ClosestPoints best = nothing_yet();
+  ClosestPoints best = infinitely_far();
   const Vec3 e12 = t2 - t1, w1 = p - t1;
   const double s01 = along_segment(e1, w), s12 = along_segment(e12, w1), s02 = along_segment(e2, w);
   keep_closer(best, {1, -(1 - s01), -s01, 0}, w - s01 * e1, s01);
@@ -67,13 +66,13 @@ ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1,
   keep_closer(best, {1, -(1 - s02), 0, -s02}, w - s02 * e2, s02);
   if (!inside) return best;
 
-  // A needle: one round of refinement on what is left over.
+  // A needle: one step of refinement of the residual.
   const Vec3 rest = w - u1 * e1 - u2 * e2;
   u1 = std::clamp(u1 + rest.cross(e2).dot(n) / n_sq, 0.0, 1.0);
   u2 = std::clamp(u2 + e1.cross(rest).dot(n) / n_sq, 0.0, 1 - u1);
   const Vec3 difference = w - u1 * e1 - u2 * e2;
   const ClosestPoints refined{{1, -(1 - u1 - u2), -u1, -u2}, difference, difference.squaredNorm()};
-  return closer_inside(best, refined, std::sqrt(std::max(e1.squaredNorm(), e2.squaredNorm())));
+  return choose_closer(best, refined, std::sqrt(std::max(e1.squaredNorm(), e2.squaredNorm())));
 }
 
 ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
@@ -89,8 +88,8 @@ ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, 
     return {{1 - s, s, -(1 - t), -t}, difference, difference.squaredNorm()};
   }
 
-  // The distance is convex in both parameters: without an inner minimum it is least where one of them is at an end.
-  ClosestPoints best = nothing_yet();
+  // The distance is convex in both parameters. Without an interior minimum, one of them is at an end.
+  ClosestPoints best = infinitely_far();
   const Vec3 w_p1 = p1 - q0, w_q1 = q1 - p0;
   const double t_p0 = along_segment(e, -w), t_p1 = along_segment(e, w_p1);
   const double s_q0 = along_segment(d, w), s_q1 = along_segment(d, w_q1);
@@ -100,13 +99,13 @@ ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, 
   keep_closer(best, {1 - s_q1, s_q1, 0, -1}, s_q1 * d - w_q1, s_q1);
   if (!inside) return best;
 
-  // Nearly parallel: as for a needle.
+  // Nearly parallel: refine as for a needle.
   const Vec3 rest = w + t * e - s * d;
   s = std::clamp(s + rest.cross(e).dot(n) / n_sq, 0.0, 1.0);
   t = std::clamp(t + rest.cross(d).dot(n) / n_sq, 0.0, 1.0);
   const Vec3 difference = s * d - w - t * e;
   const ClosestPoints refined{{1 - s, s, -(1 - t), -t}, difference, difference.squaredNorm()};
-  return closer_inside(best, refined, std::sqrt(std::max(d.squaredNorm(), e.squaredNorm())));
+  return choose_closer(best, refined, std::sqrt(std::max(d.squaredNorm(), e.squaredNorm())));
 }
 
 }  // namespace weft::collision

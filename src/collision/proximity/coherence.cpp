@@ -11,10 +11,9 @@ namespace weft::collision {
 
 namespace {
 
-/// Triangles per group: fewer follow the motion more closely, and cost with the square of their number.
+/// Maximum triangles per group. Smaller groups follow the motion more closely; cost is quadratic in their number.
 constexpr std::size_t kGroupSize = 128;
-/// After so many updates the reference is set anew and nothing holds, so that the cones of old references do not add
-/// up.
+/// After so many updates a new reference is set and all results are dropped, to keep the cones small.
 constexpr int kReferenceUpdates = 64;
 
 void append(const PairList& from, PairList& to) {
@@ -39,7 +38,7 @@ CoherentDetection::CoherentDetection(std::span<const Surface> surfaces, std::vec
   for (const Surface& surface : surfaces) add_groups(surface, x);
 }
 
-// Halves by the longest side until a group is small.
+// Halves along the longest side until a group is small enough.
 void CoherentDetection::add_groups(const Surface& surface, std::span<const Vec3> x) {
   std::vector<Group>& groups = groups_.emplace_back();
   if (surface.triangles.empty()) return;
@@ -70,32 +69,32 @@ void CoherentDetection::add_groups(const Surface& surface, std::span<const Vec3>
 
 int CoherentDetection::update(BroadPhase& broad_phase, ProximityFinder& finder, std::span<const Vec3> x_t0,
                               std::span<const Vec3> x_t1) {
-  advance(x_t0, x_t1);
-  std::vector<std::size_t> anew;
+  update_cones(x_t0, x_t1);
+  std::vector<std::size_t> outdated;
   for (std::size_t w = 0; w < wanted_.size(); ++w)
-    if (!holds(wanted_[w], kept_[w])) anew.push_back(w);
+    if (!is_still_valid(wanted_[w], kept_[w])) outdated.push_back(w);
   for (std::size_t s = 0; s < surfaces_.size(); ++s)
     broad_phase.refit(s, x_t0, x_t1, 0.5 * (parameters_.reach + parameters_.budget));
-  if (!anew.empty()) find_anew(anew, broad_phase, finder, x_t0);
+  if (!outdated.empty()) search_again(outdated, broad_phase, finder, x_t0);
   proximities_.clear();
   largest_motion_ = 0;
-  for (const Kept& kept : kept_) {
+  for (const KeptResult& kept : kept_) {
     append_proximities(kept, x_t0);
     largest_motion_ = std::max(largest_motion_, kept.motion);
   }
-  return static_cast<int>(anew.size());
+  return static_cast<int>(outdated.size());
 }
 
-// Velocity cones for the step from x_t0 to x_t1.
-void CoherentDetection::advance(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+// Updates the velocity cones to the step from x_t0 to x_t1.
+void CoherentDetection::update_cones(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   if (updates_++ % kReferenceUpdates == 0) {
     reference_t0_.assign(x_t0.begin(), x_t0.end());
     reference_t1_.assign(x_t1.begin(), x_t1.end());
-    for (Kept& kept : kept_) kept.valid = false;
+    for (KeptResult& kept : kept_) kept.valid = false;
   }
   for (std::vector<Group>& groups : groups_) {
     for (Group& group : groups) {
-      // Begin and end of the step each against their own reference, so that a steady motion counts once.
+      // Compare start and end of the step each with its own reference, so that a steady motion counts once.
       Vec3 mean = Vec3::Zero();
       group.low.setConstant(INFINITY);
       group.high.setConstant(-INFINITY);
@@ -114,11 +113,11 @@ void CoherentDetection::advance(std::span<const Vec3> x_t0, std::span<const Vec3
   }
 }
 
-bool CoherentDetection::holds(const SurfacePair& pair, Kept& kept) const {
+bool CoherentDetection::is_still_valid(const SurfacePair& pair, KeptResult& kept) const {
   kept.motion = 0;
   for (std::size_t g = 0; kept.valid && g < kept.groups_a.size(); ++g) {
     for (std::size_t h = pair.a == pair.b ? g : 0; h < kept.groups_b.size(); ++h) {
-      const GroupThen &g_then = kept.groups_a[g], &h_then = kept.groups_b[h];
+      const GroupSnapshot &g_then = kept.groups_a[g], &h_then = kept.groups_b[h];
       const double motion =
           relative_motion(groups_[pair.a][g].cone - g_then.cone, groups_[pair.b][h].cone - h_then.cone);
       const double gap = (g_then.low - h_then.high).cwiseMax(h_then.low - g_then.high).maxCoeff();
@@ -130,14 +129,14 @@ bool CoherentDetection::holds(const SurfacePair& pair, Kept& kept) const {
   return kept.valid;
 }
 
-// One search for all of them, because it costs the size of the scene once; then each pair of surfaces gets its own.
-void CoherentDetection::find_anew(const std::vector<std::size_t>& pairs, BroadPhase& broad_phase,
-                                  ProximityFinder& finder, std::span<const Vec3> x_t0) {
+// One search for all pairs of surfaces, because its cost is that of the scene. Then the result is distributed.
+void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, BroadPhase& broad_phase,
+                                     ProximityFinder& finder, std::span<const Vec3> x_t0) {
   CandidatePairs all;
   std::vector<Surface> with_themselves;
   for (const std::size_t w : pairs) {
     const auto& [a, b] = wanted_[w];
-    Kept& kept = kept_[w];
+    KeptResult& kept = kept_[w];
     kept = {};
     kept.valid = true;
     if (a == b) {
@@ -153,7 +152,7 @@ void CoherentDetection::find_anew(const std::vector<std::size_t>& pairs, BroadPh
   }
 
   const double radius = parameters_.reach + parameters_.budget;
-  finder.gather(all, with_themselves, x_t0, radius, parameters_.flattest);
+  finder.gather(all, with_themselves, x_t0, radius, parameters_.min_fold);
   std::vector<Proximity> found;
   finder.find(x_t0, radius, found);
   for (const Proximity& proximity : found) {
@@ -166,13 +165,13 @@ void CoherentDetection::find_anew(const std::vector<std::size_t>& pairs, BroadPh
   }
 
   candidates_.clear();
-  for (const Kept& kept : kept_) {
+  for (const KeptResult& kept : kept_) {
     append(kept.candidates.apart, candidates_.apart);
     append(kept.candidates.one_shared, candidates_.one_shared);
   }
 }
 
-void CoherentDetection::append_proximities(const Kept& kept, std::span<const Vec3> x) {
+void CoherentDetection::append_proximities(const KeptResult& kept, std::span<const Vec3> x) {
   const double limit = parameters_.reach + 2 * kept.motion;
   for (Proximity p : kept.proximities) {
     Vec3 difference = Vec3::Zero();

@@ -1,4 +1,4 @@
-// Two features of surfaces, vertex and face or edge and edge, with a point on each.
+// Two features of surfaces (vertex and face, or edge and edge), with a point on each.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace weft::collision {
 
 enum class ProximityKind : std::uint8_t { vertex_face, edge_edge };
 
-/// Identifies two features, in whatever order their vertices are named.
+/// Identifies two features, independent of the order of their vertices.
 using FeatureKey = std::array<Index, 4>;
 inline FeatureKey feature_key(ProximityKind kind, FeatureKey vertices) {
   if (kind == ProximityKind::vertex_face) {
@@ -26,13 +26,12 @@ inline FeatureKey feature_key(ProximityKind kind, FeatureKey vertices) {
   return vertices;
 }
 
-/// The points are x_a = Σ (w > 0) w x and x_b = −Σ (w < 0) w x. A vertex of either feature that carries no weight may
-/// stand for neither.
+/// The points are x_a = Σ (w > 0) w x and x_b = −Σ (w < 0) w x. A vertex without weight may be a mere placeholder.
 struct FeaturePair {
-  std::array<Index, 4> vertices{};  ///< vertex, then the face's corners; or the ends of edge a, then of edge b
+  std::array<Index, 4> vertices{};  ///< vertex, then the corners of the face; or the ends of edge a, then of edge b
   std::array<double, 4> weights{};  ///< those of side a sum to 1, those of side b to −1
   Vec3 normal = Vec3::UnitZ();      ///< unit, from x_b to x_a
-  double distance = 0;              ///< (x_a − x_b) · normal [m]; negative where a is on the wrong side of b
+  double distance = 0;              ///< (x_a − x_b) · normal [m]; negative if a is on the wrong side of b
   ProximityKind kind = ProximityKind::vertex_face;
 };
 

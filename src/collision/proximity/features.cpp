@@ -7,11 +7,11 @@ namespace weft::collision {
 
 Features::Features(std::span<const Triangle> triangles, Index vertex_count)
     : triangles_(triangles), owned_(triangles.size(), 0) {
-  collect_fans(vertex_count);
+  collect_triangles_at_vertices(vertex_count);
   own_edges();
 }
 
-void Features::collect_fans(Index vertex_count) {
+void Features::collect_triangles_at_vertices(Index vertex_count) {
   // Counting sort by vertex; a corner named twice counts once.
   const auto for_each_corner = [&](const auto& visit) {
     for (std::size_t t = 0; t < triangles_.size(); ++t)
@@ -49,7 +49,7 @@ void Features::own_edges() {
     return std::tie(a.low, a.high, a.triangle, a.corner) < std::tie(b.low, b.high, b.triangle, b.corner);
   });
 
-  // The first of a run of equal edges owns it; any two of the run are a hinge.
+  // The first triangle of a run of equal edges owns the edge. Each two triangles of the run form a hinge.
   edge_.resize(triangles_.size());
   across_.assign(triangles_.size(), {-1, -1, -1});
   apexes_begin_ = {0};
@@ -58,7 +58,7 @@ void Features::own_edges() {
     const Side& owner = sides[begin];
     owned_[owner.triangle] |= static_cast<std::uint8_t>(8U << owner.corner);
     edge_[owner.triangle][owner.corner] = static_cast<Index>(apexes_begin_.size() - 1);
-    // Of an edge that is a triangle of its own, both sides are one.
+    // In a piece of rope (a, b, b) both sides of the edge belong to the same triangle.
     if (end - begin == 2 && sides[begin + 1].triangle != owner.triangle)
       across_[owner.triangle][owner.corner] = sides[begin + 1].triangle;
     for (std::size_t i = begin; i < end; ++i)

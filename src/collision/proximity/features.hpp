@@ -1,4 +1,4 @@
-// Who answers for which vertex and edge, and what surrounds them.
+// Assigns each vertex and edge to one triangle, and lists their neighbours.
 #pragma once
 
 #include <array>
@@ -11,30 +11,30 @@
 
 namespace weft::collision {
 
-/// Every vertex and edge is owned by the triangle with the lowest number that has it (representative triangles: Curtis,
-/// Tamstorf & Manocha, "Fast Collision Detection for Deformable Models using Representative-Triangles", 2008), so
-/// that going through triangle pairs meets each pair of features once.
+/// Every vertex and edge is owned by the lowest-numbered triangle that contains it, so that iterating over triangle
+/// pairs visits each pair of features once (representative triangles: Curtis, Tamstorf & Manocha, "Fast Collision
+/// Detection for Deformable Models using Representative-Triangles", 2008).
 class Features {
  public:
   Features() = default;
 
-  /// `triangles` are those of all surfaces in their global numbering, and must outlive this; surfaces have no vertices
-  /// in common.
+  /// `triangles`: of all surfaces, in their global numbering; must outlive this object. Surfaces share no vertices.
   Features(std::span<const Triangle> triangles, Index vertex_count);
 
   std::span<const Triangle> triangles() const { return triangles_; }
   const Triangle& triangle(Index t) const { return triangles_[t]; }
 
-  /// Bits 0 to 2: corner c is owned; bits 3 to 5: the edge from corner c to corner c + 1 is owned.
+  /// Bits 0 to 2: the triangle owns corner c. Bits 3 to 5: it owns the edge from corner c to corner c + 1.
   std::uint8_t owned(Index t) const { return owned_[t]; }
 
-  /// Third corners of all triangles at the edge that triangle t owns from corner c to corner c + 1.
+  /// Opposite vertices, in all triangles, of the edge from corner c to corner c + 1 that triangle t owns.
   std::span<const Index> apexes(Index t, std::size_t c) const {
     const auto edge = static_cast<std::size_t>(edge_[t][c]);
     return std::span(apexes_).subspan(apexes_begin_[edge], apexes_begin_[edge + 1] - apexes_begin_[edge]);
   }
 
-  /// The other triangle at the edge that triangle t owns from corner c to corner c + 1; −1 unless there are two in all.
+  /// The other triangle at the edge from corner c to corner c + 1 that triangle t owns; −1 unless exactly two triangles
+  /// share it.
   Index across(Index t, std::size_t c) const { return across_[t][c]; }
 
   /// Triangles at a vertex, lowest number first.
@@ -43,16 +43,16 @@ class Features {
     return std::span(around_).subspan(around_begin_[v], around_begin_[v + 1] - around_begin_[v]);
   }
 
-  /// Pairs of triangles a < b with a common edge where both numbers are in [first, first + count), sorted.
+  /// Pairs of triangles a < b with a common edge and both numbers in [first, first + count), sorted.
   std::span<const TrianglePair> hinges(Index first, Index count) const;
 
  private:
-  void collect_fans(Index vertex_count);
+  void collect_triangles_at_vertices(Index vertex_count);
   void own_edges();
 
   std::span<const Triangle> triangles_;
   std::vector<std::uint8_t> owned_;
-  std::vector<std::array<Index, 3>> edge_;  // number of the edge, where owned
+  std::vector<std::array<Index, 3>> edge_;  // number of the edge, if owned
   std::vector<std::array<Index, 3>> across_;
   std::vector<std::size_t> apexes_begin_;  // by edge
   std::vector<Index> apexes_;

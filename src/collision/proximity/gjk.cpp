@@ -9,10 +9,10 @@ namespace weft::collision {
 
 namespace {
 
-/// The search ends where the distance is known to this part of the size of the two sets: a few roundings.
+/// The search ends if the distance is known to this fraction of the size of the two sets: a few roundings.
 constexpr double kTolerance = 1e-14;
-/// Polygons of a few corners need 3 to 8 rounds; rounding can keep needles from ever ending by themselves.
-constexpr int kMostRounds = 40;
+/// Polygons of a few corners need 3 to 8 rounds. For needles, rounding can prevent the search from ending by itself.
+constexpr int kMaxRounds = 40;
 
 /// A corner of the difference set a - b.
 struct Support {
@@ -20,7 +20,7 @@ struct Support {
   Vec3 w = Vec3::Zero();
 };
 
-/// Up to four corners of the difference set and the point of their hull that is nearest to the origin.
+/// Up to four corners of the difference set, and the point of their hull nearest to the origin.
 struct Simplex {
   std::array<Support, 4> corner{};
   std::array<double, 4> weight{1, 0, 0, 0};
@@ -32,7 +32,7 @@ struct Simplex {
                        [&](const Support& c) { return c.a == s.a && c.b == s.b; });
   }
 
-  /// Leaves only the corners that carry weight.
+  /// Keeps only the corners with a non-zero weight.
   void shrink() {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; ++i)
@@ -44,20 +44,20 @@ struct Simplex {
   }
 };
 
-/// Corner of a that is furthest along d.
+/// The point that is furthest along d, by its index.
 std::size_t furthest(std::span<const Vec3> points, const Vec3& d) {
   std::size_t best = 0;
-  double most = points[0].dot(d);
+  double max_along = points[0].dot(d);
   for (std::size_t i = 1; i < points.size(); ++i)
-    if (const double along = points[i].dot(d); along > most) {
-      most = along;
+    if (const double along = points[i].dot(d); along > max_along) {
+      max_along = along;
       best = i;
     }
   return best;
 }
 
-/// Nearest point of the triangle with corners i, j, k, in the closed form for a vertex and a face, which stands needles
-/// and triangles that are a segment or a point. Taken if nearer than what is there.
+/// Takes the nearest point of the triangle with corners i, j, k if it is nearer than the best one so far. The closed
+/// form of closest_vertex_face also handles needles, segments and points.
 void try_face(Simplex& simplex, double& least_sq, std::size_t i, std::size_t j, std::size_t k) {
   const auto& c = simplex.corner;
   const ClosestPoints points = closest_vertex_face(Vec3::Zero(), c[i].w, c[j].w, c[k].w);
@@ -70,7 +70,7 @@ void try_face(Simplex& simplex, double& least_sq, std::size_t i, std::size_t j, 
   simplex.weight[k] -= points.weights[3];
 }
 
-/// Whether the origin is in the tetrahedron; then its weights are set.
+/// Whether the origin is inside the tetrahedron; if so, sets its weights.
 bool try_inside(Simplex& simplex) {
   const auto w = [&](std::size_t i) -> const Vec3& { return simplex.corner[i].w; };
   std::array<double, 4> volume{w(1).dot(w(2).cross(w(3))), -w(0).dot(w(2).cross(w(3))), w(0).dot(w(1).cross(w(3))),
@@ -115,9 +115,9 @@ ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b) {
   Simplex best = simplex;
   double distance = best.nearest.norm(), lower_bound = 0;
   int rounds = 0;
-  while (rounds < kMostRounds && distance > kTolerance * size) {
+  while (rounds < kMaxRounds && distance > kTolerance * size) {
     ++rounds;
-    // The corner of a - b that is lowest along the nearest point bounds the distance from below.
+    // The corner of a - b that is lowest along the nearest point gives a lower bound of the distance.
     const Vec3 towards = simplex.nearest;
     const std::size_t i = furthest(a, -towards), j = furthest(b, towards);
     const Support next{i, j, a[i] - b[j]};
@@ -126,7 +126,7 @@ ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b) {
     simplex.corner[simplex.count++] = next;
     find_nearest(simplex);
     simplex.shrink();
-    // In exact arithmetic it always comes nearer; with rounding it may stall.
+    // In exact arithmetic the distance always decreases; with rounding it may stall.
     const double reached = simplex.nearest.norm();
     if (!(reached < distance)) break;
     distance = reached;

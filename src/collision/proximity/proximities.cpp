@@ -11,10 +11,10 @@ namespace weft::collision {
 
 namespace {
 
-// Whose pairs with a common vertex are listed before they are looked at: six to nine each.
-constexpr std::size_t kTrianglesListed = 64;
+// Triangles per batch of connected pairs: each has six to nine of them.
+constexpr std::size_t kTrianglesPerBatch = 64;
 
-/// Unit vector along v, or along a fallback where the two features touch and v has no direction.
+/// Unit vector along v, or along a fallback if the features touch, so that v has no direction.
 Vec3 direction(const Vec3& v, const Vec3& fallback) {
   if (const double length_sq = v.squaredNorm(); length_sq > 1e-280) return v / std::sqrt(length_sq);
   for (const Vec3& tiny : {v, fallback}) {
@@ -26,37 +26,37 @@ Vec3 direction(const Vec3& v, const Vec3& fallback) {
 
 }  // namespace
 
-/// How a gathering looks.
-struct ProximityFinder::First {
+/// Parameters of a gathering.
+struct ProximityFinder::GatherParameters {
   std::span<const Vec3> x;
   double radius;
   float radius_rounded;
-  double flattest;
+  double min_fold;
 };
 
-/// From pairs of triangles to pairs of features within a radius.
+/// Turns pairs of triangles into pairs of features within a radius.
 class ProximityFinder::Gathering {
  public:
-  Gathering(const ProximityFinder& finder, const First& first, FeaturePairs& found)
+  Gathering(const ProximityFinder& finder, const GatherParameters& parameters, FeaturePairs& found)
       : finder_(finder),
         found_(found),
         features_(finder.features_),
         rounded_(finder.rounded_),
-        x_(first.x),
-        radius_sq_(first.radius * first.radius),
-        radius_rounded_(first.radius_rounded),
-        flattest_(static_cast<float>(first.flattest)) {}
+        x_(parameters.x),
+        radius_sq_(parameters.radius * parameters.radius),
+        radius_rounded_(parameters.radius_rounded),
+        min_fold_(static_cast<float>(parameters.min_fold)) {}
 
-  /// All features that the two triangles of each pair own, against each other. First the boxes of vertices, edges and
-  /// faces, for eight pairs at once and without branches: which feature is near is as good as random, and a wrong
-  /// guess of the processor costs more than the test. Measured 3 times faster than pair by pair.
-  void look_at(std::span<const TrianglePair> pairs) {
-    for (; pairs.size() >= 8; pairs = pairs.subspan(8)) look_at_eight(pairs.first<8>(), 8);
+  /// Tests all owned features of each pair of triangles against each other. Boxes of vertices, edges and faces come
+  /// first, for eight pairs at once and without branches, because outcomes are unpredictable (measured: 3 times
+  /// faster).
+  void test_pairs(std::span<const TrianglePair> pairs) {
+    for (; pairs.size() >= 8; pairs = pairs.subspan(8)) test_eight_pairs(pairs.first<8>(), 8);
     if (pairs.empty()) return;
     std::array<TrianglePair, 8> rest;
     std::copy(pairs.begin(), pairs.end(), rest.begin());
     std::fill(rest.begin() + static_cast<std::ptrdiff_t>(pairs.size()), rest.end(), pairs.front());
-    look_at_eight(rest, pairs.size());
+    test_eight_pairs(rest, pairs.size());
   }
 
  private:
@@ -64,7 +64,7 @@ class ProximityFinder::Gathering {
     Points8 low, high;
   };
 
-  /// One side of eight pairs.
+  /// One side of eight pairs of triangles.
   struct Side {
     std::array<Points8, 3> at;  // by corner
     std::array<Boxes, 3> edge;  // edge i goes from corner i to corner i + 1
@@ -98,7 +98,7 @@ class ProximityFinder::Gathering {
     }
   };
 
-  /// Bit l is set where the boxes in lane l are within reach.
+  /// Bit l is set if the boxes in lane l are within the radius.
   static std::uint32_t near(const Points8& a_low, const Points8& a_high, const Boxes& b, const Lanes8& radius) {
     Lanes8 gap = a_low.axis[0] - b.high.axis[0];
     raise_to(gap, b.low.axis[0] - a_high.axis[0]);
@@ -109,8 +109,8 @@ class ProximityFinder::Gathering {
     return sign_mask(gap - radius);
   }
 
-  /// The radius for boxes of these triangles in float. Rounding moves a coordinate by 2^-24 of itself, so a gap of two
-  /// by four times that at most; only the pair's own coordinates count, so that no other body has an influence.
+  /// The radius for the box tests in float. Rounding changes a coordinate by 2^-24 of itself, so a gap between two
+  /// changes by at most four times that. Only coordinates of the pair count: other bodies have no influence.
   Lanes8 rounded_radius(const Boxes& a, const Boxes& b) const {
     Lanes8 largest = a.high.axis[0];
     for (const Boxes* box : {&a, &b})
@@ -121,14 +121,14 @@ class ProximityFinder::Gathering {
     return radius_rounded_ + largest * 0x1p-21F;
   }
 
-  void look_at_eight(std::span<const TrianglePair, 8> pairs, std::size_t count) {
+  void test_eight_pairs(std::span<const TrianglePair, 8> pairs, std::size_t count) {
     std::array<Index, 8> number_a, number_b;
     for (std::size_t l = 0; l < 8; ++l) number_a[l] = pairs[l].a, number_b[l] = pairs[l].b;
     const Side a(features_, rounded_, number_a), b(features_, rounded_, number_b);
     const Lanes8 radius = rounded_radius(a.face, b.face);
     const std::uint32_t together = near(a.face.low, a.face.high, b.face, radius) & ((1U << count) - 1);
     if (together == 0) return;
-    std::array<std::array<std::uint32_t, 3>, 3> same;  // corner i of a is corner j of b
+    std::array<std::array<std::uint32_t, 3>, 3> same;  // corner i of a equals corner j of b
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j) same[i][j] = sign_mask(IntLanes8(a.corner[i] == b.corner[j]));
 
@@ -155,13 +155,14 @@ class ProximityFinder::Gathering {
 
   void keep_vertex_face(Index vertex, Index face) {
     const Triangle& corners = features_.triangle(face);
-    if (!surely_farther(at(vertex), at(corners[0]), at(corners[1]), at(corners[2]), radius_sq_))
+    if (!is_surely_farther(at(vertex), at(corners[0]), at(corners[1]), at(corners[2]), radius_sq_))
       found_.vertex_faces.push_back({vertex, face});
   }
 
   void keep_edges(const EdgeEdge& edges, const std::array<Index, 4>& v) {
-    if (flattest_ > 0 && fold(edges.face_a, edges.edge_a) + fold(edges.face_b, edges.edge_b) < flattest_) return;
-    if (!surely_farther_edges(at(v[0]), at(v[1]), at(v[2]), at(v[3]), radius_sq_)) found_.edge_edges.push_back(edges);
+    if (min_fold_ > 0 && fold(edges.face_a, edges.edge_a) + fold(edges.face_b, edges.edge_b) < min_fold_) return;
+    if (!are_edges_surely_farther(at(v[0]), at(v[1]), at(v[2]), at(v[3]), radius_sq_))
+      found_.edge_edges.push_back(edges);
   }
 
   float fold(Index face, std::size_t edge) const { return finder_.folds_[face][edge]; }
@@ -173,21 +174,21 @@ class ProximityFinder::Gathering {
   std::span<const Vec3> x_;
   const double radius_sq_;
   const float radius_rounded_;
-  const float flattest_;
+  const float min_fold_;
 };
 
-/// From pairs of features to proximities.
+/// Turns pairs of features into near pairs.
 class ProximityFinder::Search {
  public:
-  Search(const Features& features, std::span<const Vec3> x, double reach, std::vector<Proximity>& out)
-      : features_(features), x_(x), reach_sq_(reach * reach), out_(out) {}
+  Search(const Features& features, std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out)
+      : features_(features), x_(x), detection_distance_sq_(detection_distance * detection_distance), out_(out) {}
 
   void vertex_face(Index vertex, Index face) {
     const Triangle& corners = features_.triangle(face);
-    if (surely_farther(at(vertex), at(corners[0]), at(corners[1]), at(corners[2]), reach_sq_)) return;
+    if (is_surely_farther(at(vertex), at(corners[0]), at(corners[1]), at(corners[2]), detection_distance_sq_)) return;
     const ClosestPoints points = closest_to_face(vertex, corners);
-    if (!(points.distance_sq < reach_sq_)) return;
-    if (points.support() != 0b1111U && left_out(vertex, face, points)) return;
+    if (!(points.distance_sq < detection_distance_sq_)) return;
+    if (points.support() != 0b1111U && is_represented_by_other(vertex, face, points)) return;
     const Vec3 face_normal = (at(corners[1]) - at(corners[0])).cross(at(corners[2]) - at(corners[0]));
     add(ProximityKind::vertex_face, {vertex, corners[0], corners[1], corners[2]}, points, face_normal, {0, 0});
   }
@@ -196,18 +197,18 @@ class ProximityFinder::Search {
     return closest_vertex_face(at(vertex), at(face[0]), at(face[1]), at(face[2]));
   }
 
-  /// Whether a vertex-face pair with its closest point on the face's boundary is represented by another one.
-  bool left_out(Index vertex, Index face, const ClosestPoints& points) const {
+  /// Whether another pair represents this vertex-face pair, whose closest point is on the boundary of the face.
+  bool is_represented_by_other(Index vertex, Index face, const ClosestPoints& points) const {
     const Triangle& corners = features_.triangle(face);
-    std::array<Index, 2> support{-1, -1};  // the edge or vertex of the face where the closest point lies
+    std::array<Index, 2> support{-1, -1};  // edge or vertex of the face that holds the closest point
     for (std::size_t c = 0, n = 0; c < 3; ++c)
       if (points.weights[c + 1] != 0 && n < 2) support[n++] = corners[c];
 
-    // Between two vertices both sides see the same pair; the lower number is the vertex of the one listed.
+    // Between two vertices, both sides find the same pair. List the one whose vertex has the lower number.
     if (support[1] < 0 && vertex > support[0]) {
-      const auto fan = features_.triangles_at(vertex);
+      const auto star = features_.triangles_at(vertex);
       const auto apart = [&](Index t) { return !has_vertex(features_.triangle(t), support[0]); };
-      if (std::any_of(fan.begin(), fan.end(), apart)) return true;
+      if (std::any_of(star.begin(), star.end(), apart)) return true;
     }
     for (const Index other : features_.triangles_at(support[0])) {
       const Triangle& around = features_.triangle(other);
@@ -222,10 +223,10 @@ class ProximityFinder::Search {
   void edges(const EdgeEdge& pair) {
     const Triangle &a = features_.triangle(pair.face_a), &b = features_.triangle(pair.face_b);
     const std::array<Index, 4> v{a[pair.edge_a], a[(pair.edge_a + 1) % 3], b[pair.edge_b], b[(pair.edge_b + 1) % 3]};
-    if (surely_not_inside(at(v[0]), at(v[1]), at(v[2]), at(v[3]), reach_sq_)) return;
+    if (is_surely_not_interior(at(v[0]), at(v[1]), at(v[2]), at(v[3]), detection_distance_sq_)) return;
     const ClosestPoints points = closest_edge_edge(at(v[0]), at(v[1]), at(v[2]), at(v[3]));
-    // With an end as closest point the vertex and the faces at the other edge represent the pair.
-    if (!(points.distance_sq < reach_sq_) || points.support() != 0b1111U) return;
+    // If a closest point is the end of an edge, that vertex and the faces at the other edge represent the pair.
+    if (!(points.distance_sq < detection_distance_sq_) || points.support() != 0b1111U) return;
     const Vec3 across = (at(v[1]) - at(v[0])).cross(at(v[3]) - at(v[2]));
     const Vec3 normal = direction(points.difference, across);
     add(ProximityKind::edge_edge, v, points, across,
@@ -236,18 +237,18 @@ class ProximityFinder::Search {
  private:
   const Vec3& at(Index vertex) const { return x_[vertex]; }
 
-  /// Largest sine of the angle by which the unit direction `outward`, which is perpendicular to the edge, points to the
-  /// inside of one of its faces: |e| (arm · outward) / |e × arm|.
+  /// Largest sine of the angle by which the unit direction `outward`, perpendicular to the edge, points into the side
+  /// of a face at the edge: |e| (arm · outward) / |e × arm|.
   double outside_wedge(Index e0, Index e1, std::span<const Index> apexes, const Vec3& outward) const {
     const Vec3 edge = at(e1) - at(e0);
     const double length = edge.norm();
-    double most = -1;
+    double max_sine = -1;
     for (const Index apex : apexes) {
       const Vec3 arm = at(apex) - at(e0);
       const double across = edge.cross(arm).norm();
-      if (across > 0) most = std::max(most, length * arm.dot(outward) / across);
+      if (across > 0) max_sine = std::max(max_sine, length * arm.dot(outward) / across);
     }
-    return most;
+    return max_sine;
   }
 
   void add(ProximityKind kind, const std::array<Index, 4>& vertices, const ClosestPoints& points, const Vec3& fallback,
@@ -259,7 +260,7 @@ class ProximityFinder::Search {
 
   const Features& features_;
   std::span<const Vec3> x_;
-  const double reach_sq_;
+  const double detection_distance_sq_;
   std::vector<Proximity>& out_;
 };
 
@@ -286,9 +287,10 @@ void ProximityFinder::measure_folds(std::span<const Vec3> x) {
   });
 }
 
-ProximityFinder::First ProximityFinder::begin_gathering(std::span<const Vec3> x, double radius, double flattest) {
-  if (flattest > 0) measure_folds(x);
-  // First look in float.
+ProximityFinder::GatherParameters ProximityFinder::begin_gathering(std::span<const Vec3> x, double radius,
+                                                                   double min_fold) {
+  if (min_fold > 0) measure_folds(x);
+  // Round positions to float for the box tests.
   rounded_.resize(x.size());
   parallel_for(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
@@ -297,70 +299,69 @@ ProximityFinder::First ProximityFinder::begin_gathering(std::span<const Vec3> x,
   });
   pairs_.vertex_faces.clear();
   pairs_.edge_edges.clear();
-  return {x, radius, static_cast<float>(radius * (1 + 1e-6) + 1e-37), flattest};
+  return {x, radius, static_cast<float>(radius * (1 + 1e-6) + 1e-37), min_fold};
 }
 
-void ProximityFinder::look_at(std::span<const TrianglePair> pairs, const First& first) {
+void ProximityFinder::test_pairs(std::span<const TrianglePair> pairs, const GatherParameters& parameters) {
   parallel_append(pairs.size(), kGrainSize, pairs_, [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
-    Gathering(*this, first, found).look_at(pairs.subspan(begin, end - begin));
+    Gathering(*this, parameters, found).test_pairs(pairs.subspan(begin, end - begin));
   });
 }
 
 void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const Surface> deformable,
-                             std::span<const Vec3> x, double radius, double flattest) {
-  const First first = begin_gathering(x, radius, flattest);
-  look_at(candidates.apart.view(), first);
-  look_at(candidates.one_shared.view(), first);
+                             std::span<const Vec3> x, double radius, double min_fold) {
+  const GatherParameters parameters = begin_gathering(x, radius, min_fold);
+  test_pairs(candidates.apart.view(), parameters);
+  test_pairs(candidates.one_shared.view(), parameters);
   for (const Surface& surface : deformable)
-    look_at(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())), first);
+    test_pairs(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())), parameters);
 }
 
-// Of cloth that is not creased sharply nothing is left of the connected ones, which were 13 % of the run of
-// ball_through_cloth.
+// Cloth without sharp creases leaves none of the connected pairs (measured: they took 13 % of ball_through_cloth).
 void ProximityFinder::gather(const PairList& apart, std::span<const Surface> deformable, std::span<const Vec3> x,
-                             double radius, double flattest, std::span<const std::uint8_t> open) {
-  const First first = begin_gathering(x, radius, flattest);
-  look_at(apart.view(), first);
+                             double radius, double min_fold, std::span<const std::uint8_t> clear) {
+  const GatherParameters parameters = begin_gathering(x, radius, min_fold);
+  test_pairs(apart.view(), parameters);
   for (const Surface& surface : deformable)
     parallel_append(surface.triangles.size(), kGrainSize, pairs_,
                     [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
-                      Gathering gathering(*this, first, found);
+                      Gathering gathering(*this, parameters, found);
                       std::vector<TrianglePair> pairs;
-                      for (; begin < end; begin += kTrianglesListed) {
+                      for (; begin < end; begin += kTrianglesPerBatch) {
                         pairs.clear();
-                        append_connected(begin, std::min(begin + kTrianglesListed, end), surface, open, pairs);
-                        gathering.look_at(pairs);
+                        append_connected(begin, std::min(begin + kTrianglesPerBatch, end), surface, clear, pairs);
+                        gathering.test_pairs(pairs);
                       }
                     });
 }
 
-// Pairs a < b with a common vertex, of triangles a in [begin, end) of a surface; none of both is open.
+// Lists pairs a < b with a common vertex, for triangles a in [begin, end) of a surface. Skips clear triangles.
 void ProximityFinder::append_connected(std::size_t begin, std::size_t end, const Surface& surface,
-                                       std::span<const std::uint8_t> open, std::vector<TrianglePair>& pairs) const {
+                                       std::span<const std::uint8_t> clear, std::vector<TrianglePair>& pairs) const {
   for (std::size_t t = begin; t < end; ++t) {
     const Index a = surface.first_triangle + static_cast<Index>(t);
-    if (open[a]) continue;
+    if (clear[a]) continue;
     const std::size_t first = pairs.size();
     for (const Index v : features_.triangle(a))
       for (const Index b : features_.triangles_at(v)) {
-        // Across an edge it comes twice.
+        // A pair with a common edge is found twice.
         const auto is_it = [&](const TrianglePair& pair) { return pair.b == b; };
-        if (b > a && !open[b] && std::none_of(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(), is_it))
+        if (b > a && !clear[b] && std::none_of(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(), is_it))
           pairs.push_back({a, b});
       }
   }
 }
 
-void ProximityFinder::find(std::span<const Vec3> x, double reach, std::vector<Proximity>& out) const {
+void ProximityFinder::find(std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out) const {
   out.clear();
   const std::vector<VertexFace>& vertex_faces = pairs_.vertex_faces;
   const std::vector<EdgeEdge>& edge_edges = pairs_.edge_edges;
   parallel_append(vertex_faces.size(), kGrainSize, out, [&](std::size_t begin, std::size_t end, auto& list) {
-    Search search(features_, x, reach, list);
+    Search search(features_, x, detection_distance, list);
     for (std::size_t p = begin; p < end; ++p) search.vertex_face(vertex_faces[p].vertex, vertex_faces[p].face);
   });
   parallel_append(edge_edges.size(), kGrainSize, out, [&](std::size_t begin, std::size_t end, auto& list) {
-    Search search(features_, x, reach, list);
+    Search search(features_, x, detection_distance, list);
     for (std::size_t p = begin; p < end; ++p) search.edges(edge_edges[p]);
   });
 }

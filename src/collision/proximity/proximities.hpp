@@ -1,4 +1,4 @@
-// From candidate triangle pairs to the vertex-face and edge-edge pairs that are close now.
+// Narrow phase: finds near vertex-face and edge-edge pairs among candidate pairs of triangles.
 #pragma once
 
 #include <array>
@@ -14,52 +14,53 @@
 
 namespace weft::collision {
 
-/// Two features closer than the reach, with their closest points: Σ w x = distance · normal.
+/// Two features closer than the detection distance, with their closest points: Σ w x = distance · normal.
 struct Proximity : FeaturePair {
-  /// Edge-edge: sine of the angle by which the normal leaves the wedge of edge a and b, the directions in which no face
-  /// at the edge comes closer than the edge itself; ≤ 0 inside, 0 for vertex-face. Above 0 a neighbouring pair
-  /// is closer, and the response may leave this one out.
+  /// For an edge pair: sine of the angle by which the normal leaves the wedge of edge a and of edge b. Inside the wedge
+  /// (≤ 0) no face at the edge is closer than the edge itself. Above 0 a neighbouring pair is closer, and the response
+  /// may skip this one. 0 for vertex-face.
   std::array<double, 2> outside_wedge{};
 };
 
-/// Finds proximities among candidates. Listed are, of all vertex-face and edge-edge pairs without a common vertex whose
-/// distance is below the reach, those whose closest points are
-///   - inside the face: always;
-///   - inside both edges: always;
-///   - on an edge or at a vertex of the face: only if no other face around that edge or vertex is closer, and then
+/// Finds near pairs among candidate pairs. Of all vertex-face and edge-edge pairs without a common vertex and with a
+/// distance below the detection distance, those are listed whose closest points are
+///   - inside the face;
+///   - inside both edges;
+///   - on an edge or at a vertex of the face, if no other face around that edge or vertex is closer. Each is listed
 ///   once.
-/// What is left out is a duplicate or a poorer neighbour: a face around the edge or vertex S where the closest point
-/// lies contains that point, so its distance is no larger, and going from face to face like this, or from an edge pair
-/// with its closest point at an end to the faces around the other edge, distances never grow; ties go to the lower
-/// number, so the walk ends, at a listed pair. So for each feature pair within reach of two triangles without a
-/// common vertex a listed pair is at least as close, and the least distance of all is always listed.
+/// Every skipped pair is represented by a listed pair that is at least as close. Proof: let S be the edge or vertex of
+/// the face where the closest point lies. Every face around S contains that point, so its distance is no larger.
+/// Likewise, if the closest point of an edge pair is at an end, the faces around the other edge are no farther. Going
+/// from face to face, distances never grow, and ties go to the lower number, so this ends at a listed pair. The
+/// smallest distance of all is therefore always listed.
 class ProximityFinder {
  public:
   ProximityFinder() = default;
 
-  /// Triangles of all surfaces in their global numbering; they must outlive this.
+  /// `triangles`: of all surfaces in their global numbering; must outlive this object.
   ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
 
-  /// Keeps the pairs of features that are closer than `radius` [m] at x [m]. The candidates must hold every pair of
-  /// triangles closer than that (up to those with a common edge, which are looked up for each surface of `deformable`).
-  /// Edge pairs are left out where the sines of half the angles by which the surface is folded along either edge add up
-  /// to less than `flattest`: between two smooth layers vertices and faces tell all, and four of five pairs are edges.
+  /// Keeps the pairs of features closer than `radius` [m] at x [m]. The candidates must include every pair of triangles
+  /// closer than that; pairs with a common edge are added here, for each surface of `deformable`. An edge pair is
+  /// skipped if the sines of half the fold angles along both edges add up to less than `min_fold`: between two smooth
+  /// layers, vertices and faces suffice, and four of five pairs are edge pairs.
   void gather(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
-              double radius, double flattest = 0);
-  /// The same with candidates without a common vertex alone: those with one or two are looked up for each surface of
-  /// `deformable`. `open`: per triangle, not 0 where what shares a vertex with it is known to be no closer.
+              double radius, double min_fold = 0);
+  /// As above, with candidates without a common vertex only. Pairs that share one or two vertices are added here, for
+  /// each surface of `deformable`. `clear`: not 0 for triangles that are clear by `radius` (see
+  /// Separation::open_triangles).
   void gather(const PairList& apart, std::span<const Surface> deformable, std::span<const Vec3> x, double radius,
-              double flattest, std::span<const std::uint8_t> open);
+              double min_fold, std::span<const std::uint8_t> clear);
 
-  /// Replaces `out` by the proximities below `reach` [m] among the pairs gathered, in their order. Complete as long as
-  /// no vertex is farther than (radius − reach) / 2 from where it was gathered.
-  void find(std::span<const Vec3> x, double reach, std::vector<Proximity>& out) const;
+  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m], in their order. Complete as
+  /// long as no vertex is farther than (radius − detection_distance) / 2 from where it was gathered.
+  void find(std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out) const;
 
-  /// Both at once.
+  /// Gathers and finds.
   void find(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
-            double reach, std::vector<Proximity>& out) {
-    gather(candidates, deformable, x, reach);
-    find(x, reach, out);
+            double detection_distance, std::vector<Proximity>& out) {
+    gather(candidates, deformable, x, detection_distance);
+    find(x, detection_distance, out);
   }
 
  private:
@@ -72,7 +73,7 @@ class ProximityFinder {
   struct VertexFace {
     Index vertex, face;
   };
-  /// Edge i of a triangle goes from its corner i to corner i + 1.
+  /// Edge i of a triangle connects corners i and i + 1.
   struct EdgeEdge {
     Index face_a, face_b;
     std::uint8_t edge_a, edge_b;
@@ -87,16 +88,16 @@ class ProximityFinder {
     }
   };
 
-  struct First;
-  First begin_gathering(std::span<const Vec3> x, double radius, double flattest);
-  void look_at(std::span<const TrianglePair> pairs, const First& first);
-  void append_connected(std::size_t begin, std::size_t end, const Surface& surface, std::span<const std::uint8_t> open,
+  struct GatherParameters;
+  GatherParameters begin_gathering(std::span<const Vec3> x, double radius, double min_fold);
+  void test_pairs(std::span<const TrianglePair> pairs, const GatherParameters& parameters);
+  void append_connected(std::size_t begin, std::size_t end, const Surface& surface, std::span<const std::uint8_t> clear,
                         std::vector<TrianglePair>& pairs) const;
   void measure_folds(std::span<const Vec3> x);
 
   Features features_;
-  std::vector<std::array<float, 3>> folds_;  ///< per triangle and edge it owns: sine of half the fold; 1 at borders
-  std::vector<Rounded> rounded_;             ///< positions in float, for the first look
+  std::vector<std::array<float, 3>> folds_;  ///< per triangle and owned edge: sine of half the fold angle; 1 at borders
+  std::vector<Rounded> rounded_;             ///< positions in float, for the box tests
   FeaturePairs pairs_;
 };
 

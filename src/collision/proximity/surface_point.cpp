@@ -10,20 +10,19 @@
 namespace weft::collision {
 namespace {
 
-// Closer than this the line to the nearest point has no direction [m].
-constexpr double kNoDirection = 1e-10;
-// Cosine of the angle up to which a face looks the same way as another.
-constexpr double kSameWay = 0.5;
-// How far a ray begins beside its point [m], and goes [m].
-constexpr double kOffGrid = 1e-7;
-constexpr double kFar = 1e3;
+// Below this distance the line to the nearest point has no direction [m].
+constexpr double kMinDirectionLength = 1e-10;
+// Minimum cosine between a face normal and a given direction for the face to count as facing that way.
+constexpr double kMinFacingCosine = 0.5;
+// Offset of the start of a ray from its point [m], and length of the ray [m].
+constexpr double kRayOffset = 1e-7;
+constexpr double kRayLength = 1e3;
 
 ClosestPoints closest(const Vec3& p, const Triangle& t, std::span<const Vec3> x) {
   return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]);
 }
 
-// Angle of a face at the feature of its own that the weights are on: of a corner, half a turn of an edge, a whole one
-// inside.
+// Angle of a face at the feature that holds the weighted point: at a corner its angle, on an edge π, inside 2 π.
 double angle_at(const Triangle& t, const std::array<double, 3>& weights, std::span<const Vec3> x) {
   const auto on = [&](std::size_t c) { return weights[c] > kRoundoff; };
   const int support = on(0) + on(1) + on(2);
@@ -33,14 +32,14 @@ double angle_at(const Triangle& t, const std::array<double, 3>& weights, std::sp
   return std::atan2(e.cross(f).norm(), e.dot(f));
 }
 
-// Weights on the corners of `face` of the point where the segment from p to q goes through it.
-std::optional<std::array<double, 3>> pierce(const Vec3& p, const Vec3& q, const Triangle& face,
-                                            std::span<const Vec3> x) {
+// Weights of the corners of `face` for the point where the segment from p to q goes through it.
+std::optional<std::array<double, 3>> intersect_segment(const Vec3& p, const Vec3& q, const Triangle& face,
+                                                       std::span<const Vec3> x) {
   const Vec3 &t0 = x[face[0]], &t1 = x[face[1]], &t2 = x[face[2]];
-  const Vec3 way = q - p;
-  // Volumes of the segment with each edge of the face: all of one sign if the line goes through.
-  const double v0 = way.dot((t1 - p).cross(t2 - p)), v1 = way.dot((t2 - p).cross(t0 - p)),
-               v2 = way.dot((t0 - p).cross(t1 - p));
+  const Vec3 segment = q - p;
+  // Volumes of the segment with each edge of the face. All have one sign if the line goes through.
+  const double v0 = segment.dot((t1 - p).cross(t2 - p)), v1 = segment.dot((t2 - p).cross(t0 - p)),
+               v2 = segment.dot((t0 - p).cross(t1 - p));
   const double sum = v0 + v1 + v2;
   if (sum == 0 || std::min({v0 / sum, v1 / sum, v2 / sum}) < 0) return std::nullopt;
   const Vec3 n = (t1 - t0).cross(t2 - t0);
@@ -77,14 +76,16 @@ SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, s
       difference = points.difference;
       outward.setZero();
     }
-    // Another point just as near, across a thin body, does not count.
-    if ((points.difference - difference).squaredNorm() > kRoundoff * best_sq + kNoDirection * kNoDirection) continue;
+    // Skip another point that is just as near, on the far side of a thin body.
+    if ((points.difference - difference).squaredNorm() >
+        kRoundoff * best_sq + kMinDirectionLength * kMinDirectionLength)
+      continue;
     outward += angle_at(t, weights, x) * face_normal(t, x);
   }
   const double distance = std::sqrt(best_sq);
   const double sign = outward.dot(difference) < 0 ? -1 : 1;
   best.height = sign * distance;
-  best.normal = distance > kNoDirection ? Vec3(sign * difference / distance) : outward.stableNormalized();
+  best.normal = distance > kMinDirectionLength ? Vec3(sign * difference / distance) : outward.stableNormalized();
   return best;
 }
 
@@ -101,8 +102,8 @@ SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::si
     broad_phase.nearest_triangles(
         surface, p,
         [&](Index number) {
-          const bool looks_there = face_normal(triangle(number), x).dot(towards) > kSameWay;
-          return looks_there ? distance_sq(number) : std::numeric_limits<double>::infinity();
+          const bool faces_towards = face_normal(triangle(number), x).dot(towards) > kMinFacingCosine;
+          return faces_towards ? distance_sq(number) : std::numeric_limits<double>::infinity();
         },
         numbers);
   if (numbers.empty()) broad_phase.nearest_triangles(surface, p, distance_sq, numbers);
@@ -115,32 +116,32 @@ bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase
                std::span<const Vec3> x) {
   Eigen::Index axis = 0;
   towards.cwiseAbs().maxCoeff(&axis);
-  // Beside the edges and corners that bodies have at round coordinates, where a ray would count twice or not at all.
-  const Vec3 from = p + kOffGrid * Vec3(0.918, 0.637, 0.781);
+  // Start off the round coordinates of edges and corners, where a ray would hit two faces or none.
+  const Vec3 from = p + kRayOffset * Vec3(0.918, 0.637, 0.781);
   Vec3 to = from;
-  to[axis] += towards[axis] < 0 ? -kFar : kFar;
+  to[axis] += towards[axis] < 0 ? -kRayLength : kRayLength;
   const Surface& all = broad_phase.surface(surface);
   std::vector<Index> numbers;
   broad_phase.triangles_in_box(surface, from.cwiseMin(to), from.cwiseMax(to), numbers);
-  int let_out = 0;
+  int net_exits = 0;
   for (const Index number : numbers) {
     const Triangle& face = all.triangles[number - all.first_triangle];
-    if (pierce(from, to, face, x)) let_out += face_normal(face, x).dot(to - from) > 0 ? 1 : -1;
+    if (intersect_segment(from, to, face, x)) net_exits += face_normal(face, x).dot(to - from) > 0 ? 1 : -1;
   }
-  return let_out > 0;
+  return net_exits > 0;
 }
 
 std::vector<Triangle> triangles_near(const Triangle& triangle, const BroadPhase& broad_phase, std::size_t surface,
-                                     std::span<const Vec3> x, double reach) {
+                                     std::span<const Vec3> x, double distance) {
   const Surface& all = broad_phase.surface(surface);
   const Box box(triangle, x);
   std::vector<Index> numbers;
-  broad_phase.triangles_in_box(surface, box.low.array() - reach, box.high.array() + reach, numbers);
+  broad_phase.triangles_in_box(surface, box.low.array() - distance, box.high.array() + distance, numbers);
   std::vector<Triangle> near;
   for (const Index number : numbers) {
     const Triangle& other = all.triangles[number - all.first_triangle];
     const Box of_other(other, x);
-    if ((box.low - of_other.high).maxCoeff() < reach && (of_other.low - box.high).maxCoeff() < reach)
+    if ((box.low - of_other.high).maxCoeff() < distance && (of_other.low - box.high).maxCoeff() < distance)
       near.push_back(other);
   }
   return near;
@@ -151,16 +152,16 @@ std::optional<std::array<double, 3>> find_crossing(const Triangle& a, const Tria
   int count = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t next = (c + 1) % 3;
-    if (pierce(x[a[c]], x[a[next]], b, x)) {
-      // Where on the edge: by the heights of its ends over the face.
+    if (intersect_segment(x[a[c]], x[a[next]], b, x)) {
+      // The heights of the ends over the face give the place on the edge.
       const Vec3 n = face_normal(b, x);
       const double from = std::abs(n.dot(x[a[c]] - x[b[0]])), to = std::abs(n.dot(x[a[next]] - x[b[0]]));
-      const double share = from + to > 0 ? from / (from + to) : 0.5;
-      sum[c] += 1 - share;
-      sum[next] += share;
+      const double fraction = from + to > 0 ? from / (from + to) : 0.5;
+      sum[c] += 1 - fraction;
+      sum[next] += fraction;
       ++count;
     }
-    if (const auto weights = pierce(x[b[c]], x[b[next]], a, x)) {
+    if (const auto weights = intersect_segment(x[b[c]], x[b[next]], a, x)) {
       for (std::size_t k = 0; k < 3; ++k) sum[k] += (*weights)[k];
       ++count;
     }

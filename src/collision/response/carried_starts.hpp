@@ -1,4 +1,4 @@
-// A step as who stands on an obstacle sees it: where everything would have started if that had carried it along.
+// Start positions of a step in the frame of a moving obstacle: as if it had carried everything along.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace weft::collision {
 
-/// What a body that keeps its shape does in a step: x at the start is turn · x + shift at the end.
+/// Motion of a body that keeps its shape over one step: x at the start is turn · x + shift at the end.
 struct RigidMotion {
   Mat3 turn = Mat3::Identity();
   Vec3 shift = Vec3::Zero();  ///< [m]
@@ -18,30 +18,30 @@ struct RigidMotion {
   bool moves() const { return turns() || shift != Vec3::Zero(); }
 };
 
-/// An obstacle that turns moves on arcs, while certificates speak of straight ways (see `separates`). Seen from the
-/// obstacle itself it stands still: from starts that it has carried along to its place at the end, the ways of cloth
-/// past it are straight again, and a plane fixed to the obstacle can separate them for the whole step. Where cloth is
-/// carried along it stays exactly as far from the obstacle as it was, so one obstacle alone never leaves it no room.
+/// An obstacle that turns moves on arcs, but separating planes are found for straight trajectories (see `separates`).
+/// In the obstacle's own frame it stands still. So the starts of cloth are carried along to the obstacle's place at the
+/// end of the step: relative trajectories are then straight, and a plane fixed to the obstacle can separate them for
+/// the whole step. Cloth that is carried along keeps its exact distance to the obstacle, so one obstacle always leaves
+/// it space.
 class CarriedStarts {
  public:
   CarriedStarts() = default;
-  /// Vertices from `first_obstacle` on are those of obstacles; `body_of`: body of each vertex.
+  /// Vertices from `first_obstacle` on belong to obstacles. `body_of`: body of each vertex.
   CarriedStarts(Index first_obstacle, std::vector<std::size_t> body_of)
       : first_obstacle_(first_obstacle), body_of_(std::move(body_of)) {}
 
-  /// A step from x_t0, with obstacles at its end in x_t1 [m]; both must outlive it. `motions`: one for each body, those
-  /// of cloths are not looked at; none: nothing is carried.
+  /// A step from x_t0, with obstacles at their end in x_t1 [m]; both must outlive it. `motions`: one for each body,
+  /// ignored for cloth; empty: nothing is carried.
   void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const RigidMotion> motions);
 
-  /// Whether a body moves as a rigid one.
+  /// Whether a body moves rigidly in this step.
   bool carries(std::size_t body) const { return body < motions_.size() && motions_[body].moves(); }
-  /// Starts carried along by such a body, with its own vertices where they end [m].
+  /// Starts carried along by such a body; its own vertices are at their end [m].
   std::span<const Vec3> by(std::size_t body) const;
-  /// Makes all that of() can ask for, so that threads may ask at the same time.
+  /// Computes all starts that of() can return, so that threads can call it at the same time.
   void make() const;
 
-  /// The starts to look at a pair from: those that its obstacle has carried where that turns, else `x_t0`, which tells
-  /// the same.
+  /// Start positions for testing a pair: carried by its obstacle if that turns, else `x_t0`.
   std::span<const Vec3> of(const CornerPair& pair, std::span<const Vec3> x_t0) const {
     if (!any_turns_ || !has_obstacle(pair)) return x_t0;
     const std::size_t body = obstacle_of(pair);
@@ -59,7 +59,7 @@ class CarriedStarts {
   std::vector<RigidMotion> motions_;
   bool any_turns_ = false;
   std::span<const Vec3> x_t0_, x_t1_;
-  mutable std::vector<std::vector<Vec3>> starts_;  // by body, made when first asked for
+  mutable std::vector<std::vector<Vec3>> starts_;  // by body, computed on first use
 };
 
 }  // namespace weft::collision

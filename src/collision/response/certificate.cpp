@@ -37,7 +37,7 @@ Vec3 between_centres(const Sides& x) {
   return x.a[0] + x.a[1] + x.a[2] - x.b[0] - x.b[1] - x.b[2];
 }
 
-// min over a of height(a, ·) − max over b of it, for corners numbered 0 to 2.
+// min over a of height(a, ·) − max over b of height(b, ·), for corners numbered 0 to 2.
 template <class Height>
 double least_gap(const Height& height) {
   return std::min({height(&Sides::a, 0), height(&Sides::a, 1), height(&Sides::a, 2)}) -
@@ -48,54 +48,56 @@ double gap_along(const Vec3& n, const Sides& x) {
   return least_gap([&](Corners Sides::*side, std::size_t k) { return n.dot((x.*side)[k]); });
 }
 
-/// Looks for planes over a piece of the way, whose end has a floor of its own.
+/// Searches for planes over a piece of the trajectory. `end_gap`: minimum gap at its end [m].
 class Search {
  public:
-  Search(const Sides& t0, const Sides& t1, double floor)
-      : t0_(t0), t1_(t1), floor_(floor), centres_(between_centres(t0)) {}
+  Search(const Sides& t0, const Sides& t1, double end_gap)
+      : t0_(t0), t1_(t1), end_gap_(end_gap), centres_(between_centres(t0)) {}
 
   std::optional<Vec3> find(Certificates which, int halvings) {
-    const Vec3 of_a = facing(normal(t0_.a)), of_b = facing(normal(t0_.b));
+    const Vec3 of_a = orient_to_side_a(normal(t0_.a)), of_b = orient_to_side_a(normal(t0_.b));
     const Vec3 later_of_a = normal(t1_.a), later_of_b = normal(t1_.b);
-    if (keeps(of_a) || keeps(of_b) || keeps(centres_) || keeps(facing(later_of_a)) || keeps(facing(later_of_b)))
+    if (try_constant_direction(of_a) || try_constant_direction(of_b) || try_constant_direction(centres_) ||
+        try_constant_direction(orient_to_side_a(later_of_a)) || try_constant_direction(orient_to_side_a(later_of_b)))
       return found_;
     const bool turning = which == Certificates::all;
-    if (turning && (turns(of_a, turned(later_of_a, t0_.a)) || turns(of_b, turned(later_of_b, t0_.b)) ||
-                    turns(centres_, between_centres(t1_))))
+    if (turning && (try_turning_direction(of_a, orient_as_at_start(later_of_a, t0_.a)) ||
+                    try_turning_direction(of_b, orient_as_at_start(later_of_b, t0_.b)) ||
+                    try_turning_direction(centres_, between_centres(t1_))))
       return found_;
     const Vec3 closest = closest_convex(t0_.a, t0_.b).difference;
-    if (keeps(closest) || !turning) return found_;
-    // What meets at the end is past help.
+    if (try_constant_direction(closest) || !turning) return found_;
+    // Hulls that intersect at the end have no separating plane.
     const Vec3 closest_later = closest_convex(t1_.a, t1_.b).difference;
-    if (closest_later == Vec3::Zero() || turns(closest, closest_later) || halvings == 0) return found_;
+    if (closest_later == Vec3::Zero() || try_turning_direction(closest, closest_later) || halvings == 0) return found_;
     const Sides middle = middle_of(t0_, t1_);
     if (!Search(t0_, middle, kRoundoff).find(which, halvings - 1)) return std::nullopt;
-    return Search(middle, t1_, floor_).find(which, halvings - 1);
+    return Search(middle, t1_, end_gap_).find(which, halvings - 1);
   }
 
  private:
-  Vec3 facing(const Vec3& n) const { return n.dot(centres_) < 0 ? Vec3(-n) : n; }
-  // A normal at the end on the side that faces as that of the same triangle at the start does.
-  Vec3 turned(const Vec3& later, const Corners& start) const {
+  Vec3 orient_to_side_a(const Vec3& n) const { return n.dot(centres_) < 0 ? Vec3(-n) : n; }
+  // Orients a normal at the end as the normal of the same triangle was oriented at the start.
+  Vec3 orient_as_at_start(const Vec3& later, const Corners& start) const {
     return normal(start).dot(centres_) < 0 ? Vec3(-later) : later;
   }
 
-  bool keeps(const Vec3& direction) {
+  bool try_constant_direction(const Vec3& direction) {
     const double length = direction.norm();
     if (!(length > 0)) return false;
     const Vec3 n = rounded(direction / length);
-    if (gap_along(n, t1_) >= floor_ && gap_along(n, t0_) >= kRoundoff) found_ = n;
+    if (gap_along(n, t1_) >= end_gap_ && gap_along(n, t0_) >= kRoundoff) found_ = n;
     return found_.has_value();
   }
 
-  bool turns(const Vec3& from, const Vec3& to) {
+  bool try_turning_direction(const Vec3& from, const Vec3& to) {
     const double from_length = from.norm(), to_length = to.norm();
     if (!(from_length > 0) || !(to_length > 0)) return false;
     const Vec3 n_t0 = from / from_length, n_t1 = rounded(to / to_length);
     const auto crosswise = [&](Corners Sides::*side, std::size_t k) {
       return n_t0.dot((t1_.*side)[k]) + n_t1.dot((t0_.*side)[k]);
     };
-    if (gap_along(n_t1, t1_) >= floor_ && gap_along(n_t0, t0_) >= kRoundoff && least_gap(crosswise) >= 2 * kRoundoff)
+    if (gap_along(n_t1, t1_) >= end_gap_ && gap_along(n_t0, t0_) >= kRoundoff && least_gap(crosswise) >= 2 * kRoundoff)
       found_ = n_t1;
     return found_.has_value();
   }
@@ -103,7 +105,7 @@ class Search {
   static Vec3 rounded(const Vec3& n) { return n.cast<float>().cast<double>(); }
 
   const Sides &t0_, &t1_;
-  double floor_;
+  double end_gap_;
   Vec3 centres_;
   std::optional<Vec3> found_;
 };

@@ -1,4 +1,4 @@
-// Separating planes that move and turn: when two sets of vertices are apart for a whole step.
+// Separating planes that move and turn: prove that two sets of vertices stay apart for a whole step.
 #pragma once
 
 #include <array>
@@ -13,42 +13,42 @@
 
 namespace weft::collision {
 
-/// Two triangles, or an edge and a triangle, without a common vertex, by their vertices. An edge names its second end
-/// twice.
+/// Two triangles, or an edge and a triangle, without a common vertex. An edge repeats its second end.
 struct CornerPair {
   Triangle a, b;
   friend auto operator<=>(const CornerPair&, const CornerPair&) = default;
 };
 
-/// min_a n·x − max_b n·x: along the unit direction n, side a lies above side b by this [m].
+/// min_a n·x − max_b n·x [m]: how far side a lies above side b along the unit direction n.
 double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x);
 
-/// Whether n is a certificate for the linear motion from x_t0 to x_t1: the gap along it is at least kRoundoff at the
-/// start, so that what touches is never taken for apart, and Numerics::Separation::least_gap at the end. Every n·x is
-/// linear in time, so the gap is a minimum of linear functions, concave, and positive all the way between: a plane
-/// normal to n that moves along separates the pair for the whole step. No root is sought.
+/// Whether a plane normal to n that translates with the pair separates it during the linear motion from x_t0 to x_t1.
+/// The gap along n must be at least kRoundoff at the start, so that touching vertices never count as separated, and
+/// Numerics::Separation::least_gap at the end. Every n·x is linear in time, so the gap is a minimum of linear
+/// functions, hence concave, hence positive in between. No root is sought.
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-/// Which certificates count: planes of constant direction alone, or those that turn too.
+/// Which planes are tried: only those of constant direction, or also those that turn.
 enum class Certificates { constant, all };
 
-/// Looks for a certificate, by increasing cost: a plane that keeps its direction, then one that turns with the pair, at
-/// last three times in halves of the way. Face normals separate layers, the direction between the centres neighbours in
-/// the plane, and the closest direction whatever hardly moves.
+/// Searches for a separating plane, in order of increasing cost: one of constant direction, then one that turns with
+/// the pair, then both in halves of the trajectory, at most Numerics::Separation::halvings times. Face normals separate
+/// layers, the direction between the centres separates neighbours in a plane, and the closest direction what hardly
+/// moves.
 ///
-/// A plane turns with n(t) = (1 − t) n₀ + t n₁. Along it a difference d(t) of corners that move linearly is quadratic
-/// in time, with the Bernstein coefficients n₀·d₀, (n₀·d₁ + n₁·d₀)/2 and n₁·d₁, and positive where these are. Two
-/// layers at a distance d, however wide, that turn together by an angle θ have d, d cos θ and d; a plane of constant
-/// direction is in the way of one of them once their width times sin(θ/2) is more than d.
+/// A turning plane has n(t) = (1 − t) n₀ + t n₁. Along it, the difference d(t) of two linearly moving corners is
+/// quadratic in time, with Bernstein coefficients n₀·d₀, (n₀·d₁ + n₁·d₀)/2 and n₁·d₁; it is positive if these are. For
+/// two layers of any width at a distance d that turn together by an angle θ, the coefficients are d, d cos θ and d. A
+/// plane of constant direction would cut one of them if their width times sin(θ/2) exceeds d.
 ///
-/// Returns the direction at the end, rounded to single precision, so that it can be kept in half the space.
+/// Returns the direction at the end of the step, rounded to single precision for storage.
 std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                      Certificates which = Certificates::all);
 
 /// The closest pair of features of two sides.
 struct ClosestFeatures {
   std::array<Index, 4> vertices{};  ///< global numbers
-  ClosestPoints points{};           ///< weights of the vertices; difference from b to a
+  ClosestPoints points{};           ///< weights of the vertices; difference points from b to a
   ProximityKind kind = ProximityKind::vertex_face;
 };
 ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x);

@@ -8,14 +8,14 @@
 namespace weft::collision {
 namespace {
 
-// The place of the only particle of a contact with an obstacle; −1 for all other contacts.
+// Position, within the contact, of the only particle of a contact with an obstacle; −1 for all other contacts.
 int single_particle(const Contact& contact) {
   if (!contact.against_obstacle) return -1;
   const auto found = std::ranges::find_if(contact.weights, [](double w) { return std::abs(w) >= 1 - 1e-9; });
   return found == contact.weights.end() ? -1 : static_cast<int>(found - contact.weights.begin());
 }
 
-// False where there is no such particle, or it is on the wrong side: pinched, and no wall may hold it there.
+// False if there is no such particle, or if it is on the wrong side: it is then pinched, and no wall may hold it there.
 bool add_wall_of(const Contact& contact, std::span<const Vec3> x_t0, VelocityConstraints& walls) {
   const int place = single_particle(contact);
   if (place < 0) return false;

@@ -1,5 +1,4 @@
-// How contacts push back: as springs inside of the implicit solve, or, those of single particles with obstacles, as
-// constraints of their velocity.
+// Contacts as springs inside the implicit solve or, for single particles against obstacles, velocity constraints.
 #pragma once
 
 #include <optional>
@@ -16,38 +15,38 @@ namespace weft::collision {
 
 enum class ResponseForm { springs, velocity_constraints };
 
-/// The contacts of one step as the solver meets them. With velocity constraints, the walls (see VelocityConstraints)
-/// are set and released between solves of one step; all other contacts are springs in either form.
+/// The contacts of one step as the solver sees them. With velocity constraints, the walls (see VelocityConstraints) are
+/// set and released between solves of one step. All other contacts are springs in either form.
 class ContactResponse {
  public:
-  /// `masses`: of the particles [kg]; `stick_speed`: of springs [m/s].
+  /// `masses`: of the particles [kg]. `stick_speed`: of the springs [m/s].
   ContactResponse(ResponseForm form, std::vector<double> masses, double stick_speed = numerics.contact.stick_velocity);
 
   ResponseForm form() const { return walls_ ? ResponseForm::velocity_constraints : ResponseForm::springs; }
 
-  /// Before the contacts of a step over h [s] are added.
+  /// Call before adding the contacts of a step over h [s].
   void begin_step(double h);
   void add(const Contact& contact, std::span<const Vec3> x_t0);
-  /// Holds a corner of a triangle of cloth that would meet an obstacle; only with velocity constraints.
+  /// Adds a wall for a corner of a cloth triangle that would meet an obstacle. Only with velocity constraints.
   void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
-  /// As that of VelocityConstraints; false with springs.
-  bool lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& leaning) const {
-    return walls_ && walls_->lean(x_t1, by, leaning);
+  /// As VelocityConstraints::lean; false with springs.
+  bool lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
+    return walls_ && walls_->lean(x_t1, by, predicted);
   }
-  /// When all contacts known before the first solve are there.
+  /// Call when all contacts known before the first solve are added.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Solves of one step with contacts added, or walls set and released, in between; the rest is left to moving
-  /// particles.
+  /// Maximum number of solves in one step, with contacts added, or walls set and released, in between. Failing pairs
+  /// are then pushed apart.
   int most_solves() const;
-  /// What the walls hold in the next solve.
+  /// Particles that the walls constrain in the next solve.
   std::span<const PrescribedParticle> prescribed() const;
-  /// After a solve that led to x_end: sets and releases walls; returns how many particles are constrained otherwise.
+  /// After a solve that led to x_end: sets and releases walls. Returns how many particles have changed constraints.
   int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const VelocityConstraints::ForceOn& force_on);
-  /// The step is done: its walls are where the next one starts.
+  /// Accepts the step: its walls are the initial ones of the next step.
   void accept();
 
-  /// As those of ContactSet.
+  /// As the functions of ContactSet.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const { springs_.update(x_end, lag); }
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
@@ -62,10 +61,10 @@ class ContactResponse {
   int active(std::span<const Vec3> x_end) const { return springs_.active(x_end); }
 
   std::span<const Contact> springs() const { return springs_.contacts(); }
-  /// Whether no contact is known, of either form.
+  /// Whether there is no contact of either form.
   bool empty() const { return springs_.contacts().empty() && (!walls_ || walls_->empty()); }
 
-  /// What accept() has remembered. Throws std::runtime_error where these particles cannot have it.
+  /// Saves what accept() has kept. Throws std::runtime_error if it does not fit these particles.
   template <class Archive>
   void serialize(Archive& archive) {
     if (walls_) return walls_->serialize(archive);

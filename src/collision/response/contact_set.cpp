@@ -15,17 +15,17 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
-// A depth says where a tangent is taken: what it is off by shows in the force as its square, below rounding. With 1e-3
-// tangents stayed where they missed the law by 1e-10 of a velocity of 1 m/s, and newton_tolerance 1e-6 was refused.
+// Relative tolerance of the force when the depth of a tangent is sought. The error of the depth enters the tangent's
+// force squared, below rounding (measured: 1e-3 made the solver miss newton_tolerance 1e-6).
 constexpr int kDepthIterations = 30;
-constexpr double kDepthExactness = 1e-8;
+constexpr double kDepthTolerance = 1e-8;
 
-struct Load {
+struct NormalForce {
   double force, slope;  // [N], [N/m]
 };
 
-// At this depth [m]; none from zero down.
-Load load_at(const Contact& contact, double depth) {
+// Normal force at this depth [m]; zero at depths below zero.
+NormalForce normal_force_at(const Contact& contact, double depth) {
   if (depth <= 0) return {0, contact.stiffness};
   const double full = std::max(contact.full_range, contact.range);
   const double inner = std::min(depth, full), ratio_sq = (inner / full) * (inner / full);
@@ -34,69 +34,70 @@ Load load_at(const Contact& contact, double depth) {
   return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
 }
 
-// The force of the tangent at one depth, at another depth [N].
-double tangent_force(const Load& at, double depth_at, double depth) {
+// Force at `depth` of the tangent taken at `depth_at` [N].
+double tangent_force(const NormalForce& at, double depth_at, double depth) {
   return std::max(0.0, at.force + at.slope * (depth - depth_at));
 }
 
-// The depth with this force, from one that is no less. The law is convex: Newton's method comes from above all the way.
-double depth_with(const Contact& contact, double force, double depth) {
+// Inverse of the law: the depth with this force, starting from a depth that is not smaller. The law is convex, so
+// Newton's method converges monotonically from above.
+double depth_for_force(const Contact& contact, double force, double depth) {
   if (force <= 0) return 0;
   depth = std::min(depth, force / contact.stiffness);
   for (int k = 0; k < kDepthIterations; ++k) {
-    const Load load = load_at(contact, depth);
-    if (load.force - force <= kDepthExactness * force) break;
-    depth -= (load.force - force) / load.slope;
+    const NormalForce normal_force = normal_force_at(contact, depth);
+    if (normal_force.force - force <= kDepthTolerance * force) break;
+    depth -= (normal_force.force - force) / normal_force.slope;
   }
   return depth;
 }
 
-// Point a minus point b at the end of the step.
+// Point a minus point b at the end of the step [m].
 Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
   return weighted_sum(contact, x_end) + contact.obstacle_end;
 }
 
-// Coefficient of friction over slip, for a slip in stick slips: 2 − s while sticking, 1/s while sliding, continuous
-// with its first derivative where both coefficients are the same.
+// Friction coefficient divided by slip, for a slip in units of the stick slip: 2 − s while sticking, 1/s while sliding.
+// If both coefficients are equal, it is continuously differentiable.
 double friction_over_slip(const Contact& contact, double slip) {
   if (slip < 1) return contact.static_friction * (2 - slip);
   const double sliding = std::min(1.0, (slip - 1) / (numerics.contact.slide_velocity - 1));
   return (contact.static_friction + sliding * (contact.friction - contact.static_friction)) / slip;
 }
 
-// Its inverse changes by so much per slip, but for what makes friction fall where sliding begins.
-double growth_of_slip_over_friction(const Contact& contact, double slip) {
+// Derivative of slip over friction by the slip. Ignores the drop from static to sliding friction.
+double slope_of_slip_over_friction(const Contact& contact, double slip) {
   if (slip < 1) return 1 / (contact.static_friction * (2 - slip) * (2 - slip));
   return 1 / (slip * friction_over_slip(contact, slip));
 }
 
-// w, against a slip in stick slips.
+// w for a slip in units of the stick slip.
 Vec3 friction_against_load(const Contact& contact, const Vec3& slip) {
   if (contact.static_friction == 0) return Vec3::Zero();
   return friction_over_slip(contact, slip.norm()) * slip;
 }
 
-// The slip in stick slips that has a w which is no more than static friction.
+// Inverse of friction_against_load: the slip for a w that does not exceed static friction.
 Vec3 sticking_slip(const Contact& contact, const Vec3& w) {
   const double slip = 1 - std::sqrt(std::max(0.0, 1 - w.norm() / contact.static_friction));
   return w / friction_over_slip(contact, slip);
 }
 
-// ∂w/∂u for a slip in stick slips; exact with the w that it has, or else definite.
+// ∂w/∂u for a slip in units of the stick slip. Exact if w belongs to the slip, else a definite approximation.
 Mat3 friction_slope(const Contact& contact, const Vec3& slip, const Vec3& w) {
   const double size = slip.norm();
   return friction_over_slip(contact, size) *
          friction_tangent(Mat3::Identity() - contact.normal * contact.normal.transpose(), slip,
-                          growth_of_slip_over_friction(contact, size) * w);
+                          slope_of_slip_over_friction(contact, size) * w);
 }
 
-// Slip in the step, across the normal.
+// Slip during the step, in the tangent plane [m].
 Vec3 slip_of(const Contact& contact, const Vec3& relative) {
   const Vec3 slip = relative - contact.relative_start;
   return slip - contact.normal.dot(slip) * contact.normal;
 }
 
-// How much of a contact is an impact, 0 to 1, by its motion before anything stops it; see add_impacts().
+// Fraction of a contact that is an impact, 0 to 1, by its motion without contact forces; see add_impacts().
 double impact_fraction(const Contact& contact, const StepStart& start) {
   const auto along_normal = [&](std::span<const Vec3> of) { return contact.normal.dot(weighted_sum(contact, of)); };
   const double velocity = along_normal(start.v);
@@ -110,17 +111,17 @@ double impact_fraction(const Contact& contact, const StepStart& start) {
   return opening < 0 ? std::min(1.0, -opening / contact.range) : 0;
 }
 
-// Change of velocity across the normal [m/s] in a step that ends at x_end, as far as friction can bring it about.
-Vec3 jump_across(const Contact& contact, std::span<const Vec3> x_end, const StepStart& start) {
+// Tangential velocity jump [m/s] in a step that ends at x_end, limited to what friction can cause.
+Vec3 tangential_jump(const Contact& contact, std::span<const Vec3> x_end, const StepStart& start) {
   const Vec3 jump =
       (weighted_sum(contact, x_end) - weighted_sum(contact, start.x)) / start.h - weighted_sum(contact, start.v);
-  const double along = contact.normal.dot(jump), most = contact.static_friction * std::max(0.0, along);
+  const double along = contact.normal.dot(jump), max_friction = contact.static_friction * std::max(0.0, along);
   const Vec3 across = jump - along * contact.normal;
   const double size = across.norm();
-  return size > most ? Vec3(most / size * across) : across;
+  return size > max_friction ? Vec3(max_friction / size * across) : across;
 }
 
-// A force on the points of a contact, and its stiffness.
+// Adds a force on the points of a contact, and its stiffness.
 void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, std::span<Vec3> force,
               solver::LinearSystem& system) {
   int involved = 0, last = 0;
@@ -129,7 +130,7 @@ void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, s
     if (contact.weights[k] != 0) ++involved, last = k;
   }
   if (involved == 1) {
-    // A single particle on an obstacle couples with nothing.
+    // A single particle against an obstacle has no coupling.
     const double w = contact.weights[last];
     system.diagonal_terms.push_back({contact.particles[last], w * w * stiffness});
   } else {
@@ -137,22 +138,22 @@ void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, s
   }
 }
 
-// To a slip in stick slips.
-void follow(const Contact& contact, const Vec3& slip, FrictionLag& lag) {
+// Updates the friction of a contact to a slip in units of the stick slip.
+void update_friction(const Contact& contact, const Vec3& slip, FrictionLag& lag) {
   const bool turned = slip.dot(lag.slip) < 0;
   lag.slip = slip;
   if (lag.sticks) {
     const Vec3 held_at = sticking_slip(contact, lag.drag);
     lag.drag += friction_slope(contact, held_at, lag.drag) * (slip - held_at);
-    const double share = lag.drag.norm() / contact.static_friction;
-    if (share < 1) return;
-    lag.drag /= share;
+    const double ratio = lag.drag.norm() / contact.static_friction;
+    if (ratio < 1) return;
+    lag.drag /= ratio;
     lag.sticks = false;
-    ++lag.let_go;
+    ++lag.slide_starts;
   } else if (slip.squaredNorm() < 1) {
     lag.drag = friction_against_load(contact, slip);
     lag.sticks = true;
-  } else if (turned && lag.let_go < numerics.contact.returns) {
+  } else if (turned && lag.slide_starts < numerics.contact.returns) {
     lag.drag = Vec3::Zero();
     lag.sticks = true;
   }
@@ -174,27 +175,27 @@ void ContactSet::add(const Contact& contact) {
 }
 
 void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
-  const auto follow_solve = [&](std::size_t c) {
+  const auto update_contact = [&](std::size_t c) {
     const Contact& contact = contacts_[c];
     const Vec3 relative = relative_end(contact, x_end);
     const double depth = contact.range - contact.normal.dot(relative);
-    const double force = tangent_force(load_at(contact, lag.depths[c]), lag.depths[c], depth);
-    lag.depths[c] = depth_with(contact, force, std::max(depth, lag.depths[c]));
+    const double force = tangent_force(normal_force_at(contact, lag.depths[c]), lag.depths[c], depth);
+    lag.depths[c] = depth_for_force(contact, force, std::max(depth, lag.depths[c]));
     if (lag.updates < numerics.newton.patience) lag.loads[c] = force;
     if (!contact.against_obstacle || contact.static_friction == 0) return;
     if (lag.updates < numerics.newton.patience)
-      follow(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
+      update_friction(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
     else
       lag.frictions[c].sticks = false;
   };
   parallel_for(lag.updates > 0 ? lag.depths.size() : 0, kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) follow_solve(c);
+    for (std::size_t c = begin; c < end; ++c) update_contact(c);
   });
   for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
     lag.depths.push_back(std::max(0.0, contacts_[c].depth));
-    lag.loads.push_back(load_at(contacts_[c], lag.depths.back()).force);
+    lag.loads.push_back(normal_force_at(contacts_[c], lag.depths.back()).force);
     lag.frictions.emplace_back();
-    if (lag.updates > 0) continue;  // what is found later has been led astray already
+    if (lag.updates > 0) continue;  // contacts found later have no meaningful first iterate
     FrictionLag& friction = lag.frictions.back();
     friction.slip = slip_of(contacts_[c], relative_end(contacts_[c], x_end)) / stick_slip_;
     friction.drag = friction_against_load(contacts_[c], friction.slip);
@@ -211,22 +212,22 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   if (depth <= 0) return response;
 
   response.active = true;
-  Load load = load_at(contact, law == Law::itself ? depth : lag.depths[index]);
+  NormalForce normal_force = normal_force_at(contact, law == Law::exact ? depth : lag.depths[index]);
   if (law == Law::tangent) {
-    load.force = tangent_force(load, lag.depths[index], depth);
-    if (load.force == 0) load.slope = 0;
+    normal_force.force = tangent_force(normal_force, lag.depths[index], depth);
+    if (normal_force.force == 0) normal_force.slope = 0;
   }
-  response.slope = load.slope;
-  response.force = load.force * contact.normal;
-  const bool follows = law == Law::itself && lag.updates < numerics.newton.patience;
-  const double friction_load = follows ? load.force : lag.loads[index];
+  response.slope = normal_force.slope;
+  response.force = normal_force.force * contact.normal;
+  const bool follows = law == Law::exact && lag.updates < numerics.newton.patience;
+  const double friction_load = follows ? normal_force.force : lag.loads[index];
   if (contact.static_friction == 0 || friction_load == 0) return response;
 
   const FrictionLag& friction = lag.frictions[index];
   const Vec3 slip = slip_of(contact, relative) / stick_slip_;
   const bool sticks = law == Law::tangent && friction.sticks;
   response.slip = sticks ? sticking_slip(contact, friction.drag) : slip;
-  response.stickiness = friction_load / stick_slip_;
+  response.friction_per_slip = friction_load / stick_slip_;
   Vec3 w = friction_against_load(contact, response.slip);
   if (sticks) w += friction_slope(contact, response.slip, friction.drag) * (slip - response.slip);
   response.force -= friction_load * w;
@@ -234,7 +235,7 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
 }
 
 void ContactSet::add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
-  add_forces(Law::itself, x_end, lag, force);
+  add_forces(Law::exact, x_end, lag, force);
 }
 
 void ContactSet::add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
@@ -260,15 +261,15 @@ void ContactSet::add_parts_of_forces(std::span<const Vec3> x_end, const ContactL
                                      std::span<Vec3> friction, std::span<double> limit) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
-    const Response response = respond(c, Law::itself, x_end, lag);
+    const Response response = respond(c, Law::exact, x_end, lag);
     if (!response.active) continue;
     const Vec3 across = contact.normal.dot(response.force) * contact.normal;
-    const double most = contact.static_friction * stick_slip_ * response.stickiness;
+    const double max_friction = contact.static_friction * stick_slip_ * response.friction_per_slip;
     for (int k = 0; k < 4; ++k) {
       const Index i = contact.particles[k];
       push[i] += contact.weights[k] * across;
       friction[i] += contact.weights[k] * (response.force - across);
-      limit[i] += std::abs(contact.weights[k]) * most;
+      limit[i] += std::abs(contact.weights[k]) * max_friction;
     }
   }
 }
@@ -287,8 +288,8 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const C
       const Response response = respond(c, Law::tangent, x_end, lag);
       if (!response.active) continue;
       Mat3 stiffness = response.slope * contact.normal * contact.normal.transpose();
-      if (response.stickiness > 0)
-        stiffness += response.stickiness * friction_slope(contact, response.slip, lag.frictions[c].drag);
+      if (response.friction_per_slip > 0)
+        stiffness += response.friction_per_slip * friction_slope(contact, response.slip, lag.frictions[c].drag);
       list.push_back({&contact, response.force, end_rate * stiffness});
     }
   });
@@ -308,7 +309,7 @@ bool ContactSet::add_impacts(std::span<const Vec3> x_end, const ContactLag& lag,
     const Vec3 push = fraction / start.h * n.dot(response.force) * n;
     Mat3 stiffness = Mat3::Zero();
     if (contact.static_friction > 0) stiffness = fraction * response.slope * (Mat3::Identity() - n * n.transpose());
-    add_term(contact, push + stiffness * jump_across(contact, x_end, start), stiffness, right_side, system);
+    add_term(contact, push + stiffness * tangential_jump(contact, x_end, start), stiffness, right_side, system);
   }
   return any;
 }

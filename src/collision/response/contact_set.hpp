@@ -1,4 +1,4 @@
-// Contacts of one step as stiff, short-range springs with Coulomb friction inside the implicit solve.
+// Contacts of one step as stiff short-range springs with Coulomb friction, inside the implicit solve.
 #pragma once
 
 #include <array>
@@ -12,97 +12,96 @@
 
 namespace weft::collision {
 
-/// A pair of points, one on each of two surfaces, that must not come closer than `range` along `normal`. It stays as it
-/// was built for all of its step.
+/// Two points, one on each surface, that must not come closer than `range` along `normal`. Constant during its step.
 struct Contact {
   std::array<Index, 4> particles{0, 0, 0, 0};
   std::array<double, 4> weights{0, 0, 0, 0};  ///< of the particles; zero for vertices of obstacles
-  Vec3 obstacle_end = Vec3::Zero();           ///< what the obstacle's vertices add at the end of the step [m]
+  Vec3 obstacle_end = Vec3::Zero();           ///< contribution of the obstacle's vertices at the end of the step [m]
   Vec3 obstacle_start = Vec3::Zero();         ///< and at its start
-  bool against_obstacle = false;              ///< one side is of an obstacle
+  bool against_obstacle = false;              ///< one side belongs to an obstacle
   Vec3 relative_start = Vec3::Zero();         ///< point a minus point b at the start of the step [m]
   Vec3 normal = Vec3::UnitZ();                ///< unit, from b to a at the start of the step
-  double depth = 0;            ///< where its law is first taken as a tangent, below zero out of range [m]
-  double range = 0;            ///< r: the spring acts below this distance [m]
-  double full_range = 0;       ///< of the two surfaces [m]; as `range` but for pairs that were closer
+  double depth = 0;            ///< initial depth, at which the law is first linearised; negative: out of range [m]
+  double range = 0;            ///< r, activation distance: the spring acts below it [m]
+  double full_range = 0;       ///< activation distance of the surfaces [m]; `range` may be smaller
   double stiffness = 0;        ///< k [N/m]
-  double friction = 0;         ///< Coulomb coefficient of the pair while it slides
-  double static_friction = 0;  ///< until it slides; no less
+  double friction = 0;         ///< Coulomb coefficient while the pair slides
+  double static_friction = 0;  ///< before it slides; not less than `friction`
 };
 
-/// What is remembered of the friction of a contact.
+/// State of the friction of a contact between iterations.
 struct FrictionLag {
-  Vec3 drag = Vec3::Zero();  ///< w, friction over load against the slip: an unknown of its own
-  Vec3 slip = Vec3::Zero();  ///< at the last update, in stick slips
-  bool sticks = false;       ///< linearised where friction is w, and not where the slip is
-  int let_go = 0;            ///< times that it began to slide, since the step began
+  Vec3 drag = Vec3::Zero();  ///< w: friction divided by normal force, against the slip; an unknown of its own
+  Vec3 slip = Vec3::Zero();  ///< at the last update, divided by the stick slip
+  bool sticks = false;       ///< true: friction is linearised at w; false: at the slip
+  int slide_starts = 0;      ///< how often it began to slide in this step
 };
 
-/// What is remembered of the contacts of a step, one of each, from one iteration of Newton's method to the next.
+/// State of the contacts of a step, one entry for each, between Newton iterations.
 struct ContactLag {
-  std::vector<double> depths;          ///< where the law of the contact is taken as its tangent [m]
-  std::vector<double> loads;           ///< that friction goes by [N]; they lag behind the positions
-  std::vector<FrictionLag> frictions;  ///< begin as what slides at unchanged velocity, where the step begins its search
-  int updates = 0;                     ///< since the step began
+  std::vector<double> depths;          ///< depth at which each law is linearised [m]
+  std::vector<double> loads;           ///< normal forces that limit friction [N]; they lag behind the positions
+  std::vector<FrictionLag> frictions;  ///< initially those of the first iterate; zero for contacts found later
+  int updates = 0;                     ///< since the start of the step
 };
 
-/// I − sym(w ûᵀ) in the directions `across` the normal, w being kept to a length of 1 so that this is definite: of
-/// friction −λ w' of a slip u = ψ(‖u‖) w', against λ/ψ, with w = ψ' w'. See ContactSet::linearise.
+/// I − sym(w ûᵀ), restricted to the directions `across` the normal. w is limited to length 1, so that the matrix is
+/// definite. This is the derivative of friction −λ w' of a slip u = ψ(‖u‖) w', over λ/ψ, with w = ψ' w'. See
+/// ContactSet::linearise.
 Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w);
 
-/// Force of a contact: k d (1 + s (d / r)⁴), s = Numerics::Contact::stiffening, for a depth d = r − g of the gap g =
-/// n·(a − b) < r, from d = r on with the slope that it has there; n is kept from the start of the step: convex, with a
-/// Jacobian of rank one. A linear spring of cotton gives 0.1 N before the gap is closed, and a sheet that lies on the
-/// tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane with μ k (r − g), reached
-/// smoothly from zero within a slip of `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
+/// The contact normal force is k d (1 + s (d / r)⁴) with s = Numerics::Contact::stiffening, depth d = r − g and gap g =
+/// n·(a − b) < r. Beyond d = r it continues linearly. n is constant during the step, so the law is convex and its
+/// Jacobian has rank one. A linear spring is too weak under sharp tips: cotton gives 0.1 N before the gap is closed,
+/// and a sheet on the tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane with μ
+/// times the normal force. It grows smoothly from zero within a slip of `stick_speed` · h (Li et al., "Incremental
+/// Potential Contact", 2020, section 5).
 class ContactSet {
  public:
   void clear() { contacts_.clear(); }
   void add(const Contact& contact);
-  /// Before the first solve of a step over h [s], with this stick velocity [m/s].
+  /// Call before the first solve of a step over h [s]. Below `stick_speed` [m/s] friction is reduced.
   void set_step(double h, double stick_speed = numerics.contact.stick_velocity) { stick_slip_ = stick_speed * h; }
   std::span<const Contact> contacts() const { return contacts_; }
 
-  /// Before each linearisation, with the particles where the last one has led to. A contact is unknown by its force λ
-  /// as well as by its depth, f⁻¹(λ) = d (a primal–dual method; λ begins with `depth`): its
-  /// law stands in the linear system as the tangent at f⁻¹(λ), and λ follows that tangent, but never below zero. As
-  /// the tangent at the depth of the iterate, a law ~ d⁵ that is entered too deep gives up a fifth of the depth in an
-  /// iteration: sphere_drape took 576 iterations in place of 462, and 256² particles did not get through an impact.
-  /// Friction goes by λ from here on. Within one iteration it does not change, so that friction too has a potential.
+  /// Call before each linearisation, with the particles at the last iterate. The normal force λ is an unknown besides
+  /// the depth, f⁻¹(λ) = d (a primal–dual method; λ starts from `depth`). The linear system contains the tangent of the
+  /// law at f⁻¹(λ), and λ follows that tangent, but never below zero (measured: with the tangent at the depth of the
+  /// iterate, sphere_drape took 576 instead of 462 iterations, and 256² particles failed at an impact). Friction uses λ
+  /// from here on. λ is constant within one iteration, so friction has a potential too.
   ///
-  /// Friction on an obstacle that sticks follows its tangent likewise, and slides from where that leads beyond static
-  /// friction; what slides sticks once its slip is within the stick slip, or has turned back. Cloth on cloth, where
-  /// both sides give way, does not gain by that.
+  /// Sticking friction on an obstacle follows its tangent likewise. It starts to slide if the tangent exceeds static
+  /// friction, and sticks again if the slip is within the stick slip or has reversed. Between cloths this brings no
+  /// gain.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const;
 
-  /// force += contact forces [N] with the particles at x_end. Friction goes by the loads there, as long as they are
-  /// followed: what lags must show in the residual (a sheet that landed on an incline lost the friction of the
-  /// landing).
+  /// force += contact forces [N] with the particles at x_end. Friction uses the normal forces at x_end during the first
+  /// Numerics::Newton::patience updates, so that the residual contains the error of the lagged ones (measured:
+  /// otherwise a sheet that landed on an incline lost the friction of the impact).
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
-  /// Likewise with the tangents in place of the laws.
+  /// As add_forces, with the tangents instead of the laws.
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
 
-  /// What add_forces adds, friction apart from what pushes, and the most that friction can be by the loads that it goes
-  /// by [N].
+  /// As add_forces, but separates normal forces (`push`) and friction, and adds the maximum friction to `limit` [N].
   void add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
                            std::span<Vec3> friction, std::span<double> limit) const;
 
-  /// What impacts change of velocities in a step that ends at x_end, as a linear system whose unknown are these jumps:
-  /// adds terms, and to its right hand side [N/h]. False where there is none. An impact is a contact that closes by its
-  /// range in the step, or, in proportion, by less. It closes as slowly as the slowest of three estimates says: by the
-  /// velocity at the start of the step, by that velocity and the last acceleration (which leads along curved
-  /// obstacles), and by the last displacement (which is zero at rest). Its normal force acts; friction holds its points
-  /// to the jump that they had. As a force friction is known too badly: a slip of 1e-7 m is enough for all of it.
+  /// Adds the velocity jumps due to impacts, in a step that ends at x_end, as a linear system whose unknowns are the
+  /// jumps: adds terms to `system` and `right_side` [N/s]. Returns false if there is no impact. A contact that closes
+  /// by its activation distance or more in the step is a full impact; one that closes by less counts proportionally. Of
+  /// three estimates of the closing, the smallest counts: from the velocity at the start of the step; from that
+  /// velocity and the last acceleration (for motion along curved obstacles); and from the last displacement (zero at
+  /// rest). The normal force acts as a force. Friction holds the points to the jump that they had, because a slip of
+  /// 1e-7 m already changes the friction force completely.
   bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
                    std::span<Vec3> right_side, solver::LinearSystem& system) const;
 
-  /// As add_linear_forces, and adds −∂f/∂x to the system, where x_end changes by `end_rate` per change of the unknown;
-  /// for friction a form in its place that is definite. Friction −λ w of a slip u = ψ(‖u‖) w is linearised with w as
-  /// an unknown of its own (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total Variation-Based Image
-  /// Restoration", 1999). Where it sticks, it is the tangent at the slip that has this w. Where it slides w is that of
-  /// unchanged velocity, or the one with which it began to slide: the tangent where cloth slides on, force over slip or
-  /// more where it begins to slide or turns. As force over slip alone cloth that slides down an incline took 2.3
-  /// iterations a step in place of 1.05.
+  /// As add_linear_forces; also adds −∂f/∂x to the system. `end_rate`: change of x_end per change of the unknown.
+  /// Friction gets a definite approximation. Friction −λ w of a slip u = ψ(‖u‖) w is linearised with w as an unknown of
+  /// its own (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total Variation-Based Image Restoration", 1999).
+  /// If it sticks, this is the tangent at the slip that belongs to w. If it slides, w is that of unchanged velocity, or
+  /// the one with which sliding began: the result is the exact tangent while cloth keeps sliding, and force over slip
+  /// or more where it starts to slide or turns (measured: 1.05 iterations on an incline; 2.3 with force over slip).
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
@@ -112,17 +111,17 @@ class ContactSet {
  private:
   struct Response {
     bool active = false;
-    Vec3 force;             // on point a
-    double slope = 0;       // of the load [N/m]
-    double stickiness = 0;  // load that friction goes by, per stick slip [N/m]; 0: no friction
-    Vec3 slip;              // where friction is linearised, in stick slips
+    Vec3 force;                    // on point a
+    double slope = 0;              // of the normal force [N/m]
+    double friction_per_slip = 0;  // normal force used for friction, divided by the stick slip [N/m]; 0: no friction
+    Vec3 slip;                     // where friction is linearised, divided by the stick slip
   };
-  enum class Law { itself, tangent };
+  enum class Law { exact, tangent };
   Response respond(std::size_t index, Law law, std::span<const Vec3> x_end, const ContactLag& lag) const;
   void add_forces(Law law, std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
 
   std::vector<Contact> contacts_;
-  double stick_slip_ = 1e-6;  // ε of the friction [m]
+  double stick_slip_ = 1e-6;  // ε: slip at which friction is fully developed [m]
 };
 
 }  // namespace weft::collision

@@ -1,4 +1,4 @@
-// Triangles that share exactly one vertex, kept apart fan by fan.
+// Keeps triangles that share exactly one vertex apart, vertex star by vertex star.
 #pragma once
 
 #include <array>
@@ -12,77 +12,78 @@
 
 namespace weft::collision {
 
-/// Two triangles (v, p, q) and (v, r, s) that share the vertex v alone meet elsewhere only if the edge pq meets the
-/// other triangle, or rs does: both pairs of edge and triangle have no common vertex, and a certificate each keeps the
-/// two apart.
+/// Two triangles (v, p, q) and (v, r, s) that share only the vertex v meet elsewhere only if the edge pq meets the
+/// other triangle, or rs does. Both pairs of edge and triangle have no common vertex, so two separating planes keep the
+/// triangles apart.
 ///
-/// There are nine such pairs around a vertex with six triangles, so a whole closed fan is certified at once where that
-/// is possible: if all its triangles, projected along one axis n, keep their orientation throughout the step and go
-/// around the vertex once, then they cover disjoint sectors, and no two meet outside the edges they share. The oriented
-/// area n·(e × f) of a moving triangle is quadratic in time, and positive where its Bernstein coefficients are (the
-/// cone test of Volino & Magnenat-Thalmann, "Efficient Self-Collision Detection on Smoothly Discretized Surface
-/// Animations using Geometrical Shape Regularity", 1994, over a time interval as in Tang et al., "ICCD: Interactive
-/// Continuous Collision Detection between Deformable Models using Connectivity-Based Culling", 2009). Going around once
-/// at the start is going around once for good, since the angle cannot jump. Open fans at borders have few pairs and
-/// no such argument; they are certified pair by pair.
+/// A vertex with six triangles has nine such pairs of triangles, so a closed star is tested as a whole where possible.
+/// If all its triangles, projected along one axis n, keep their orientation during the step and go around the vertex
+/// once, they cover disjoint sectors, so no two meet outside their common edges. The oriented area n·(e × f) of a
+/// moving triangle is quadratic in time, and positive if its Bernstein coefficients are (the cone test of Volino &
+/// Magnenat-Thalmann, "Efficient Self-Collision Detection on Smoothly Discretized Surface Animations using Geometrical
+/// Shape Regularity", 1994, over a time interval as in Tang et al., "ICCD: Interactive Continuous Collision Detection
+/// between Deformable Models using Connectivity-Based Culling", 2009). A star that goes around once at the start does
+/// so throughout, because the angle cannot jump. Open stars at borders have few pairs and are tested pair by pair.
 class Fans {
  public:
   Fans() = default;
-  /// `surfaces`: the deformable ones; their triangles are counter-clockwise from the front.
+  /// `surfaces`: the deformable ones, with triangles counter-clockwise seen from the front.
   explicit Fans(std::span<const Surface> surfaces);
 
-  /// Measures every fan at x [m]: how far its vertices may move from there, in any way, before it has to be looked at.
+  /// Measures every star at x [m]: how far its vertices may move in any direction before it must be tested again.
   void set_reference(std::span<const Vec3> x);
 
-  /// Marks the middles of fans in which features without a common vertex were farther apart than `distance` at x
-  /// [m]: those whose triangles, seen along the axis, have longer altitudes. Of two such features, one of each of
-  /// two triangles, the closest points seen so are a vertex and a point of the other one. From the middle the way
-  /// between leads to an edge opposite to it; from another vertex it crosses a neighbouring edge of the fan, or goes
-  /// around the end of one. Both are no shorter than an altitude.
-  void mark_open(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const;
+  /// Sets `vertices` to 1 at the centres of stars in which features without a common vertex are farther apart than
+  /// `distance` at x [m]. Sufficient: all altitudes of its triangles, projected along the axis, exceed `distance`.
+  /// Proof: the closest projected points of two such features of two triangles are a vertex and a point of the other
+  /// triangle. The segment between them leads from the centre to an opposite edge; or, from another vertex, it crosses
+  /// a neighbouring edge of the star or passes its end. In each case it is at least an altitude long.
+  void mark_clear(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const;
 
-  /// Appends the edge-triangle pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of
-  /// its distance at either time from where it was at the reference [m]; `changed`: per vertex, whether x_t0 or x_t1 is
-  /// another than in the last call.
+  /// Appends the edge-triangle pairs without a separating plane on the trajectory from x_t0 to x_t1. `moved`: per
+  /// vertex, a bound of its distance from the reference at both times [m]. `changed`: per vertex, x_t0 or x_t1 has
+  /// changed.
   void find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
                     std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing,
                     Certificates which = Certificates::all);
 
  private:
   using Edge = std::array<Index, 2>;
-  /// Of a fan at the reference [m].
-  struct Room {
-    float slack;      // how far its vertices may move; negative: it is not certified as a whole
-    float clearance;  // least altitude of its triangles along the axis, where it is
+  /// Measures of a star at the reference [m].
+  struct StarMeasures {
+    float slack;      // how far its vertices may move; negative: it is not valid as a whole
+    float clearance;  // smallest altitude of its triangles along the axis, if it is valid
   };
-  void add_fan(Index vertex, std::span<const Triangle> triangles);
-  Room room_of(std::size_t fan, std::span<const Vec3> x) const;
+  void add_star(Index vertex, std::span<const Triangle> triangles);
+  StarMeasures measure_star(std::size_t star, std::span<const Vec3> x) const;
   template <class Body>
-  void for_each_pair(std::size_t fan, const Body& body) const;
-  bool turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x) const;
-  bool keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const;
-  std::span<const Index> around(std::size_t fan) const {
-    return std::span(around_).subspan(begin_[fan], begin_[fan + 1] - begin_[fan]);
+  void for_each_pair(std::size_t star, const Body& body) const;
+  bool turns_once(std::size_t star, const Vec3& axis, std::span<const Vec3> x) const;
+  bool keeps_orientation(std::size_t star, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const;
+  std::span<const Index> other_vertices(std::size_t star) const {
+    return std::span(ring_vertices_).subspan(begin_[star], begin_[star + 1] - begin_[star]);
   }
-  /// Empty for fans that are not closed.
-  std::span<const Index> ring(std::size_t fan) const { return closed_[fan] ? around(fan) : std::span<const Index>(); }
-  /// Edges opposite to the vertex, one of each triangle.
-  std::size_t edge_count(std::size_t fan) const {
-    return closed_[fan] ? around(fan).size() - 1 : around(fan).size() / 2;
+  /// Empty if the star is not closed.
+  std::span<const Index> ring(std::size_t star) const {
+    return closed_[star] ? other_vertices(star) : std::span<const Index>();
   }
-  Edge edge(std::size_t fan, std::size_t k) const {
-    const Index* first = around_.data() + begin_[fan] + (closed_[fan] ? k : 2 * k);
+  /// Edges opposite to the centre, one per triangle.
+  std::size_t edge_count(std::size_t star) const {
+    return closed_[star] ? other_vertices(star).size() - 1 : other_vertices(star).size() / 2;
+  }
+  Edge edge(std::size_t star, std::size_t k) const {
+    const Index* first = ring_vertices_.data() + begin_[star] + (closed_[star] ? k : 2 * k);
     return {first[0], first[1]};
   }
 
-  std::vector<Index> middle_;
-  // Of closed fans the other vertices in their order around the middle, the first one once more as the last; of others
-  // the ends of the edges opposite to it.
+  std::vector<Index> centres_;
+  // Closed star: its other vertices in order around the centre, with the first repeated at the end. Open star: the ends
+  // of the edges opposite to the centre.
   std::vector<std::uint32_t> begin_{0};
-  std::vector<Index> around_;
-  std::vector<std::uint8_t> closed_;           // per fan
-  std::vector<Room> rooms_;                    // per fan
-  std::vector<std::uint8_t> has_certificate_;  // per fan: as a whole or pair by pair, when it was last looked at
+  std::vector<Index> ring_vertices_;
+  std::vector<std::uint8_t> closed_;        // per star
+  std::vector<StarMeasures> measures_;      // per star
+  std::vector<std::uint8_t> is_separated_;  // per star: separated at the last test, as a whole or pair by pair
 };
 
 }  // namespace weft::collision

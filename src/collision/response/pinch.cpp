@@ -9,18 +9,18 @@
 namespace weft::collision {
 namespace {
 
-// Which way what came upon p faces now.
+// Present normal of the face nearest to p, of those that reached the cloth.
 Vec3 outward(const Vec3& p, std::span<const Triangle> faces, std::span<const Vec3> x) {
   return face_normal(nearest_point(p, faces, x).face, x);
 }
 
 }  // namespace
 
-// Those that a certificate has to be looked for against: others are apart by their boxes.
+// Faces of the limb that need a separating plane. Bounding boxes separate the others.
 std::vector<Triangle> PinchedPairs::faces_near(const Key& key, const BroadPhase& surfaces,
                                                std::span<const Vec3> x) const {
   std::vector<Triangle> faces = triangles_near(key.cloth, surfaces, key.body, x, numerics.separation.least_gap);
-  std::erase_if(faces, std::not_fn(is_of(key.limb)));
+  std::erase_if(faces, std::not_fn(belongs_to_limb(key.limb)));
   return faces;
 }
 
@@ -30,15 +30,15 @@ bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::spa
   });
 }
 
-// Where a hand is in a hip the way out of it leads into that.
-bool PinchedPairs::has_room(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces,
-                            std::span<const Vec3> x) const {
+// Whether no obstacle contains the exit. For example, a hand inside a hip has its exit blocked by the hip.
+bool PinchedPairs::is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces,
+                                 std::span<const Vec3> x) const {
   for (std::size_t surface = 0; surface < surfaces.size(); ++surface)
     if (is_obstacle(surfaces.surface(surface)) && is_inside(place, outward, surfaces, surface, x)) return false;
   return true;
 }
 
-bool PinchedPairs::concern(const std::array<Index, 4>& vertices) const {
+bool PinchedPairs::are_pinched(const std::array<Index, 4>& vertices) const {
   if (origins_.empty()) return false;
   for (Index particle : vertices)
     for (Index other : vertices)
@@ -68,7 +68,8 @@ void PinchedPairs::note_origins(const BroadPhase& surfaces, std::span<const Vec3
   for (auto& [key, origin] : origins_) {
     if (origin.side != 0) continue;
     const Vec3& corner = x_t0[key.cloth[0]];
-    origin.side = nearest_point(corner, surfaces, key.body, x_t0, Vec3::Zero(), is_of(key.limb)).height < 0 ? -1 : 1;
+    origin.side =
+        nearest_point(corner, surfaces, key.body, x_t0, Vec3::Zero(), belongs_to_limb(key.limb)).height < 0 ? -1 : 1;
   }
   list_particles();
 }
@@ -86,7 +87,8 @@ void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& 
   std::erase_if(around, [&](const auto& pinched) {
     const auto& [key, origin] = pinched;
     return is_apart(key, surfaces, x) &&
-           origin.side * nearest_point(x[key.cloth[0]], surfaces, key.body, x, Vec3::Zero(), is_of(key.limb)).height >
+           origin.side * nearest_point(x[key.cloth[0]], surfaces, key.body, x, Vec3::Zero(), belongs_to_limb(key.limb))
+                             .height >
                0;
   });
   origins_ = std::move(around);
@@ -94,24 +96,25 @@ void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& 
 }
 
 std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x,
-                                                          double reach) const {
+                                                          double max_height) const {
   std::vector<Push> pushes;
   std::map<Corner, bool> is_back;
   for (const auto& [corner, origin] : particles_) {
     const auto& [particle, body, limb] = corner;
     const Vec3& p = x[particle];
-    SurfacePoint near = nearest_point(p, surfaces, body, x, Vec3::Zero(), is_of(limb));
-    is_back[corner] = origin.side * near.height > 0;
-    // The way out through another face may be shorter, and lead to the wrong side of what pinches.
-    if (!is_back[corner]) near = nearest_point(p, surfaces, body, x, outward(p, origin.faces, x), is_of(limb));
-    const double height = origin.side * near.height;
-    if (height >= reach) continue;
-    const Vec3 way = origin.side * near.normal;
-    pushes.push_back({{{particle, near.face[0], near.face[1], near.face[2]},
-                       {1, -near.weights[0], -near.weights[1], -near.weights[2]},
-                       way,
+    SurfacePoint nearest = nearest_point(p, surfaces, body, x, Vec3::Zero(), belongs_to_limb(limb));
+    is_back[corner] = origin.side * nearest.height > 0;
+    // The nearest exit may be through another face and lead to the wrong side of the limb.
+    if (!is_back[corner])
+      nearest = nearest_point(p, surfaces, body, x, outward(p, origin.faces, x), belongs_to_limb(limb));
+    const double height = origin.side * nearest.height;
+    if (height >= max_height) continue;
+    const Vec3 exit_direction = origin.side * nearest.normal;
+    pushes.push_back({{{particle, nearest.face[0], nearest.face[1], nearest.face[2]},
+                       {1, -nearest.weights[0], -nearest.weights[1], -nearest.weights[2]},
+                       exit_direction,
                        height},
-                      has_room(p + (reach - height) * way, way, surfaces, x)});
+                      is_exit_clear(p + (max_height - height) * exit_direction, exit_direction, surfaces, x)});
   }
   for (const auto& [key, origin] : origins_) {
     const auto back = [&, &key = key](Index v) { return is_back.at({v, key.body, key.limb}); };
@@ -121,12 +124,12 @@ std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surf
       if (!weights) continue;
       Vec3 place = Vec3::Zero();
       for (std::size_t k = 0; k < 3; ++k) place += (*weights)[k] * x[key.cloth[k]];
-      const Vec3 way = origin.side * face_normal(face, x);
+      const Vec3 exit_direction = origin.side * face_normal(face, x);
       pushes.push_back({{{key.cloth[0], key.cloth[1], key.cloth[2], face[0]},
                          {(*weights)[0], (*weights)[1], (*weights)[2], -1},
-                         way,
+                         exit_direction,
                          0},
-                        has_room(place + reach * way, way, surfaces, x)});
+                        is_exit_clear(place + max_height * exit_direction, exit_direction, surfaces, x)});
     }
   }
   return pushes;

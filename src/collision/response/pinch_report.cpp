@@ -10,29 +10,29 @@
 namespace weft::collision {
 namespace {
 
-constexpr double kNowhere = std::numeric_limits<double>::infinity();
+constexpr double kNoFaces = std::numeric_limits<double>::infinity();
 
-// How far the obstacle's faces that look this way are from the place; infinite where none do.
-double distance_facing(const Vec3& place, const Vec3& way, const BroadPhase& surfaces, std::size_t obstacle,
+// Distance from the place to the obstacle's faces that point this way; infinite if there are none.
+double distance_facing(const Vec3& place, const Vec3& direction, const BroadPhase& surfaces, std::size_t obstacle,
                        std::span<const Vec3> x) {
-  const SurfacePoint point = nearest_point(place, surfaces, obstacle, x, way);
-  const bool faces = mesh::area_vector(point.face, x).dot(way) > 0;
-  return faces ? std::abs(point.height) : kNowhere;
+  const SurfacePoint point = nearest_point(place, surfaces, obstacle, x, direction);
+  const bool faces = mesh::area_vector(point.face, x).dot(direction) > 0;
+  return faces ? std::abs(point.height) : kNoFaces;
 }
 
-// What presses the cloth into the obstacle.
+// The obstacle that presses the cloth into the one that pinches it.
 std::optional<std::size_t> find_other(const PinchedPairs& pinched, const PinchedPairs::Key& key, const Vec3& place,
                                       const Bodies& bodies, const BroadPhase& surfaces, std::span<const Vec3> x) {
   std::optional<std::size_t> other;
-  double nearest = kNowhere;
+  double nearest = kNoFaces;
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
     if (!pinched.is_obstacle(surfaces.surface(b)) || b == key.body) continue;
     const double distance = std::abs(nearest_point(place, surfaces, b, x).height);
     if (distance < nearest) nearest = distance, other = b;
   }
   if (bodies[key.body].rigid) return other;
-  // Parts of one body that bends pinch too, as arm and side do: then it looks at the cloth from both sides, and from
-  // the far one from nearer than any other obstacle.
+  // Parts of one deforming body, such as arm and torso, can pinch too. Then it has faces on both sides of the cloth,
+  // and even the farther side is closer than any other obstacle.
   const Vec3 up = mesh::area_vector(key.cloth, x).normalized();
   const double far =
       std::max(distance_facing(place, up, surfaces, key.body, x), distance_facing(place, -up, surfaces, key.body, x));

@@ -1,4 +1,4 @@
-// What is said about pinched cloth: which cloth, which obstacle, and what else presses it there.
+// Reports pinched cloth: which cloth, which obstacle, and what presses the cloth into it.
 #pragma once
 
 #include <cstddef>
@@ -11,18 +11,18 @@
 
 namespace weft::collision {
 
-/// Cloth that is in an obstacle because it has no room.
+/// A cloth that intersects an obstacle because there is no space for it.
 struct Pinch {
   std::size_t cloth = 0, obstacle = 0;  ///< bodies
-  std::optional<std::size_t> other;  ///< the other obstacle nearest to it, if there is one; the same: parts of it pinch
-  Vec3 place;                        ///< of a particle [m]
+  std::optional<std::size_t> other;     ///< nearest other obstacle, if any; equal to `obstacle`: parts of it pinch
+  Vec3 place;                           ///< position of a particle [m]
 };
 
-/// One for each cloth and obstacle, with the place of the first triangle that is pinched, at x [m].
+/// One entry for each cloth and obstacle, with the place of its first pinched triangle at x [m].
 std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodies, const BroadPhase& surfaces,
                                 std::span<const Vec3> x);
 
-/// A pair of `pinched` whose obstacle did not pinch that cloth before; with any face of the obstacle.
+/// A pair of `pinched` whose obstacle did not pinch that cloth in `before`, with an arbitrary face of the obstacle.
 std::optional<CornerPair> first_fresh(const PinchedPairs& pinched, const PinchedPairs& before,
                                       const BroadPhase& surfaces);
 

@@ -30,9 +30,9 @@ struct Triangles8 {
 
 }  // namespace
 
-// Face normals and the direction of the centres for eight pairs at once, in float: 5 ns a pair, where the search in
-// double with its branches takes 60. What finds nothing here is searched for when it is first needed.
-void Planes::look_at_eight(std::size_t first, std::size_t count) {
+// Tests face normals and the direction between the centres for eight pairs at once, in float: 5 ns per pair, where the
+// branching search in double takes 60. If nothing is found, find_failing() searches later.
+void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
   const auto gather = [&](bool side_b) {
     Triangles8 result;
     for (int c = 0; c < 3; ++c) {
@@ -47,9 +47,9 @@ void Planes::look_at_eight(std::size_t first, std::size_t count) {
     return result;
   };
   Triangles8 a = gather(false), b = gather(true);
-  // A coordinate is rounded by 2^-24 of itself, twice, and a dot product of triangles no farther apart than the
-  // coordinates are large by as much a few times over; half of the floor is for the length of n. Only the pair's own
-  // coordinates count, so that no other body has an influence.
+  // Coordinates are rounded twice by 2^-24 of themselves, and dot products by a few times as much if the triangles are
+  // no farther apart than the coordinates are large. Half of the minimum gap allows for the length of n. Only the
+  // coordinates of the pair count, so that no other body has an influence.
   Lanes8 rounding = a.corner[0].axis[0];
   for (const Triangles8* side : {&a, &b})
     for (const Points8& corner : side->corner)
@@ -101,26 +101,26 @@ void Planes::watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x)
 
 void Planes::watch(std::span<const Vec3> x) {
   planes_.resize(pairs_.size());
-  has_certificate_.assign(pairs_.size(), 0);
+  is_separated_.assign(pairs_.size(), 0);
   rounded_.resize(x.size());
   parallel_for(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       rounded_[v] = Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
   });
   parallel_for(pairs_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; p += 8) look_at_eight(p, std::min<std::size_t>(8, end - p));
+    for (std::size_t p = begin; p < end; p += 8) find_planes_for_eight(p, std::min<std::size_t>(8, end - p));
   });
 }
 
 void Planes::append_closer(double radius, std::span<const float> moved, PairList& out) const {
-  std::vector<float> of_triangles(triangles_.size());
+  std::vector<float> triangle_moved(triangles_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t)
-    of_triangles[t] = std::max({moved[triangles_[t][0]], moved[triangles_[t][1]], moved[triangles_[t][2]]});
+    triangle_moved[t] = std::max({moved[triangles_[t][0]], moved[triangles_[t][1]], moved[triangles_[t][2]]});
   TrianglePair* end = out.reserve_more(pairs_.size());
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const TrianglePair& pair = pairs_.view()[p];
     *end = pair;
-    end += planes_[p].gap < static_cast<float>(radius) + of_triangles[pair.a] + of_triangles[pair.b] ? 1 : 0;
+    end += planes_[p].gap < static_cast<float>(radius) + triangle_moved[pair.a] + triangle_moved[pair.b] ? 1 : 0;
   }
   out.grow(end);
 }
@@ -143,25 +143,26 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
   });
 }
 
-void Planes::find_failing(std::size_t begin, std::size_t end, const Way& way, std::vector<CornerPair>& failing) {
-  const auto& [reference, x_t0, x_t1, carried, which] = way;
+void Planes::find_failing(std::size_t begin, std::size_t end, const Trajectory& trajectory,
+                          std::vector<CornerPair>& failing) {
+  const auto& [reference, x_t0, x_t1, carried, which] = trajectory;
   for (std::size_t p = begin; p < end; ++p) {
     const TrianglePair& numbers = pairs_.view()[p];
     const auto a = static_cast<std::size_t>(numbers.a), b = static_cast<std::size_t>(numbers.b);
     Plane& plane = planes_[p];
     const CornerPair pair{triangles_[a], triangles_[b]};
     const std::span<const Vec3> start = carried != nullptr ? carried->of(pair, x_t0) : x_t0;
-    const bool stands = start.data() == x_t0.data();
-    // What has one for the straight way need not have one for the way of an obstacle that turns between the same ends.
-    if (stands && has_certificate_[p] && !changed_[a] && !changed_[b]) continue;
-    has_certificate_[p] = stands;
-    if (stands && plane.gap > moved_[a] + moved_[b]) continue;
+    const bool starts_at_x_t0 = start.data() == x_t0.data();
+    // A plane for the straight trajectory does not prove separation from an obstacle that turns between the same ends.
+    if (starts_at_x_t0 && is_separated_[p] && !changed_[a] && !changed_[b]) continue;
+    is_separated_[p] = starts_at_x_t0;
+    if (starts_at_x_t0 && plane.gap > moved_[a] + moved_[b]) continue;
 
     const Vec3 n(plane.n[0], plane.n[1], plane.n[2]);
     if (plane.is_known() && separates(n, pair, start, x_t1)) continue;
     const std::optional<Vec3> found = find_certificate(pair, start, x_t1, which);
     if (!found) {
-      has_certificate_[p] = 0;
+      is_separated_[p] = 0;
       failing.push_back(pair);
       continue;
     }

@@ -1,4 +1,4 @@
-// Separating planes of triangle pairs, remembered from step to step.
+// Separating planes of triangle pairs, kept from step to step.
 #pragma once
 
 #include <array>
@@ -16,63 +16,63 @@
 
 namespace weft::collision {
 
-/// For each watched pair a direction and the gap along it at the reference positions. A gap shrinks by no more than the
-/// two triangles move, so a pair whose triangles have moved less than that since has its certificate without being
-/// looked at: cloth that lies on cloth costs one comparison a pair and step. Nor is a pair whose corners are all where
-/// they were when it was last found to have one: pushing cloth apart looks again and again, after moving a few.
+/// For each watched pair, a direction and the gap along it at the reference positions. The gap shrinks by at most the
+/// motion of the two triangles. While they have moved less than the gap, the pair is separated without a test, so cloth
+/// resting on cloth costs one comparison per pair and step. A pair whose corners are all where they were at its last
+/// successful test is not tested again either, because pushing apart tests repeatedly after moving a few vertices.
 class Planes {
  public:
   Planes() = default;
   explicit Planes(std::span<const Triangle> triangles) : triangles_(triangles) {}
 
-  /// Takes over the pairs, with directions found at x [m].
+  /// Watches these pairs, and finds directions at x [m].
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
-  /// The same with those that exchange() has brought.
+  /// Watches the pairs received by exchange().
   void watch(std::span<const Vec3> x);
-  /// Exchanges the list of watched pairs for another one, so that it is kept in one place only; watch() must follow.
+  /// Swaps the list of watched pairs for another, so that only one copy exists; watch() must follow.
   void exchange(PairList& pairs) { std::swap(pairs_, pairs); }
 
-  /// Appends the watched pairs that may be closer than `radius` [m] where vertices have `moved` so far from the
-  /// reference: the gap along any direction is no more than the distance.
+  /// Appends the watched pairs that may be closer than `radius` [m] after vertices have `moved` so far from the
+  /// reference [m]. The gap along any direction is a lower bound of the distance.
   void append_closer(double radius, std::span<const float> moved, PairList& out) const;
 
-  /// Appends the pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of its distance
-  /// at either time from where it was when the pairs were taken over [m]; `reference`: those positions; `changed`: per
-  /// vertex, whether x_t0 or x_t1 is another than in the last call.
-  /// `carried`: starts of pairs with obstacles that turn, which are looked at without regard to that.
+  /// Appends the pairs without a separating plane on the trajectory from x_t0 to x_t1. `reference`: positions at
+  /// watch() [m]. `moved`: per vertex, a bound of its distance from the reference at both times [m]. `changed`: per
+  /// vertex, whether x_t0 or x_t1 differs from the last call. `carried`: start positions of pairs with obstacles that
+  /// turn; these pairs are always tested.
   void find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                     std::span<const float> moved, std::span<const std::uint8_t> changed,
                     std::vector<CornerPair>& failing, const CarriedStarts* carried = nullptr,
                     Certificates which = Certificates::all);
 
-  /// The planes that are others than watch() has found for these pairs at the reference: all else that a new object
-  /// needs, once it watches the same pairs.
+  /// Saves the planes that differ from those that watch() finds for these pairs at the reference. A new object that
+  /// watches the same pairs needs nothing else.
   template <class Archive>
   void serialize(Archive& archive, std::span<const Vec3> reference);
 
  private:
   struct Plane {
     std::array<float, 3> n;
-    float gap;  // at the reference, above the least gap and rounding [m]; negative: see is_known
+    float gap;  // at the reference, less the minimum gap and rounding [m]; may be negative
     bool is_known() const { return n[0] != 0 || n[1] != 0 || n[2] != 0; }
     bool operator==(const Plane&) const = default;
   };
-  void look_at_eight(std::size_t first, std::size_t count);
-  /// As find_failing() is given it.
-  struct Way {
+  void find_planes_for_eight(std::size_t first, std::size_t count);
+  /// Arguments of find_failing().
+  struct Trajectory {
     std::span<const Vec3> reference, x_t0, x_t1;
     const CarriedStarts* carried;
     Certificates which;
   };
-  void find_failing(std::size_t begin, std::size_t end, const Way& way, std::vector<CornerPair>& failing);
+  void find_failing(std::size_t begin, std::size_t end, const Trajectory& trajectory, std::vector<CornerPair>& failing);
 
   std::span<const Triangle> triangles_;
   PairList pairs_;
   std::vector<Plane> planes_;
-  std::vector<Lanes4> rounded_;                // positions in float, for the first look
-  std::vector<float> moved_;                   // per triangle
-  std::vector<std::uint8_t> changed_;          // per triangle
-  std::vector<std::uint8_t> has_certificate_;  // per pair: when it was last looked at, from x_t0 itself
+  std::vector<Lanes4> rounded_;             // positions in float, for the search in watch()
+  std::vector<float> moved_;                // per triangle
+  std::vector<std::uint8_t> changed_;       // per triangle
+  std::vector<std::uint8_t> is_separated_;  // per pair: separated at the last test from x_t0
 };
 
 }  // namespace weft::collision

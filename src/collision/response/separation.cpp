@@ -14,7 +14,7 @@ namespace {}  // namespace
 
 Separation::Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,
                        std::span<const double> masses)
-    : triangles_(triangles), masses_(masses), planes_(triangles_), fans_(deformable) {}
+    : triangles_(triangles), masses_(masses), planes_(triangles_), stars_(deformable) {}
 
 void Separation::set_rigid(std::vector<RigidGroup> groups, Index vertices) {
   groups_ = std::move(groups);
@@ -33,13 +33,13 @@ void Separation::for_each_member(const RigidGroup& group, const Visit& visit) {
 void Separation::watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x) {
   reference_.assign(x.begin(), x.end());
   planes_.watch(pairs, x);
-  fans_.set_reference(x);
+  stars_.set_reference(x);
 }
 
 void Separation::watch(std::span<const Vec3> x) {
   reference_.assign(x.begin(), x.end());
   planes_.watch(x);
-  fans_.set_reference(x);
+  stars_.set_reference(x);
 }
 
 void Separation::append_closer(double radius, std::span<const Vec3> x, PairList& out) const {
@@ -53,7 +53,7 @@ void Separation::append_closer(double radius, std::span<const Vec3> x, PairList&
 
 std::vector<std::uint8_t> Separation::open_triangles(double distance, std::span<const Vec3> x) const {
   std::vector<std::uint8_t> vertices(reference_.size(), 0), triangles(triangles_.size(), 0);
-  fans_.mark_open(distance, x, vertices);
+  stars_.mark_clear(distance, x, vertices);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     triangles[t] = vertices[triangles_[t][0]] & vertices[triangles_[t][1]] & vertices[triangles_[t][2]];
   return triangles;
@@ -65,34 +65,35 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
   failing_.clear();
   moved_.resize(x_t0.size());
   changed_.resize(x_t0.size());
-  if (looked_t0_.size() != x_t0.size()) {
-    looked_t0_.assign(x_t0.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
-    looked_t1_ = looked_t0_;
+  if (tested_t0_.size() != x_t0.size()) {
+    tested_t0_.assign(x_t0.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    tested_t1_ = tested_t0_;
   }
   end_if_stopped();
   parallel_for(x_t0.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const double most_sq = std::max((x_t0[v] - reference_[v]).squaredNorm(), (x_t1[v] - reference_[v]).squaredNorm());
-      moved_[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>(most_sq));
-      changed_[v] = looked_t0_[v] != x_t0[v] || looked_t1_[v] != x_t1[v];
-      looked_t0_[v] = x_t0[v];
-      looked_t1_[v] = x_t1[v];
+      const double max_moved_sq =
+          std::max((x_t0[v] - reference_[v]).squaredNorm(), (x_t1[v] - reference_[v]).squaredNorm());
+      moved_[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>(max_moved_sq));
+      changed_[v] = tested_t0_[v] != x_t0[v] || tested_t1_[v] != x_t1[v];
+      tested_t0_[v] = x_t0[v];
+      tested_t1_[v] = x_t1[v];
     }
   });
   planes_.find_failing(reference_, x_t0, x_t1, moved_, changed_, failing_, carried, which);
-  fans_.find_failing(x_t0, x_t1, moved_, changed_, failing_, which);
+  stars_.find_failing(x_t0, x_t1, moved_, changed_, failing_, which);
   if (pinched != nullptr && !pinched->empty())
     std::erase_if(failing_, [&](const CornerPair& pair) { return pinched->exempts(pair); });
-  // Which pairs are pushed apart first matters, and the order of trees depends on the axes of the world.
+  // The order in which pairs are pushed apart affects the result, and the order of the trees depends on the world axes.
   std::ranges::sort(failing_);
   return failing_;
 }
 
-// The c for which pushing free corners of a up to n·x = c + target / 2 and those of b down to c - target / 2 moves the
-// centre of their mass nowhere. With the plane midway two sheets that collided lost 1e-4 of their momentum.
+// Finds the plane n·x = c for pushing a pair apart: free corners of a move up to c + target / 2, those of b down to c −
+// target / 2, without moving their common centre of mass (measured: a plane midway lost 1e-4 of the momentum).
 double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const {
   struct Corner {
-    double limit, mass;  // c from which on it is pushed (of a), or up to which (of b) [m]; [kg]
+    double limit, mass;  // c from which (of a) or up to which (of b) it is pushed [m]; [kg]
     bool is_of_a;
   };
   std::array<Corner, 6> all;
@@ -104,22 +105,22 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
                         is_of_a};
   const std::span<Corner> corners(all.data(), count);
   std::ranges::sort(corners, {}, &Corner::limit);
-  const auto gained = [&](double c) {  // along n [kg m]
+  const auto momentum_gain = [&](double c) {  // momentum gained along n [kg m]
     double sum = 0;
     for (const Corner& corner : corners)
       if ((c > corner.limit) == corner.is_of_a) sum += corner.mass * (c - corner.limit);
     return sum;
   };
-  double below = corners.empty() ? 0 : corners.front().limit, of_below = gained(below);
+  double below = corners.empty() ? 0 : corners.front().limit, of_below = momentum_gain(below);
   for (const Corner& corner : corners) {
-    const double gain = gained(corner.limit);
+    const double gain = momentum_gain(corner.limit);
     if (gain >= 0) return gain > of_below ? below + (corner.limit - below) * of_below / (of_below - gain) : below;
     below = corner.limit, of_below = gain;
   }
   return below;
 }
 
-// Moves the ends of a pair apart; false if what cannot move leaves no room.
+// Moves the ends of a pair apart. Returns false if fixed vertices leave no space.
 bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const Vec3 direction = closest_features(pair, step.start_of(pair)).points.difference;
   const double start_gap = direction.norm();
@@ -128,8 +129,7 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const double target =
       std::max(2 * numerics.separation.least_gap, std::min(numerics.separation.restored_gap, 0.5 * start_gap));
 
-  // The separating plane n·x = c at the end: where both sides get the same momentum, unless what cannot move stands in
-  // the way.
+  // The separating plane n·x = c at the end. It conserves momentum unless fixed vertices restrict it.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const auto is_fixed = [&](Index v) { return step.movable[v] != kFree || group_of(v) != nullptr; };
   double low = -kInfinity, high = kInfinity;  // of c
@@ -154,30 +154,30 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   return true;
 }
 
-// Moves the rigid bodies of a pair apart along n, or one of them from what stands; false if none of them can move.
+// Moves the rigid bodies of a pair apart along n. Returns false if none of them can move.
 bool Separation::translate_groups(const CornerPair& pair, const Vec3& n, double target, Step& step) const {
   const auto free_group = [&](Index v) { return step.movable[v] == kFree ? group_of(v) : nullptr; };
   const RigidGroup *a = free_group(pair.a[0]), *b = free_group(pair.b[0]);
-  const double ease_a = a != nullptr ? 1 / a->mass : 0, ease_b = b != nullptr ? 1 / b->mass : 0;
-  if (ease_a + ease_b == 0) return false;
-  double least_a = std::numeric_limits<double>::infinity(), most_b = -least_a;
+  const double inverse_mass_a = a != nullptr ? 1 / a->mass : 0, inverse_mass_b = b != nullptr ? 1 / b->mass : 0;
+  if (inverse_mass_a + inverse_mass_b == 0) return false;
+  double min_a = std::numeric_limits<double>::infinity(), max_b = -min_a;
   for (std::size_t k = 0; k < 3; ++k) {
-    least_a = std::min(least_a, n.dot(step.x_t1[pair.a[k]]));
-    most_b = std::max(most_b, n.dot(step.x_t1[pair.b[k]]));
+    min_a = std::min(min_a, n.dot(step.x_t1[pair.a[k]]));
+    max_b = std::max(max_b, n.dot(step.x_t1[pair.b[k]]));
   }
-  const double missing = target - (least_a - most_b);
+  const double missing = target - (min_a - max_b);
   if (missing <= 0) return false;
   const auto translate = [&](const RigidGroup* group, double by) {
     if (group != nullptr) for_each_member(*group, [&](Index v) { step.x_t1[v] += by * n; });
   };
-  translate(a, missing * ease_a / (ease_a + ease_b));
-  translate(b, -missing * ease_b / (ease_a + ease_b));
+  translate(a, missing * inverse_mass_a / (inverse_mass_a + inverse_mass_b));
+  translate(b, -missing * inverse_mass_b / (inverse_mass_a + inverse_mass_b));
   step.report.largest_push = std::max(step.report.largest_push, missing);
   return true;
 }
 
-// Lets go of the pins in a pair; false if there are none.
-bool Separation::give_way(const CornerPair& pair, Step& step) {
+// Releases the pinned particles of a pair. Returns false if there are none.
+bool Separation::release_pins(const CornerPair& pair, Step& step) {
   bool changed = false;
   for (const Triangle& corners : {pair.a, pair.b}) {
     for (Index v : corners) {
@@ -190,66 +190,68 @@ bool Separation::give_way(const CornerPair& pair, Step& step) {
   return changed;
 }
 
-// Where a vertex is backtracked to.
-const Vec3& Separation::home(Index v, const Step& step) const {
-  return rides_[v] >= 0 ? step.carried->by(static_cast<std::size_t>(rides_[v]))[v] : step.x_t0[v];
+// Position to which a vertex is backtracked.
+const Vec3& Separation::backtrack_target(Index v, const Step& step) const {
+  return carriers_[v] >= 0 ? step.carried->by(static_cast<std::size_t>(carriers_[v]))[v] : step.x_t0[v];
 }
 
-// What fails with an obstacle rides on it, and takes along what it then fails with. Cloth between two that carry it to
-// different places stays where it started. True if something changed; each vertex changes twice at most.
-bool Separation::choose_homes(const CornerPair& pair, const Step& step) {
+// Chooses where the vertices of a failing pair are backtracked to. Vertices that fail with an obstacle are carried by
+// it, and so are those that then fail with them. Vertices between two obstacles that would carry them to different
+// places stay at their start. Returns true if something changed; each vertex changes at most twice.
+bool Separation::choose_backtrack_targets(const CornerPair& pair, const Step& step) {
   if (step.carried == nullptr) return false;
   bool changed = false;
-  const auto choose = [&](Index v, int ride) {
-    if (step.movable[v] != kFree || rides_[v] == ride) return;
-    rides_[v] = ride;
-    if (const RigidGroup* group = group_of(v)) for_each_member(*group, [&](Index member) { rides_[member] = ride; });
+  const auto choose = [&](Index v, int carrier) {
+    if (step.movable[v] != kFree || carriers_[v] == carrier) return;
+    carriers_[v] = carrier;
+    if (const RigidGroup* group = group_of(v))
+      for_each_member(*group, [&](Index member) { carriers_[member] = carrier; });
     changed = true;
   };
   if (step.carried->has_obstacle(pair)) {
     const std::size_t obstacle = step.carried->obstacle_of(pair);
-    const int ride = step.carried->carries(obstacle) ? static_cast<int>(obstacle) : kAtStart;
+    const int carrier = step.carried->carries(obstacle) ? static_cast<int>(obstacle) : kAtStart;
     for (Index v : pair.a)
-      if (rides_[v] != kAtStartForGood)
-        choose(v, rides_[v] == kAtStart ? ride : rides_[v] == ride ? ride : kAtStartForGood);
+      if (carriers_[v] != kAlwaysAtStart)
+        choose(v, carriers_[v] == kAtStart ? carrier : carriers_[v] == carrier ? carrier : kAlwaysAtStart);
     return changed;
   }
-  int ride = kAtStart;
+  int carrier = kAtStart;
   bool differ = false;
   for (const Triangle& corners : {pair.a, pair.b}) {
     for (Index v : corners) {
-      if (step.movable[v] == kFree && rides_[v] == kAtStart) continue;
-      const int of_vertex = step.movable[v] == kFree ? rides_[v] : kAtStartForGood;
-      differ |= ride != kAtStart && ride != of_vertex;
-      ride = of_vertex;
+      if (step.movable[v] == kFree && carriers_[v] == kAtStart) continue;
+      const int of_vertex = step.movable[v] == kFree ? carriers_[v] : kAlwaysAtStart;
+      differ |= carrier != kAtStart && carrier != of_vertex;
+      carrier = of_vertex;
     }
   }
-  if (ride == kAtStart || (ride == kAtStartForGood && !differ)) return false;
+  if (carrier == kAtStart || (carrier == kAlwaysAtStart && !differ)) return false;
   for (const Triangle& corners : {pair.a, pair.b})
-    for (Index v : corners) choose(v, differ ? kAtStartForGood : ride);
+    for (Index v : corners) choose(v, differ ? kAlwaysAtStart : carrier);
   return changed;
 }
 
-bool Separation::rides(const CornerPair& pair) const {
-  const auto is_carried = [&](Index v) { return rides_[v] >= 0; };
+bool Separation::has_carried_vertex(const CornerPair& pair) const {
+  const auto is_carried = [&](Index v) { return carriers_[v] >= 0; };
   return std::ranges::any_of(pair.a, is_carried) || std::ranges::any_of(pair.b, is_carried);
 }
 
-// Back home, or half of the way, once a round; false if nothing was moved and nothing got another home. Between cloth
-// that is carried and cloth that is not there is nothing to be found half-way.
+// Backtracks a pair, entirely or half of the way, each vertex once per round. A pair with a carried vertex always goes
+// entirely: half of the way would mean nothing. Returns false if nothing moved and no target changed.
 bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step) {
-  bool changed = choose_homes(pair, step);
-  const double share = all_the_way || rides(pair) ? 1 : 0.5;
+  bool changed = choose_backtrack_targets(pair, step);
+  const double fraction = all_the_way || has_carried_vertex(pair) ? 1 : 0.5;
   for (const Triangle& corners : {pair.a, pair.b}) {
     for (Index v : corners) {
-      const Vec3& to = home(v, step);
+      const Vec3& to = backtrack_target(v, step);
       if (step.movable[v] != kFree || step.x_t1[v] == to) continue;
       changed = true;
       if (backtracked_in_[v] == round_) continue;
-      step.report.largest_push = std::max(step.report.largest_push, share * (to - step.x_t1[v]).norm());
+      step.report.largest_push = std::max(step.report.largest_push, fraction * (to - step.x_t1[v]).norm());
       const auto take_back = [&](Index member) {
-        const Vec3& there = home(member, step);
-        step.x_t1[member] = share == 1 ? there : Vec3(step.x_t1[member] + share * (there - step.x_t1[member]));
+        const Vec3& there = backtrack_target(member, step);
+        step.x_t1[member] = fraction == 1 ? there : Vec3(step.x_t1[member] + fraction * (there - step.x_t1[member]));
         backtracked_in_[member] = round_;
       };
       if (const RigidGroup* group = group_of(v))
@@ -264,7 +266,7 @@ bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step)
 bool Separation::backtrack_all(Step& step) const {
   bool moved = false;
   for (std::size_t v = 0; v < step.x_t0.size(); ++v) {
-    const Vec3& to = home(static_cast<Index>(v), step);
+    const Vec3& to = backtrack_target(static_cast<Index>(v), step);
     if (step.movable[v] != kFree || step.x_t1[v] == to) continue;
     step.x_t1[v] = to;
     moved = true;
@@ -272,57 +274,58 @@ bool Separation::backtrack_all(Step& step) const {
   return moved;
 }
 
-// Whether all vertices of a pair are where they started, or where one obstacle carries them: they do not meet there
-// because they do not at the start, however close they are.
-bool Separation::stays(const CornerPair& pair, const Step& step) const {
+// Whether all vertices of a pair are at their start, or where one obstacle carries them. If so, they do not meet,
+// however close they are, because they do not meet at the start.
+bool Separation::is_backtracked(const CornerPair& pair, const Step& step) const {
   const auto ends_at = [&](std::span<const Vec3> x) {
     const auto is_there = [&](Index v) { return step.x_t1[v] == x[v]; };
     return std::ranges::all_of(pair.a, is_there) && std::ranges::all_of(pair.b, is_there);
   };
   if (ends_at(step.x_t0)) return true;
-  const int ride = rides_[pair.a[0]];
-  return ride >= 0 && ends_at(step.carried->by(static_cast<std::size_t>(ride)));
+  const int carrier = carriers_[pair.a[0]];
+  return carrier >= 0 && ends_at(step.carried->by(static_cast<std::size_t>(carrier)));
 }
 
-void Separation::look_again(const Step& step) {
+void Separation::test_again(const Step& step) {
   find_failing(step.x_t0, step.x_t1, step.pinched, step.carried);
-  std::erase_if(failing_, [&](const CornerPair& pair) { return stays(pair, step); });
+  std::erase_if(failing_, [&](const CornerPair& pair) { return is_backtracked(pair, step); });
 }
 
 SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                      std::span<const std::uint8_t> movable, PinchedPairs* pinched,
-                                     const CarriedStarts* carried, bool goes_on) {
+                                     const CarriedStarts* carried, bool is_continued) {
   Step step{x_t0, x_t1, {movable.begin(), movable.end()}, pinched, carried};
   backtracked_in_.assign(x_t0.size(), 0);
-  if (!goes_on) rides_.assign(x_t0.size(), kAtStart);
-  look_again(step);
+  if (!is_continued) carriers_.assign(x_t0.size(), kAtStart);
+  test_again(step);
   step.report.corrected_pairs = static_cast<int>(failing_.size());
-  // Rounds of pushing, half as many of backtracking by halves, and as many of backtracking entirely, before all go
+  // Rounds of pushing, then half as many of backtracking by halves, then as many entirely. After that all vertices go
   // back.
   const int rounds = numerics.separation.rounds, by_halves = rounds + rounds / 2;
   for (round_ = 1; !failing_.empty(); ++round_) {
     bool changed = round_ >= by_halves + rounds && backtrack_all(step);
-    const bool last = round_ > by_halves;
+    const bool is_final = round_ > by_halves;
     for (const CornerPair& pair : failing_) {
-      if (round_ <= rounds && !rides(pair)) {
+      if (round_ <= rounds && !has_carried_vertex(pair)) {
         if (find_certificate(pair, step.start_of(pair), x_t1)) continue;  // an earlier push of this round was enough
         if (push_apart(pair, step) && (changed = true)) continue;
-        if (give_way(pair, step) && (changed = true) && push_apart(pair, step)) continue;
+        if (release_pins(pair, step) && (changed = true) && push_apart(pair, step)) continue;
       }
-      if (backtrack(pair, last, step) || (last && !stays(pair, step) && give_way(pair, step))) {
+      if (backtrack(pair, is_final, step) || (is_final && !is_backtracked(pair, step) && release_pins(pair, step))) {
         changed = true;
-      } else if (last && pinched != nullptr && pinched->may_hold(pair) && !stays(pair, step)) {
+      } else if (is_final && pinched != nullptr && pinched->is_cloth_and_obstacle(pair) &&
+                 !is_backtracked(pair, step)) {
         pinched->add(pair);
         changed = true;
       }
     }
-    // What cannot be moved any more is driven into each other.
-    if (!changed && last) {
+    // Nothing that could still move is left: the pair is forced together.
+    if (!changed && is_final) {
       step.report.stuck = failing_.front();
       return step.report;
     }
     if (!changed) round_ = by_halves;
-    look_again(step);
+    test_again(step);
   }
   step.report.separated = true;
   return step.report;

@@ -9,20 +9,19 @@
 namespace weft::collision {
 namespace {
 
-// How far a force points beyond a wall, to tell whether the wall holds, and violations that are worth another solve
-// [m].
-double nudge() {
+// Distance beyond a wall at which to probe whether it holds; penetration that is worth another solve [m].
+double probe_distance() {
   return 0.5 * numerics.separation.restored_gap;
 }
-double passed_gap() {
+double tolerated_penetration() {
   return 0.1 * numerics.separation.restored_gap;
 }
-// Cosine from which two walls of a particle are taken for one.
-constexpr double kSameWall = 1 - 1e-6;
+// Minimum cosine between the normals of two walls that count as one.
+constexpr double kMinSameWallCosine = 1 - 1e-6;
 
 struct HalfSpace {
   Vec3 normal;
-  double bound;  // of n·u
+  double bound;  // minimum of n·u
   int wall;
 };
 
@@ -30,7 +29,7 @@ bool feasible(std::span<const HalfSpace> all, const Vec3& u, double slack) {
   return std::all_of(all.begin(), all.end(), [&](const HalfSpace& h) { return h.normal.dot(u) >= h.bound - slack; });
 }
 
-// Share of Coulomb's limit over slip, for a slip in stick slips.
+// Friction divided by its limit and by the slip, for a slip in units of the stick slip.
 double friction_over_slip(double slip) {
   return slip < 1 ? 2 - slip : 1 / slip;
 }
@@ -42,7 +41,7 @@ VelocityConstraints::VelocityConstraints(std::vector<double> masses)
 
 void VelocityConstraints::begin_step(double h) {
   step_ = h;
-  for (const Touched& particle : touched_) touched_of_[particle.particle] = -1;
+  for (const TouchingParticle& particle : touched_) touched_of_[particle.particle] = -1;
   touched_.clear();
   walls_.clear();
   prescribed_.clear();
@@ -55,12 +54,12 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
     place = static_cast<int>(touched_.size());
     touched_.push_back({particle, -1, {}, {}});
   }
-  Touched& touched = touched_[place];
+  TouchingParticle& touched = touched_[place];
   const double gamma_d_min = distance >= d_min ? d_min : distance + numerics.walls.correction * (d_min - distance);
   const double bound = gamma_d_min - distance + normal.dot(motion);
   for (int w = touched.first_wall; w >= 0; w = walls_[w].next) {
     Wall& wall = walls_[w];
-    if (wall.normal.dot(normal) < kSameWall) continue;
+    if (wall.normal.dot(normal) < kMinSameWallCosine) continue;
     wall.bound = std::max(wall.bound, bound);
     return;
   }
@@ -68,10 +67,11 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
   touched.first_wall = static_cast<int>(walls_.size()) - 1;
 }
 
-// Closest point to u that passes no wall of the particle, and the walls that this takes with their multipliers: the
-// conditions of Karush, Kuhn and Tucker, tried for every set of up to three walls. `of_force`: for the walls that hold
-// now, all through the origin; -u is a force then, and the multipliers are its normal parts.
-Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool of_force, Held& held) const {
+// The point closest to u that passes no wall of the particle, and the walls needed for that, with their multipliers.
+// Tries the Karush-Kuhn-Tucker conditions for every set of up to three walls. `of_force`: uses only the walls that hold
+// now, all through the origin; then -u is a force and the multipliers are its normal components.
+Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& u, bool of_force,
+                                  ActiveWalls& held) const {
   held = {};
   std::vector<HalfSpace> all;
   for (int w = particle.first_wall; w >= 0; w = walls_[w].next) {
@@ -89,10 +89,10 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
 
   const std::size_t n = all.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const double load = missing(all[i]);
-    Vec3 moved = u + load * all[i].normal;
-    if (load <= 0 || !feasible(all, moved, kRoundoff)) continue;
-    held = {{all[i].wall, -1, -1}, {load, 0, 0}, 1};
+    const double multiplier = missing(all[i]);
+    Vec3 moved = u + multiplier * all[i].normal;
+    if (multiplier <= 0 || !feasible(all, moved, kRoundoff)) continue;
+    held = {{all[i].wall, -1, -1}, {multiplier, 0, 0}, 1};
     return moved;
   }
   for (std::size_t i = 0; i < n; ++i)
@@ -100,10 +100,10 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
       const double c = all[i].normal.dot(all[j].normal), determinant = 1 - c * c;
       if (determinant < 1e-12) continue;
       const double a = missing(all[i]), b = missing(all[j]);
-      const double load_i = (a - c * b) / determinant, load_j = (b - c * a) / determinant;
-      Vec3 moved = u + load_i * all[i].normal + load_j * all[j].normal;
-      if (load_i < 0 || load_j < 0 || !feasible(all, moved, kRoundoff)) continue;
-      held = {{all[i].wall, all[j].wall, -1}, {load_i, load_j, 0}, 2};
+      const double multiplier_i = (a - c * b) / determinant, multiplier_j = (b - c * a) / determinant;
+      Vec3 moved = u + multiplier_i * all[i].normal + multiplier_j * all[j].normal;
+      if (multiplier_i < 0 || multiplier_j < 0 || !feasible(all, moved, kRoundoff)) continue;
+      held = {{all[i].wall, all[j].wall, -1}, {multiplier_i, multiplier_j, 0}, 2};
       return moved;
     }
   for (std::size_t i = 0; i < n; ++i)
@@ -113,66 +113,66 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
         normals << all[i].normal, all[j].normal, all[k].normal;
         if (std::abs(normals.determinant()) < 1e-6) continue;
         const Mat3 gram = normals.transpose() * normals;
-        const Vec3 loads = gram.inverse() * Vec3(missing(all[i]), missing(all[j]), missing(all[k]));
-        Vec3 moved = u + normals * loads;
-        if (loads.minCoeff() < 0 || !feasible(all, moved, kRoundoff)) continue;
-        held = {{all[i].wall, all[j].wall, all[k].wall}, {loads[0], loads[1], loads[2]}, 3};
+        const Vec3 multipliers = gram.inverse() * Vec3(missing(all[i]), missing(all[j]), missing(all[k]));
+        Vec3 moved = u + normals * multipliers;
+        if (multipliers.minCoeff() < 0 || !feasible(all, moved, kRoundoff)) continue;
+        held = {{all[i].wall, all[j].wall, all[k].wall}, {multipliers[0], multipliers[1], multipliers[2]}, 3};
         return moved;
       }
-  // Walls without room between them: the most violated one goes first, and the certificates see to the rest.
+  // The walls leave no space: apply only the most violated one. Separation handles the rest.
   const auto worst =
       std::max_element(all.begin(), all.end(), [&](const auto& a, const auto& b) { return missing(a) < missing(b); });
   held = {{worst->wall, -1, -1}, {missing(*worst), 0, 0}, 1};
   return u + missing(*worst) * worst->normal;
 }
 
-int VelocityConstraints::main_wall(const Touched& particle) const {
-  const auto& loads = particle.held.loads;
-  return particle.held.walls[std::max_element(loads.begin(), loads.end()) - loads.begin()];
+int VelocityConstraints::main_wall(const TouchingParticle& particle) const {
+  const auto& multipliers = particle.held.multipliers;
+  return particle.held.walls[std::max_element(multipliers.begin(), multipliers.end()) - multipliers.begin()];
 }
 
-// Holds the particle by these walls, found on the way to u, the closest point that passes none. What sticks goes along
-// with the main wall, at its distance.
-void VelocityConstraints::hold(Touched& particle, const Vec3& u, Held held) {
+// Makes these walls hold the particle. `u`: closest displacement that passes none of them. A sticking particle moves
+// with its main wall, at its distance.
+void VelocityConstraints::hold(TouchingParticle& particle, const Vec3& u, ActiveWalls held) {
   particle.held = held;
   particle.u_held = u;
   const Wall& wall = walls_[main_wall(particle)];
   if (particle.memory.state == State::sticking && wall.static_friction > 0) {
     const Vec3 along = wall.motion + (wall.bound - wall.normal.dot(wall.motion)) * wall.normal;
-    Held more;
+    ActiveWalls more;
     particle.u_held = project(particle, along, false, more);
   } else {
     particle.memory.state = State::sliding;
   }
 }
 
-bool VelocityConstraints::lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& leaning) const {
+bool VelocityConstraints::lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
   bool any = false;
   for (Index particle : remembered_) {
     if (touched_of_[particle] >= 0) continue;
-    if (!any) leaning.assign(x_t1.begin(), x_t1.end());
+    if (!any) predicted.assign(x_t1.begin(), x_t1.end());
     any = true;
-    leaning[particle] -= by * memory_[particle].push.normalized();
+    predicted[particle] -= by * memory_[particle].push.normalized();
   }
   return any;
 }
 
 void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  for (Touched& particle : touched_) {
+  for (TouchingParticle& particle : touched_) {
     const Index i = particle.particle;
     particle.x_t0 = x_t0[i];
     particle.memory = memory_[i];
     const double push = particle.memory.push.norm();
     const Vec3 guess = x_t1[i] - x_t0[i];
-    Held held;
+    ActiveWalls held;
     const Vec3 u =
-        project(particle, push > 0 ? Vec3(guess - nudge() / push * particle.memory.push) : guess, false, held);
+        project(particle, push > 0 ? Vec3(guess - probe_distance() / push * particle.memory.push) : guess, false, held);
     if (held.count == 0) {
       particle.memory = {};
       continue;
     }
     hold(particle, u, held);
-    particle.friction_load = particle.memory.load;
+    particle.friction_normal_force = particle.memory.normal_force;
     const Vec3 slips = slip(particle, x_t1[i]) / (numerics.contact.stick_velocity * step_);
     particle.drag = friction_over_slip(slips.norm()) * slips;
   }
@@ -181,12 +181,12 @@ void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Ve
 
 int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const ForceOn& force_on) {
   int changed = 0;
-  for (Touched& particle : touched_) {
+  for (TouchingParticle& particle : touched_) {
     const Index i = particle.particle;
     particle.x_t0 = x_t0[i];
     Vec3 force = Vec3::Zero();
     if (particle.memory.state != State::away) {
-      // What brings the velocity from that of the step's motion to v_end, where something arrives, loads the wall too.
+      // The walls also exert the force that stops an arriving particle: from its mean velocity in the step to v_end.
       const PrescribedParticle prescribed = prescription(particle);
       const Vec3 arrested = prescribed.v_end - (x_end[i] - x_t0[i]) / step_;
       force = force_on(particle.particle) + masses_[i] / step_ * (arrested - prescribed.constraint.free * arrested);
@@ -197,72 +197,72 @@ int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3
   return changed;
 }
 
-// Decides anew what holds the particle; `force` is that of its walls in the last solve. Whether the solve should be
-// repeated with that: what makes little difference takes effect in the next step.
-bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec3& force) {
+// Decides which walls hold the particle. `force`: of its walls in the last solve. Returns whether the solve must be
+// repeated; small changes take effect in the next step.
+bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, const Vec3& force) {
   Memory& memory = particle.memory;
   const Vec3 u = x_end - particle.x_t0;
   const double negligible = numerics.walls.negligible_acceleration * masses_[particle.particle];
-  Held next;
+  ActiveWalls next;
   if (memory.state == State::away) {
     const Vec3 held_at = project(particle, u, false, next);
-    if (next.load() < passed_gap()) return false;
+    if (next.multiplier_sum() < tolerated_penetration()) return false;
     hold(particle, held_at, next);
-    return particle.flips++ < numerics.walls.flips;
+    return particle.constraint_changes++ < numerics.walls.flips;
   }
 
-  // The force's normal part, by walls, and what is left: tangential, or pulling.
-  Held pushing;
+  // Split the force into its components along the walls and the rest, which is tangential or pulls.
+  ActiveWalls pushing;
   const double size = force.norm();
   const Vec3 left = size > 0 ? Vec3(-size * project(particle, -force / size, true, pushing)) : Vec3::Zero();
   memory.push = force - left;
-  memory.load = size * pushing.load();
+  memory.normal_force = size * pushing.multiplier_sum();
   const double push = memory.push.norm();
-  const Vec3 held_at = project(particle, push > 0 ? Vec3(u - nudge() / push * memory.push) : u, false, next);
+  const Vec3 held_at = project(particle, push > 0 ? Vec3(u - probe_distance() / push * memory.push) : u, false, next);
   if (next.count == 0) {
-    if (left.norm() > negligible && particle.flips++ >= numerics.walls.flips) return false;
+    if (left.norm() > negligible && particle.constraint_changes++ >= numerics.walls.flips) return false;
     memory = {};
     particle.held = {};
-    particle.friction_load = 0;
+    particle.friction_normal_force = 0;
     return left.norm() > negligible;
   }
 
-  Held passed;
+  ActiveWalls passed;
   project(particle, u, false, passed);
   const Wall& wall = walls_[main_wall(particle)];
-  const double limit = (memory.state == State::sticking ? wall.static_friction : wall.friction) * memory.load;
+  const double limit = (memory.state == State::sticking ? wall.static_friction : wall.friction) * memory.normal_force;
   if (memory.state == State::sticking) {
-    const bool slips = left.norm() > limit, passes = passed.load() >= passed_gap();
-    if (!(slips || passes) || particle.flips++ >= numerics.walls.flips) return false;
+    const bool slips = left.norm() > limit, passes = passed.multiplier_sum() >= tolerated_penetration();
+    if (!(slips || passes) || particle.constraint_changes++ >= numerics.walls.flips) return false;
     if (slips) {
       memory.state = State::sliding;
-      particle.friction_load = memory.load;
+      particle.friction_normal_force = memory.normal_force;
       particle.overloaded = left.norm() - limit > negligible;
     }
     hold(particle, held_at, next);
-    return passes;  // a step of too much friction does no harm
+    return passes;  // one step of too much friction does no harm
   }
 
   const bool other_walls = !next.same_walls(particle.held);
-  const double change = wall.friction * std::abs(memory.load - particle.friction_load);
+  const double change = wall.friction * std::abs(memory.normal_force - particle.friction_normal_force);
   const bool other_load = change > negligible && change > numerics.walls.negligible_change * limit;
   const bool fast = slip(particle, x_end).norm() >= numerics.contact.stick_velocity * step_;
   particle.slow = limit > 0 && !other_load && !other_walls && !fast;
   hold(particle, held_at, next);
-  particle.friction_load = memory.load;
-  const bool matters = other_load || (other_walls && (passed.load() >= passed_gap() || left.norm() > negligible));
-  return matters && particle.flips++ < numerics.walls.flips;
+  particle.friction_normal_force = memory.normal_force;
+  const bool matters =
+      other_load || (other_walls && (passed.multiplier_sum() >= tolerated_penetration() || left.norm() > negligible));
+  return matters && particle.constraint_changes++ < numerics.walls.flips;
 }
 
 void VelocityConstraints::accept() {
-  // Nothing sticks anew while something is let go that was overloaded: it may have held what slides slowly. Where half
-  // of a patch slid and half stuck, and both changed places in each step, the sticking half held all of it, at any
-  // angle.
+  // If an overloaded particle was released, nothing sticks anew, because it may have held its slow neighbours.
+  // Otherwise the halves of a patch could stick in turn, and hold all of it at any angle.
   const bool any_overloaded =
-      std::ranges::any_of(touched_, [](const Touched& particle) { return particle.overloaded; });
+      std::ranges::any_of(touched_, [](const TouchingParticle& particle) { return particle.overloaded; });
   for (Index particle : remembered_) memory_[particle] = {};
   remembered_.clear();
-  for (const Touched& particle : touched_) {
+  for (const TouchingParticle& particle : touched_) {
     if (particle.memory.state == State::away) continue;
     Memory& memory = memory_[particle.particle] = particle.memory;
     if (particle.slow && !any_overloaded) memory.state = State::sticking;
@@ -270,8 +270,8 @@ void VelocityConstraints::accept() {
   }
 }
 
-// I − Σ q qᵀ over an orthonormal basis q of the normals that hold.
-Mat3 VelocityConstraints::free_directions(const Touched& particle) const {
+// I − Σ q qᵀ over an orthonormal basis q of the normals of the walls that hold.
+Mat3 VelocityConstraints::free_directions(const TouchingParticle& particle) const {
   Mat3 free = Mat3::Identity();
   for (int k = 0; k < particle.held.count; ++k) {
     const Vec3 q = free * walls_[particle.held.walls[k]].normal;
@@ -282,13 +282,13 @@ Mat3 VelocityConstraints::free_directions(const Touched& particle) const {
   return free;
 }
 
-PrescribedParticle VelocityConstraints::prescription(const Touched& particle) const {
+PrescribedParticle VelocityConstraints::prescription(const TouchingParticle& particle) const {
   PrescribedParticle result{{particle.particle, Mat3::Zero()}, particle.x_t0 + particle.u_held, Vec3::Zero()};
   if (particle.memory.state == State::sticking) {
     result.v_end = walls_[main_wall(particle)].motion / step_;
     return result;
   }
-  // v_r along each normal, once those before it are met.
+  // Set v_r along each normal, without changing it along the earlier ones.
   Mat3 free = Mat3::Identity();
   for (int k = 0; k < particle.held.count; ++k) {
     const Wall& wall = walls_[particle.held.walls[k]];
@@ -304,53 +304,53 @@ PrescribedParticle VelocityConstraints::prescription(const Touched& particle) co
 
 void VelocityConstraints::prescribe() {
   prescribed_.clear();
-  for (const Touched& particle : touched_)
+  for (const TouchingParticle& particle : touched_)
     if (particle.memory.state != State::away) prescribed_.push_back(prescription(particle));
 }
 
-// Motion along the walls, against that of the obstacle [m].
-Vec3 VelocityConstraints::slip(const Touched& particle, const Vec3& x_end) const {
+// Displacement along the walls relative to the obstacle [m].
+Vec3 VelocityConstraints::slip(const TouchingParticle& particle, const Vec3& x_end) const {
   const Wall& wall = walls_[main_wall(particle)];
   return free_directions(particle) * (x_end - particle.x_t0 - wall.motion);
 }
 
-VelocityConstraints::Friction VelocityConstraints::friction(const Touched& particle, const Vec3& x_end) const {
+VelocityConstraints::Friction VelocityConstraints::friction(const TouchingParticle& particle, const Vec3& x_end) const {
   const double stick_slip = numerics.contact.stick_velocity * step_;
   const Vec3 slips = slip(particle, x_end) / stick_slip;
   const double size = slips.norm();
-  const double limit = walls_[main_wall(particle)].friction * particle.friction_load;
+  const double limit = walls_[main_wall(particle)].friction * particle.friction_normal_force;
   const double sliding = limit * friction_over_slip(size);
   const Mat3 free = free_directions(particle);
-  // By so much slip over friction grows with the slip.
+  // Derivative of slip over friction by the slip.
   const double growth = size < 1 ? 1 / ((2 - size) * (2 - size)) : 1;
   return {-sliding * slips, sliding / stick_slip * friction_tangent(free, slips, growth * (free * particle.drag))};
 }
 
 void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const {
-  for (const Touched& particle : touched_) {
+  for (const TouchingParticle& particle : touched_) {
     const Index i = particle.particle;
-    if (particle.memory.state == State::sliding && particle.friction_load > 0)
+    if (particle.memory.state == State::sliding && particle.friction_normal_force > 0)
       force[i] += friction(particle, x_end[i]).force;
   }
 }
 
 void VelocityConstraints::add_parts_of_forces(std::span<const Vec3> x_end, std::span<Vec3> push,
                                               std::span<Vec3> friction, std::span<double> limit) const {
-  for (const Touched& particle : touched_) {
-    if (particle.memory.state != State::sliding || particle.friction_load == 0) continue;
+  for (const TouchingParticle& particle : touched_) {
+    if (particle.memory.state != State::sliding || particle.friction_normal_force == 0) continue;
     const Index i = particle.particle;
     const Wall& wall = walls_[main_wall(particle)];
-    push[i] += particle.friction_load * wall.normal;
+    push[i] += particle.friction_normal_force * wall.normal;
     friction[i] += this->friction(particle, x_end[i]).force;
-    limit[i] += wall.static_friction * particle.friction_load;
+    limit[i] += wall.static_friction * particle.friction_normal_force;
   }
 }
 
 void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
                                     solver::LinearSystem& system) const {
-  for (const Touched& particle : touched_) {
+  for (const TouchingParticle& particle : touched_) {
     const Index i = particle.particle;
-    if (particle.memory.state != State::sliding || particle.friction_load == 0) continue;
+    if (particle.memory.state != State::sliding || particle.friction_normal_force == 0) continue;
     const Friction sliding = friction(particle, x_end[i]);
     force[i] += sliding.force;
     system.diagonal_terms.push_back({particle.particle, end_rate * sliding.stiffness});
@@ -364,7 +364,7 @@ void VelocityConstraints::serialize(Archive& archive) {
     if constexpr (Archive::kReads)
       require(particle >= 0 && static_cast<std::size_t>(particle) < masses_.size(), "particles of the scene");
     Memory& memory = memory_[particle];
-    serialize_values(archive, memory.state, memory.push, memory.load);
+    serialize_values(archive, memory.state, memory.push, memory.normal_force);
     if constexpr (Archive::kReads) require(memory.state <= State::sliding, "a particle that sticks or slides");
   });
 }

@@ -1,4 +1,4 @@
-// What the shared library shows to others.
+// Marks what the shared library exports.
 #pragma once
 
 #define WEFT_API __attribute__((visibility("default")))

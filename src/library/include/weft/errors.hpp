@@ -1,4 +1,4 @@
-// What the library throws. Every text says where, what was expected with its unit, what was found, and what to do.
+// Exceptions of the library. Each text says where, what was expected with its unit, what was found, and what to do.
 #pragma once
 
 #include <stdexcept>
@@ -13,12 +13,12 @@ namespace weft {
 struct Mistake {
   std::string file;          ///< of the scene, as it was given
   int line = 0, column = 0;  ///< counted from 1; 0: the file as a whole, or a change
-  std::string change;        ///< "key=value", if a change brought the mistake; else empty
+  std::string change;        ///< "key=value", if a change caused the mistake; else empty
   std::string key;           ///< such as "cloth.band.material.thickness"; empty: the file as a whole
   std::string text;          ///< such as "expected > 0 m, got -0.001"
 };
 
-/// A scene has mistakes. what() lists all of them, one a line: "file:line:column: key: text".
+/// A scene has mistakes. what() lists all of them, one per line: "file:line:column: key: text".
 class WEFT_API SceneError : public std::runtime_error {
  public:
   SceneError(const std::string& text, std::vector<Mistake> mistakes)

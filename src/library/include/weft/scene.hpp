@@ -14,7 +14,7 @@ namespace weft {
 /// A checked scene. It never changes; copies share one scene, and any thread may read them.
 class WEFT_API Scene {
  public:
-  /// Reads a file. `changes`: "path.to.key=value", as `--set` of the command line takes them:
+  /// Reads a file. `changes`: "path.to.key=value", as for `--set` on the command line, such as
   /// "cloth.band.material.fabric=silk". Throws SceneError with all mistakes.
   static Scene load(const std::filesystem::path& file, const std::vector<std::string>& changes = {});
   /// The same for the text of a file. Relative paths in the text start at the folder of `name`, which need not exist.
@@ -23,12 +23,12 @@ class WEFT_API Scene {
   /// This scene with further changes, checked again. Throws SceneError.
   Scene with(const std::vector<std::string>& changes) const;
 
-  const std::string& name() const;  ///< that of the file without its ending
-  double fps() const;               ///< frames a second
+  const std::string& name() const;  ///< file name without its ending
+  double fps() const;               ///< frames per second
   int frames() const;               ///< number of frames; frame k is the state at time k / fps, frame 0 the start
   std::vector<std::string> cloths() const;     ///< names, in the order of the scene
-  std::vector<std::string> obstacles() const;  ///< likewise
-  /// The scene as TOML, with the default of every key that it leaves out.
+  std::vector<std::string> obstacles() const;  ///< names, in the order of the scene
+  /// The scene as TOML, with the default value of every key that it leaves out.
   std::string text() const;
 
   struct Data;

@@ -1,4 +1,4 @@
-// A scene, simulated frame by frame.
+// Simulates a scene frame by frame.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ using Vector = std::array<double, 3>;          ///< x, y, z in world space
 using RestPoint = std::array<double, 2>;       ///< along weft and warp
 using Triangle = std::array<std::int32_t, 3>;  ///< numbers of vertices, counter-clockwise seen from the front
 
-/// Where a body is: first turned about its origin, then shifted.
+/// Pose of a body: a rotation about its origin, then a translation.
 struct Pose {
   Vector position{0, 0, 0};                    ///< [m]
   std::array<double, 4> rotation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z
@@ -32,9 +32,10 @@ struct Object {
   std::string_view name;
   Kind kind = Kind::cloth;
   std::span<const Vector> positions;   ///< per vertex [m]; the vertices of a cloth are its particles
-  std::span<const Vector> velocities;  ///< per particle [m/s]; empty for bodies and for cloth that is not yet put on
-  /// Per particle, of all that it touches, friction too, at the end of the last time step [N]; likewise. Zeros where a
-  /// simulation begins or was restored. Contacts are stiff springs: sums over a patch say more than single particles.
+  std::span<const Vector> velocities;  ///< per particle [m/s]; empty for bodies and for cloth that is not put on yet
+  /// Total contact force per particle, with friction, at the end of the last time step [N]; empty if velocities are
+  /// empty. Zero at the start of a simulation and after it was restored. Contacts are stiff springs: sums over a patch
+  /// are more reliable than values of single particles.
   std::span<const Vector> contact_forces;
   std::span<const float> strains;       ///< per particle: largest |length / rest length - 1| of the threads there
   std::span<const RestPoint> rest;      ///< per particle: rest coordinates [m]; empty if there are none
@@ -45,30 +46,30 @@ struct Object {
 struct EnclosedAir {
   std::string cloth;
   double volume = 0;    ///< [m³]
-  double pressure = 0;  ///< above that outside [Pa]
+  double pressure = 0;  ///< gauge pressure: above that outside [Pa]
 };
 
-/// What the computation of a frame took and found. In frame 0: the energies of the start.
+/// What the computation of a frame took, and what it measured. In frame 0: the energies of the start.
 struct Report {
   double wall_s = 0, cpu_s = 0;  ///< of simulating this frame [s]
-  int steps = 0;                 ///< time steps that were accepted
-  int rejected_steps = 0;        ///< time steps that were done again, shorter
+  int steps = 0;                 ///< accepted time steps
+  int rejected_steps = 0;        ///< time steps that were repeated with shorter ones
   int newton_iterations = 0;
-  int linear_iterations = 0;              ///< of conjugate gradients
-  int near_pairs = 0;                     ///< vertex-face and edge-edge pairs within the detection distance, at the end
-  int constraints = 0;                    ///< contacts that push, and particles that pins hold, at the end
-  double min_distance = 0;                ///< of two surfaces [m]; infinite if none is within the detection distance
-  double max_strain = 0;                  ///< largest |length / rest length - 1| in all its steps
-  double stretch_ratio = 0;               ///< largest extension over the `max_stretch` of its fabric, in all its steps
-  double kinetic_energy = 0;              ///< [J]
-  double potential_energy = 0;            ///< of gravity, 0 at the origin [J]
-  double elastic_energy = 0;              ///< stretch, shear, bending, attachments [J]
-  double air_energy = 0;                  ///< of the air that cloths enclose [J]
-  double pin_work = 0;                    ///< of pins on the cloth in this frame [J]
-  double error_estimate = 0;              ///< sum over the steps of the local error of positions, estimated [m]
-  double solver_error = 0;                ///< likewise, of what the solver left [m]
-  int pinched_pairs = 0;                  ///< most triangle pairs at once that obstacles leave no space
-  int lagging_particles = 0;              ///< most particles at once that something keeps from where a pin holds them
+  int linear_iterations = 0;    ///< of conjugate gradients
+  int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, at the end
+  int constraints = 0;          ///< contacts that push, and particles that pins hold, at the end
+  double min_distance = 0;      ///< between two surfaces [m]; infinite if none is within the detection distance
+  double max_strain = 0;        ///< largest |length / rest length - 1|, in all steps
+  double stretch_ratio = 0;     ///< largest ratio of extension to the fabric's `max_stretch`, in all steps
+  double kinetic_energy = 0;    ///< [J]
+  double potential_energy = 0;  ///< of gravity, 0 at the origin [J]
+  double elastic_energy = 0;    ///< stretch, shear, bending, attachments [J]
+  double air_energy = 0;        ///< of enclosed air [J]
+  double pin_work = 0;          ///< work of pins on the cloth in this frame [J]
+  double error_estimate = 0;    ///< estimated sum of the local errors of positions over the steps [m]
+  double solver_error = 0;      ///< the same, of errors of the solver [m]
+  int pinched_pairs = 0;        ///< largest number of triangle pairs at once that obstacles leave no space
+  int lagging_particles = 0;    ///< largest number of particles at once that something keeps from their pins' targets
   std::vector<EnclosedAir> enclosed_air;  ///< of each cloth with pressure
   std::vector<std::string> warnings;
 };
@@ -78,10 +79,10 @@ class WEFT_API Frame {
  public:
   int number() const;            ///< counted from 0
   double time() const;           ///< [s]
-  const Report& report() const;  ///< zeros in the frame that a simulation was restored at
+  const Report& report() const;  ///< zeros in the frame at which a simulation was restored
   /// Cloths, obstacles, characters, each in the order of the scene.
   std::span<const Object> objects() const;
-  /// Throws std::out_of_range with the names that there are.
+  /// Throws std::out_of_range with the names of all objects if there is none of this name.
   const Object& object(std::string_view name) const;
 
   struct Data;
@@ -115,13 +116,13 @@ class WEFT_API Simulation {
   /// stays as it was.
   const Frame& advance();
 
-  /// In the next frame a driven obstacle goes to `pose` at constant velocity and stays there. Pins that `follow` it go
-  /// along: an obstacle with `collide = false` is a handle that holds cloth. Throws std::invalid_argument for an
-  /// obstacle that is not driven, or numbers that are not finite.
+  /// Moves a driven obstacle to `pose` at constant velocity during the next frame; it then stays there. Pins that
+  /// `follow` it move along: an obstacle with `collide = false` is a handle that holds cloth. Throws
+  /// std::invalid_argument if the obstacle is not driven, or the pose is not finite or has no unit quaternion.
   void move(std::string_view obstacle, const Pose& pose);
 
-  /// All that later frames depend on, for the same scene, options, library version and kind of machine. Not after a
-  /// failed advance().
+  /// Returns all that later frames depend on, for the same scene, options, library version and kind of machine. Not
+  /// allowed after a failed advance().
   std::string save() const;
 
  private:
