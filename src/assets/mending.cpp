@@ -165,7 +165,7 @@ std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) 
 }
 
 /// Detaches unjoined triangles: gives them their own vertices at edges that are not manifold, and moves these away.
-void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, Mended& mended) {
+void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& mended) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
   mended.cut = report.non_manifold.size() + report.misoriented.size();
@@ -238,7 +238,7 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, Mended& mended) {
 }
 
 /// Removes remaining third triangles at edges, which are connected to both others around a corner.
-void drop_third_triangles(LoadedMesh& loaded, Mended& mended) {
+void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   double whole = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) whole += area(loaded, t);
@@ -414,13 +414,13 @@ class EdgeCollapser {
 
 }  // namespace
 
-std::string Mended::describe() const {
+std::string MendingReport::describe() const {
   std::string text;
   const auto append = [&](std::size_t count, const std::string& what) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
   };
-  append(doubled, "triangles on others left out");
-  append(turned, "triangles turned to face as those around them");
+  append(doubled, "duplicate triangles left out");
+  append(turned, "triangles flipped to match their neighbours");
   append(cut, "edges of more than two triangles, or that face both ways, cut open");
   if (pieces > 0)
     text += fmt::format(" and {} small pieces there left out, {:.2g} % of the area", pieces, 100 * left_out);
@@ -428,8 +428,8 @@ std::string Mended::describe() const {
   return text;
 }
 
-Mended mend_sheet(LoadedMesh& loaded, double flattest) {
-  Mended mended;
+MendingReport mend_sheet(LoadedMesh& loaded, double flattest) {
+  MendingReport mended;
   if (!mesh::inspect(loaded.mesh.topology.triangles, loaded.mesh.positions.size()).manifold()) {
     mended.doubled = drop_doubles(loaded);
     const std::vector<Joint> joints = joints_of(loaded);

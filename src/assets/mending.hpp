@@ -9,7 +9,7 @@
 namespace weft::assets {
 
 /// Report of mend_sheet().
-struct Mended {
+struct MendingReport {
   std::size_t doubled = 0;    ///< removed triangles with the same corners as others
   std::size_t turned = 0;     ///< triangles flipped to match those around them
   std::size_t cut = 0;        ///< edges at which a third triangle, or one that cannot be oriented, was detached
@@ -18,7 +18,7 @@ struct Mended {
   std::size_t collapsed = 0;  ///< edges of needle triangles that were collapsed or flipped
 
   bool any() const { return doubled + turned + cut + collapsed > 0; }
-  /// "12 triangles turned to face as those around them, 3 edges of more than two triangles cut open".
+  /// "12 triangles flipped to match their neighbours, 3 edges of more than two triangles cut open".
   std::string describe() const;
 };
 
@@ -27,6 +27,6 @@ struct Mended {
 /// stay joined; a detached small piece is left out, other detached pieces end slightly before the edge. Triangles
 /// flatter than `flattest`, relative to the longest edge of the mesh, lose an edge by collapsing (if it is short) or
 /// flipping, if this keeps the sheet and its UVs. UVs, colours and groups are updated.
-Mended mend_sheet(LoadedMesh& loaded, double flattest);
+MendingReport mend_sheet(LoadedMesh& loaded, double flattest);
 
 }  // namespace weft::assets

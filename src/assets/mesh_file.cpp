@@ -169,7 +169,7 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   if (soup.triangles.empty() && soup.quads.empty()) source.fail("expected faces, got none");
   scene::FileUp up = axes.up;
   if (up == scene::FileUp::as_file)
-    up = soup.up.empty() ? axes.unsaid : static_cast<scene::FileUp>(soup.up.front() + 1);
+    up = soup.up.empty() ? axes.default_up : static_cast<scene::FileUp>(soup.up.front() + 1);
   Mat3 turn = Mat3::Identity();
   if (up != scene::FileUp::as_file) turn = turn_up(static_cast<int>(up) - 1, axes.scene_up);
   for (Vec3& x : soup.positions) {

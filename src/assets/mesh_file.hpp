@@ -35,7 +35,8 @@ struct MeshAxes {
   double scale = 1;  ///< factor on all lengths
   scene::FileUp up = scene::FileUp::as_file;
   scene::UpAxis scene_up = scene::UpAxis::z;
-  scene::FileUp unsaid = scene::FileUp::as_file;  ///< up axis of files that do not state it; as_file: that of the scene
+  scene::FileUp default_up =
+      scene::FileUp::as_file;  ///< up axis of files that do not state it; as_file: that of the scene
 };
 
 /// Reads all surfaces of a file, or those named `object` (OBJ, PLY, STL, glTF and other formats of assimp), merged with

@@ -126,10 +126,10 @@ class Campaign {
 Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan)
     : scene_(scene), each_(each), plan_(plan) {
   result_.contact = simulation::CollisionStage::needed(scene);
-  result_.starts = plan.starts.value_or(result_.contact ? kLeastStartsWithContact : 1);
-  if (result_.contact && result_.starts < kLeastStartsWithContact)
+  result_.starts = plan.starts.value_or(result_.contact ? kMinStartsWithContact : 1);
+  if (result_.contact && result_.starts < kMinStartsWithContact)
     throw Error(ExitCode::usage, "--starts: expected at least {}, as surfaces may touch in this scene, got {}",
-                kLeastStartsWithContact, result_.starts);
+                kMinStartsWithContact, result_.starts);
   for (const double refinement : plan.meshes.value_or(std::vector<double>{}))
     if (!can_refine(scene, refinement) || !can_refine(scene, 2 * refinement))
       throw Error(ExitCode::usage,
@@ -391,7 +391,8 @@ void Campaign::measure_meshes() {
     const auto twice = by_refinement.find(2 * refinement);
     const SamplePtr against = twice == by_refinement.end() ? nullptr : twice->second;
     by_refinement[refinement] =
-        run(tried, against, against ? same_in_twice_as_fine(scene_with(tried.setting)) : std::vector<std::size_t>{});
+        run(tried, against,
+            against ? matching_particles_in_refined(scene_with(tried.setting)) : std::vector<std::size_t>{});
     // Meshes that serve only as a comparison are not listed.
     const bool extra = plan_.meshes ? !asked.contains(refinement) : refinement == kRefinements[0];
     if (extra && !tried.failed()) continue;

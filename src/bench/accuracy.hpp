@@ -106,7 +106,7 @@ struct Accuracy {
   /// The runs of one series; for Axis::grid those of all steps.
   std::vector<const Run*> series(Axis axis, scene::Integrator integrator) const;
   /// The run with the scene's own settings; nullptr if there is none.
-  const Run* as_it_stands() const;
+  const Run* scene_setting_run() const;
   /// For Axis::grid: for each step the run in which the step decides.
   std::vector<const Run*> decided(scene::Integrator integrator) const;
 };

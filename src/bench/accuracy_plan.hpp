@@ -17,6 +17,6 @@ struct AccuracyPlan {
   std::optional<int> starts;  ///< each start is moved by one micrometre more; default 1, or 3 with contact
 };
 /// Smallest number of starts for which a median is more reliable than a single run.
-inline constexpr int kLeastStartsWithContact = 3;
+inline constexpr int kMinStartsWithContact = 3;
 
 }  // namespace weft::bench

@@ -79,7 +79,7 @@ std::string work_svg(const std::string& title, const Accuracy& accuracy) {
     panel.unresolved_below = 3 * at(accuracy.uncertainty, q);
     add_curves(panel, q, "step decides", Marker::circle, false, deciding(accuracy), cpu_of);
     add_curves(panel, q, "scene's", Marker::square, true, with_solver_of_scene(accuracy), cpu_of);
-    add_curves(panel, q, "tolerance", Marker::triangle, false, of_axis(accuracy, Axis::tolerance), cpu_of);
+    add_curves(panel, q, "tolerance", Marker::triangle, false, runs_of_axis(accuracy, Axis::tolerance), cpu_of);
     panels.push_back(std::move(panel));
   }
   return log_log_svg(panels);
@@ -98,7 +98,7 @@ std::string settings_svg(const std::string& title, const Accuracy& accuracy) {
   std::size_t color = 0;
   for (Quantity of : {q, Quantity::energy, Quantity::drift}) {
     Curve curve{std::string(name_of(of)), style_of(kIntegrators[color++]).color, Marker::circle, false, {}};
-    for (const Run* run : of_axis(accuracy, Axis::mesh))
+    for (const Run* run : runs_of_axis(accuracy, Axis::mesh))
       if (!run->failed()) curve.points.emplace_back(run->work.cpu_s, error_of(*run, of));
     if (!curve.points.empty()) meshes.curves.push_back(std::move(curve));
   }

@@ -147,7 +147,7 @@ std::string reference_text(const Accuracy& accuracy) {
 Table starts_table(const Accuracy& accuracy) {
   const Quantity q = deciding_quantity(accuracy);
   std::vector<const Run*> runs = with_solver_of_scene(accuracy);
-  for (const Run* run : of_axis(accuracy, Axis::tolerance)) runs.push_back(run);
+  for (const Run* run : runs_of_axis(accuracy, Axis::tolerance)) runs.push_back(run);
   Table table{{"integrator", "setting", "least", "median", "largest", "error of the medians"}};
   for (const Run* run : runs) {
     if (run->failed() || run->start_errors.empty()) continue;
@@ -184,7 +184,7 @@ std::string starts_text(const Run& run) {
 
 }  // namespace
 
-std::vector<const Run*> of_axis(const Accuracy& accuracy, Axis axis) {
+std::vector<const Run*> runs_of_axis(const Accuracy& accuracy, Axis axis) {
   std::vector<const Run*> runs;
   for (Integrator integrator : kIntegrators)
     for (const Run* run : accuracy.series(axis, integrator)) runs.push_back(run);
@@ -199,7 +199,7 @@ std::vector<const Run*> deciding(const Accuracy& accuracy) {
 }
 
 std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy) {
-  std::vector<const Run*> runs = of_axis(accuracy, Axis::grid);
+  std::vector<const Run*> runs = runs_of_axis(accuracy, Axis::grid);
   std::erase_if(runs,
                 [&](const Run* run) { return run->setting.newton_tolerance != accuracy.of_scene.newton_tolerance; });
   return runs;
@@ -272,9 +272,9 @@ std::string accuracy_markdown(const std::string& title, const Accuracy& accuracy
   section("The front: no run is both cheaper and more exact", front(accuracy, decides), false);
   section("Fixed steps, solved so exactly that the step decides", deciding(accuracy));
   section("Fixed steps, with the solver settings of the scene", with_solver_of_scene(accuracy));
-  section("Steps chosen by time.tolerance", of_axis(accuracy, Axis::tolerance));
-  section("linear_tolerance, at the scene's step", of_axis(accuracy, Axis::linear), false);
-  section("Meshes: difference to the mesh with twice the cells along each side", of_axis(accuracy, Axis::mesh));
+  section("Steps chosen by time.tolerance", runs_of_axis(accuracy, Axis::tolerance));
+  section("linear_tolerance, at the scene's step", runs_of_axis(accuracy, Axis::linear), false);
+  section("Meshes: difference to the mesh with twice the cells along each side", runs_of_axis(accuracy, Axis::mesh));
   if (accuracy.starts > 1)
     text += fmt::format("## What the start decides\n\nError of the {} of single starts against the reference.\n\n{}\n",
                         label(decides), markdown(starts_table(accuracy)));

@@ -11,7 +11,7 @@ namespace weft::bench {
 
 /// Runs of all integrators: of one axis; of Axis::grid where the step decides; of Axis::grid with the solver settings
 /// of the scene.
-std::vector<const Run*> of_axis(const Accuracy& accuracy, Axis axis);
+std::vector<const Run*> runs_of_axis(const Accuracy& accuracy, Axis axis);
 std::vector<const Run*> deciding(const Accuracy& accuracy);
 std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy);
 

@@ -67,7 +67,7 @@ std::vector<const Run*> Accuracy::decided(Integrator integrator) const {
   return found;
 }
 
-const Run* Accuracy::as_it_stands() const {
+const Run* Accuracy::scene_setting_run() const {
   const auto same = [&](const Run& run) {
     if (run.failed() || run.setting.integrator != of_scene.integrator) return false;
     if (of_scene.tolerance) return run.axis == Axis::tolerance && run.setting.tolerance == of_scene.tolerance;

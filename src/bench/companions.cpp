@@ -167,14 +167,14 @@ Errors Companions::measure_mesh_error() {
   };
   const scene::Scene half = coarse(0.5);
   const Trajectory halved = follow(half);
-  const std::vector<std::size_t> same = same_in_twice_as_fine(half);
+  const std::vector<std::size_t> same = matching_particles_in_refined(half);
   const Change change{2, compare(halved, run_, same)};
   const bool few = std::any_of(scene_.cloths.begin(), scene_.cloths.end(), [](const scene::Cloth& cloth) {
     return std::min(cloth.particles_weft, cloth.particles_warp) - 1 < 4 * kMinCellsForOrder;
   });
   if (few || !can_refine(scene_, 0.25)) return richardson(kMeshOrder, change, std::nullopt);
   const scene::Scene quarter = coarse(0.25);
-  std::vector<std::size_t> same_again = same_in_twice_as_fine(quarter);
+  std::vector<std::size_t> same_again = matching_particles_in_refined(quarter);
   for (std::size_t& particle : same_again) particle = same[particle];
   return richardson(kMeshOrder, change, Change{4, compare(follow(quarter), run_, same_again)});
 }

@@ -34,7 +34,7 @@ struct ErrorEstimate {
   double cpu_s = 0;  ///< CPU time of all companions
 
   /// Whether the motion is chaotic, so that the estimate is only a lower bound.
-  bool doubtful() const { return start_matters || steps_irregular; }
+  bool is_lower_bound() const { return start_matters || steps_irregular; }
   /// The part with the largest error in position.
   const ErrorPart& largest() const;
 };

@@ -97,8 +97,8 @@ std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
   // The smallest error that can be verified; with contact it is limited by the effect of micrometres at the start.
   if (uncertainty > kMaxUncertaintyRatio * kTargets[2]) {
     const double known = uncertainty / kMaxUncertaintyRatio;
-    text +=
-        fmt::format("; {:.1e} m, about as exact as can be told: {}", known, cheapest_text(accuracy, quantity, known));
+    text += fmt::format("; {:.1e} m, as exact as this report can show: {}", known,
+                        cheapest_text(accuracy, quantity, known));
   }
   return fmt::format("Cheapest for an error of the {} of {}.", name_of(quantity), text);
 }
@@ -160,7 +160,8 @@ std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
     if (run.failed()) continue;
     if (run.axis == Axis::mesh && run.setting.refinement == 1) left["the mesh"] = error_of(run, quantity);
     if (accuracy.of_scene.tolerance) {
-      if (&run == accuracy.as_it_stands()) left["the step"] = error_of(run, quantity);  // includes the solver's error
+      if (&run == accuracy.scene_setting_run())
+        left["the step"] = error_of(run, quantity);  // includes the solver's error
       continue;
     }
     if (run.axis != Axis::grid || run.setting.integrator != accuracy.of_scene.integrator ||
@@ -241,7 +242,7 @@ std::string recommendation(const Accuracy& accuracy) {
   const double target = kTargetErrorRatio * accuracy.cloth_size;
   const std::string wanted = fmt::format("{:.2g} mm (1 % of the cloth's size)", 1e3 * target);
   const Run* best = cheapest(accuracy, quantity, target);
-  const Run* stands = accuracy.as_it_stands();
+  const Run* stands = accuracy.scene_setting_run();
   if (best == nullptr) {
     const auto exact = front(accuracy, quantity);
     if (exact.empty()) return "No setting that was tried reaches the end of the scene.";

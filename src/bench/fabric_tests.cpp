@@ -49,14 +49,14 @@ double pseudo_random(int ring, int place, int seed) {
 }  // namespace
 
 Specimen rings(int free, int seed) {
-  const double l = (kSpecimen - kPlates) / free;
-  const int inner = static_cast<int>(std::lround(kPlates / l)), all = inner + free;
+  const double l = (kSpecimenRadius - kPlateRadius) / free;
+  const int inner = static_cast<int>(std::lround(kPlateRadius / l)), all = inner + free;
   Specimen disc;
   disc.positions.emplace_back(0, 0, 0);
   std::vector<int> first{0};
   for (int k = 1; k <= all; ++k) {
     first.push_back(static_cast<int>(disc.positions.size()));
-    const double radius = k <= inner ? kPlates * k / inner : kPlates + (k - inner) * l;
+    const double radius = k <= inner ? kPlateRadius * k / inner : kPlateRadius + (k - inner) * l;
     for (int i = 0; i < 6 * k; ++i) {
       const double along = k > inner ? 0.3 * pseudo_random(k, i, seed) : 0;
       const double across = k > inner && k < all ? 0.3 * l * pseudo_random(k, i, seed + 1) : 0;
@@ -115,7 +115,7 @@ Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, So
   if (solved == Solved::exactly) scene.solver.newton_tolerance = kExact;
   simulation::Simulation simulation(scene);
   const auto overhang = [&] {
-    return shadow_area(triangles, positions_of(simulation), Vec3::UnitZ()) - kPi * kPlates * kPlates;
+    return shadow_area(triangles, positions_of(simulation), Vec3::UnitZ()) - kPi * kPlateRadius * kPlateRadius;
   };
   const double whole = overhang();
   Drape result;

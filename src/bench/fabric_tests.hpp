@@ -12,7 +12,7 @@ namespace weft::bench {
 /// Cusick's drape test (ISO 9073-9): a disc of 30 cm diameter, held between plates of 18 cm, hangs over their edge.
 namespace cusick {
 
-inline constexpr double kPlates = 0.09, kSpecimen = 0.15;  // radii [m]
+inline constexpr double kPlateRadius = 0.09, kSpecimenRadius = 0.15;  // radii [m]
 
 struct Specimen {
   std::vector<Vec3> positions;
@@ -39,9 +39,9 @@ struct Drape {
 };
 
 /// Bending friction holds cloth where it first comes to rest, so that the solver's residual affects the drape.
-/// `exactly`: with a newton_tolerance so small that a tenth of it gives the same drape. `as_scenes_do`: with the
-/// default tolerance.
-enum class Solved { exactly, as_scenes_do };
+/// `exactly`: with a newton_tolerance so small that a tenth of it gives the same drape. `with_default_tolerance`: with
+/// the default tolerance.
+enum class Solved { exactly, with_default_tolerance };
 
 /// Lets the level specimen fall for 1.5 s, within which it comes to rest. Throws Error(simulation_failed).
 Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, Solved solved = Solved::exactly);

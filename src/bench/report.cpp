@@ -132,7 +132,7 @@ std::string map_svg(const std::vector<MapCell>& cells) {
       "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0:.0f} {1:.0f}' width='{0:.0f}' height='{1:.0f}' "
       "font-family='sans-serif' font-size='10'>\n<rect width='100%' height='100%' fill='white'/>\n{2}<text x='{3:.0f}' "
       "y='{4:.0f}' font-size='12'>Stiffness of stretch [N/m] upward; in each cell Newton iterations a step. Green "
-      "solved, yellow refused by name, orange warned of and red not: more energy than there can be, black not "
+      "solved, yellow refused by name, orange warned of and red not: more energy than is possible, black not "
       "finite.</text>\n</svg>\n",
       width, height, body, kLeft, height - 12);
 }

@@ -17,13 +17,14 @@ namespace {
 // A trial is aborted if its CPU time exceeds that of the unchanged scene by this ratio plus these seconds.
 constexpr double kSlowRatio = 20, kSlowSeconds = 5;
 
-constexpr std::size_t index_of(Varied axis) {
+constexpr std::size_t index_of(VariedParameter axis) {
   return static_cast<std::size_t>(axis);
 }
 
 void scale_materials(scene::Scene& scene, const Factors& factors) {
-  const double stiffness = factors[index_of(Varied::stiffness)], mass = factors[index_of(Varied::mass)],
-               friction = factors[index_of(Varied::friction)], damping = factors[index_of(Varied::damping)];
+  const double stiffness = factors[index_of(VariedParameter::stiffness)],
+               mass = factors[index_of(VariedParameter::mass)], friction = factors[index_of(VariedParameter::friction)],
+               damping = factors[index_of(VariedParameter::damping)];
   for (scene::Cloth& cloth : scene.cloths) {
     scene::Material& material = cloth.material;
     for (double* value : {&material.stretch_weft, &material.stretch_warp, &material.shear, &material.bend})
@@ -59,7 +60,7 @@ bool scale_mesh(scene::Scene& scene, double factor) {
 }
 
 // Whether the scene has a value of this parameter at all, and the factor changes the simulation.
-bool changes(const scene::Scene& scene, Varied axis, double factor) {
+bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   scene::Scene varied = scene;
   Factors factors{1, 1, 1, 1, 1, 1};
   factors[index_of(axis)] = factor;
@@ -71,19 +72,19 @@ bool changes(const scene::Scene& scene, Varied axis, double factor) {
   };
   using scene::Material;
   switch (axis) {
-    case Varied::stiffness:
+    case VariedParameter::stiffness:
       return !same(&Material::stretch_weft, &Material::stretch_warp, &Material::shear, &Material::bend);
-    case Varied::mass:
+    case VariedParameter::mass:
       return !scene.cloths.empty();
-    case Varied::damping:
+    case VariedParameter::damping:
       return !same(&Material::stretch_viscosity, &Material::shear_viscosity, &Material::bend_viscosity,
                    &Material::bend_friction, &Material::drag);
-    case Varied::friction:
+    case VariedParameter::friction:
       return !same(&Material::friction) && (scene.contact.self || scene.contact.obstacles);
     // Steps are never longer than a frame.
-    case Varied::step:
+    case VariedParameter::step:
       return scene.time.tolerance || scene.time.step * (factor > 1 ? 0.5 * factor : factor) < 1 / scene.time.fps;
-    case Varied::mesh:
+    case VariedParameter::mesh:
       return true;
   }
   return true;
@@ -92,7 +93,7 @@ bool changes(const scene::Scene& scene, Varied axis, double factor) {
 // Adds everything that counts as broken in a frame.
 void find_broken(const simulation::FrameReport& report, std::set<std::string>& broken) {
   if (report.min_distance <= 0 && report.frame > 0) broken.insert("surfaces touch or pass through each other");
-  if (report.stretch_share > simulation::kOverstretch) broken.insert("cloth is stretched beyond its max_stretch");
+  if (report.stretch_ratio > simulation::kMaxStretchRatio) broken.insert("cloth is stretched beyond its max_stretch");
   if (report.pinched_pairs > 0) broken.insert("cloth is caught in an obstacle");
   if (report.lagging_particles > 0) broken.insert("a pin is held back");
   for (const std::string& warning : report.warnings) {
@@ -142,11 +143,11 @@ Trial try_factors(const scene::Scene& scene, const Factors& factors, double max_
   Trial trial{factors};
   scene::Scene varied = scene;
   scale_materials(varied, factors);
-  const double step = factors[index_of(Varied::step)];
+  const double step = factors[index_of(VariedParameter::step)];
   varied.time.step *= step;
   if (varied.time.tolerance) *varied.time.tolerance *= step;
   trial.step = varied.time.tolerance ? 0 : std::min(varied.time.step, 1 / varied.time.fps);
-  if (!scale_mesh(varied, factors[index_of(Varied::mesh)])) {
+  if (!scale_mesh(varied, factors[index_of(VariedParameter::mesh)])) {
     trial.verdict = TrialVerdict::impossible;
     trial.reason = "the cells cannot be cut so";
     return trial;
@@ -173,21 +174,21 @@ std::vector<Factors> plan_trials(const scene::Scene& scene) {
     if (factors != Factors{1, 1, 1, 1, 1, 1} && std::ranges::count(plan, factors) == 0) plan.push_back(factors);
   };
   for (std::size_t a = 0; a < kVariedValues; ++a)
-    for (const double factor : factors_of(static_cast<Varied>(a))) {
+    for (const double factor : factors_of(static_cast<VariedParameter>(a))) {
       Factors factors{1, 1, 1, 1, 1, 1};
       factors[a] = factor;
-      if (changes(scene, static_cast<Varied>(a), factor)) add(factors);
+      if (changes(scene, static_cast<VariedParameter>(a), factor)) add(factors);
     }
   for (const double stiffness : kMapStiffness)
     for (const double step : kMapSteps)
-      if (changes(scene, Varied::step, step) && changes(scene, Varied::stiffness, stiffness))
+      if (changes(scene, VariedParameter::step, step) && changes(scene, VariedParameter::stiffness, stiffness))
         add({stiffness, step, 1, 1, 1, 1});
   return plan;
 }
 
 }  // namespace
 
-std::string_view name_of(Varied axis) {
+std::string_view name_of(VariedParameter axis) {
   constexpr std::string_view kNames[kVariedValues] = {"stiffness", "step", "mass", "friction", "damping", "mesh"};
   return kNames[index_of(axis)];
 }
@@ -210,15 +211,15 @@ std::string_view describe(TrialVerdict verdict) {
   return "unknown";
 }
 
-const std::vector<double>& factors_of(Varied axis) {
+const std::vector<double>& factors_of(VariedParameter axis) {
   static const std::vector<double> kDecades{1e-3, 1e-2, 0.1, 1, 10, 100, 1e3}, kDoubles{0.125, 0.25, 0.5, 1, 2, 4, 8},
       kFriction{0, 0.25, 0.5, 1, 2, 4, 8}, kMesh{0.25, 0.5, 1, 2};
   switch (axis) {
-    case Varied::step:
+    case VariedParameter::step:
       return kDoubles;
-    case Varied::friction:
+    case VariedParameter::friction:
       return kFriction;
-    case Varied::mesh:
+    case VariedParameter::mesh:
       return kMesh;
     default:
       return kDecades;
@@ -260,7 +261,7 @@ SceneStability measure_scene_stability(const scene::Scene& scene,
 std::vector<Margin> margins_of(const SceneStability& stability) {
   std::vector<Margin> margins;
   for (std::size_t a = 0; a < kVariedValues; ++a) {
-    const auto axis = static_cast<Varied>(a);
+    const auto axis = static_cast<VariedParameter>(a);
     std::vector<double> below, above;
     for (const double factor : factors_of(axis)) {
       if (factor < 1) below.insert(below.begin(), factor);

@@ -12,7 +12,7 @@
 namespace weft::bench {
 
 /// The varied parameter; the scene's own values are multiplied by a factor.
-enum class Varied : std::size_t {
+enum class VariedParameter : std::size_t {
   stiffness,  ///< stretch, shear and bending of all cloths
   step,       ///< time.step, or time.tolerance
   mass,       ///< density of all cloths, and their attached weights
@@ -21,7 +21,7 @@ enum class Varied : std::size_t {
   mesh,       ///< cells along each side
 };
 inline constexpr std::size_t kVariedValues = 6;
-std::string_view name_of(Varied axis);
+std::string_view name_of(VariedParameter axis);
 
 using Factors = std::array<double, kVariedValues>;
 
@@ -61,7 +61,7 @@ struct SceneStability {
 };
 
 /// All factors tried for one parameter, ascending, including 1.
-const std::vector<double>& factors_of(Varied axis);
+const std::vector<double>& factors_of(VariedParameter axis);
 /// Factors of stiffness and step in the two-dimensional map.
 inline constexpr std::array<double, 5> kMapStiffness{0.01, 0.1, 1, 10, 100};
 inline constexpr std::array<double, 5> kMapSteps{0.25, 0.5, 1, 2, 4};
@@ -75,7 +75,7 @@ SceneStability measure_scene_stability(
 
 /// The range of a parameter, on one side of the scene's own value, in which the scene holds.
 struct Margin {
-  Varied axis;
+  VariedParameter axis;
   double holds = 1;               ///< last factor, going away from 1, before the first that breaks
   const Trial* breaks = nullptr;  ///< the trial at that first factor; nullptr if no trial breaks
 };

@@ -46,9 +46,9 @@ std::string what_of(const Trial& trial) {
   return text;
 }
 
-std::string value_of(Varied axis, double factor, const SceneStability& stability) {
+std::string value_of(VariedParameter axis, double factor, const SceneStability& stability) {
   std::string times = fmt::format("{:g} times {}", factor, factor == 0 ? "(none)" : "its value");
-  if (axis != Varied::step || stability.as_is.step == 0) return times;
+  if (axis != VariedParameter::step || stability.as_is.step == 0) return times;
   return fmt::format("{:g} ms", 1e3 * stability.as_is.step * factor);
 }
 
@@ -88,8 +88,8 @@ std::string margin_sentence(const SceneStability& stability) {
     std::string text = fmt::format("The scene as it is breaks ({}: {})", describe(as_is.verdict), what_of(as_is));
     for (std::size_t a = 0; cure != nullptr && a < kVariedValues; ++a)
       if (cure->factors[a] != 1)
-        text += fmt::format("; it goes through with {} at {}", name_of(static_cast<Varied>(a)),
-                            value_of(static_cast<Varied>(a), cure->factors[a], stability));
+        text += fmt::format("; it goes through with {} at {}", name_of(static_cast<VariedParameter>(a)),
+                            value_of(static_cast<VariedParameter>(a), cure->factors[a], stability));
     return text + ".";
   }
   const Margin* nearest = nullptr;
@@ -131,7 +131,7 @@ Table margin_table(const SceneStability& stability) {
 
 Table trial_table(const SceneStability& stability) {
   Table table{{}};
-  for (std::size_t a = 0; a < kVariedValues; ++a) table[0].emplace_back(name_of(static_cast<Varied>(a)));
+  for (std::size_t a = 0; a < kVariedValues; ++a) table[0].emplace_back(name_of(static_cast<VariedParameter>(a)));
   for (const char* column :
        {"step_s", "verdict", "frames", "steps", "rejected_steps", "newton_a_step", "max_strain", "cpu_s", "what"})
     table[0].emplace_back(column);
@@ -156,9 +156,9 @@ std::string trial_svg(const std::string& title, const SceneStability& stability)
       label(kTrialLeft, 22, "start", markup_text(title) + ": one value at a time, times that of the scene");
   double y = kTrialTop;
   for (std::size_t a = 0; a < kVariedValues; ++a, y += kTrialCell + 18) {
-    body += label(kTrialLeft - 8, y + 0.6 * kTrialCell, "end", std::string(name_of(static_cast<Varied>(a))));
+    body += label(kTrialLeft - 8, y + 0.6 * kTrialCell, "end", std::string(name_of(static_cast<VariedParameter>(a))));
     double x = kTrialLeft;
-    for (const double factor : factors_of(static_cast<Varied>(a))) {
+    for (const double factor : factors_of(static_cast<VariedParameter>(a))) {
       Factors factors{1, 1, 1, 1, 1, 1};
       factors[a] = factor;
       body += cell(x, y, stability.find(factors));

@@ -77,7 +77,7 @@ double SpeedRun::bytes_a_particle() const {
 SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, const SpeedFrames& frames,
                        const std::function<Drawing()>& open_drawing) {
   set_thread_count(setting.threads);
-  stages_have_all_threads = true;
+  charge_all_threads = true;
   SpeedRun run{.setting = setting, .memory_before = memory_bytes()};
   simulation::Simulation simulation(scene);
   simulation.run_preroll();

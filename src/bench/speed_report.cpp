@@ -315,7 +315,7 @@ Table speed_table(const std::vector<SpeedRun>& runs) {
 
 std::string conclusion(const std::vector<SpeedRun>& runs) {
   const auto sizes = over_sizes(runs);
-  if (sizes.empty()) return "No run went well.\n";
+  if (sizes.empty()) return "No run succeeded.\n";
   std::vector<std::string> sentences{how_cost_grows(sizes), what_threads_gain(runs), what_memory_takes(sizes),
                                      how_far_from_the_bound(sizes)};
   std::erase(sentences, "");

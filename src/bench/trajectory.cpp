@@ -205,7 +205,7 @@ void refine(scene::Scene& scene, double refinement) {
   }
 }
 
-std::vector<std::size_t> same_in_twice_as_fine(const scene::Scene& scene) {
+std::vector<std::size_t> matching_particles_in_refined(const scene::Scene& scene) {
   std::vector<std::size_t> same;
   std::size_t first = 0;
   for (const scene::Cloth& cloth : scene.cloths) {

@@ -111,6 +111,6 @@ bool can_refine(const scene::Scene& scene, double refinement);
 void refine(scene::Scene& scene, double refinement);
 
 /// For each particle of the scene, the particle at the same place in the scene with twice the cells along each side.
-std::vector<std::size_t> same_in_twice_as_fine(const scene::Scene& scene);
+std::vector<std::size_t> matching_particles_in_refined(const scene::Scene& scene);
 
 }  // namespace weft::bench

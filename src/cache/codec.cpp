@@ -24,7 +24,7 @@ template <class Archive, class Value>
 void serialize_byte(Archive& archive, Value& value, Value last) {
   auto byte = static_cast<std::uint8_t>(value);
   archive.value(byte);
-  if (byte > static_cast<std::uint8_t>(last)) throw std::runtime_error(fmt::format("{} stands for nothing", byte));
+  if (byte > static_cast<std::uint8_t>(last)) throw std::runtime_error(fmt::format("{} is no known value", byte));
   value = static_cast<Value>(byte);
 }
 
@@ -143,7 +143,7 @@ void serialize(Archive& archive, Textures& textures) {
         const bool sized = texture.width > 0 && texture.height > 0 && texture.width < kMaxTextureSide &&
                            texture.height < kMaxTextureSide;
         if (!sized || texture.rgba.size() != 4 * static_cast<std::size_t>(texture.width) * texture.height)
-          throw std::runtime_error("a picture has not its size");
+          throw std::runtime_error("a picture has the wrong number of bytes");
         // Textures are not copied when writing, as paints are matched to them by pointer.
         if constexpr (kReading<Archive>) pointer = std::make_shared<const frame::Texture>(std::move(texture));
       },
@@ -173,7 +173,7 @@ void serialize(Archive& archive, frame::Appearance& look, const Textures& textur
   serialize_finite(archive, look.back_color);
   serialize_finite(archive, look.roughness);
   serialize_finite(archive, look.thread_spacing);
-  for (double* number : {&look.finish.gloss, &look.finish.warp_share, &look.finish.fuzz, &look.finish.sheer})
+  for (double* number : {&look.finish.gloss, &look.finish.warp_fraction, &look.finish.fuzz, &look.finish.sheer})
     serialize_finite(archive, *number);
   serialize_byte(archive, look.finish.threads, Threads::none);
   serialize_finite(archive, look.metal);
@@ -244,11 +244,11 @@ template <class Archive>
 void serialize(Archive& archive, frame::FrameReport& report) {
   auto& [frame, time, simulate, collide, forces, preconditioner, linear, steps, rejected_steps, inexact_steps,
          error_estimate, solver_error, newton_iterations, linear_iterations, proximities, constraints, min_distance,
-         max_strain, stretch_share, kinetic_energy, potential_energy, elastic_energy, air_energy, pin_work, solver_work,
+         max_strain, stretch_ratio, kinetic_energy, potential_energy, elastic_energy, air_energy, pin_work, solver_work,
          pinched_pairs, lagging_particles, enclosed, attachments, warnings] = report;
   for (StageTime* stage : {&simulate, &collide, &forces, &preconditioner, &linear})
     serialize_values(archive, stage->wall_s, stage->cpu_s);
-  serialize_values(archive, error_estimate, solver_error, min_distance, max_strain, stretch_share, kinetic_energy,
+  serialize_values(archive, error_estimate, solver_error, min_distance, max_strain, stretch_ratio, kinetic_energy,
                    potential_energy, elastic_energy, air_energy, pin_work, solver_work, steps, rejected_steps,
                    inexact_steps, newton_iterations, linear_iterations, proximities, constraints, pinched_pairs,
                    lagging_particles);

@@ -81,7 +81,7 @@ std::string Reader::scene_text() const {
   std::error_code ignored;
   if (fs::is_symlink(file, ignored))
     throw Error(ExitCode::asset_unreadable, "{}: broken: expected a file of the cache, got a link", file.string());
-  return read_file(file, kLargestText);
+  return read_file(file, kMaxTextBytes);
 }
 
 std::vector<int> Reader::frames() const {

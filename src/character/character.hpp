@@ -82,7 +82,7 @@ struct Coloring {
   std::vector<Material> materials;
   std::vector<Index> material_of_triangle;  ///< per triangle; empty if the file has no colours
   std::vector<std::array<Vec2, 3>> uv;      ///< per triangle: (u, v) of its corners, from the lower left of the picture
-  bool over_look = false;                   ///< pictures cover the colour that the scene gives, where they are opaque
+  bool covers_look = false;                 ///< pictures cover the colour that the scene gives, where they are opaque
 };
 
 /// Lengths in metres; up axis as in the scene.

@@ -139,7 +139,7 @@ Pose raise_arms(const Rig& rig, const Pose& pose, double degrees, const Vec3& up
   return raised;
 }
 
-std::vector<Vec3> places_on_bones(const Character& character, const Pose& pose) {
+std::vector<Vec3> growth_start_positions(const Character& character, const Pose& pose) {
   std::vector<Vec3> skinned(character.mesh.positions.size()), places;
   skin(character, pose, skinned);
   for (const Affine& global : global_transforms(character, pose)) places.emplace_back(global.translation());

@@ -139,11 +139,11 @@ constexpr double kHeadFrom = 152;
 
 }  // namespace
 
-Coloring figure_of(const mesh::Mesh& mesh, const MannequinBuild& build) {
+Coloring paint_figure(const mesh::Mesh& mesh, const MannequinBuild& build) {
   const double cm = build.height / kTableHeight;
   enum : Index { body, face, head };
   Coloring coloring;
-  coloring.over_look = true;
+  coloring.covers_look = true;
   coloring.materials = {paint("body", kBody.low, kBody.high, 192, 896, body_ink),
                         paint("face", kFace.low, kFace.high, 288, 384, face_ink),
                         paint("head", kHead.low, kHead.high, 512, 512, head_ink)};

@@ -8,6 +8,6 @@ namespace weft::character {
 
 /// Colours for the mesh of a mannequin at rest, z up. Pictures are projected along an axis, so that their outlines are
 /// equally sharp on coarse and fine triangles. The geometry that cloth touches does not change.
-Coloring figure_of(const mesh::Mesh& mesh, const MannequinBuild& build);
+Coloring paint_figure(const mesh::Mesh& mesh, const MannequinBuild& build);
 
 }  // namespace weft::character

@@ -44,7 +44,7 @@ class Walker {
     // Steps need keys beyond both ends.
     const int margin = 2 * plan.period();
     forearm_turn_ = turn_of_forearms();
-    track_ = lay_track(body, plan, -margin, keys + margin);
+    track_ = balance_body(body, plan, -margin, keys + margin);
     for (int key = track_.first; key <= track_.last(); ++key) hips_.push_back({hip_offset(key, 0), hip_offset(key, 1)});
   }
 

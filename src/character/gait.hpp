@@ -14,7 +14,7 @@ struct Walk {
   double arms_out = 13;    ///< angle of the upper arms from the vertical [degrees]; clearance for sleeves and skirts
 };
 
-/// Makes a walk. Feet keep their footholds (see Feet), the body balances above them (see lay_track), and all else
+/// Makes a walk. Feet keep their footholds (see Feet), the body balances above them (see balance_body), and all else
 /// follows the curves of `walking`. `mannequin`: made by make_mannequin, of any build. About sixty keys per second,
 /// such that a step has a whole number of them.
 Clip make_walk(const Character& mannequin, const Walk& walk);

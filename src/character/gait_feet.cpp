@@ -107,7 +107,7 @@ Vec3 Feet::hip(int side, int key) const {
 /// weights sum to 1 in even walking.
 double Feet::knee(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
-  const double since = plan_.since_strike(here, key), until = plan_.until_off(here, key);
+  const double since = plan_.strides_since_strike(here, key), until = plan_.until_off(here, key);
   const double early = std::min(here.size, 1.0) * (1 - smooth_ramp(since, 0.2, 0.35));
   const double late = kLateKneeRatio * std::min(next_size(side, number), 1.0) * smooth_ramp(kStance - until, 0.2, 0.35);
   double bend = kStandingKnee;
@@ -124,7 +124,7 @@ double Feet::leg_extent(double knee) const {
 
 /// Recorded foot pitch after a strike, fading to exactly 0.
 double Feet::strike_pitch(const Plant& plant, int key) const {
-  const double since = plan_.since_strike(plant, key);
+  const double since = plan_.strides_since_strike(plant, key);
   if (since > 0.12) return 0;
   const double recorded = kPitchRatio * kDegree * (walking::foot_pitch.at(since) - walking::kFlatPitch);
   return plant.size * recorded * (1 - smooth_ramp(since, 0.03, 0.12));

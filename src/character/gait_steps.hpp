@@ -73,7 +73,7 @@ struct StepPlan {
   /// The foothold where this foot stands, or stood last.
   std::size_t plant_at(int side, int key) const;
   /// Fraction of a stride since the heel strike, and until toe-off; large if there is none.
-  double since_strike(const Plant& plant, double key) const { return (key - plant.strike) / period(); }
+  double strides_since_strike(const Plant& plant, double key) const { return (key - plant.strike) / period(); }
   double until_off(const Plant& plant, double key) const { return (plant.off - key) / period(); }
 };
 

@@ -52,7 +52,7 @@ std::vector<Vec2> balance(const std::vector<Vec2>& p, double omega, double key_t
 
 /// Fraction of the weight on a foot, 0 to 1, before normalisation over both feet.
 double weight_fraction(const StepPlan& plan, const Plant& plant, int key) {
-  const double on = std::clamp(plan.since_strike(plant, key) / kOverlap, 0.0, 1.0);
+  const double on = std::clamp(plan.strides_since_strike(plant, key) / kOverlap, 0.0, 1.0);
   const double off = std::clamp(plan.until_off(plant, key) / kOverlap, 0.0, 1.0);
   return std::min(on, off);
 }
@@ -60,7 +60,7 @@ double weight_fraction(const StepPlan& plan, const Plant& plant, int key) {
 /// Point of the foot that bears the weight: rolls from the heel to the ball.
 Vec2 bearing_point(const Physique& body, const StepPlan& plan, const Plant& plant, double next_size, int key) {
   const double cm = body.height / 175;
-  const double back = kRollBack * (1 - smooth_ramp(plan.since_strike(plant, key), 0, 0.3)) * plant.size;
+  const double back = kRollBack * (1 - smooth_ramp(plan.strides_since_strike(plant, key), 0, 0.3)) * plant.size;
   const double front = kRollForward * smooth_ramp(-plan.until_off(plant, key), -0.4, 0) * std::min(next_size, 1.0);
   const Vec2 forward(std::sin(plant.yaw), -std::cos(plant.yaw));
   return plant.at + (body.stance_forward + 100 * cm * (front - back)) * forward;
@@ -72,7 +72,7 @@ double Track::yaw_at(int key) const {
   return yaw[index(std::clamp(key, first, last()))];
 }
 
-Track lay_track(const Physique& body, const StepPlan& plan, int first, int last) {
+Track balance_body(const Physique& body, const StepPlan& plan, int first, int last) {
   Track track;
   track.first = first;
   std::vector<double> phase;

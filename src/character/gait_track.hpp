@@ -24,6 +24,6 @@ struct Track {
 /// (Kajita et al., "The 3D linear inverted pendulum mode", 2001). Its only bounded solution is the mean of p over past
 /// and future with weights ω/2 exp(-ω |τ|). Therefore the weight moves to the stance leg before the other foot lifts
 /// off, and the body leans into the first step and slows down before it stops.
-Track lay_track(const Physique& body, const StepPlan& plan, int first, int last);
+Track balance_body(const Physique& body, const StepPlan& plan, int first, int last);
 
 }  // namespace weft::character

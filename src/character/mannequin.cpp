@@ -134,7 +134,7 @@ Character make_mannequin(const MannequinBuild& build) {
   mesh::MirroredMesh skin = make_skin(build, joints);
   bind_skin(character, skin, joints, build.height);
   character.mesh = std::move(skin.mesh);
-  character.coloring = figure_of(character.mesh, build);
+  character.coloring = paint_figure(character.mesh, build);
   return character;
 }
 

@@ -341,7 +341,7 @@ class Retargeter {
     const Proportions proportions{our_arm / their_arm, ours_.trunk(rest_).norm() / trunk, their_arm};
     PerJoint<bool> both{};
     for (std::size_t j = 0; j < kJointCount; ++j) both[j] = moves_[j] && theirs_.has(static_cast<Joint>(j));
-    const auto rests = find_rests(postures_, times_, their_arm);
+    const auto rests = find_resting_hands(postures_, times_, their_arm);
     for (std::size_t k = 0; k < frames.size(); ++k) {
       Places theirs, ours;
       for (std::size_t j = 0; j < kJointCount; ++j) theirs[j] = face_ * postures_[k].places[j];
@@ -349,7 +349,7 @@ class Retargeter {
         const std::vector<Affine> nodes = globals(frames[k]);
         for (std::size_t j = 0; j < kJointCount; ++j)
           ours[j] = both[j] ? Vec3(nodes[body_.joints[j]].translation()) : Vec3(Vec3::Zero());
-        const std::array<Vec3, 2> pull = pull_hands(theirs, ours, both, proportions, rests[k]);
+        const std::array<Vec3, 2> pull = displace_hands(theirs, ours, both, proportions, rests[k]);
         if (std::max(pull[0].norm(), pull[1].norm()) < kMinPull) break;
         for (const bool right : {false, true}) {
           const std::size_t upper = place_of(on_side(Joint::left_upper_arm, right));

@@ -131,7 +131,7 @@ Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cl
     for (int k = 0; k < 3; ++k) edges_.push_back({t[k], t[(k + 1) % 3]});
   }
   const Pose rest = rest_pose(rig.character);
-  std::vector<Vec3> places = places_on_bones(rig.character, rest);
+  std::vector<Vec3> places = growth_start_positions(rig.character, rest);
   bones_ = rebind_to_bones(rig.character, places);
   std::vector<Vec3> skinned(rig.character.mesh.positions.size());
   skin(rig.character, rest, skinned);
@@ -156,7 +156,7 @@ void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, 
       // If more than the clearance is missing at rest, limbs cross there by design, as plates of armour do.
       if (touched_[v] == 0 || !(length > 0) || missing_at_rest_[v] > room_) continue;
       const Vec3 to = x[v] + room_ / length * (skin[v] - from[v]);
-      const mesh::Entry entry = grid.first_entry(from[v], to, [&](Index t) {
+      const mesh::Entry entry = grid.find_first_crossing(from[v], to, [&](Index t) {
         return difference(limb_weights_of_triangle_[t], limb_weights_[v]) > kMinWeightDifference;
       });
       if (entry.triangle < 0) continue;

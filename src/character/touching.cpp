@@ -63,15 +63,15 @@ class Puller {
 
 }  // namespace
 
-std::array<Vec3, 2> pull_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
-                               const Proportions& proportions, const std::array<double, 2>& rests) {
+std::array<Vec3, 2> displace_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
+                                   const Proportions& proportions, const std::array<double, 2>& rests) {
   if (!(proportions.their_arm > 0)) return {Vec3::Zero(), Vec3::Zero()};
   Puller puller(theirs, ours, both, proportions);
   return {puller.pull(false, rests[0]), puller.pull(true, rests[1])};
 }
 
-std::vector<std::array<double, 2>> find_rests(std::span<const Posture> postures, std::span<const double> times,
-                                              double arm) {
+std::vector<std::array<double, 2>> find_resting_hands(std::span<const Posture> postures, std::span<const double> times,
+                                                      double arm) {
   std::vector<std::array<double, 2>> rests(postures.size());
   for (const bool right : {false, true}) {
     // In the axes of the hips, with which resting hands move.

@@ -23,12 +23,12 @@ struct Proportions {
 /// intervals to detect. The hips count only for hands that rest on them and arms that are bent, not for hanging arms.
 /// `theirs`: joints of the motion, rotated to the heading of the body. `both`: joints that both have; an arm moves only
 /// if its hand, elbow and shoulder are among them. `rests`: weight 0 to 1 of each hand resting on the hips.
-std::array<Vec3, 2> pull_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
-                               const Proportions& proportions, const std::array<double, 2>& rests);
+std::array<Vec3, 2> displace_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
+                                   const Proportions& proportions, const std::array<double, 2>& rests);
 
 /// Weight with which each hand rests on the hips, per posture: 1 if it stays within a hand's breadth for a moment, 0 if
 /// it moves twice as far, as in running. `arm`: length from shoulder to wrist [m]. `times`: increasing [s].
-std::vector<std::array<double, 2>> find_rests(std::span<const Posture> postures, std::span<const double> times,
-                                              double arm);
+std::vector<std::array<double, 2>> find_resting_hands(std::span<const Posture> postures, std::span<const double> times,
+                                                      double arm);
 
 }  // namespace weft::character

@@ -110,9 +110,7 @@ class Path {
     Vec3 sum = Vec3::Zero();
     for (int i = -kSamples; i <= kSamples; ++i) {
       const double s = t + window * i / kSamples;
-      sum += s < 0     ? Vec3(2 * path.front() - at(-s))
-             : s > end ? Vec3(2 * path.back() - at(2 * end - s))
-                       : at(s);
+      sum += s < 0 ? Vec3(2 * path.front() - at(-s)) : s > end ? Vec3(2 * path.back() - at(2 * end - s)) : at(s);
     }
     return sum / (2 * kSamples + 1);
   }
@@ -155,8 +153,7 @@ class Path {
     }
     for (std::size_t k = known + 1; k < times_.size(); ++k) velocities[k] = velocities[known];
     std::vector<Vec3> smooth;
-    for (const double t : times_)
-      smooth.push_back(smoothed(velocities, t, std::min(kFootWindow, times_.back() / 2)));
+    for (const double t : times_) smooth.push_back(smoothed(velocities, t, std::min(kFootWindow, times_.back() / 2)));
     return smooth;
   }
 
@@ -176,10 +173,10 @@ Clip in_place(const Rig& rig, const Clip& clip, const Vec3& up) {
   return path.translate(path.displacements_in_place());
 }
 
-Traveled at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up) {
+TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up) {
   const Clip still = in_place(rig, clip, up);
   const Path path(rig, still, up);
-  Traveled result;
+  TravelResult result;
   const std::vector<Vec3> by = path.displacements_at_speed(speed, result.feet);
   result.clip = path.translate(by);
   return result;

@@ -10,7 +10,7 @@ namespace weft::character {
 /// remains. The clip begins and ends in the same place.
 Clip in_place(const Rig& rig, const Clip& clip, const Vec3& up);
 
-struct Traveled {
+struct TravelResult {
   Clip clip;
   double feet = 0;  ///< mean speed at which feet in stance pass below a body in place [m/s]; 0: they do not
 };
@@ -18,6 +18,6 @@ struct Traveled {
 /// Gives a clip in place a mean speed of `speed` [m/s of the clip], along the path that its feet in stance imply; feet
 /// do not slide if `speed` is the one they imply. Without such feet it moves straight ahead. Travel of its own is
 /// removed first. `up`: unit vector.
-Traveled at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up);
+TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up);
 
 }  // namespace weft::character

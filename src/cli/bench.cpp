@@ -138,7 +138,8 @@ std::string describe(const bench::Factors& factors) {
   std::string text;
   for (std::size_t a = 0; a < bench::kVariedValues; ++a)
     if (factors[a] != 1)
-      text += fmt::format("{}{} {:g}", text.empty() ? "" : ", ", name_of(static_cast<bench::Varied>(a)), factors[a]);
+      text += fmt::format("{}{} {:g}", text.empty() ? "" : ", ", name_of(static_cast<bench::VariedParameter>(a)),
+                          factors[a]);
   return text.empty() ? "as it is" : text;
 }
 

@@ -31,7 +31,7 @@ struct Missing {
       return fmt::format("frame{} {}", list.size() == 1 ? "" : "s", frames_text(list));
     };
     std::string text;
-    if (!absent.empty()) text = fmt::format("{} {} not there", frames(absent), absent.size() == 1 ? "is" : "are");
+    if (!absent.empty()) text = fmt::format("{} {} missing", frames(absent), absent.size() == 1 ? "is" : "are");
     if (!absent.empty() && !broken.empty()) text += "; ";
     if (!broken.empty()) text += fmt::format("{} cannot be used: {}", frames(broken), first_problem);
     return text;
@@ -50,7 +50,7 @@ FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& sele
   }
   if (missing.none()) return wanted;
   if (!partial || before.end == wanted.begin)
-    throw Error(ExitCode::not_whole,
+    throw Error(ExitCode::frames_missing,
                 "{}: of frames {} {}; weft simulate --resume makes what is missing, --partial takes what is before it",
                 reader.folder().string(), wanted.text(), missing.text());
   log::warn(fmt::format("{}: of frames {} {}; only {} are taken", reader.folder().string(), wanted.text(),

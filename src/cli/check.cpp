@@ -108,7 +108,8 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
   else
     enclosed = find_enclosed(loaded.scene, *simulation::Simulation(loaded.scene).snapshot());
   print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
-  for (const std::string& warning : simulation::doubts(loaded.scene)) print("{}: note: {}\n", file.string(), warning);
+  for (const std::string& warning : simulation::find_warnings(loaded.scene))
+    print("{}: note: {}\n", file.string(), warning);
   for (const std::string& note : enclosed) print("{}: note: {}\n", file.string(), note);
   if (!options.against.empty()) print_changes(file, loaded.scene, options.against);
   if (options.plan) print("{}", plan_table(loaded.scene));

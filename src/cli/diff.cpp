@@ -105,7 +105,7 @@ ExitCode exit_code(const std::vector<FileComparison>& results) {
 
 std::string summary(const std::vector<FileComparison>& results) {
   const auto good = std::count_if(results.begin(), results.end(), [](const auto& result) { return result.good(); });
-  return fmt::format("{} of {} are as their references", good, results.size());
+  return fmt::format("{} of {} match their references", good, results.size());
 }
 
 // GitHub Actions reads annotations from standard output, and sets this variable for every step.

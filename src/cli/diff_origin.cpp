@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Metadata of a picture or video; empty if it cannot be read.
-KeyedValues metadata_of(const fs::path& file) {
+KeyedValues keyed_metadata_of(const fs::path& file) {
   try {
     if (compare::is_video(file)) return video::Decoder(file).metadata();
     image::Metadata metadata;
@@ -48,7 +48,7 @@ std::string join_some(const std::vector<std::string>& lines) {
 }  // namespace
 
 std::string describe_origin_changes(const fs::path& reference, const fs::path& test) {
-  KeyedValues before = metadata_of(reference), after = metadata_of(test);
+  KeyedValues before = keyed_metadata_of(reference), after = keyed_metadata_of(test);
   if (!before.contains("scene_hash") || !after.contains("scene_hash")) return "";
   if (before["scene_hash"] != after["scene_hash"]) {
     const fs::path old_scene = effective_scene_file(reference, before["scene"]);

@@ -98,7 +98,7 @@ Json describe_json(const FileComparison& result, const compare::Limits& limits, 
   json["pixels_changed"] = f.pixels_changed;
   json["pixels_over"] = f.pixels_over;
   json["pixels_at_edges"] = f.pixels_at_edges;
-  json["share_over"] = f.share_over();
+  json["share_over"] = f.fraction_over();
   json["largest"] = f.largest;
   json["largest_at"] = {f.largest_x, f.largest_y};
   json["ssim"] = f.ssim;

@@ -105,7 +105,7 @@ nlohmann::ordered_json error_json(const ErrorEstimate& estimate) {
     std::replace(key.begin(), key.end(), ' ', '_');
     parts[key] = part.missing.empty() ? errors_json(part.errors) : nlohmann::ordered_json{{"missing", part.missing}};
   }
-  return {{"comparable", !estimate.doubtful()},
+  return {{"comparable", !estimate.is_lower_bound()},
           {"parts", std::move(parts)},
           {"all", errors_json(estimate.all)},
           {"advice", error_sentence(estimate, 0)},

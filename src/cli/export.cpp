@@ -43,7 +43,7 @@ class Cameras {
     std::stable_partition(names.begin(), names.end(), [&](const std::string& name) { return name == scene.camera; });
     for (const std::string& name : names) {
       render::CameraPath path(name, static_cast<double>(scene.width) / scene.height);
-      if (render::CameraPath::is_found(first, name)) {
+      if (render::CameraPath::is_computed(first, name)) {
         show_frames(reader, path);
         path.find();
       }

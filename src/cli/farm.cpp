@@ -43,7 +43,7 @@ void check_slurm_found(const char* program, const ProcessResult& result) {
 /// Numbers and names of submitted jobs, oldest first.
 std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> jobs;
-  std::istringstream in(read_start(folder / "farm/jobs", kLargestText));
+  std::istringstream in(read_start(folder / "farm/jobs", kMaxTextBytes));
   for (std::string line; std::getline(in, line);)
     if (const auto tab = line.find('\t'); tab != std::string::npos)
       jobs.emplace_back(line.substr(0, tab), line.substr(tab + 1));
@@ -149,7 +149,7 @@ class Farm {
     std::string queue;
     for (const auto& [state, count] : states) queue += fmt::format(", {} {}", count, state);
     print("{} of {} runs are done{}\n", done, rows.size(), queue);
-    return done == rows.size() ? ExitCode::ok : ExitCode::not_whole;
+    return done == rows.size() ? ExitCode::ok : ExitCode::frames_missing;
   }
 
   ExitCode cancel() const {
@@ -161,7 +161,7 @@ class Farm {
       const ProcessResult result = run_process(words);
       check_slurm_found("scancel", result);
       if (result.exit_code != 0)
-        throw Error(ExitCode::output_failed, "scancel ended with {}; its own words stand above", result.exit_code);
+        throw Error(ExitCode::output_failed, "scancel ended with {}; its output is above", result.exit_code);
     }
     log::info(
         fmt::format("{}: {} jobs taken back; what they have made is kept, and weft farm submit goes on from there",
@@ -175,16 +175,16 @@ class Farm {
     if (!index.is_object() || !index.contains("runs"))
       throw Error(ExitCode::asset_unreadable, "{}: expected the folder that weft farm submit was given with -o",
                   folder_.string());
-    if (index["runs"].size() > kMostRuns)
+    if (index["runs"].size() > kMaxRuns)
       throw Error(ExitCode::asset_unreadable, "{}: expected at most {} runs, got {}",
-                  (folder_ / review::kSweepName).string(), kMostRuns, index["runs"].size());
+                  (folder_ / review::kSweepName).string(), kMaxRuns, index["runs"].size());
     return index;
   }
 
   /// The last message of the program, preceded by a line feed; empty if there is none.
   static std::string last_error(const fs::path& log) {
     std::string last;
-    std::istringstream in(read_start(log, kLargestText));
+    std::istringstream in(read_start(log, kMaxTextBytes));
     for (std::string line; std::getline(in, line);)
       if (line.starts_with("weft: ")) last = "\n  " + line.substr(6);
     return last;
@@ -201,7 +201,7 @@ class Farm {
       int code = 0;
       std::istringstream(read_start(entry.path(), 16)) >> code;
       if (entry.file_size(none) == 0)
-        lines.push_back(fmt::format("{} found no room for its exit code: is the disk full? {}", task, log.string()));
+        lines.push_back(fmt::format("{} could not write its exit code: is the disk full? {}", task, log.string()));
       else if (code != 0)
         lines.push_back(fmt::format("{} ended with exit code {}: {}{}", task, code, log.string(), last_error(log)));
     }

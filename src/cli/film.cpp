@@ -86,7 +86,7 @@ class Film {
       }
       MadeFrame made = source.next();  // simulated or read
       if (frame == made_.begin) result_.cloth_size = bench::cloth_size(*made.snapshot);
-      if (parts_.look) parts_.look(made);
+      if (parts_.on_frame) parts_.on_frame(made);
       if (parts_.store) parts_.store->keep(made);  // so that it need not be simulated again
       for (const std::string& warning : made.report.warnings) log::warn(warning);
       record(frame).report = std::move(made.report);
@@ -143,7 +143,7 @@ class Film {
         const frame::SnapshotPtr& snapshot = made->snapshot;
         DrawnFrame drawn{snapshot, {}};
         if (painter) {
-          if (camera_) painter->look_through(*std::exchange(camera_, std::nullopt));
+          if (camera_) painter->set_camera_path(*std::exchange(camera_, std::nullopt));
           drawn.picture = painter->draw(*snapshot, made->before.get());
           record(snapshot->frame).render = painter->last_time();
         }
@@ -170,7 +170,7 @@ class Film {
         progress_.advance(Stage::write);
         log_.write("frame_done", frame_json(frame));
       }
-      const bool finishes = writer && (parts_.part_is_kept || !result_.failure);
+      const bool finishes = writer && (parts_.keeps_partial_output || !result_.failure);
       if (finishes) writer->finish();
       result_.finished_output = finishes;
     } catch (...) {

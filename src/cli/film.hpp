@@ -33,11 +33,11 @@ struct FilmParts {
   /// The camera path to be found from all frames, if the scene does not place the camera. Frames are then drawn from
   /// the store after the last one is made.
   std::optional<render::CameraPath> camera = std::nullopt;
-  std::filesystem::path meshes;  ///< folder; empty: none
-  std::set<int> drawn = {};      ///< wanted frames that an earlier run has drawn
-  bool part_is_kept = true;      ///< if the source or the painter fails, finish and keep the earlier frames
-  bool motion = false;           ///< whether the painter also needs the previous frame
-  std::function<void(const MadeFrame&)> look = {};  ///< called after each frame is made, in order; may be empty
+  std::filesystem::path meshes;      ///< folder; empty: none
+  std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn
+  bool keeps_partial_output = true;  ///< if the source or the painter fails, finish and keep the earlier frames
+  bool motion = false;               ///< whether the painter also needs the previous frame
+  std::function<void(const MadeFrame&)> on_frame = {};  ///< called after each frame is made, in order; may be empty
 };
 
 struct FilmResult {

@@ -112,7 +112,7 @@ class Film {
   explicit Film(const std::vector<fs::path>& parts) {
     for (const fs::path& part : parts)
       for (const fs::path& file : files_of(part)) add(file);
-    if (pieces_.empty()) throw Error(ExitCode::not_whole, "{}", problem_);
+    if (pieces_.empty()) throw Error(ExitCode::frames_missing, "{}", problem_);
     std::ranges::sort(pieces_, {}, [](const Piece& piece) { return piece.frames.front(); });
     for (const Piece& piece : pieces_) check_fits(piece);
   }
@@ -121,8 +121,8 @@ class Film {
   const Piece& first() const { return pieces_.front(); }
   bool of_videos() const { return is_video(first().file); }
 
-  /// The requested frames, or with `partial` those before the first missing one. Throws Error(not_whole), which names
-  /// the missing frames.
+  /// The requested frames, or with `partial` those before the first missing one. Throws Error(frames_missing), which
+  /// names the missing frames.
   FrameRange frames(const JoinOptions& options) const;
 
  private:
@@ -180,7 +180,7 @@ FrameRange Film::frames(const JoinOptions& options) const {
                         frames_text(missing) + (missing.size() == 1 ? " is" : " are"));
   if (!problem_.empty()) text += fmt::format("{} {}", missing.empty() ? " all are there, but" : ";", problem_);
   if (!options.partial || before.end == before.begin)
-    throw Error(ExitCode::not_whole, "{}; --partial takes what is before the first that is missing", text);
+    throw Error(ExitCode::frames_missing, "{}; --partial takes what is before the first that is missing", text);
   log::warn(fmt::format("{}; only {} are taken", text, before.text()));
   return missing.empty() ? wanted : before;
 }

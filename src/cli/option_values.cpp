@@ -31,7 +31,7 @@ int parse_integer(const char* option, const std::string& text, int low, int high
   return *value;
 }
 
-double parse_share(const char* option, const std::string& text) {
+double parse_fraction(const char* option, const std::string& text) {
   const auto value = number_in<double>(text);
   if (!value || !(*value >= 0 && *value <= 1))
     throw Error(ExitCode::usage, "{}: expected a number from 0 to 1, got {}", option, text);

@@ -31,7 +31,7 @@ Value parse_choice(const char* option, const std::string& text, const std::array
 
 int parse_integer(const char* option, const std::string& text, int low, int high);
 /// From 0 to 1.
-double parse_share(const char* option, const std::string& text);
+double parse_fraction(const char* option, const std::string& text);
 /// A factor above 0, with a generous upper bound.
 double parse_factor(const char* option, const std::string& text);
 /// A length in metres, from a nanometre to a metre.

@@ -16,7 +16,7 @@ Parser::Parser() {
       "  weft simulate scenes/falling_band.toml --cache band.cache && weft render band.cache -o band.mp4\n"
       "  weft check --plan scenes/falling_band.toml\n"
       "  weft thumbnail scenes/falling_band.toml -o band.png --frame 60\n"
-      "\nExit codes: 0 well, 1 our own fault, 2 command line, 3 scene, 4 asset, 5 simulation,\n"
+      "\nExit codes: 0 well, 1 internal error, 2 command line, 3 scene, 4 asset, 5 simulation,\n"
       "  6 output or encoder, 7 images differ, 8 reference missing,\n  9 frames missing, 75 interrupted.");
   add_run();
   add_simulate();
@@ -103,7 +103,7 @@ void Parser::add_thumbnail() {
   command.add_option("SCENE", thumbnail.scenes, "Scenes, TOML files, or folders of caches")->required()->type_name("");
   add_value(command, "-o,--output", "FILE.png|DIR", "The picture, or the folder of <scene>.png [output/<scene>.png]",
             [this](const std::string& text) { thumbnail.output = text; });
-  add_value(command, "--frame", "N", "Which frame, counted from 0 [the one that tells most]",
+  add_value(command, "--frame", "N", "Which frame, counted from 0 [the most informative one]",
             [this](const std::string& text) { thumbnail.frame = parse_integer("--frame", text, 0, 1'000'000'000); });
   command.add_flag("--start", thumbnail.start,
                    "Instead of a frame: how the scene is given, with all that touches or crosses marked in red");

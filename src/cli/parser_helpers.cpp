@@ -50,7 +50,7 @@ void Parser::add_watch() {
   passed_on("--output,-o", "FILE.png|FILE.mp4", "What is drawn [output/<scene>.png, with --film .mp4]", anything);
   passed_on("--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]", parse_size);
   passed_on("--camera", "NAME", "A camera of the scene [its choice, or automatic framing]", anything);
-  passed_on("--frame", "N", "Which frame the still shows, counted from 0 [the one that tells most]",
+  passed_on("--frame", "N", "Which frame the still shows, counted from 0 [the most informative one]",
             [](const std::string& text) { parse_integer("--frame", text, 0, 1'000'000'000); });
   passed_on("--frames", "A:B[:STEP]", "Of --film: frames A up to but without B, counted from 0 [all]", parse_frames);
   passed_on("--quality", "draft|preview|final", "Care taken in drawing [final]",

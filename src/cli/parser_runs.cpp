@@ -94,9 +94,10 @@ void Parser::add_farm() {
             [this](const std::string& text) { farm.part = parse_integer("--part", text, 1, 1'000'000); });
   add_value(command, "--threads", "N", fmt::format("Threads and processors of a task [{}]", farm.threads),
             [this](const std::string& text) { farm.threads = parse_integer("--threads", text, 1, kMaxThreads); });
-  add_value(command, "--retries", "N",
-            fmt::format("How often a task that was killed, or found no room, is tried again [{}]", farm.retries),
-            [this](const std::string& text) { farm.retries = parse_integer("--retries", text, 0, 100); });
+  add_value(
+      command, "--retries", "N",
+      fmt::format("How often a task that was killed, or ran out of disk space, is tried again [{}]", farm.retries),
+      [this](const std::string& text) { farm.retries = parse_integer("--retries", text, 0, 100); });
   add_value(command, "--memory", "MB", "Of a task [from a trial of some seconds]",
             [this](const std::string& text) { farm.memory = parse_integer("--memory", text, 1, 100'000'000); });
   add_value(command, "--time", "MINUTES", "Of a task at most, after which it goes on in a new place [from a trial]",

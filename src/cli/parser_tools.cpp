@@ -147,7 +147,7 @@ void Parser::add_diff() {
             [&limit](const std::string& text) { limit = parse_integer("--pixel-tolerance", text, 0, 255); });
   const auto add_share = [&](const char* name, double& most, const char* what) {
     add_value(command, name, "X", fmt::format("{} [{}]", what, most),
-              [name, &most](const std::string& text) { most = parse_share(name, text); });
+              [name, &most](const std::string& text) { most = parse_fraction(name, text); });
   };
   add_share("--pixel-budget", diff.limits.pixel_budget,
             "Share of the pixels that may differ by more; unless given, at edges a fortieth of them counts");

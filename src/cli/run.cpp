@@ -62,7 +62,7 @@ struct FilmPlan {
 
 bool finds_camera(const scene::Scene& scene, const std::string& name) {
   for (const scene::Camera& camera : scene.cameras)
-    if (name.empty() || camera.name == name) return scene::is_found(camera.kind);
+    if (name.empty() || camera.name == name) return scene::is_computed(camera.kind);
   return true;
 }
 
@@ -113,7 +113,7 @@ FilmPlan plan_of(const cache::Reader& reader, const RenderOptions& options) {
   if (!options.common.camera.empty()) check_camera(plan.scene.cameras, options.common.camera);
   plan.settings = render_settings({plan.scene.width, plan.scene.height}, plan.scene.camera, options.common);
   plan.wanted = plan.made = cached_frames(reader, options.frames, options.partial);
-  plan.finds_camera = render::CameraPath::is_found(*reader.snapshot(plan.wanted.begin), plan.settings.camera);
+  plan.finds_camera = render::CameraPath::is_computed(*reader.snapshot(plan.wanted.begin), plan.settings.camera);
   plan.whole_film = !options.frames.begin && !options.frames.end;
   take_output(plan, options);
   const frame::SnapshotPtr first = reader.snapshot(plan.wanted.begin);
@@ -350,7 +350,7 @@ ExitCode make_from_scene(Session& session, const scene::Scene& scene, const Film
   parts.store = &store;
   std::optional<bench::Recorder> recorder;
   if (session.wants_error())
-    parts.look = [&](const MadeFrame& made) {
+    parts.on_frame = [&](const MadeFrame& made) {
       if (recorder)
         recorder->see(made.snapshot, made.report);
       else
@@ -447,7 +447,7 @@ ExitCode render(const RenderOptions& options) {
   session.begin(plan);
   FilmParts parts;
   parts.open_source = [&] { return std::make_unique<CacheSource>(reader, plan.made); };
-  parts.part_is_kept = false;
+  parts.keeps_partial_output = false;
   session.make(plan, std::move(parts));
   return session.end(plan, nullptr);
 }

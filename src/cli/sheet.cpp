@@ -58,7 +58,7 @@ ExitCode sheet(const SheetOptions& options) {
     std::vector<frame::SnapshotPtr> snapshots;
     for (const int k : frames) snapshots.push_back(stills->at(k, progress));
     const std::unique_ptr<FramePainter> painter = make_gl_painter(settings);
-    painter->look_through(stills->camera());
+    painter->set_camera_path(stills->camera());
     std::vector<image::SheetPicture> pictures;
     for (const frame::SnapshotPtr& snapshot : snapshots) {
       const int k = snapshot->frame;

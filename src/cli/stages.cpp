@@ -28,7 +28,7 @@ class GlPainter : public FramePainter {
  public:
   explicit GlPainter(const render::Settings& settings) : renderer_(settings), deep_(settings.deep) {}
 
-  void look_through(render::CameraPath path) override { renderer_.look_through(std::move(path)); }
+  void set_camera_path(render::CameraPath path) override { renderer_.set_camera_path(std::move(path)); }
 
   Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) override {
     Picture picture{renderer_.draw(snapshot, before), renderer_.layers()};

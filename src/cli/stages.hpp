@@ -30,7 +30,7 @@ class FramePainter {
  public:
   virtual ~FramePainter() = default;
   /// Sets the camera path. Without it, cameras that the scene does not place are found from the first drawn frame.
-  virtual void look_through(render::CameraPath) {}
+  virtual void set_camera_path(render::CameraPath) {}
   /// `before`: the previous frame if motion blur is on and there is one; else null.
   virtual Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) = 0;
   virtual StageTime last_time() const = 0;

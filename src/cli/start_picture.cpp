@@ -16,7 +16,7 @@
 namespace weft::cli {
 namespace {
 
-using simulation::MeetingPlace;
+using simulation::IntersectionPlace;
 
 // Maximum number of close-ups.
 constexpr std::size_t kCloseUps = 5;
@@ -34,8 +34,8 @@ Vec3 up_of(const frame::FrameSnapshot& snapshot) {
 
 // Fraction of the picture in which the triangles of a place are visible. They are rendered as the only cloth, first in
 // the list, so that they win against the coinciding original surface.
-double visible_fraction(const frame::FrameSnapshot& snapshot, const MeetingPlace& place, const frame::Camera& camera,
-                        double aspect) {
+double visible_fraction(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
+                        const frame::Camera& camera, double aspect) {
   auto marks = std::make_shared<frame::Surface>();
   std::vector<Vec3> corners;
   for (const auto& triangle : place.triangles) {
@@ -57,7 +57,8 @@ double visible_fraction(const frame::FrameSnapshot& snapshot, const MeetingPlace
 }
 
 // Best of 32 camera directions for a place; ties go to earlier ones, which are from the front and from above.
-frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const MeetingPlace& place, double aspect) {
+frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
+                                   double aspect) {
   const Vec3 up = up_of(snapshot), right = Vec3::UnitX(), front = right.cross(up);
   const double height = std::max(kMinCloseUpHeight, kCloseUpHeightRatio * place.size);
   const double distance = 0.5 * height / std::tan(kCloseUpAngle * std::numbers::pi / 360) + 0.5 * place.size;
@@ -98,13 +99,13 @@ void draw_line(image::Image& image, const Vec2& from, const Vec2& to, int width)
 }
 
 void outline(image::Image& image, const frame::FrameSnapshot& snapshot, const frame::Camera& camera,
-             std::span<const MeetingPlace> places) {
+             std::span<const IntersectionPlace> places) {
   const Vec3 up = up_of(snapshot);
   const double aspect = static_cast<double>(image.width) / image.height;
   const render::View view =
       render::make_view(camera, up, aspect, render::subject_bounds(snapshot), render::find_floor(snapshot, up));
   const int width = std::max(1, static_cast<int>(std::lround(kMarkWidth * image.height)));
-  for (const MeetingPlace& place : places) {
+  for (const IntersectionPlace& place : places) {
     for (const auto& triangle : place.triangles) {
       std::array<Eigen::Vector4d, 3> clip;
       for (std::size_t c = 0; c < 3; ++c) clip[c] = view.clip_from_world * triangle[c].homogeneous();
@@ -134,7 +135,7 @@ std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, 
   };
   add(render::camera_of(snapshot, settings.camera, aspect), "the start", "");
   for (std::size_t p = 0; p < std::min(start.places.size(), kCloseUps); ++p) {
-    const MeetingPlace& place = start.places[p];
+    const IntersectionPlace& place = start.places[p];
     add(find_close_up_camera(snapshot, place, aspect),
         place.a == place.b ? place.a + " itself" : place.a + " and " + place.b,
         fmt::format("{} pair{}, {:.3g} m across", place.pairs, place.pairs == 1 ? "" : "s", place.size));

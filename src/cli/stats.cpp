@@ -131,7 +131,7 @@ Json frame_json(const FrameRecord& record) {
           {"constraints", report.constraints},
           {"min_distance_m", finite(report.min_distance)},
           {"max_strain", finite(report.max_strain)},
-          {"stretch_share", finite(report.stretch_share)},
+          {"stretch_share", finite(report.stretch_ratio)},
           {"kinetic_energy_j", finite(report.kinetic_energy)},
           {"elastic_energy_j", finite(report.elastic_energy)},
           {"air_energy_j", finite(report.air_energy)},

@@ -76,7 +76,7 @@ class CacheStills : public Stills {
   frame::SnapshotPtr at(int frame, Progress&) override {
     if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame);
     frame::SnapshotPtr snapshot = reader_.snapshot(frame);
-    if (!camera_ && render::CameraPath::is_found(*snapshot, settings_.camera))
+    if (!camera_ && render::CameraPath::is_computed(*snapshot, settings_.camera))
       show_frames(reader_, camera_.emplace(settings_.camera, settings_.aspect()));
     return snapshot;
   }
@@ -88,7 +88,7 @@ class CacheStills : public Stills {
 }  // namespace
 
 void Stills::show(const frame::FrameSnapshot& snapshot) {
-  if (!render::CameraPath::is_found(snapshot, settings_.camera)) return;
+  if (!render::CameraPath::is_computed(snapshot, settings_.camera)) return;
   if (!camera_) camera_.emplace(settings_.camera, settings_.aspect());
   camera_->see(snapshot);
 }

@@ -83,7 +83,7 @@ bool Store::holds(int frame) const {
 
 std::set<std::string> Store::outputs() const {
   std::set<std::string> outputs;
-  std::istringstream in(read_start(folder() / cache::kOutputsFile, kLargestText));
+  std::istringstream in(read_start(folder() / cache::kOutputsFile, kMaxTextBytes));
   for (std::string line; std::getline(in, line);) outputs.insert(line);
   return outputs;
 }

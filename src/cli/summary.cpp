@@ -145,15 +145,15 @@ std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
         100 * strain));
   }
   if (const auto torn =
-          std::ranges::count_if(frames, [](const FrameRecord& r) { return r.report.stretch_share > 1.1; });
+          std::ranges::count_if(frames, [](const FrameRecord& r) { return r.report.stretch_ratio > 1.1; });
       torn > 0) {
     warnings.push_back(
         fmt::format("cloth was stretched beyond its max_stretch in {} of {} frames, by up to {:.1f} times of it: pins "
                     "farther apart than it is long, an obstacle driven into what is held, or something too fast for "
                     "time.step",
                     torn, frames.size(), std::ranges::max(frames, {}, [](const FrameRecord& r) {
-                                           return r.report.stretch_share;
-                                         }).report.stretch_share));
+                                           return r.report.stretch_ratio;
+                                         }).report.stretch_ratio));
   }
   if (steps.rejected > steps.accepted / 4) {
     warnings.push_back(fmt::format("{} of {} steps were rejected: a smaller time.step would be faster", steps.rejected,

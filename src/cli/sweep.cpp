@@ -41,14 +41,14 @@ struct Job : SweepJob {
     if (is_done()) return ExitCode::ok;
     const auto told = static_cast<ExitCode>(value_or(read_json_or_null(stats()), "exit_code", 0));
     constexpr std::array kFailures{ExitCode::internal,          ExitCode::usage,         ExitCode::scene_invalid,
-                                   ExitCode::asset_unreadable,  ExitCode::output_failed, ExitCode::not_whole,
+                                   ExitCode::asset_unreadable,  ExitCode::output_failed, ExitCode::frames_missing,
                                    ExitCode::simulation_failed, ExitCode::interrupted};
-    return std::ranges::find(kFailures, told) != kFailures.end() ? told : ExitCode::not_whole;
+    return std::ranges::find(kFailures, told) != kFailures.end() ? told : ExitCode::frames_missing;
   }
 
   std::string last_words() const {
     std::string last;
-    std::istringstream in(read_start(log(), kLargestText));
+    std::istringstream in(read_start(log(), kMaxTextBytes));
     for (std::string line; std::getline(in, line);)
       if (!line.empty()) last = line;
     return last;

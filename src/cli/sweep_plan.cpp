@@ -176,7 +176,7 @@ std::vector<Changes> combine(std::vector<Changes> rows, const std::vector<Axis>&
         longer.push_back(row);
         longer.back().emplace_back(axis.key, value);
       }
-      if (longer.size() > kMostRuns) throw Error(ExitCode::usage, "expected at most {} runs, got more", kMostRuns);
+      if (longer.size() > kMaxRuns) throw Error(ExitCode::usage, "expected at most {} runs, got more", kMaxRuns);
     }
     rows = std::move(longer);
   }
@@ -203,8 +203,8 @@ std::vector<Changes> parse_list(const fs::path& file, const std::string& raw) {
   const std::string text = without_byte_order_mark(file, raw);
   std::vector<Changes> rows = file.extension() == ".toml" ? read_toml(file, text) : read_csv(file, text);
   if (rows.empty()) throw Error(ExitCode::asset_unreadable, "{}: names no run", file.string());
-  if (rows.size() > kMostRuns)
-    throw Error(ExitCode::asset_unreadable, "{}: expected at most {} runs, got {}", file.string(), kMostRuns,
+  if (rows.size() > kMaxRuns)
+    throw Error(ExitCode::asset_unreadable, "{}: expected at most {} runs, got {}", file.string(), kMaxRuns,
                 rows.size());
   for (const Changes& row : rows)
     if (row.size() > kMaxSweepKeys)

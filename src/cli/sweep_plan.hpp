@@ -11,7 +11,7 @@
 namespace weft::cli {
 
 /// Limit against mistakes; that many runs of ten seconds take a day.
-inline constexpr std::size_t kMostRuns = 10'000;
+inline constexpr std::size_t kMaxRuns = 10'000;
 
 /// A key of the scene and its values as text, as --set takes them.
 struct Axis {
@@ -39,7 +39,7 @@ struct SweepRun {
 };
 
 /// Combines each row of the list with each combination of the axes; the last axis changes first. Duplicate runs are
-/// removed. Throws Error(usage) if a key is given twice or there are more than kMostRuns runs.
+/// removed. Throws Error(usage) if a key is given twice or there are more than kMaxRuns runs.
 std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::vector<Axis>& axes);
 
 }  // namespace weft::cli

@@ -23,7 +23,7 @@ void check_frame(int frame, const Stills& stills) {
   const std::vector<int>& frames = stills.frames();
   if (std::binary_search(frames.begin(), frames.end(), frame)) return;
   if (frame < stills.scene().frame_count)
-    throw Error(ExitCode::not_whole, "frame {} is not there; weft simulate --resume makes what is missing", frame);
+    throw Error(ExitCode::frames_missing, "frame {} is missing; weft simulate --resume makes what is missing", frame);
   throw Error(ExitCode::usage, "--frame: expected one of the {} frames from {} to {}, got {}", frames.size(),
               frames.front(), frames.back(), frame);
 }
@@ -112,7 +112,7 @@ void draw_thumbnail(const ThumbnailOptions& options) {
         options.frame ? Still{stills->at(*options.frame, progress), {}} : most_salient(*stills, frames, progress);
     const frame::FrameSnapshot& snapshot = *choice.snapshot;
     const std::unique_ptr<FramePainter> painter = make_gl_painter(stills->settings());
-    painter->look_through(stills->camera());
+    painter->set_camera_path(stills->camera());
     const image::Image image = painter->draw(snapshot, nullptr).image;
     progress.advance(Stage::draw);
     const Metadata about = describe_pictures(stills->scene(), stills->settings(), painter->description());

@@ -54,7 +54,7 @@ class CandidateCache {
 
   /// Features within the detection distance at a covered x_t0 were closer than this when the pairs were collected [m].
   double radius() const { return 2 * margin_; }
-  double reach() const { return detection_distance_; }
+  double detection_distance() const { return detection_distance_; }
 
   /// Whether all features within the detection distance at x were closer than radius() when the pairs were collected.
   bool covers_start(std::span<const Vec3> x) const;

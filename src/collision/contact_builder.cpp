@@ -33,7 +33,7 @@ FeaturePair pair_with_corner(Index corner, const Triangle& corners, const Featur
 
 }  // namespace
 
-double stiffness_share(const Proximity& proximity, bool with_cloth) {
+double stiffness_fraction(const Proximity& proximity, bool with_cloth) {
   if (proximity.kind == ProximityKind::vertex_face) return 1;
   const auto& outside = proximity.outside_wedge;
   const double inside_wedges = ramp(-numerics.contact.fade, 0, -std::max(outside[0], outside[1]));
@@ -63,7 +63,7 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
                          ContactResponse& response) {
   for (const Proximity& proximity : proximities) {
     const bool with_cloth = std::ranges::any_of(proximity.vertices, [&](Index v) { return is_cloth(v); });
-    const double fraction = stiffness_share(proximity, with_cloth);
+    const double fraction = stiffness_fraction(proximity, with_cloth);
     if (fraction == 0 || pinched.are_pinched(proximity.vertices)) continue;
     if (const auto contact = build(proximity, fraction, kNoLimit, motion)) response.add(*contact, motion.x_t0);
     if (fraction == 1) in_contact_.insert(feature_key(proximity.kind, proximity.vertices));

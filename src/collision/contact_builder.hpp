@@ -31,7 +31,7 @@ struct ContactParameters {
   std::vector<PairFriction> friction = {};  ///< pairs with coefficients of their own
 };
 
-/// Motion of all vertices over a step. `x_from` is x_t0, or where Engine::go_on_from continued the step.
+/// Motion of all vertices over a step. `x_from` is x_t0, or where Engine::continue_from continued the step.
 struct StepMotion {
   std::span<const Vec3> x_t0, x_from, x_t1;  ///< [m]
   double h = 0;                              ///< [s]
@@ -45,7 +45,7 @@ struct StepMotion {
 /// leaves a wedge (a neighbouring face is then closer), and towards the ends of an edge. So no contact switches on or
 /// off while cloth rests. Between two smooth layers a fifth of the contacts remain. Without cloth (rigid blocks) only
 /// directions outside a wedge fade: the rims of stacked faces may cross where no vertex is near.
-double stiffness_share(const Proximity& proximity, bool with_cloth = true);
+double stiffness_fraction(const Proximity& proximity, bool with_cloth = true);
 
 class ContactBuilder {
  public:

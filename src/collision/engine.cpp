@@ -52,7 +52,7 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices(), bodies_.limb_of_vertices()),
       carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
   separation_.set_rigid(rigid_groups(bodies_, masses), bodies_.vertex_count());
-  const double detection_distance = candidates_.reach();
+  const double detection_distance = candidates_.detection_distance();
   if (parameters.search.coherence)
     coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,
                        CoherenceParameters{detection_distance, 0.5 * numerics.contact.margin * detection_distance,
@@ -74,7 +74,7 @@ void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
 
 void Engine::update_coherence(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   coherence_->update(candidates_.hierarchies(), finder_, x_t0, x_t1);
-  candidates_.cover(x_t0, x_t1, 0.5 * candidates_.reach());
+  candidates_.cover(x_t0, x_t1, 0.5 * candidates_.detection_distance());
   separation_.watch(coherence_->candidates().apart.view(), x_t0);
   gathered_at_.clear();
 }
@@ -93,7 +93,7 @@ void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
 
 // Gathers features that may come within the detection distance near x, skipping pairs that a plane keeps far apart.
 void Engine::gather(std::span<const Vec3> x) {
-  const double verlet_margin = numerics.contact.margin * candidates_.reach();
+  const double verlet_margin = numerics.contact.margin * candidates_.detection_distance();
   const auto is_near = [&] {
     for (std::size_t v = 0; v < x.size(); ++v)
       if (!((x[v] - gathered_at_[v]).squaredNorm() <= verlet_margin * verlet_margin) &&
@@ -102,12 +102,12 @@ void Engine::gather(std::span<const Vec3> x) {
     return true;
   };
   if (!gathered_at_.empty() && is_near()) return;
-  const double radius = candidates_.reach() + 2 * verlet_margin;
+  const double radius = candidates_.detection_distance() + 2 * verlet_margin;
   near_candidates_.clear();
   separation_.append_closer(radius, x, near_candidates_);
   if (has_self_collision_)
     finder_.gather(near_candidates_, bodies_.deformable(), x, radius, numerics.contact.flat_fold(),
-                   separation_.open_triangles(radius, x));
+                   separation_.find_clear_triangles(radius, x));
   else
     finder_.gather(near_candidates_, {}, x, radius, numerics.contact.flat_fold(), {});
   gathered_at_.assign(x.begin(), x.end());
@@ -123,7 +123,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   begin_contacts(x_t0, x_t1);
   if (!pinched_.empty()) {
     pinched_.renew(bodies_.triangles(), candidates_.hierarchies(), x_t0);
-    pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach());
+    pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.detection_distance());
   }
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
   pushed_pairs_.clear();
@@ -131,15 +131,15 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here,
   // because pairs that need others come near each other.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
-  find_failing(x_t0, x_t1, Certificates::constant);
+  find_failing(x_t0, x_t1, PlaneKinds::constant);
   if (response_.form() == ResponseForm::springs)
     find_near_at_expected_end(x_t0, x_t1);
   else
     find_near(x_t0, proximities_);
   add_contacts(proximities_, motion);
   add_failing(failing_, motion);
-  if (response_.lean(x_t1, 0.5 * candidates_.reach(), predicted_walls_x_t1_) &&
-      find_failing(x_t0, predicted_walls_x_t1_, Certificates::constant))
+  if (response_.predict_wall_contacts(x_t1, 0.5 * candidates_.detection_distance(), predicted_walls_x_t1_) &&
+      find_failing(x_t0, predicted_walls_x_t1_, PlaneKinds::constant))
     add_failing(failing_, {x_t0, x_t0, predicted_walls_x_t1_, h});
   response_.prepare(x_t0, x_t1);
   return is_moved;
@@ -148,7 +148,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
 // Pushes an estimate with intersections apart. Contacts found there would have meaningless directions, and layers that
 // push each other would be found one per iteration. Nothing is exempted for an estimate.
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
-  if (movable.empty() || response_.form() != ResponseForm::springs || apart(x_t0, x_t1)) return false;
+  if (movable.empty() || response_.form() != ResponseForm::springs || is_separated(x_t0, x_t1)) return false;
   const std::vector<Vec3> expected(x_t1.begin(), x_t1.end());
   PinchedPairs pinched = pinched_;
   const bool is_apart = push_apart(x_t0, x_t1, movable, false, false).separated;
@@ -176,7 +176,7 @@ void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<con
   std::vector<Proximity> at_start;
   if (!failing.empty()) find_near(x_t0, at_start);
   gather(x_t1);
-  finder_.find(x_t1, candidates_.reach(), proximities_);
+  finder_.find(x_t1, candidates_.detection_distance(), proximities_);
   std::erase_if(proximities_, fails);
   std::ranges::copy_if(at_start, std::back_inserter(proximities_), fails);
 }
@@ -199,7 +199,7 @@ void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& mot
   builder_.add(near, pinched_, motion, response_);
 }
 
-void Engine::go_on_from(std::span<const Vec3> x) {
+void Engine::continue_from(std::span<const Vec3> x) {
   const StepMotion motion{x_t0_, x, x, step_, failures_};
   carried_.begin_step(x, x, {});
   if (coherence_) candidates_.drop();  // kept closest points belong to the start of the step
@@ -220,32 +220,33 @@ void Engine::begin_contacts(std::span<const Vec3> x_from, std::span<const Vec3> 
 void Engine::find_near(std::span<const Vec3> x, std::vector<Proximity>& near) {
   if (coherence_) {
     near.clear();
-    std::ranges::copy_if(coherence_->proximities(), std::back_inserter(near),
-                         [&](const Proximity& proximity) { return proximity.distance < candidates_.reach(); });
+    std::ranges::copy_if(coherence_->proximities(), std::back_inserter(near), [&](const Proximity& proximity) {
+      return proximity.distance < candidates_.detection_distance();
+    });
   } else {
     gather(x);
-    finder_.find(x, candidates_.reach(), near);
+    finder_.find(x, candidates_.detection_distance(), near);
   }
 }
 
-bool Engine::apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  return !find_failing(x_t0, x_t1, Certificates::all);
+bool Engine::is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  return !find_failing(x_t0, x_t1, PlaneKinds::all);
 }
 
 // Whether any pair lacks a separating plane of the given kind.
-bool Engine::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, Certificates which) {
+bool Engine::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, PlaneKinds which) {
   if (!candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
   failing_ = separation_.find_failing(x_t0, x_t1, &pinched_, &carried_, which);
   return !failing_.empty();
 }
 
-int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+int Engine::add_failing_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   return add_failing(failing_, {x_t0, x_t0, x_t1, step_});
 }
 
-std::span<const CornerPair> Engine::find_meetings(std::span<const Vec3> x) {
+std::span<const CornerPair> Engine::find_intersections(std::span<const Vec3> x) {
   collect(x, x);
-  apart(x, x);
+  is_separated(x, x);
   return failing_;
 }
 
@@ -261,7 +262,7 @@ void Engine::count_failures() {
 }
 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                                    std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_give_way) {
+                                    std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_move_pins) {
   // Corrections can move vertices out of the bounds of the candidate pairs. Then collect again; after
   // kTightCollections, for every trajectory between start and end.
   constexpr int kCollections = 8, kTightCollections = 3;
@@ -271,15 +272,16 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
   std::vector<std::uint8_t> movable(movable_in_step.begin(), movable_in_step.end());
   for (int c = 0; c < kCollections; ++c) {
     const SeparationReport pass = separation_.enforce(x_t0, x_t1, movable, &pinched, &carried_, c > 0);
-    report.gave_way.insert(report.gave_way.end(), pass.gave_way.begin(), pass.gave_way.end());
-    for (const GivenWay& given : pass.gave_way) movable[given.particle] = kFree;
+    report.obstructed_pins.insert(report.obstructed_pins.end(), pass.obstructed_pins.begin(),
+                                  pass.obstructed_pins.end());
+    for (const ObstructedPin& given : pass.obstructed_pins) movable[given.particle] = kFree;
     report.corrected_pairs += pass.corrected_pairs;
     report.largest_push = std::max(report.largest_push, pass.largest_push);
     report.separated = pass.separated;
     report.stuck = pass.stuck;
-    if (!report.gave_way.empty() && !may_give_way) {
+    if (!report.obstructed_pins.empty() && !may_move_pins) {
       report.separated = false;
-      report.stuck = report.gave_way.front().pair;
+      report.stuck = report.obstructed_pins.front().pair;
     }
     if (!report.separated) return report;
     if (!candidates_.covers_end(x_t1)) {
@@ -289,7 +291,7 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
         collect_by(x_t0, [&] { candidates_.collect_more(x_t0, x_t1, c >= kTightCollections); });
       continue;
     }
-    if (const auto fresh = first_fresh(pinched, pinched_, candidates_.hierarchies()); fresh && !may_pinch) {
+    if (const auto fresh = find_new_pinch(pinched, pinched_, candidates_.hierarchies()); fresh && !may_pinch) {
       report.separated = false;
       report.stuck = *fresh;
       return report;

@@ -52,8 +52,8 @@ class Engine {
   /// Continues the step from x [m], which was reached without an intersection and has the obstacles at their end. Finds
   /// contacts anew around x and adds those of all pairs that were pushed apart in this step. Friction still measures
   /// slip from the start of the step. x replaces x_t0 in the calls that follow and must outlive the step.
-  void go_on_from(std::span<const Vec3> x);
-  /// Pairs for which the last call of apart() found no separating plane.
+  void continue_from(std::span<const Vec3> x);
+  /// Pairs for which the last call of is_separated() found no separating plane.
   std::span<const CornerPair> failing() const { return failing_; }
 
   /// Drops, between two steps, state that only speeds up the search and does not follow from positions.
@@ -68,19 +68,19 @@ class Engine {
   const ContactResponse& response() const { return response_; }
 
   /// Whether every pair of triangles has a separating plane on the trajectory to x_t1.
-  bool apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  bool is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Adds contacts for the failing pairs of the last call of apart(); returns how many are new.
-  int adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  /// Adds contacts for the failing pairs of the last call of is_separated(); returns how many are new.
+  int add_failing_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Marks the step as accepted.
   void accept() { response_.accept(); }
 
   /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. `may_pinch`: allows exempting
   /// pinched cloth from an obstacle; otherwise only a cloth that this obstacle pinches already is exempted. If
-  /// `may_give_way` is false and a pinned particle had to move, the result is not separated and nothing is exempted.
+  /// `may_move_pins` is false and a pinned particle had to move, the result is not separated and nothing is exempted.
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
-                              bool may_pinch = false, bool may_give_way = true);
+                              bool may_pinch = false, bool may_move_pins = true);
 
   /// Number of pinched cloth triangles, each counted once per obstacle limb.
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
@@ -99,12 +99,13 @@ class Engine {
   /// Smallest distance of these pairs [m]; infinite if there are none.
   double min_distance() const;
 
-  /// All pairs of triangles that touch or cross at x [m]. Valid until the next call of this, apart() or begin_step().
-  std::span<const CornerPair> find_meetings(std::span<const Vec3> x);
+  /// All pairs of triangles that touch or cross at x [m]. Valid until the next call of this, is_separated() or
+  /// begin_step().
+  std::span<const CornerPair> find_intersections(std::span<const Vec3> x);
 
   const Bodies& bodies() const { return bodies_; }
   /// Detection distance: features closer than this are near [m].
-  double reach() const { return candidates_.reach(); }
+  double detection_distance() const { return candidates_.detection_distance(); }
   /// Whether cloth cannot meet a body in the current step. If so, the motion of the body has no effect.
   bool is_clear(std::size_t body) const { return candidates_.is_clear(body); }
 
@@ -116,7 +117,7 @@ class Engine {
   void gather(std::span<const Vec3> x);
   void count_failures();
   bool separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
-  bool find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, Certificates which);
+  bool find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, PlaneKinds which);
   void find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   int add_failing(std::span<const CornerPair> pairs, const StepMotion& motion);
   void add_contacts(std::span<const Proximity> near, const StepMotion& motion);
@@ -146,7 +147,7 @@ class Engine {
   std::vector<CornerPair> pushed_pairs_;            // pairs that were pushed apart in this step
   std::vector<Proximity> proximities_;              // at the expected end of the step, or at its start
   std::vector<Proximity> near_continuation_;        // where the step was last continued
-  std::span<const CornerPair> failing_;             // of the last call of apart()
+  std::span<const CornerPair> failing_;             // of the last call of is_separated()
 };
 
 }  // namespace weft::collision

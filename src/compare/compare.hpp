@@ -47,7 +47,7 @@ struct Figures {
   double flip = 0;                   ///< mean of the FLIP map over the compared pixels, 0 if equal
   double spot = 0;                   ///< largest value of the FLIP map
 
-  double share_over() const { return static_cast<double>(pixels_over) / static_cast<double>(pixels); }
+  double fraction_over() const { return static_cast<double>(pixels_over) / static_cast<double>(pixels); }
 };
 
 enum class Verdict {

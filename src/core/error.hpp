@@ -20,7 +20,7 @@ enum class ExitCode : int {
   output_failed = 6,      ///< disk, encoder or image writer failed
   images_differ = 7,      ///< pictures differ by more than the limits
   reference_missing = 8,  ///< a picture has no reference
-  not_whole = 9,          ///< requested frames are missing
+  frames_missing = 9,     ///< requested frames are missing
   interrupted = 75,       ///< Ctrl-C or SIGTERM; finished frames are kept, and `--resume` continues
 };
 

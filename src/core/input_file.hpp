@@ -13,7 +13,7 @@
 namespace weft {
 
 /// Largest text that is read as a whole [bytes]; statistics of 100,000 frames have 70 MB.
-inline constexpr std::uintmax_t kLargestText = std::uintmax_t{256} << 20;
+inline constexpr std::uintmax_t kMaxTextBytes = std::uintmax_t{256} << 20;
 inline constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
 
 /// Returns all bytes of a regular file. Throws std::runtime_error, with the reason but without the file's name, if it

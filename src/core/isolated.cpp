@@ -94,13 +94,13 @@ void send(int descriptor, std::string_view bytes) {
     bytes = work();
   } catch (const std::bad_alloc&) {
     kind = kFailed;
-    bytes = isolation.name + " takes more memory than it may";
+    bytes = isolation.name + " exceeds its memory limit";
   } catch (const std::exception& error) {
     kind = kFailed;
     bytes = error.what();
   } catch (...) {
     kind = kFailed;
-    bytes = "an exception without words";
+    bytes = "an exception without a message";
   }
   send(answer, {&kind, 1});
   send(answer, bytes);
@@ -171,11 +171,12 @@ std::string run_isolated(const std::function<std::string()>& work, const Isolati
     if (signal == SIGXCPU)
       throw std::runtime_error(
           fmt::format("{} was stopped after {} s of processor time", isolation.name, isolation.cpu_seconds));
-    if (signal == SIGKILL) throw std::runtime_error(isolation.name + " was killed from outside, as for want of memory");
+    if (signal == SIGKILL)
+      throw std::runtime_error(isolation.name + " was killed by the system, perhaps because memory ran out");
     throw std::runtime_error(fmt::format("{} crashed: {}", isolation.name, ::strsignal(signal)));
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty())
-    throw std::runtime_error(isolation.name + " ended without a word");
+    throw std::runtime_error(isolation.name + " ended without a result");
   const char kind = answer.front();
   answer.erase(0, 1);
   if (kind == kFailed) throw std::runtime_error(answer);

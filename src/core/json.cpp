@@ -31,7 +31,7 @@ template nlohmann::json parse_json(std::string_view);
 
 nlohmann::ordered_json read_json_or_null(const std::filesystem::path& file) {
   try {
-    return parse_json(read_bytes(file, kLargestText));
+    return parse_json(read_bytes(file, kMaxTextBytes));
   } catch (const std::exception&) {
     return nullptr;
   }

@@ -50,7 +50,7 @@ struct StageTime {
 /// Whether stages are charged with the CPU time of all threads, including those that help in parallel loops; correct
 /// only if the process runs nothing else. Otherwise they are charged with that of the calling thread, as other threads
 /// draw and encode beside a simulation. Set it before any stage runs.
-inline bool stages_have_all_threads = false;
+inline bool charge_all_threads = false;
 
 /// Adds the wall and CPU time of a scope to those of a stage.
 class Stopwatch {
@@ -61,7 +61,7 @@ class Stopwatch {
   Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
-  static double cpu_seconds() { return stages_have_all_threads ? process_cpu_seconds() : thread_cpu_seconds(); }
+  static double cpu_seconds() { return charge_all_threads ? process_cpu_seconds() : thread_cpu_seconds(); }
 
   StageTime& stage_;
   WallTimer timer_;

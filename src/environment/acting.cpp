@@ -109,7 +109,7 @@ character::Clip travel(const Cast& cast, const scene::Acting& acting, const char
   if (acting.travel.kind == scene::Travel::Kind::file || clip.duration <= 0) return clip;
   if (acting.travel.kind == scene::Travel::Kind::none) return character::in_place(rig, clip, cast.up());
   const double to_scene = size * cast.settings.speed, speed = acting.travel.speed;
-  character::Traveled traveled = character::at_speed(rig, clip, speed / to_scene, cast.up());
+  character::TravelResult traveled = character::at_speed(rig, clip, speed / to_scene, cast.up());
   const double feet = to_scene * traveled.feet;
   if (feet == 0) {
     warnings.push_back(
@@ -209,7 +209,7 @@ Body make_playing_body(const Cast& cast, const Source& source) {
                        choose_clip(cast, source.clip, body.character.clips, body.source), 1, body.warnings);
   }
   if (body.clip)
-    if (const auto doubt = doubt_of_skin(body.character, *body.clip))
+    if (const auto doubt = warn_of_missing_skin(body.character, *body.clip))
       body.warnings.push_back(fmt::format("{}: {} {}", cast.where, body.source, *doubt));
   if (body.clip && !source.loop && cast.settings.start > body.clip->duration)
     cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,
@@ -294,7 +294,7 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
 void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body) {
   std::vector<Vec3> x(body.character.mesh.positions.size());
   character::skin(body.character, character::rest_pose(body.character), x);
-  if (const auto doubt = doubt_of_height(x, cast.up(), body.scale, cast.settings.scale.has_value()))
+  if (const auto doubt = warn_of_height(x, cast.up(), body.scale, cast.settings.scale.has_value()))
     body.warnings.push_back(fmt::format("{}: {} {}", cast.where, source.path.string(), *doubt));
 }
 
@@ -409,7 +409,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   for (const FollowingPin& pin : following) add_following_pin(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
   std::vector<Vec3> bones;  // without particles of following pins
-  if (cast.settings.grow > 0) bones = character::places_on_bones(body.character, start);
+  if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
   const std::vector<character::Ground> grounds = grounds_below(cast);
   std::vector<double> lowest;  // height of the lowest vertex over the floor at each key [m]
@@ -423,10 +423,10 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
     for (std::size_t v = 0; v < bones.size(); ++v)
       x[v] = bones[v] + character::grown(since, cast.settings.grow) * (x[v] - bones[v]);
   });
-  if (const auto doubt = doubt_of_speed(keys, static_cast<double>(times.first) / times.rate, times.rate, times.count,
-                                        body.character.mesh.positions.size()))
+  if (const auto doubt = warn_of_speed(keys, static_cast<double>(times.first) / times.rate, times.rate, times.count,
+                                       body.character.mesh.positions.size()))
     body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
-  if (const auto doubt = doubt_of_floor(std::move(lowest), cast.scene.obstacles.size() == 1))
+  if (const auto doubt = warn_of_floor_distance(std::move(lowest), cast.scene.obstacles.size() == 1))
     body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
   std::vector<std::string> notes;
   if (auto note = describe(cast, moved)) notes.push_back(*std::move(note));

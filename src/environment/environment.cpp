@@ -61,7 +61,7 @@ std::vector<Vec3> start_positions(const scene::Cloth& cloth, const mesh::Mesh& r
 void use_quads(const mesh::Grid& grid, ClothObject& object) {
   object.grid = grid;
   object.mesh = mesh::make_sheet(grid);
-  object.spacing = grid.least_spacing();
+  object.spacing = grid.min_spacing();
   for (int j = 0; j < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i)
       object.fractions.emplace_back(graded_fraction(i, grid.nu, grid.weft_grading),
@@ -69,8 +69,8 @@ void use_quads(const mesh::Grid& grid, ClothObject& object) {
 }
 
 void use_triangles(mesh::Mesh mesh, ClothObject& object) {
-  object.sheet = mesh::make_sheet_of(mesh);
-  object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
+  object.sheet = mesh::make_sheet_from_mesh(mesh);
+  object.spacing = std::numbers::sqrt2 * mesh::min_height(object.sheet);
   const Box3 box = mesh::bounding_box(mesh.positions);
   const Vec3 size = box.sizes();
   mesh.uv.clear();
@@ -107,7 +107,7 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
         "the waist, {:.2f} around the hips, and is {:.2f} m tall",
         fit.x(), fit.y(), *own.chest, *own.waist, *own.hip, *own.height);
     factors = factors.cwiseProduct(fit);
-    if (const std::string doubt = garment::doubt_that_hips_hold(pattern, factors, body);
+    if (const std::string doubt = garment::warn_if_hips_do_not_hold(pattern, factors, body);
         !doubt.empty() && cloth.pins.empty())
       object.warnings.push_back(fmt::format("{}: {}", where, doubt));
   }
@@ -127,7 +127,7 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   object.paint_uv = garment.sheet.material;
   if (wearer == nullptr) object.mesh = turned_up(std::move(object.mesh), scene.up);
   object.sheet = std::move(garment.sheet);
-  object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
+  object.spacing = std::numbers::sqrt2 * mesh::min_height(object.sheet);
   for (const scene::PanelPaint& panel : cloth.look.panels)
     if (std::ranges::find(object.panels, panel.name) == object.panels.end()) {
       const std::string nearest = nearest_name(panel.name, object.panels);
@@ -150,7 +150,7 @@ assets::MeshAxes axes_of(const scene::Scene& scene, const std::filesystem::path&
     const auto* source = std::get_if<scene::CharacterFile>(&character.source);
     if (source == nullptr || !std::filesystem::equivalent(source->path, file, ignored)) continue;
     if (up == scene::FileUp::as_file) axes.up = character.up;
-    axes.unsaid = scene::FileUp::y;
+    axes.default_up = scene::FileUp::y;
   }
   return axes;
 }
@@ -167,7 +167,7 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
         fmt::format("{}: mesh file {}: {} of {} vertices are in no triangle that has an area; faces there cross "
                     "themselves or have all corners on a line",
                     where, cloth.file.string(), loaded.lost_vertices, mesh.positions.size()));
-  if (const assets::Mended mended = assets::mend_sheet(loaded, 1 / kMaxUnevenness); mended.any())
+  if (const assets::MendingReport mended = assets::mend_sheet(loaded, 1 / kMaxUnevenness); mended.any())
     object.warnings.push_back(
         fmt::format("{}: mesh file {}: made a sheet: {}", where, cloth.file.string(), mended.describe()));
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
@@ -198,7 +198,7 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
                 "{}: expected UVs in which triangles have an area, for rest = \"uv\", got {} of {} without, {:.0f} % "
                 "of the surface",
                 in_file, rest.unusable, rest.material.size(), 100 * rest.unusable_area);
-  const bool takes = asked || (cloth.rest == scene::ClothRest::automatic && rest.like_panels());
+  const bool takes = asked || (cloth.rest == scene::ClothRest::automatic && rest.has_panel_lengths());
   object.rest_from = fmt::format("{}{}: {}", takes ? "UVs" : "the mesh",
                                  cloth.rest != scene::ClothRest::automatic ? ""
                                  : takes                                   ? ", which fit it as panels do"
@@ -206,11 +206,11 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
                                  rest.describe());
   if (!takes) return false;
   constexpr double kMaxDrapeStretch = 0.25;  // draped cloth is stretched less, relative to its panels
-  if (!rest.like_panels())
+  if (!rest.has_panel_lengths())
     object.warnings.push_back(
         fmt::format("{}: its UVs may not be the pattern that it was sewn from: {}; rest = \"mesh\" takes its own shape",
                     in_file, rest.describe()));
-  else if (rest.most_stretch > kMaxDrapeStretch && cloth.sewing == 0)
+  else if (rest.stretch_quantile_95 > kMaxDrapeStretch && cloth.sewing == 0)
     object.warnings.push_back(fmt::format("{}: it is far off its UVs: {}; sewing = 1 lets it go there in a second",
                                           in_file, rest.describe()));
   if (rest.unusable > 0)
@@ -240,7 +240,7 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
     object.sheet.material = std::move(rest.material);
     object.sheet.sewn = true;
     object.paint_uv = object.sheet.material;
-    object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
+    object.spacing = std::numbers::sqrt2 * mesh::min_height(object.sheet);
     for (std::size_t t = object.sheet.triangles.size(); t-- > 0;)
       for (std::size_t k = 0; k < 3; ++k)
         object.mesh.uv[static_cast<std::size_t>(object.sheet.triangles[t][k])] = object.sheet.material[t][k];
@@ -285,13 +285,13 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth) {
   if (!meets_obstacles(scene) || scene::rectangle_particles(cloth) == 0) return;
   const mesh::Grid grid = grid_of(cloth);
   const double longest = std::max({grid.du(0), grid.du(grid.nu - 2), grid.dv(0), grid.dv(grid.nv - 2)});
-  if (longest <= kMaxUnevenness * grid.least_spacing()) return;
+  if (longest <= kMaxUnevenness * grid.min_spacing()) return;
   throw Error(ExitCode::scene_invalid,
               "{}:{}:{}: cloth.{}: expected cells at least a {:g}th as long as the longest ({:.4g} mm), where cloth "
               "meets obstacles; got {:.3g} mm; choose a grading closer to 1, or particles that are as far apart along "
               "weft as along warp",
               scene.file.string(), cloth.line, cloth.column, cloth.name, kMaxUnevenness, 1e3 * longest,
-              1e3 * grid.least_spacing());
+              1e3 * grid.min_spacing());
 }
 
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers) {

@@ -19,7 +19,7 @@ constexpr double kMaxFloorDistance = 0.05;
 
 }  // namespace
 
-std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said) {
+std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said) {
   const auto [low, high] = std::ranges::minmax(x, {}, [&](const Vec3& v) { return up.dot(v); });
   const double height = up.dot(high - low);
   const double more = said ? 10 : 1;
@@ -30,7 +30,7 @@ std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& 
       height, kMinHeight, kMaxHeight, scale * kUsualHeight / height, kUsualHeight);
 }
 
-std::optional<std::string> doubt_of_skin(const character::Character& body, const character::Clip& clip) {
+std::optional<std::string> warn_of_missing_skin(const character::Character& body, const character::Clip& clip) {
   if (body.influences.empty()) return std::nullopt;
   const Index holder = body.bones[body.influences.front().bone].node;
   for (const character::Influence& influence : body.influences)
@@ -50,8 +50,8 @@ std::optional<std::string> doubt_of_skin(const character::Character& body, const
       body.nodes[holder].name, idle);
 }
 
-std::optional<std::string> doubt_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
-                                          std::size_t vertices) {
+std::optional<std::string> warn_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
+                                         std::size_t vertices) {
   std::vector<Vec3> x(vertices);
   const auto middle = [&](std::size_t k) -> Vec3 {
     keys.at(begin + static_cast<double>(k) / rate, x);
@@ -71,7 +71,7 @@ std::optional<std::string> doubt_of_speed(const KeyFrames& keys, double begin, d
 }
 
 // Bodies that jump touch the floor at times, and bodies that roll sink into it at times: uses minimum and median.
-std::optional<std::string> doubt_of_floor(std::vector<double> lowest, bool alone) {
+std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone) {
   if (lowest.empty()) return std::nullopt;
   std::ranges::sort(lowest);
   const double least = lowest.front(), median = lowest[lowest.size() / 2];

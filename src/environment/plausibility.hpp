@@ -13,17 +13,17 @@ namespace weft::environment {
 
 /// Warns of an implausible height of a body along `up`. `x`: its vertices [m]; `scale`: metres per unit of its file;
 /// `said`: the scene gives the scale, and may want giants or dwarfs up to ten times beyond the limits.
-std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said);
+std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said);
 
 /// Warns of a body whose clip moves limbs although no limb has skin bound to it.
-std::optional<std::string> doubt_of_skin(const character::Character& body, const character::Clip& clip);
+std::optional<std::string> warn_of_missing_skin(const character::Character& body, const character::Clip& clip);
 
 /// Warns of an implausible speed: `count` key frames of `vertices` points from `begin` [s] on, `rate` per second.
-std::optional<std::string> doubt_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
-                                          std::size_t vertices);
+std::optional<std::string> warn_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
+                                         std::size_t vertices);
 
 /// Warns of a body in or above the only floor. `lowest`: height of its lowest vertex over the floor at each key frame
 /// [m]; `alone`: there is no other obstacle to stand on.
-std::optional<std::string> doubt_of_floor(std::vector<double> lowest, bool alone);
+std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone);
 
 }  // namespace weft::environment

@@ -59,7 +59,7 @@ Vec3 Weather::air(const Vec3& x, double t) const {
   return sum;
 }
 
-bool Weather::stays(double t0, double t1) const {
+bool Weather::is_constant_between(double t0, double t1) const {
   if (gusts_ || (keys_ && keys_->at(t0).value != keys_->at(t1).value)) return false;
   return std::ranges::all_of(fans_, [&](const Fan& fan) { return fan.track.at(t0).value == fan.track.at(t1).value; });
 }

@@ -28,11 +28,11 @@ class Weather {
   /// Gravity at time t [s], in [m/s²].
   Vec3 gravity(double t) const { return keys_ ? Vec3(keys_->at(t).value.head<3>()) : gravity_; }
   /// Whether the velocity of the air ever differs from scene.physics.wind.
-  bool is_local() const { return keys_.has_value() || gusts_.has_value() || !fans_.empty(); }
+  bool varies_in_space() const { return keys_.has_value() || gusts_.has_value() || !fans_.empty(); }
   /// Velocity of the air at x [m] and time t [s], in [m/s].
   Vec3 air(const Vec3& x, double t) const;
   /// Whether gravity and air are the same at t0 and t1 [s].
-  bool stays(double t0, double t1) const;
+  bool is_constant_between(double t0, double t1) const;
 
  private:
   struct Fan {

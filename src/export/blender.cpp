@@ -46,7 +46,7 @@ const char* extension(const Material& material) {
 Json pictures_json(const frame::Surface& surface) {
   Json result = Json::object();
   const Materials materials = materials_of(surface);
-  for (const MaterialGroup& group : by_look(surface, materials)) {
+  for (const MaterialGroup& group : group_by_look(surface, materials)) {
     const Material& material = materials.all[group.material];
     if (!material.has_picture()) continue;
     const auto& map = material.picture_from_uv;
@@ -64,7 +64,7 @@ Json backs_json(const frame::Surface& surface) {
   Json result = Json::object();
   if (surface.kind != frame::ObjectKind::cloth) return result;
   const Materials materials = materials_of(surface);
-  for (const MaterialGroup& group : by_look(surface, materials)) {
+  for (const MaterialGroup& group : group_by_look(surface, materials)) {
     const frame::Appearance& look =
         group.material == 0 ? surface.appearance : surface.parts[group.material - 1].appearance;
     const bool painted = look.paint.texture && look.back_painted;

@@ -221,7 +221,7 @@ json GltfFile::primitives(const CutSurface& cut, const Object& object, const fra
   if (!cut.picture_uv.empty()) attributes["TEXCOORD_1"] = add_places(cut.picture_uv);
   json result = json::array();
   std::vector<int> images;
-  for (const MaterialGroup& group : by_look(surface, materials)) {
+  for (const MaterialGroup& group : group_by_look(surface, materials)) {
     const Material& look = materials.all[group.material];
     const bool painted = look.has_picture() && !cut.uv.empty();
     const Vec3 color = painted ? Vec3(1, 1, 1) : look.color;

@@ -137,7 +137,7 @@ Materials materials_of(const frame::Surface& surface) {
   return materials;
 }
 
-std::vector<MaterialGroup> by_look(const frame::Surface& surface, const Materials& materials) {
+std::vector<MaterialGroup> group_by_look(const frame::Surface& surface, const Materials& materials) {
   std::vector<MaterialGroup> groups(materials.all.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     groups[materials.all[materials.of_triangle(surface, t)].alike].triangles.push_back(t);

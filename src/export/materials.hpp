@@ -57,7 +57,7 @@ struct MaterialGroup {
 };
 
 /// Groups all triangles by look, in the order of the materials.
-std::vector<MaterialGroup> by_look(const frame::Surface& surface, const Materials& materials);
+std::vector<MaterialGroup> group_by_look(const frame::Surface& surface, const Materials& materials);
 
 /// `name` with every character except letters, digits and - replaced by _.
 std::string plain_name(const std::string& name);

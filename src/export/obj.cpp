@@ -111,7 +111,7 @@ std::string mtl_text(const frame::Surface& surface) {
   const Materials materials = materials_of(surface);
   std::string text = "# Weft, colours in linear light\n";
   const auto out = std::back_inserter(text);
-  for (const MaterialGroup& group : by_look(surface, materials)) {
+  for (const MaterialGroup& group : group_by_look(surface, materials)) {
     const Material& material = materials.all[group.material];
     const auto options = material.has_picture() ? map_options(material) : std::nullopt;
     const Vec3 color = options ? Vec3(1, 1, 1) : material.color;

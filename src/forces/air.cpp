@@ -66,7 +66,7 @@ void Air::add_drag(const Faces<Corners>& faces, const Evaluation& at) const {
   if (!at.assembly) return;
   const auto damping = packed(outer(2 * at.rate * drag_per_speed * n, n));
   for (const Four& corner : faces.corners)
-    for (std::size_t l = 0; l < 4; ++l) at.assembly.add_to_own(corner[l], damping[l]);
+    for (std::size_t l = 0; l < 4; ++l) at.assembly.add_to_own_block(corner[l], damping[l]);
 }
 
 }  // namespace weft::forces

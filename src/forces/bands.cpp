@@ -6,13 +6,9 @@
 namespace weft::forces {
 namespace {
 
-std::size_t at_index(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 template <class Point>
 Point curvature(const std::array<Index, 3>& p, const Vec3& weights, std::span<const Point> x) {
-  return weights[0] * x[at_index(p[0])] + weights[1] * x[at_index(p[1])] + weights[2] * x[at_index(p[2])];
+  return weights[0] * x[p[0]] + weights[1] * x[p[1]] + weights[2] * x[p[2]];
 }
 
 }  // namespace
@@ -22,7 +18,7 @@ Bands::Bands(const mesh::Sheet& sheet, Index first, double stretch) {
     const double stiffness = band.stiffness + stretch * band.allowance;
     for (std::size_t k = 0; stiffness > 0 && k < band.lengths.size(); ++k) {
       const Index a = band.vertices[k], b = band.vertices[k + 1];
-      const double start = (sheet.rest[at_index(a)] - sheet.rest[at_index(b)]).norm();
+      const double start = (sheet.rest[a] - sheet.rest[b]).norm();
       const double pattern_rest = band.ratio * band.lengths[k];
       pieces_.push_back(
           {{first + a, first + b}, stiffness, sheet.sewn ? start : pattern_rest, pattern_rest, pattern_rest});
@@ -37,7 +33,7 @@ Bands::Bands(const mesh::Sheet& sheet, Index first, double stretch) {
   }
 }
 
-void Bands::rest_between_start_and_pattern(double progress) {
+void Bands::interpolate_rest_shape(double progress) {
   for (Piece& piece : pieces_)
     piece.rest = progress == 1 ? piece.pattern_rest : (1 - progress) * piece.start + progress * piece.pattern_rest;
 }
@@ -60,18 +56,18 @@ void Bands::attach(const solver::Assembly& assembly) {
 
 void Bands::add(const Evaluation& at) const {
   for (const Piece& piece : pieces_) {
-    const auto a = at_index(piece.particles[0]), b = at_index(piece.particles[1]);
+    const auto a = piece.particles[0], b = piece.particles[1];
     const Vec3 along = solver::vec3_of(at.x[b] - at.x[a]);
     const double length = along.norm();
     if (length == 0) continue;  // no direction
-    const auto pull = solver::quad_of<double>(piece.stiffness * (1 / piece.rest - 1 / length) * along);
+    const auto pull = solver::padded<double>(piece.stiffness * (1 / piece.rest - 1 / length) * along);
     at.force.add(piece.particles[0], pull);
     at.force.subtract(piece.particles[1], pull);
     if (at.assembly)
       at.assembly.add(piece.block, Mat3(-stiffness(piece, along, std::max(1 - piece.rest / length, 0.0))));
   }
   for (const auto& [p, weights, stiffness, scalars] : bends_) {
-    const solver::Quad<double> moment = stiffness * curvature(p, weights, at.x);
+    const solver::PaddedVec3<double> moment = stiffness * curvature(p, weights, at.x);
     for (std::size_t k = 0; k < 3; ++k) at.force.subtract(p[k], weights[static_cast<Eigen::Index>(k)] * moment);
   }
 }
@@ -87,7 +83,7 @@ void Bands::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, d
   const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
   for (const Piece& piece : pieces_) {
     const auto [a, b] = piece.particles;
-    const Vec3 along = x[at_index(b)] - x[at_index(a)];
+    const Vec3 along = x[b] - x[a];
     if (along.norm() == 0) continue;
     const Mat3 k = stiffness(piece, along, 1 - piece.rest / along.norm());
     add(a, a, k), add(a, b, -k), add(b, a, -k), add(b, b, k);
@@ -95,7 +91,7 @@ void Bands::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, d
   for (const Bend& bend : bends_)
     for (Eigen::Index a = 0; a < 3; ++a)
       for (Eigen::Index b = 0; b < 3; ++b)
-        add(bend.particles[at_index(static_cast<Index>(a))], bend.particles[at_index(static_cast<Index>(b))],
+        add(bend.particles[a], bend.particles[b],
             bend.stiffness * bend.weights[a] * bend.weights[b] * Mat3::Identity());
 }
 
@@ -109,7 +105,7 @@ void Bands::add_constant_stiffness(solver::Assembly& assembly) const {
 double Bands::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (const Piece& piece : pieces_) {
-    const double strain = (x[at_index(piece.particles[1])] - x[at_index(piece.particles[0])]).norm() / piece.rest - 1;
+    const double strain = (x[piece.particles[1]] - x[piece.particles[0]]).norm() / piece.rest - 1;
     sum += 0.5 * piece.stiffness * piece.rest * strain * strain;
   }
   for (const Bend& bend : bends_)

@@ -29,7 +29,7 @@ class Bands final : public Force {
 
   /// For sewn sheets: interpolates the rest lengths of elastic bands between those of the start (progress 0) and those
   /// of the pattern (progress 1).
-  void rest_between_start_and_pattern(double progress);
+  void interpolate_rest_shape(double progress);
 
  private:
   struct Piece {

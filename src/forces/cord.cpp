@@ -42,7 +42,7 @@ Cord::Cord(std::span<const double> lengths, bool closed, Index first, const Cord
   const auto pieces = static_cast<Index>(lengths.size()), particles = closed ? pieces : pieces + 1;
   const auto particle = [&](Index i) { return first + i % particles; };
   for (Index p = 0; p < pieces; ++p) pieces_.push_back({{particle(p), particle(p + 1)}, lengths[slot(p)], 0, 0, 0});
-  use_length_ratio(1);
+  set_length_ratio(1);
   if (parameters.bend == 0 && parameters.bend_viscosity == 0) return;
   for (Index p = 0; p < (closed ? pieces : pieces - 1); ++p) {
     turns_.push_back(
@@ -64,7 +64,7 @@ void Cord::hold(std::span<const char> held) {
   for (Turn& turn : turns_) compute_weights(turn, held);
 }
 
-void Cord::use_length_ratio(double ratio) {
+void Cord::set_length_ratio(double ratio) {
   for (Piece& piece : pieces_) {
     piece.rest = ratio * piece.initial_length;
     piece.elasticity = parameters_.stretch / piece.rest;
@@ -108,7 +108,7 @@ void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
     tension += piece.viscosity * at.rate_of(
                                      length, [&](std::span<const Vec3> x) { return piece_length(x, piece.particles); },
                                      [&] { return n.dot(vec_at(at.v, b) - vec_at(at.v, a)); });
-  const auto pull = solver::quad_of<double>(tension * n);
+  const auto pull = solver::padded<double>(tension * n);
   at.force.add(a, pull);
   at.force.subtract(b, pull);
   if (!at.assembly) return;
@@ -116,7 +116,7 @@ void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
   const double ratio = 1 - piece.rest / length;
   const double lateral =
       piece.elasticity *
-      (at.linearisation == Linearisation::definite ? std::max(ratio, 0.0) : std::min(std::abs(ratio), 1.0));
+      (at.linearisation == Linearisation::clamped ? std::max(ratio, 0.0) : std::min(std::abs(ratio), 1.0));
   const double along = piece.elasticity + at.rate * piece.viscosity;
   at.assembly.add(piece.block, Mat3((lateral - along) * n * n.transpose() - lateral * Mat3::Identity()));
 }
@@ -133,15 +133,15 @@ void Cord::add_air(const Piece& piece, const Evaluation& at) const {
   if (!(speed > 0)) return;
   // per end [kg/m]
   const double coefficient = 0.25 * parameters_.air_density * parameters_.drag * parameters_.diameter * length;
-  const auto drag = solver::quad_of<double>(coefficient * speed * across);
+  const auto drag = solver::padded<double>(coefficient * speed * across);
   at.force.subtract(a, drag);
   at.force.subtract(b, drag);
   if (!at.assembly) return;
   // Derivative with respect to velocities, lumped on the diagonal; see Air.
   const auto damping = packed_block(
       at.rate * coefficient * (speed * (Mat3::Identity() - n * n.transpose()) + across * across.transpose() / speed));
-  at.assembly.add_to_own(a, damping);
-  at.assembly.add_to_own(b, damping);
+  at.assembly.add_to_own_block(a, damping);
+  at.assembly.add_to_own_block(b, damping);
 }
 
 void Cord::add_turn(const Turn& turn, const Evaluation& at) const {
@@ -158,7 +158,7 @@ void Cord::add_turn(const Turn& turn, const Evaluation& at) const {
                                              turn.weights[(k + 1) % 3] * c * c.transpose()));
   }
   for (std::size_t k = 0; k < 3; ++k)
-    at.force.subtract(turn.particles[k], solver::quad_of<double>(turn.length * turn.weights[k] * moment));
+    at.force.subtract(turn.particles[k], solver::padded<double>(turn.length * turn.weights[k] * moment));
 }
 
 void Cord::add_constant_stiffness(solver::Assembly& assembly) const {

@@ -42,7 +42,7 @@ class Cord final : public Membrane {
   void hold(std::span<const char> held) override;
 
   /// Sets the rest lengths to this ratio of the initial ones.
-  void use_length_ratio(double ratio);
+  void set_length_ratio(double ratio);
 
   double max_strain(std::span<const Vec3> x) const override;
   void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;

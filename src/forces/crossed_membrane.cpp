@@ -83,7 +83,7 @@ CrossedMembrane::Five CrossedMembrane::vectors_of(const Cell& cell, std::span<co
   return vectors;
 }
 
-CrossedMembrane::Five CrossedMembrane::vectors_of(const Cell& cell, std::span<const solver::Quad<double>> of) {
+CrossedMembrane::Five CrossedMembrane::vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of) {
   Five vectors;
   for (std::size_t k = 0; k < 5; ++k) vectors[k] = solver::vec3_of(of[cell.particles[k]]);
   return vectors;
@@ -192,10 +192,10 @@ void CrossedMembrane::add(const Evaluation& at) const {
       along_skew -= element.area * 0.5 * cell_weights.of_skew.dot(Vec2(weft, warp));
     }
     pull_back(state, force, along_height, along_skew);
-    for (std::size_t i = 0; i < 5; ++i) at.force.add(cell.particles[i], solver::quad_of<double>(force[i]));
+    for (std::size_t i = 0; i < 5; ++i) at.force.add(cell.particles[i], solver::padded<double>(force[i]));
     if (!at.assembly) return;
     const Blocks blocks = blocks_of(
-        c, state, at.rate, at.linearisation == Linearisation::definite ? clamped_lateral : absolute_lateral, true);
+        c, state, at.rate, at.linearisation == Linearisation::clamped ? clamped_lateral : absolute_lateral, true);
     for (std::size_t a = 0; a < 5; ++a)
       for (std::size_t b = 0; b < 5; ++b)
         if (cell.particles[a] < cell.particles[b]) at.assembly.add(cell_blocks_[c][5 * a + b], blocks[5 * a + b]);

@@ -62,7 +62,7 @@ class CrossedMembrane final : public TriangleMembrane {
   static State state_of(const Cell& cell, const Five& positions);
   static Vec3 normal_change(const State& state, const Vec3& product);
   static Five vectors_of(const Cell& cell, std::span<const Vec3> of);
-  static Five vectors_of(const Cell& cell, std::span<const solver::Quad<double>> of);
+  static Five vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of);
   /// Stiffness of tension across a thread, relative to k, from the thread's relative length.
   using Lateral = double (*)(double length);
   using Blocks = std::array<solver::PackedBlock, 25>;  // row-major over pairs of particles

@@ -17,51 +17,51 @@ namespace weft::forces {
 
 /// How the part of the Jacobian that is indefinite under compression is made definite.
 enum class Linearisation {
-  definite,       ///< clamped to zero term by term
-  abs_projected,  ///< absolute values where edges are compressed: shorter steps where clamping overshoots
+  clamped,         ///< clamped to zero term by term
+  absolute_value,  ///< absolute values where edges are compressed: shorter steps where clamping overshoots
 };
 
 /// The forces on particles [begin, end); what is added to others is ignored.
 class ForceRows {
  public:
-  ForceRows(std::span<solver::Quad<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
-  ForceRows(std::vector<solver::Quad<double>>& all) : ForceRows(std::span(all)) {}
+  ForceRows(std::span<solver::PaddedVec3<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
+  ForceRows(std::vector<solver::PaddedVec3<double>>& all) : ForceRows(std::span(all)) {}
   /// `all`: forces of all particles.
-  ForceRows(std::span<solver::Quad<double>> all, Index begin, Index end) : all_(all), begin_(begin), end_(end) {}
+  ForceRows(std::span<solver::PaddedVec3<double>> all, Index begin, Index end) : all_(all), begin_(begin), end_(end) {}
 
-  void add(Index particle, const solver::Quad<double>& force) const {
+  void add(Index particle, const solver::PaddedVec3<double>& force) const {
     if (particle >= begin_ && particle < end_) all_[static_cast<std::size_t>(particle)] += force;
   }
-  void subtract(Index particle, const solver::Quad<double>& force) const {
+  void subtract(Index particle, const solver::PaddedVec3<double>& force) const {
     if (particle >= begin_ && particle < end_) all_[static_cast<std::size_t>(particle)] -= force;
   }
 
  private:
-  std::span<solver::Quad<double>> all_;
+  std::span<solver::PaddedVec3<double>> all_;
   Index begin_, end_;
 };
 
-struct LockLag;
+struct LockLinearisation;
 
 /// One evaluation of the forces at (x, v). A Quad holds three numbers and a zero.
 struct Evaluation {
-  std::span<const solver::Quad<double>> x;  ///< positions [m]
-  std::span<const solver::Quad<double>> v;  ///< velocities [m/s]
-  ForceRows force;                          ///< receives += f [N]
+  std::span<const solver::PaddedVec3<double>> x;  ///< positions [m]
+  std::span<const solver::PaddedVec3<double>> v;  ///< velocities [m/s]
+  ForceRows force;                                ///< receives += f [N]
   /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m], made symmetric and positive semidefinite term by term, as conjugate
   /// gradients and line search require. Empty: forces only.
   solver::AssemblyRows assembly = {};
   double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂) [1/s]; 0: none
   /// Earlier positions from which v is computed. Empty: rates follow from v at x.
   std::span<const Past> past = {};
-  Linearisation linearisation = Linearisation::definite;
+  Linearisation linearisation = Linearisation::clamped;
   /// Range of Force::cut() to evaluate; kAll: everything.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   std::size_t range = kAll;
   /// Velocity of the air at each particle [m/s]; empty: the same everywhere.
-  std::span<const solver::Quad<double>> air = {};
+  std::span<const solver::PaddedVec3<double>> air = {};
   /// Linearisation points of the locks of the threads; null: linearise at x.
-  const LockLag* locks = nullptr;
+  const LockLinearisation* locks = nullptr;
 
   /// Rate of a quantity of the positions whose value at x is `now`; without past, `by_velocity()`. Viscosity uses it:
   /// with ∂q/∂x v, implicit Euler sees an edge that turns by θ in a step lengthen by 1 − cos θ. Stiff viscosity would

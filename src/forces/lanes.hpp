@@ -10,12 +10,12 @@
 #include "forces/force.hpp"
 #include "forces/ranges.hpp"
 #include "solver/assembly.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 
 namespace weft::forces {
 
 /// One number per element.
-using Lanes = solver::Quad<double>;
+using Lanes = solver::PaddedVec3<double>;
 /// One index per element: of a particle, a block, ...
 using Four = std::array<Index, 4>;
 
@@ -59,7 +59,7 @@ inline VecLanes lanes_of(const Vec3& a) {
 }
 
 /// The entries of four particles.
-inline VecLanes gather(std::span<const solver::Quad<double>> of, const Four& i) {
+inline VecLanes gather(std::span<const solver::PaddedVec3<double>> of, const Four& i) {
   const Lanes &a = of[i[0]], &b = of[i[1]], &c = of[i[2]], &d = of[i[3]];
   const Lanes xz_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), xz_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
   const Lanes y_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7), y_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);

@@ -46,7 +46,7 @@ void Rigidity::add(const Evaluation& at) const {
   const Mat3 stress = 0.5 * modulus_ * shape * root.asDiagonal() * strain * root.asDiagonal();
   for (std::size_t k = 0; k < kParticles; ++k)
     at.force.add(first_ + static_cast<Index>(k),
-                 solver::quad_of<double>(Vec3(-0.25 * stress * mesh::RigidFrame::corner(k))));
+                 solver::padded<double>(Vec3(-0.25 * stress * mesh::RigidFrame::corner(k))));
   if (!at.assembly) return;
   // Without the stiffness of the existing stress, which is small but may be indefinite.
   const Mat3 affine_map = shape * deviations_.cwiseInverse().asDiagonal();  // A

@@ -78,7 +78,7 @@ void Stretch::add(const Evaluation& at) const {
     const Lanes ratio = 1 - edges.rest_length / length;
     const Lanes lateral =
         edges.elasticity *
-        (at.linearisation == Linearisation::definite ? max(ratio, lanes_of(0.0)) : min(abs(ratio), lanes_of(1.0)));
+        (at.linearisation == Linearisation::clamped ? max(ratio, lanes_of(0.0)) : min(abs(ratio), lanes_of(1.0)));
     const Lanes along = edges.elasticity + at.rate * edges.viscosity;
     forces::add(at.assembly, edges.block, outer((lateral - along) * n, n, -lateral));
   });

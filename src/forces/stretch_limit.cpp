@@ -93,15 +93,17 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::s
 }
 
 template <class Piece>
-Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::span<const solver::Quad<double>> x) {
-  solver::Quad<double> s{};
+Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights,
+                              std::span<const solver::PaddedVec3<double>> x) {
+  solver::PaddedVec3<double> s{};
   for (std::size_t k = 0; k < piece.corners; ++k) s += weights[k] * x[piece.particles[k]];
   return solver::vec3_of(s);
 }
 
 // Calls body(piece, corner_forces, block_of) for each piece that locks; block_of(a, b) is a block of its Jacobian.
 template <class Points, class Body>
-void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLag* lag, const Body& body) const {
+void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
+                                 const Body& body) const {
   // For nearly all pieces the squared length shows that they are below the onset.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
   ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
@@ -135,7 +137,7 @@ void StretchLimit::add(const Evaluation& at) const {
   for_each_lock(at.x, at.range, false, at.assembly ? at.locks : nullptr,
                 [&](const auto& piece, const CornerForces& corner_forces, const auto& block_of) {
                   for (std::size_t k = 0; k < piece.corners; ++k)
-                    at.force.subtract(piece.particles[k], solver::quad_of<double>(corner_forces[k]));
+                    at.force.subtract(piece.particles[k], solver::padded<double>(corner_forces[k]));
                   if (!at.assembly) return;
                   for (std::size_t a = 0; a < piece.corners; ++a)
                     for (std::size_t b = 0; b < piece.corners; ++b)
@@ -174,7 +176,7 @@ void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, c
   });
 }
 
-void StretchLimit::begin(std::span<const Vec3> x, LockLag& lag) const {
+void StretchLimit::begin(std::span<const Vec3> x, LockLinearisation& lag) const {
   lag.extensions.resize(threads_.size());
   parallel_for(threads_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
@@ -182,7 +184,7 @@ void StretchLimit::begin(std::span<const Vec3> x, LockLag& lag) const {
   });
 }
 
-void StretchLimit::update(std::span<const Vec3> x, bool first, LockLag& lag) const {
+void StretchLimit::update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const {
   const Lock lock(stretch_);
   const double onset = lock.onset(), onset_sq = (1 + onset) * (1 + onset);
   lag.near.clear();
@@ -200,7 +202,7 @@ void StretchLimit::update(std::span<const Vec3> x, bool first, LockLag& lag) con
   });
 }
 
-void StretchLimit::add_lag(std::span<const Vec3> x, const LockLag& lag, std::span<Vec3> force) const {
+void StretchLimit::add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const {
   const Lock lock(stretch_);
   for (const std::uint32_t t : lag.near) {
     const Thread& thread = threads_[t];

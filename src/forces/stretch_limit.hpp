@@ -53,7 +53,7 @@ class Lock {
 /// Extensions at which Newton's method linearises the locks of a cloth's threads: not the extension of the iterate, but
 /// that at which a piece has the tension that the last linearisation predicted (a dual unknown, as for contacts).
 /// Linearised at the iterate, a piece loses only a third of its excess over the onset per iteration.
-struct LockLag {
+struct LockLinearisation {
   std::vector<double> extensions;   ///< per piece
   std::vector<std::uint32_t> near;  ///< pieces beyond their onset, at this extension or at the iterate
 };
@@ -78,11 +78,11 @@ class StretchLimit final : public Force {
   double energy(std::span<const Vec3> x) const override;
 
   /// Initialises `lag` before the first iteration of a step, which starts at x.
-  void begin(std::span<const Vec3> x, LockLag& lag) const;
+  void begin(std::span<const Vec3> x, LockLinearisation& lag) const;
   /// Updates `lag` before the linearisation at x. `first`: first iteration of a step, without a predicted tension.
-  void update(std::span<const Vec3> x, bool first, LockLag& lag) const;
+  void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
   /// Adds the linearised force minus the force, at any x.
-  void add_lag(std::span<const Vec3> x, const LockLag& lag, std::span<Vec3> force) const;
+  void add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
 
   /// Copies the rest shape of the membrane that it was constructed with.
   void follow(const TriangleMembrane& membrane);
@@ -125,9 +125,9 @@ class StretchLimit final : public Force {
   template <class Piece>
   static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const Vec3> x);
   template <class Piece>
-  static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const solver::Quad<double>> x);
+  static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const solver::PaddedVec3<double>> x);
   template <class Points, class Body>
-  void for_each_lock(Points x, std::size_t range, bool exact, const LockLag* lag, const Body& body) const;
+  void for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag, const Body& body) const;
   template <class Body>
   void lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const;
   Tangent tangent(double lag, double e) const;

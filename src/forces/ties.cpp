@@ -6,10 +6,6 @@
 namespace weft::forces {
 namespace {
 
-std::size_t at_index(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 // How far a tie is closed at time t, 0 to 1. A tie may close first and reopen, or start closed, open, and close again.
 double closed_ratio(const mesh::Tie& tie, double t) {
   const bool reopens = tie.closed < tie.open;
@@ -62,12 +58,12 @@ Mat3 Ties::stiffness(const Piece& piece, const Vec3& along) {
 
 void Ties::add(const Evaluation& at) const {
   for (const Piece& piece : pieces_) {
-    const Vec3 along = solver::vec3_of(at.x[at_index(piece.tie.b)] - at.x[at_index(piece.tie.a)]);
+    const Vec3 along = solver::vec3_of(at.x[piece.tie.b] - at.x[piece.tie.a]);
     const double length = along.norm();
     const Pull now = pull(piece, length);
     if (now.force == 0) continue;
     const Vec3 force = now.force / length * along;
-    const auto quad = solver::quad_of<double>(force);
+    const auto quad = solver::padded<double>(force);
     at.force.add(piece.tie.a, quad);
     at.force.subtract(piece.tie.b, quad);
     if (at.assembly) at.assembly.add(piece.block, Mat3(-stiffness(piece, along)));
@@ -79,7 +75,7 @@ void Ties::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, do
   const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
   for (const Piece& piece : pieces_) {
     const auto a = piece.tie.a, b = piece.tie.b;
-    const Mat3 k = stiffness(piece, x[at_index(b)] - x[at_index(a)]);
+    const Mat3 k = stiffness(piece, x[b] - x[a]);
     add(a, a, k), add(a, b, -k), add(b, a, -k), add(b, b, k);
   }
 }
@@ -87,7 +83,7 @@ void Ties::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, do
 double Ties::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (const Piece& piece : pieces_) {
-    const double strain = (x[at_index(piece.tie.b)] - x[at_index(piece.tie.a)]).norm() / kRest - 1;
+    const double strain = (x[piece.tie.b] - x[piece.tie.a]).norm() / kRest - 1;
     if (strain <= 0) continue;
     sum += piece.strength * kRest * (strain < 1 ? 0.5 * strain * strain : strain - 0.5);
   }

@@ -34,7 +34,7 @@ Plane triangle_plane(const std::array<Vec3, 3>& corners) {
 std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const Vec3> x) {
   return {x[particles[0]], x[particles[1]], x[particles[2]]};
 }
-std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const solver::Quad<double>> x) {
+std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const solver::PaddedVec3<double>> x) {
   return {solver::vec3_of(x[particles[0]]), solver::vec3_of(x[particles[1]]), solver::vec3_of(x[particles[2]])};
 }
 
@@ -91,7 +91,7 @@ void TriangleBend::rebuild_elements() {
     if (!sheet_.reinforcements.empty()) area *= sheet_.reinforcements[t].bend;
     const std::size_t begin = particles_.size(), count = stencils[t].vertices.size();
     for (Index vertex : stencils[t].vertices) particles_.push_back(first_ + vertex);
-    for (const Vec3& weight : stencils[t].weights) weights_.push_back(solver::quad_of<double>(weight));
+    for (const Vec3& weight : stencils[t].weights) weights_.push_back(solver::padded<double>(weight));
     elements_.push_back({begin, begin + count, pairs, area, rest});
     pairs += count * (count - 1) / 2;
   }
@@ -210,16 +210,16 @@ void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std:
   const Quad* weights = weights_.data() + element.begin;
   for (std::size_t k = 0; k < count; k += 4) {
     const auto columns = transposed(weights[k], weights[k + 1], weights[k + 2], weights[k + 3]);
-    solver::store_quad(uu + k, columns[0]);
-    solver::store_quad(vv + k, columns[1]);
-    solver::store_quad(uv + k, columns[2]);
+    solver::store_padded(uu + k, columns[0]);
+    solver::store_padded(vv + k, columns[1]);
+    solver::store_padded(uv + k, columns[2]);
   }
   const Index* scalar = scalars_.data() + element.pairs;
   for (std::size_t a = 0; a + 1 < count; ++a) {
     const double of_uu = stiffness[0] * uu[a], of_vv = stiffness[1] * vv[a], of_uv = stiffness[2] * uv[a];
     for (std::size_t b = (a + 1) / 4 * 4; b < count; b += 4)
-      solver::store_quad(row + b, of_uu * solver::load_quad(uu + b) + of_vv * solver::load_quad(vv + b) +
-                                      of_uv * solver::load_quad(uv + b));
+      solver::store_padded(row + b, of_uu * solver::load_padded(uu + b) + of_vv * solver::load_padded(vv + b) +
+                                        of_uv * solver::load_padded(uv + b));
     for (std::size_t b = a + 1; b < count; ++b) assembly.add_scalar(*scalar++, row[b]);
   }
 }
@@ -264,9 +264,7 @@ void TriangleBend::add_rest_moment(const Element& element, const Curvature& curv
   Mat3 columns;
   for (int c = 0; c < 3; ++c) columns.col(c) = solver::vec3_of(curved[c]);
   const std::span<const Index> particle = particles(element);
-  const auto push = [&](std::size_t k, const Vec3& force) {
-    at.force.add(particle[k], solver::quad_of<double>(force));
-  };
+  const auto push = [&](std::size_t k, const Vec3& force) { at.force.add(particle[k], solver::padded<double>(force)); };
   const auto add_block = [&](std::size_t a, std::size_t b, const Mat3& block) {
     if (!at.assembly || particle[a] >= particle[b]) return;
     // Index of the pair: all pairs of earlier rows, and the earlier ones of this row.

@@ -32,7 +32,7 @@ class TriangleBend final : public Force {
   void hold(std::span<const char> held) override;
 
  private:
-  using Quad = solver::Quad<double>;
+  using Quad = solver::PaddedVec3<double>;
   struct Element {
     std::size_t begin, end;    // its particles, corners first
     std::size_t pairs;         // index of its first pair; pairs are in the order 01, 02, ... 12, ...

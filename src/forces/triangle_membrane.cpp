@@ -9,11 +9,11 @@ namespace weft::forces {
 namespace {
 
 // Below this stretch a thread has no direction and no pull; the matrix stays finite.
-constexpr double kCollapsed = 1e-12;
+constexpr double kMinStretch = 1e-12;
 
-// ‖s‖, at least kCollapsed
+// ‖s‖, at least kMinStretch
 Lanes length_of(const VecLanes& s) {
-  return max(sqrt(dot(s, s)), lanes_of(kCollapsed));
+  return max(sqrt(dot(s, s)), lanes_of(kMinStretch));
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ void TriangleMembrane::set_rest_shape(const Eigen::Matrix2d& inverse, Element& e
   element.gradients[0] = -(element.gradients[1] + element.gradients[2]);
 }
 
-void TriangleMembrane::rest_between_start_and_pattern(double progress) {
+void TriangleMembrane::interpolate_rest_shape(double progress) {
   for (std::size_t e = 0; e < starts_.size(); ++e) {
     const auto& [inverse, excess] = starts_[e];
     const Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity() + (1 - progress) * excess;
@@ -158,7 +158,7 @@ void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s,
                                      const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
   const auto lateral_of = [&](const Lanes& length) {
     const Lanes lateral = 1 - 1 / length;
-    return at.linearisation == Linearisation::definite ? max(lateral, lanes_of(0.0)) : min(abs(lateral), lanes_of(1.0));
+    return at.linearisation == Linearisation::clamped ? max(lateral, lanes_of(0.0)) : min(abs(lateral), lanes_of(1.0));
   };
   const Lanes lateral_u = lateral_of(length_u), lateral_v = lateral_of(length_v);
   const double viscous = at.rate * stretch_.viscosity;
@@ -182,7 +182,7 @@ void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s,
 
 // ∂/∂s + rate ∂/∂ṡ of the tension along a thread, times s/‖s‖.
 Mat3 TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec3& speed, double rate) const {
-  const double length = std::max(s.norm(), kCollapsed), lateral = 1 - 1 / length;
+  const double length = std::max(s.norm(), kMinStretch), lateral = 1 - 1 / length;
   const Vec3 n = s / length;
   const double along = n.dot(speed), size = stretch_.viscosity / length;
   return (k * (1 - lateral) + rate * stretch_.viscosity) * n * n.transpose() + k * lateral * Mat3::Identity() +

@@ -39,7 +39,7 @@ class TriangleMembrane : public Membrane {
   /// For sewn sheets: interpolates the rest shape of each triangle between that of the start (progress 0), which has no
   /// stress then, and that of the pattern (progress 1). The stretch U of the start, in weft and warp, is blended with
   /// the identity.
-  void rest_between_start_and_pattern(double progress);
+  void interpolate_rest_shape(double progress);
   std::span<const Element> elements() const { return elements_; }
   double max_strain(std::span<const Vec3> x) const override;
   void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;

@@ -43,7 +43,7 @@ struct FrameReport {
   int constraints = 0;                ///< contacts and pins that acted in the last step
   double min_distance = 0;            ///< smallest distance of these near pairs [m]; infinite if there are none
   double max_strain = 0;              ///< largest |length / rest length - 1| of weft and warp edges, in all steps
-  double stretch_share = 0;           ///< largest ratio of extension to material.max_stretch, in all steps
+  double stretch_ratio = 0;           ///< largest ratio of extension to material.max_stretch, in all steps
   double kinetic_energy = 0;          ///< [J]
   double potential_energy = 0;        ///< of gravity, zero at the origin [J]
   double elastic_energy = 0;          ///< stretch, shear, bending, attachments [J]

@@ -35,10 +35,10 @@ struct Paint {
 
 /// Optical properties of cloth besides its colour, each from 0 to 1.
 struct Finish {
-  double gloss = 0.15;      ///< highlights of threads, wide across the threads and narrow along them
-  double warp_share = 0.5;  ///< fraction of warp among the threads on top: 0.5 for a plain weave, more for satin
-  double fuzz = 0.4;        ///< fibres that stand out and catch light at grazing angles
-  double sheer = 0.25;      ///< light transmitted from the other side
+  double gloss = 0.15;         ///< highlights of threads, wide across the threads and narrow along them
+  double warp_fraction = 0.5;  ///< fraction of warp among the threads on top: 0.5 for a plain weave, more for satin
+  double fuzz = 0.4;           ///< fibres that stand out and catch light at grazing angles
+  double sheer = 0.25;         ///< light transmitted from the other side
   Threads threads = Threads::plain;
 };
 

@@ -54,13 +54,14 @@ Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string
   return {across > 0 ? across : up, up};
 }
 
-std::string doubt_that_hips_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {
+std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {
   const Measures& drawn = pattern.measures;
   if (!drawn.waist || drawn.chest) return {};
   const double waist = *drawn.waist * factors.x(), hips = *measure(wearer).hip;
   if (hips >= kMinHipToWaistRatio * waist) return {};
   return fmt::format(
-      "its waist is {:.2f} m around and the hips of its wearer {:.2f} m, which do not hold it up: pin its waist, as in "
+      "its waist is {:.2f} m around and the hips of its wearer {:.2f} m, too narrow to hold it up: pin its waist, as "
+      "in "
       "pin = [{{ edge = \"{}\", follow = \"WEARER.torso\" }}]",
       waist, hips, pattern.panels.empty() ? "PANEL.EDGE" : pattern.panels.front().name + ".EDGE");
 }

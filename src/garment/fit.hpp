@@ -20,6 +20,6 @@ Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string
 
 /// Warning text for a garment that hangs from the waist alone, if the hips of the wearer are too narrow to hold its
 /// waist, scaled by `factors`; empty if they hold it.
-std::string doubt_that_hips_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer);
+std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer);
 
 }  // namespace weft::garment

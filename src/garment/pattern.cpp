@@ -231,7 +231,7 @@ void complete_mirror_image(std::vector<Panel>& panels, std::size_t i, Findings& 
 void derive_edges(Panel& panel, const std::string& path, Findings& findings, std::vector<std::string>& in_drawings) {
   if (panel.path.empty() == panel.file.empty()) {
     if (!panel.mirror_of.empty()) return;  // its original has no outline or does not exist, which has been reported
-    if (!findings.faulty(path + ".path") && !findings.faulty(path + ".file"))
+    if (!findings.has_mistake(path + ".path") && !findings.has_mistake(path + ".file"))
       findings.report(path, "expected an outline, as path, as file and id or as mirror_of, got none");
     return;
   }
@@ -286,13 +286,13 @@ class EdgeNames {
   }
   void check(const std::string& name, const std::string& key) {
     // Panels without a valid outline have no edges; their own mistake is enough.
-    if (has_invalid_panel_ || findings_.faulty(key) || std::ranges::find(known_, name) != known_.end()) return;
+    if (has_invalid_panel_ || findings_.has_mistake(key) || std::ranges::find(known_, name) != known_.end()) return;
     findings_.report(key, fmt::format("expected an edge such as {}, got {}{}", known_.empty() ? "front.hem" : known_[0],
                                       scene::in_quotes(name), scene::suggestion(name, known_)));
   }
   void check_sewn_once(const std::string& name, const std::string& key) {
     check(name, key);
-    if (!sewn_.insert(name).second && !findings_.faulty(key))
+    if (!sewn_.insert(name).second && !findings_.has_mistake(key))
       findings_.report(key, fmt::format("expected each edge in one seam, got {} again", scene::in_quotes(name)));
   }
 
@@ -365,13 +365,13 @@ const scene::Table& pattern_rules() {
   static const Table kMeasures =
       TableBuilder<Measures>("Of the body that the pattern is drawn for; `fit` of a scene's cloth scales from them.")
           .number("chest", &Measures::chest, scene::above(0, 100), "m", "widest girth below the armpits")
-          .by_default("not told")
+          .by_default("not given")
           .number("waist", &Measures::waist, scene::above(0, 100), "m", "narrowest girth")
-          .by_default("not told")
+          .by_default("not given")
           .number("hip", &Measures::hip, scene::above(0, 100), "m", "widest girth below the waist")
-          .by_default("not told")
+          .by_default("not given")
           .number("height", &Measures::height, scene::above(0, 100), "m", "from the floor to the crown")
-          .by_default("not told")
+          .by_default("not given")
           .build();
   static const Table kTable = TableBuilder<Pattern>("A sewing pattern.")
                                   .number("depth", &Pattern::depth, scene::above(0, 10), "m",

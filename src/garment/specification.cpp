@@ -50,10 +50,10 @@ class Reader {
     } catch (const json::parse_error& error) {
       const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text_.size()));
       const int line = 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
-      findings_.report("", {line, 1, {}}, "expected JSON, got what is none near here");
+      findings_.report("", {line, 1, {}}, "expected valid JSON, found an error near here");
       return false;
     } catch (const std::exception& error) {  // numbers beyond the range of double, and excessive depth
-      findings_.report("", {1, 1, {}}, fmt::format("expected JSON, got what is none: {}", error.what()));
+      findings_.report("", {1, 1, {}}, fmt::format("expected valid JSON: {}", error.what()));
       return false;
     }
     const json* panels = member(member(&root, "pattern", ""), "panels", "pattern");
@@ -65,8 +65,9 @@ class Reader {
     if (has_mistakes_) return false;
     for (SpecPanel& panel : panels_) derive_geometry(panel);
     if (const auto ring = find_turned_panels(panels_, stitches_)) {
-      mistake(fmt::format("pattern.stitches.{}", *ring),
-              "expected stitches that leave each panel one side outside, got a ring of them that turns it over");
+      mistake(
+          fmt::format("pattern.stitches.{}", *ring),
+          "expected stitches that keep the same side of each panel outside, got a ring of stitches that turns it over");
       return false;
     }
     assign_parts();
@@ -116,9 +117,9 @@ class Reader {
     if (const std::size_t at = text_.find("\"" + name + "\""); at != std::string::npos) {
       const std::size_t line_start = text_.rfind('\n', at) + 1;
       const auto begin = text_.begin();
-      findings_.saw(path, {1 + static_cast<int>(std::count(begin, begin + static_cast<std::ptrdiff_t>(at), '\n')),
-                           static_cast<int>(at - line_start) + 1,
-                           {}});
+      findings_.set_place(path, {1 + static_cast<int>(std::count(begin, begin + static_cast<std::ptrdiff_t>(at), '\n')),
+                                 static_cast<int>(at - line_start) + 1,
+                                 {}});
     }
     SpecPanel result;
     result.name = name;

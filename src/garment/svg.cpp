@@ -48,7 +48,7 @@ class Drawing {
       refuse(0, fmt::format("expected a file, got none that can be read: {}", error.what()));
     }
     const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
-    if (!result) refuse(result.offset, fmt::format("expected XML, got what is none: {}", result.description()));
+    if (!result) refuse(result.offset, fmt::format("expected valid XML: {}", result.description()));
     DepthLimit limit;
     if (!document_.traverse(limit)) refuse(0, fmt::format("expected at most {} nested elements, got more", kMaxDepth));
   }

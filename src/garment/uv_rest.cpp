@@ -182,7 +182,7 @@ double quantile(std::vector<std::pair<double, double>> values, double fraction) 
 
 }  // namespace
 
-bool UvRest::like_panels() const {
+bool UvRest::has_panel_lengths() const {
   return unusable_area < 0.01 && alike >= 0.5;
 }
 
@@ -194,7 +194,7 @@ std::string UvRest::describe() const {
       "in the "
       "middle, 95 % of them by at most {:.1f} %",
       islands, islands == 1 ? "" : "s", length, unit.empty() ? "" : " (" + unit + ")", 100 * alike,
-      100 * median_stretch, 100 * most_stretch);
+      100 * median_stretch, 100 * stretch_quantile_95);
 }
 
 UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale,
@@ -233,7 +233,7 @@ UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const
   rest.unusable += replace_flat_triangles(mesh, flattest, rest.material);
   rest.unusable_area /= total;
   rest.median_stretch = quantile(deviations, 0.5);
-  rest.most_stretch = quantile(deviations, 0.95);
+  rest.stretch_quantile_95 = quantile(deviations, 0.95);
   return rest;
 }
 

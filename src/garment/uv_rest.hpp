@@ -27,12 +27,12 @@ struct UvRest {
   double unusable_area = 0;  ///< fraction of the area of the mesh
   /// Largest relative difference in length between a triangle of the mesh and its panel, over all directions: the
   /// median over the area, and the 95 % quantile.
-  double median_stretch = 0, most_stretch = 0;
+  double median_stretch = 0, stretch_quantile_95 = 0;
   double alike = 0;  ///< fraction of all edges as long as in the mesh within 5 %
 
   /// Whether at least half of all edges are as long as in the mesh: true for cloth, not for UV charts of other
   /// surfaces.
-  bool like_panels() const;
+  bool has_panel_lengths() const;
   /// Text for messages, such as "3 islands, 1 unit = 1 m (metres), 98 % of all edges as long as in the mesh within 5 %;
   /// its triangles are off by 1.2 % in the middle, 95 % of them by at most 4.3 %".
   std::string describe() const;

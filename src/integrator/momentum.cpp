@@ -11,7 +11,7 @@ namespace {
 /// Disjoint sets of diagonal blocks, each identified by its lowest block.
 class BlockGroups {
  public:
-  explicit BlockGroups(std::span<const solver::Part> parts)
+  explicit BlockGroups(std::span<const solver::DiagonalBlock> parts)
       : parts_(parts), lowest_(parts.size()), is_free_(parts.size(), 1) {
     std::iota(lowest_.begin(), lowest_.end(), std::size_t{0});
   }
@@ -20,7 +20,7 @@ class BlockGroups {
     return part;
   }
   std::size_t of_particle(Index particle) const {
-    const auto after = std::ranges::upper_bound(parts_, particle, {}, &solver::Part::begin);
+    const auto after = std::ranges::upper_bound(parts_, particle, {}, &solver::DiagonalBlock::begin);
     return of_part(static_cast<std::size_t>(after - parts_.begin()) - 1);
   }
   std::size_t join(std::size_t a, std::size_t b) {
@@ -33,7 +33,7 @@ class BlockGroups {
   bool is_free(std::size_t group) const { return is_free_[group] != 0; }
 
  private:
-  std::span<const solver::Part> parts_;
+  std::span<const solver::DiagonalBlock> parts_;
   std::vector<std::size_t> lowest_;
   std::vector<char> is_free_;  // per group: nothing acts on it from outside
 };
@@ -57,7 +57,7 @@ void join_by_term(const Term& term, BlockGroups& groups) {
 
 std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std::span<const double> masses,
                                         std::span<const Vec3> residual) {
-  const std::vector<solver::Part> parts = solver::parts_of(linear);
+  const std::vector<solver::DiagonalBlock> parts = solver::parts_of(linear);
   BlockGroups groups(parts);
   for (const auto& constraint : linear.constraints) groups.hold(groups.of_particle(constraint.particle));
   for (const auto& term : linear.diagonal_terms) groups.hold(groups.of_particle(term.particle));

@@ -19,14 +19,14 @@ void for_each_particle(std::size_t count, const Body& body) {
 }
 /// Calls body(i) for the particles of a diagonal block.
 template <class Body>
-void for_each_particle(const solver::Part& rows, const Body& body) {
+void for_each_particle(const solver::DiagonalBlock& rows, const Body& body) {
   for_each_particle(static_cast<std::size_t>(rows.end - rows.begin),
                     [&](std::size_t i) { body(static_cast<std::size_t>(rows.begin) + i); });
 }
 
 /// Σ body(i) over the particles of a diagonal block.
 template <class Body>
-double sum_over_particles(const solver::Part& rows, const Body& body) {
+double sum_over_particles(const solver::DiagonalBlock& rows, const Body& body) {
   const auto first = static_cast<std::size_t>(rows.begin), count = static_cast<std::size_t>(rows.end) - first;
   return parallel_sum(count, kGrainSize, [&](std::size_t begin, std::size_t end) {
     double sum = 0;

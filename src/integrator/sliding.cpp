@@ -14,7 +14,7 @@ bool Sliding::evaluate(const System& system, const StagePoint& at) {
   return system.contact_forces(at, push_, friction_, limit_);
 }
 
-double Sliding::wrong_friction(const solver::Part& rows, std::span<const Vec3> residual) const {
+double Sliding::friction_error(const solver::DiagonalBlock& rows, std::span<const Vec3> residual) const {
   Vec3 push = Vec3::Zero(), friction = Vec3::Zero(), missing = Vec3::Zero();
   double normal_force = 0, limit = 0;
   for (auto i = static_cast<std::size_t>(rows.begin); i < static_cast<std::size_t>(rows.end); ++i) {
@@ -33,7 +33,7 @@ double Sliding::wrong_friction(const solver::Part& rows, std::span<const Vec3> r
                                                                   : 0;
 }
 
-bool is_held(const solver::Part& rows, std::span<const solver::ParticleConstraint> constraints) {
+bool is_held(const solver::DiagonalBlock& rows, std::span<const solver::ParticleConstraint> constraints) {
   constexpr double kTwoDirections = 1.5;
   return std::ranges::any_of(constraints, [&](const solver::ParticleConstraint& constraint) {
     return constraint.particle >= rows.begin && constraint.particle < rows.end &&

@@ -22,7 +22,7 @@ class Sliding {
   bool evaluate(const System& system, const StagePoint& at);
 
   /// Error [N] of the friction on a block as a whole, from its residual [N]; 0 unless it is about to slide.
-  double wrong_friction(const solver::Part& rows, std::span<const Vec3> residual) const;
+  double friction_error(const solver::DiagonalBlock& rows, std::span<const Vec3> residual) const;
 
  private:
   std::vector<Vec3> push_, friction_;  // [N]
@@ -31,6 +31,6 @@ class Sliding {
 
 /// Whether constraints hold a block against sliding. A wall along which it slides leaves two directions free, and does
 /// not count.
-bool is_held(const solver::Part& rows, std::span<const solver::ParticleConstraint> constraints);
+bool is_held(const solver::DiagonalBlock& rows, std::span<const solver::ParticleConstraint> constraints);
 
 }  // namespace weft::integrator

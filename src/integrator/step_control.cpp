@@ -26,7 +26,7 @@ double StepControl::aim_to_error_ratio(double error) const {
   return numerics.steps.aim * tolerance_ / std::max(error, kRoundoff * tolerance_);
 }
 
-void StepControl::accepted(double h, double error) {
+void StepControl::record_accepted_step(double h, double error) {
   const double ratio = aim_to_error_ratio(error), elementary_factor = std::pow(ratio, 1 / order_plus_one_);
   if (elementary_factor > 1 - numerics.steps.kept_change && elementary_factor < 1 + numerics.steps.kept_change) {
     wanted_ = h;
@@ -42,14 +42,14 @@ void StepControl::accepted(double h, double error) {
 }
 
 // The elementary controller: after a rejected step, the ratio of the step before it does not count.
-void StepControl::too_inexact(double h, double error) {
+void StepControl::record_rejected_step(double h, double error) {
   const double factor = std::pow(aim_to_error_ratio(error), 1 / order_plus_one_);
   wanted_ = std::max(h * std::clamp(factor, numerics.steps.least_factor, 1 - numerics.steps.kept_change),
                      numerics.steps.least);
   after_failure_ = true;
 }
 
-void StepControl::unsolved(double h) {
+void StepControl::record_unsolved_step(double h) {
   wanted_ = 0.5 * h;
   after_failure_ = true;
 }

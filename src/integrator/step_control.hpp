@@ -25,10 +25,10 @@ class StepControl {
   bool meets(double error) const { return error <= tolerance_; }
 
   /// Length [s] of the next step, after a step over h that was accepted, too inexact, or not solved.
-  double wanted() const { return wanted_; }
-  void accepted(double h, double error);
-  void too_inexact(double h, double error);
-  void unsolved(double h);
+  double next_step_size() const { return wanted_; }
+  void record_accepted_step(double h, double error);
+  void record_rejected_step(double h, double error);
+  void record_unsolved_step(double h);
 
   /// Saves or restores the state after an accepted step. Throws std::runtime_error if a restored value is impossible.
   template <class Archive>

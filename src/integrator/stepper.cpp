@@ -17,7 +17,7 @@ namespace {
 constexpr double kMinRoundings = 32;
 
 // The largest coordinate of a block, as absolute value [m].
-double largest_coordinate(const solver::Part& rows, std::span<const Vec3> x) {
+double largest_coordinate(const solver::DiagonalBlock& rows, std::span<const Vec3> x) {
   const auto part = x.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.end - rows.begin));
   return parallel_max(part.size(), kGrainSize, 0.0, [&](std::size_t begin, std::size_t end) {
     double largest = 0;
@@ -164,7 +164,7 @@ void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) 
                    sliding_.evaluate(system, {x_, v_, x_end_, 1 / stage.beta, stage.end_rate});
   for (PartState& part : parts_) {
     part.sliding_error =
-        any && needs_check(part) ? sliding_.wrong_friction(part.rows, residual_) * stage.beta / part.mass : 0;
+        any && needs_check(part) ? sliding_.friction_error(part.rows, residual_) * stage.beta / part.mass : 0;
     if (part.sliding_error == 0) continue;
     for_each_particle(part.rows,
                       [&](std::size_t i) { scratch_[i] = v_hat_[i] + stage.beta / masses[i] * constant_force_[i]; });
@@ -271,8 +271,8 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   const auto masses = system.masses();
   const Stage stage = begin(now, h);
   beta_ = stage.beta;
-  linear.metric.resize(n);
-  for_each_particle(n, [&](std::size_t i) { linear.metric[i] = masses[i] / (stage.beta * stage.beta); });
+  linear.norm_weights.resize(n);
+  for_each_particle(n, [&](std::size_t i) { linear.norm_weights[i] = masses[i] / (stage.beta * stage.beta); });
   prepare_guess(system, now, stage, h, gravity);
   if (start == Start::next)
     for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage.end_rate;
@@ -291,7 +291,8 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     // Aggregates represent long waves, whose stiffness hardly changes within a step.
     {
       const Stopwatch watch(times_.preconditioner);
-      cg_.prepare(linear, report.newton_iterations == 0 ? solver::Sums::anew : solver::Sums::kept);
+      cg_.prepare(linear,
+                  report.newton_iterations == 0 ? solver::AggregateSums::recompute : solver::AggregateSums::reuse);
     }
     gather_residual(masses, stage);
     if (report.newton_iterations == 0) {  // otherwise done at the end of the last iteration
@@ -339,7 +340,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
 void Stepper::collect_blocks(std::span<const double> masses, const State& now, const solver::LinearSystem& linear) {
   parts_.clear();
   unsolved_.clear();
-  for (const solver::Part& rows : solver::parts_of(linear)) {
+  for (const solver::DiagonalBlock& rows : solver::parts_of(linear)) {
     PartState& part = parts_.emplace_back();
     part.rows = rows;
     for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];
@@ -402,7 +403,7 @@ void Stepper::split_impacts(System& system, const State& now, const Stage& stage
   const StepStart start{h, now.x, now.v, history_.h, history_.before.x, history_.before.v};
   if (!system.find_impacts({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, start, right_side)) return;
   cg_.filter(right_side);
-  cg_.prepare(system.linear_system(), solver::Sums::kept);
+  cg_.prepare(system.linear_system(), solver::AggregateSums::reuse);
   goals_.clear();
   for (const PartState& part : parts_)
     goals_.push_back(numerics.newton.linear_fraction * part.allowed * std::sqrt(part.mass) / stage.beta);
@@ -464,12 +465,12 @@ Vec3 Stepper::constraint_force(Index particle, double mass) const {
 // Whether a step over h is Euler's, or its error is estimated as Euler's.
 bool Stepper::is_first_order(double h) const {
   return method_ == Method::implicit_euler || history_.h == 0 ||
-         (method_ == Method::bdf2 && h > (1 + 1e-9) * kLargestRatio * history_.h);
+         (method_ == Method::bdf2 && h > (1 + 1e-9) * kMaxStepRatio * history_.h);
 }
 
 double Stepper::longest_step() const {
   const bool bounded = method_ == Method::bdf2 && history_.h > 0;
-  return bounded ? kLargestRatio * history_.h : std::numeric_limits<double>::infinity();
+  return bounded ? kMaxStepRatio * history_.h : std::numeric_limits<double>::infinity();
 }
 
 void Stepper::accept(const State& before, const State& after, double h) {

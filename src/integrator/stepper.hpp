@@ -84,13 +84,13 @@ class Stepper {
  public:
   /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I, III.5). At
   /// that bound a following step propagates a change of the error in full; at this ratio, four fifths of it.
-  static constexpr double kLargestRatio = 2;
+  static constexpr double kMaxStepRatio = 2;
 
   Stepper(Method method, const NewtonParameters& parameters) : method_(method), parameters_(parameters) {}
 
   /// Sets the method of the following steps. Single BDF2 steps may exceed longest_step(): a step that is too long for
   /// the history is an Euler step.
-  void use(Method method) { method_ = method; }
+  void set_method(Method method) { method_ = method; }
 
   /// Start of Newton's method: unchanged velocity, or the state in `next`, to solve a step again with other contacts.
   enum class Start { unchanged_velocity, next };
@@ -139,7 +139,7 @@ class Stepper {
   };
   /// State of one diagonal block, usually a cloth.
   struct PartState {
-    solver::Part rows;
+    solver::DiagonalBlock rows;
     double mass = 0;             // [kg]
     double local_error = 0;      // of the method, at the current iterate [m]
     double velocity_error = 0;   // of the method, if it is known [m/s]

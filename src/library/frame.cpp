@@ -75,7 +75,7 @@ Report report_of(const frame::FrameReport& report) {
           .constraints = report.constraints,
           .min_distance = report.min_distance,
           .max_strain = report.max_strain,
-          .stretch_ratio = report.stretch_share,
+          .stretch_ratio = report.stretch_ratio,
           .kinetic_energy = report.kinetic_energy,
           .potential_energy = report.potential_energy,
           .elastic_energy = report.elastic_energy,

@@ -45,7 +45,7 @@ struct Grid {
   double width_u(int i) const { return width(i, nu, lu, weft_grading); }
   double width_v(int j) const { return width(j, nv, lv, warp_grading); }
   /// Smallest of all spacings [m].
-  double least_spacing() const { return std::min({du(0), du(nu - 2), dv(0), dv(nv - 2)}); }
+  double min_spacing() const { return std::min({du(0), du(nu - 2), dv(0), dv(nv - 2)}); }
 
  private:
   // In units of the mean spacing.

@@ -23,7 +23,7 @@ std::array<Vec3, 2> axes(const Vec3& normal) {
 
 }  // namespace
 
-Sheet make_sheet_of(const Mesh& mesh) {
+Sheet make_sheet_from_mesh(const Mesh& mesh) {
   Sheet sheet;
   sheet.triangles = mesh.topology.triangles;
   sheet.rest = mesh.positions;
@@ -50,7 +50,7 @@ double height(const Sheet& sheet, std::size_t triangle) {
   return 2 * rest_area(sheet, triangle) / longest;
 }
 
-double least_height(const Sheet& sheet) {
+double min_height(const Sheet& sheet) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t) least = std::min(least, height(sheet, t));
   return least;

@@ -53,12 +53,12 @@ double rest_area(const Sheet& sheet, std::size_t triangle);
 /// Makes a sheet whose rest shape is the mesh. In each triangle the weft runs along the projection of x; in triangles
 /// across x it runs along −z. A flat mesh in the x-y plane has x as weft and y as warp. Each triangle has its own
 /// coordinates; they differ from those of its neighbours by a rigid motion.
-Sheet make_sheet_of(const Mesh& mesh);
+Sheet make_sheet_from_mesh(const Mesh& mesh);
 
 /// Shortest height of a triangle at rest [m].
 double height(const Sheet& sheet, std::size_t triangle);
 /// Smallest height of all triangles [m].
-double least_height(const Sheet& sheet);
+double min_height(const Sheet& sheet);
 
 /// How each cell of a grid is cut.
 enum class Pattern {

@@ -25,7 +25,7 @@ class TriangleGrid {
 
   /// Finds the first triangle with `passes(its index)` that the path from `from` to `to` crosses from its front.
   template <class Passes>
-  Entry first_entry(const Vec3& from, const Vec3& to, const Passes& passes) const {
+  Entry find_first_crossing(const Vec3& from, const Vec3& to, const Passes& passes) const {
     Entry entry{1, -1};
     walk(from, to, [&](std::span<const Index> here, double exit_t) {
       for (const Index number : here) {

@@ -58,7 +58,7 @@ std::vector<double> gaussian(double width) {
 
 }  // namespace
 
-bool CameraPath::is_found(const frame::FrameSnapshot& snapshot, const std::string& camera) {
+bool CameraPath::is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera) {
   const frame::Camera* named = find_camera(snapshot, camera);
   return named == nullptr || named->kind != Kind::placed;
 }
@@ -116,7 +116,7 @@ void CameraPath::find() {
 }
 
 frame::Camera CameraPath::at(const frame::FrameSnapshot& snapshot) const {
-  if (!is_found(snapshot, name_)) return *find_camera(snapshot, name_);
+  if (!is_computed(snapshot, name_)) return *find_camera(snapshot, name_);
   auto found = std::ranges::upper_bound(frames_, snapshot.frame, {}, &Frame::number);
   if (found != frames_.begin()) --found;
   return found->camera;
@@ -124,7 +124,7 @@ frame::Camera CameraPath::at(const frame::FrameSnapshot& snapshot) const {
 
 frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string& camera, double aspect) {
   CameraPath path(camera, aspect);
-  if (CameraPath::is_found(snapshot, camera)) {
+  if (CameraPath::is_computed(snapshot, camera)) {
     path.see(snapshot);
     path.find();
   }

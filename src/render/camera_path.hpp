@@ -17,7 +17,7 @@ class CameraPath {
   CameraPath(std::string camera, double aspect) : name_(std::move(camera)), aspect_(aspect) {}
 
   /// Whether the camera has to see frames before they are drawn. Throws as find_camera() does.
-  static bool is_found(const frame::FrameSnapshot& snapshot, const std::string& camera);
+  static bool is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera);
 
   /// Every frame of the run, in their order; then find().
   void see(const frame::FrameSnapshot& snapshot);

@@ -453,7 +453,7 @@ void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* b
 Renderer::Renderer(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
 Renderer::~Renderer() = default;
 
-void Renderer::look_through(CameraPath path) {
+void Renderer::set_camera_path(CameraPath path) {
   impl_->path = std::move(path);
 }
 

@@ -44,7 +44,7 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   /// Takes the cameras that were found of a run. Without them what is not placed is found from the first frame drawn.
-  void look_through(CameraPath path);
+  void set_camera_path(CameraPath path);
   /// Motion in layers() is that since `before`.
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
   /// The last picture for compositors, linear: R, G, B, A of the surfaces alone, colours times coverage; picture.R, .G,

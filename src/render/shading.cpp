@@ -195,7 +195,7 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
         Eigen::Vector4d(cloth ? heat_scale : 0, look.hem, look.thickness, look.thickness > kSewnTwice ? kBesideSeam : 0)
             .cast<float>());
     const frame::Finish& finish = look.finish;
-    texels.push_back(Eigen::Vector4d(cloth ? finish.gloss : look.coat, cloth ? finish.warp_share : look.metal,
+    texels.push_back(Eigen::Vector4d(cloth ? finish.gloss : look.coat, cloth ? finish.warp_fraction : look.metal,
                                      finish.fuzz, finish.sheer)
                          .cast<float>());
     texels.emplace_back(static_cast<float>(opacity), static_cast<float>(finish.threads), skin ? 1.0f : 0.0f, 0.0f);

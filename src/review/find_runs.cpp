@@ -177,7 +177,7 @@ class Search {
   void add_with_statistics(const fs::path& file) {
     RunFiles run = named(file);
     try {
-      run.stats_json = parse_json(read_file(file, kLargestText));
+      run.stats_json = parse_json(read_file(file, kMaxTextBytes));
     } catch (const std::exception& error) {
       // Any program may write JSON here; it is reported only if a video of this name exists.
       unusable_[run.name] = fmt::format("{}: not readable as JSON: {}", file.filename().string(), error.what());

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 /// The first file in the folder that its list of files does not name; empty if there is none.
 fs::path foreign_file(const fs::path& folder) {
   std::set<std::string> own{kFileList};
-  std::istringstream lines(read_start(folder / kFileList, kLargestText));
+  std::istringstream lines(read_start(folder / kFileList, kMaxTextBytes));
   for (std::string line; std::getline(lines, line);) own.insert(line);
   std::error_code error;
   for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))

@@ -68,7 +68,7 @@ Json pair_json(const PairComparison& pair) {
           {"verdict", kVerdicts[static_cast<int>(pair.verdict)]},
           {"flip", figures.flip},
           {"ssim", figures.ssim},
-          {"share_over", figures.share_over()},
+          {"share_over", figures.fraction_over()},
           {"largest", figures.largest},
           {"largest_x", figures.largest_x},
           {"largest_y", figures.largest_y}};

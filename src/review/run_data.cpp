@@ -69,7 +69,7 @@ Json effective_json(const RunFiles& run, std::vector<std::string>& problems) {
   }
   Json effective{{"text", ""}, {"values", Json::object()}};
   try {
-    effective["text"] = read_file(run.effective, kLargestText);
+    effective["text"] = read_file(run.effective, kMaxTextBytes);
     effective["values"] =
         scene_values(effective["text"].get_ref<const std::string&>(), run.effective.filename().string());
   } catch (const Error& error) {

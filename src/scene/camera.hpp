@@ -20,12 +20,12 @@ struct CameraKey {
 /// Cameras placed by the scene or a file, or computed from all frames of a run.
 enum class CameraKind { placed, whole, follow, close, track, file };
 
-inline bool is_found(CameraKind kind) {
+inline bool is_computed(CameraKind kind) {
   return kind != CameraKind::placed && kind != CameraKind::file;
 }
 
 /// Field of view of computed cameras: a portrait lens, with little distortion.
-inline constexpr double kFoundFieldOfView = 30;  // [degrees]
+inline constexpr double kComputedFieldOfView = 30;  // [degrees]
 
 struct Camera {
   std::string name;

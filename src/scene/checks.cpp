@@ -52,7 +52,7 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
   double latest = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::string key = fmt::format("{}.keys.{}.time", path, i);
-    if (!findings.has(key) || findings.faulty(key)) continue;
+    if (!findings.has(key) || findings.has_mistake(key)) continue;
     if (keys[i].time <= latest) {
       findings.report(key, fmt::format("expected > {} s, later than the keys before, got {}", latest, keys[i].time));
     } else if (keys[i].time - latest < kMinKeyGap) {
@@ -68,7 +68,7 @@ template <class Key>
 void check_rotation_changes(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const std::string key = fmt::format("{}.keys.{}.rotation", path, i);
-    if (!findings.has(key) || findings.faulty(key)) continue;
+    if (!findings.has(key) || findings.has_mistake(key)) continue;
     const auto change = change_of_angles(keys[i - 1].pose, keys[i].pose);
     if (!change || (change->array() != 0).count() < 2 || change->cwiseAbs().maxCoeff() <= 180) continue;
     findings.report(key, fmt::format("expected a change of one angle alone, or of none by more than half a turn, "
@@ -79,7 +79,7 @@ void check_rotation_changes(const std::vector<Key>& keys, const std::string& pat
 
 /// Decodes the picture, so that its defects are reported together with all other mistakes.
 void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
-  if (!image || !findings.has(key) || findings.faulty(key)) return;
+  if (!image || !findings.has(key) || findings.has_mistake(key)) return;
   try {
     image::decode_picture(read_bytes(*image, image::kMaxPictureBytes));
   } catch (const std::exception& error) {
@@ -153,7 +153,7 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
           path + ".follow",
           fmt::format("expected a body that keys move, got {}, which has a mass; [[attach]] ties cloth to it",
                       in_quotes(obstacle.name)));
-  if (!followed.part.empty() && !findings.faulty(path + ".follow"))
+  if (!followed.part.empty() && !findings.has_mistake(path + ".follow"))
     check_reference(followed.body, characters, "a character before the part", path + ".follow", findings);
   if (pin.fade > 0 && !pin.strength)
     findings.report(path + ".fade",
@@ -178,7 +178,7 @@ void check_friction_pairs(const Scene& scene, Findings& findings) {
     check_reference(pair.first, names, "a cloth, rope, obstacle or character", path + ".first", findings);
     check_reference(pair.second, names, "a cloth, rope, obstacle or character", path + ".second", findings);
     const auto is_cloth = [&](const std::string& name) { return !std::ranges::count(names_of_bodies, name); };
-    if (!findings.faulty(path + ".first") && !findings.faulty(path + ".second") && !is_cloth(pair.first) &&
+    if (!findings.has_mistake(path + ".first") && !findings.has_mistake(path + ".second") && !is_cloth(pair.first) &&
         !is_cloth(pair.second))
       findings.report(path + ".second",
                       fmt::format("expected a cloth as one of the two, since obstacles and characters "
@@ -361,7 +361,7 @@ void check_lens(const Camera& camera, const std::string& path, Findings& finding
   const std::string wrong = by_focal_length ? "field_of_view" : "focal_length";
   for (std::size_t k = 0; k < camera.keys.size(); ++k) {
     const std::string key = fmt::format("{}.keys.{}.{}", path, k, wrong);
-    if (findings.has(key) && !findings.faulty(key))
+    if (findings.has(key) && !findings.has_mistake(key))
       findings.report(key, fmt::format("expected {} as in the keys before, got {}",
                                        by_focal_length ? "focal_length" : "field_of_view", wrong));
   }
@@ -383,7 +383,7 @@ void check_cameras(const Scene& scene, Findings& findings) {
       if (camera.keys[k].position != camera.keys[k].target) continue;
       const std::string in_key = fmt::format("{}.keys.{}", path, k);
       const std::string& where = findings.has(in_key) ? in_key : path;
-      if (!findings.faulty(path + ".position") && !findings.faulty(path + ".target")) {
+      if (!findings.has_mistake(path + ".position") && !findings.has_mistake(path + ".target")) {
         findings.report(where + ".target", "expected a point away from position, got the same");
       }
     }

@@ -67,6 +67,6 @@ const Table& obstacle_look_rules();
 const Table& character_look_rules();
 
 /// Text about the value that a key does not give.
-inline const std::string kHeld = "that of the key before; of the first key, that of the thing itself";
+inline const std::string kDefaultOfKey = "that of the key before; of the first key, that of the thing itself";
 
 }  // namespace weft::scene

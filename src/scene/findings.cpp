@@ -22,13 +22,13 @@ Place Findings::place(std::string key) const {
 }
 
 void Findings::report(const std::string& key, Place place, std::string text) {
-  faulty_.insert(key);
+  has_mistake_.insert(key);
   mistakes_.push_back({place.line, place.column, key, std::move(text), std::move(place.override_text)});
   if (mistakes_.size() >= 2 * kMaxMistakes) keep_first();
 }
 
 void Findings::report(const std::string& key, std::string text) {
-  if (!faulty(key)) report(key, place(key), std::move(text));
+  if (!has_mistake(key)) report(key, place(key), std::move(text));
 }
 
 void Findings::keep_first() {

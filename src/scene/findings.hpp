@@ -24,7 +24,7 @@ Place place_of(const toml::source_region& source);
 class Findings {
  public:
   /// Stores where `key` (a whole path such as cloth.band.size) was written.
-  void saw(const std::string& key, Place place) { places_.insert_or_assign(key, std::move(place)); }
+  void set_place(const std::string& key, Place place) { places_.insert_or_assign(key, std::move(place)); }
   bool has(const std::string& key) const { return places_.contains(key); }
   /// The place of the key, or of the nearest stored table around it.
   Place place(std::string key) const;
@@ -32,7 +32,7 @@ class Findings {
   void report(const std::string& key, Place place, std::string text);
   /// Reports at the stored place of the key, unless the key already has a mistake.
   void report(const std::string& key, std::string text);
-  bool faulty(const std::string& key) const { return faulty_.contains(key); }
+  bool has_mistake(const std::string& key) const { return has_mistake_.contains(key); }
 
   /// Stores the key path of entry i of a list ("cloth.band"), for checks after reading.
   void add_entry(const std::string& list, std::string path) { entries_[list].push_back(std::move(path)); }
@@ -48,7 +48,7 @@ class Findings {
 
   std::vector<Mistake> mistakes_;
   std::size_t dropped_ = 0;
-  std::set<std::string> faulty_;
+  std::set<std::string> has_mistake_;
   std::map<std::string, Place> places_;
   std::map<std::string, std::vector<std::string>> entries_;
 };

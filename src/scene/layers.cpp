@@ -30,7 +30,7 @@ bool worn_over(const Scene& scene, const std::string& outer, const std::string& 
   return below.contains(inner);
 }
 
-std::vector<std::size_t> layers_of(const Scene& scene) {
+std::vector<std::size_t> layer_depths(const Scene& scene) {
   std::vector<std::size_t> layers(scene.cloths.size(), 0);
   // One pass per cloth is enough; cycles are reported elsewhere.
   for (std::size_t pass = 0; pass < scene.cloths.size(); ++pass)
@@ -42,7 +42,7 @@ std::vector<std::size_t> layers_of(const Scene& scene) {
 }
 
 std::vector<Layer> list_layers(const Scene& scene) {
-  const std::vector<std::size_t> layer_of = layers_of(scene);
+  const std::vector<std::size_t> layer_of = layer_depths(scene);
   std::vector<Layer> layers(layer_of.empty() ? 1 : 1 + *std::ranges::max_element(layer_of));
   for (std::size_t k = 0; k < layers.size(); ++k) {
     layers[k].first_frame =

@@ -12,7 +12,7 @@ namespace weft::scene {
 bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner);
 
 /// For each cloth, the maximum number of cloths worn below it, one over the other; 0 next to the skin.
-std::vector<std::size_t> layers_of(const Scene& scene);
+std::vector<std::size_t> layer_depths(const Scene& scene);
 
 /// A layer of cloths that is put on together.
 struct Layer {

@@ -26,9 +26,9 @@ const Table& physics_key_rules() {
                                   .number("time", &PhysicsKey::time, kMoment, "s", "later than the key before")
                                   .need(Need::required)
                                   .vector("gravity", &PhysicsKey::gravity, kXyz, kGravity, "m/s²", "then")
-                                  .by_default(kHeld)
+                                  .by_default(kDefaultOfKey)
                                   .vector("wind", &PhysicsKey::wind, kXyz, kWind, "m/s", "then")
-                                  .by_default(kHeld)
+                                  .by_default(kDefaultOfKey)
                                   .build();
   return kTable;
 }
@@ -48,12 +48,12 @@ const Table& fan_key_rules() {
           .number("time", &FanKey::time, kMoment, "s", "later than the key before")
           .need(Need::required)
           .vector("position", &FanKey::position, kXyz, kPlace, "m", "of the middle of its disc")
-          .by_default(kHeld)
+          .by_default(kDefaultOfKey)
           .vector("direction", &FanKey::direction, kXyz, kPlace, "", "the way that it blows")
           .nonzero()
-          .by_default(kHeld)
+          .by_default(kDefaultOfKey)
           .number("speed", &FanKey::speed, within(0, 1000), "m/s", "of the air at the middle of its disc; 0: it is off")
-          .by_default(kHeld)
+          .by_default(kDefaultOfKey)
           .build();
   return kTable;
 }

@@ -79,7 +79,7 @@ void Reader::read(const toml::table& table, const Table& rules, void* target, co
 
   const Variant* variant = rules.variant_of(target);
   // If the selector has a mistake, keys of all variants are accepted: one mistake is enough.
-  const bool undecided = !rules.selector.empty() && findings_.faulty(join_path(path, rules.selector));
+  const bool undecided = !rules.selector.empty() && findings_.has_mistake(join_path(path, rules.selector));
   if (variant != nullptr && !undecided) {
     for (const Rule& rule : variant->rules) read_rule(table, rule, target, path);
   }
@@ -97,7 +97,7 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
     }
     return;
   }
-  findings_.saw(key, place_of(node->source()));
+  findings_.set_place(key, place_of(node->source()));
 
   if (!rule.excludes.empty() && table.contains(rule.excludes)) {
     // A value from --set replaces the excluded alternative in the file.
@@ -144,7 +144,7 @@ void Reader::read_entries(const toml::node& node, const Rule& rule, void* target
       continue;
     }
     const std::string entry = entry_path(*table, rule, path, by_index, names);
-    findings_.saw(entry, place_of(element.source()));
+    findings_.set_place(entry, place_of(element.source()));
     findings_.add_entry(path, entry);
     read(*table, *rule.table, rule.append(target, i), entry);
   }

@@ -16,7 +16,7 @@ constexpr long kMaxRopeParticles = 1'000'000;  // total of all ropes
 bool check_course(const Scene& scene, const Rope& rope, const std::string& path, Findings& findings) {
   if (rope.points.empty()) {
     for (const auto& [key, end] : {std::pair("from", rope.from), std::pair("to", rope.to)})
-      if (!end && !findings.faulty(fmt::format("{}.{}", path, key)) && !findings.faulty(path + ".points"))
+      if (!end && !findings.has_mistake(fmt::format("{}.{}", path, key)) && !findings.has_mistake(path + ".points"))
         findings.report(fmt::format("{}.{}", path, key), "expected points, or from and to, got none");
     if (!rope.from || !rope.to) return false;
     if ((*rope.to - *rope.from).norm() < kRoundoff) {
@@ -26,12 +26,12 @@ bool check_course(const Scene& scene, const Rope& rope, const std::string& path,
     if (rope.closed) findings.report(path + ".closed", "expected points of a loop beside it, got from and to");
     const Vec3 up = scene.up == UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
     const Vec3 way = *rope.to - *rope.from;
-    const double span = (way - up.dot(way) * up).norm(), least = kLeastRopeSpan * rope.diameter;
+    const double span = (way - up.dot(way) * up).norm(), least = kMinRopeSpan * rope.diameter;
     if (hangs_slack(rope) && span < least) {
       findings.report(path + ".to",
                       fmt::format("expected ends at least {:.4g} m apart across the up axis, {:g} diameters, as it is "
                                   "longer than their distance; got {:.4g} m; points can lay it otherwise",
-                                  least, kLeastRopeSpan, span));
+                                  least, kMinRopeSpan, span));
       return false;
     }
     return true;
@@ -57,14 +57,14 @@ void check_pieces(const Scene& scene, const Rope& rope, const std::string& path,
   if (particles > kMaxRopeParticles)
     findings.report(path + ".segments", fmt::format("expected at most {} particles in all ropes together, got {}",
                                                     kMaxRopeParticles, particles));
-  const double piece = *std::ranges::min_element(shape.lengths), least = kLeastRopePiece * rope.diameter;
+  const double piece = *std::ranges::min_element(shape.lengths), least = kMinRopePiece * rope.diameter;
   if (piece < (1 - kRoundoff) * least) {
     const bool chosen = rope.segments.has_value();
     findings.report(
         path + (chosen ? ".segments" : ".diameter"),
         fmt::format("expected pieces between particles of at least {:.4g} m, {:g} diameters, got {} of which "
                     "the shortest has {:.4g} m",
-                    least, kLeastRopePiece, shape.lengths.size(), piece));
+                    least, kMinRopePiece, shape.lengths.size(), piece));
   }
 }
 

@@ -36,9 +36,9 @@ struct RopeShape {
 RopeShape start_shape(const Rope& rope, UpAxis up);
 
 /// Default and minimum length of a piece, in diameters.
-inline constexpr double kRopePiece = 3, kLeastRopePiece = 1.5;
+inline constexpr double kRopePiece = 3, kMinRopePiece = 1.5;
 /// Minimum distance, across the up axis, between the ends of a slack rope without points, in diameters.
-inline constexpr double kLeastRopeSpan = 4;
+inline constexpr double kMinRopeSpan = 4;
 /// Whether a rope has no points and is longer than the distance of its ends.
 bool hangs_slack(const Rope& rope);
 

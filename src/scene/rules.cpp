@@ -121,11 +121,12 @@ const Table& cloth_look_rules() {
 }
 
 const Table& pose_key_rules() {
-  static const Table kTable = TableBuilder<PoseKey>("A pose at a time.")
-                                  .number("time", &PoseKey::time, kMoment, "s", "later than the key before")
-                                  .need(Need::required)
-                                  .with([](auto& rows) { pose_rows(rows, &PoseKey::pose, "where it is then", kHeld); })
-                                  .build();
+  static const Table kTable =
+      TableBuilder<PoseKey>("A pose at a time.")
+          .number("time", &PoseKey::time, kMoment, "s", "later than the key before")
+          .need(Need::required)
+          .with([](auto& rows) { pose_rows(rows, &PoseKey::pose, "where it is then", kDefaultOfKey); })
+          .build();
   return kTable;
 }
 

@@ -122,7 +122,7 @@ struct PanelPaint : Paint {
 
 /// Reflection properties of cloth besides colour, each from 0 to 1; see frame::Finish.
 struct Finish {
-  double gloss, warp_share, fuzz, sheer;
+  double gloss, warp_fraction, fuzz, sheer;
   Threads threads = Threads::plain;
 };
 
@@ -134,7 +134,7 @@ struct Look : Paint {
   std::optional<double> fuzz, sheer;  ///< cloth only; absent: those of the fabric
   double metal = 0;                   ///< obstacles only: 1 for reflections in the object's colour
   std::optional<double> tile_width;   ///< obstacles only: of its picture [m]; absent: once over the shape
-  double warp_share = 0.5;            ///< part of the gloss along warp; of the fabric
+  double warp_fraction = 0.5;         ///< part of the gloss along warp; of the fabric
   Threads threads = Threads::plain;   ///< of the fabric
   double cloth_thickness = 0;         ///< of the fabric itself, or of a rope [m]
   double thread_spacing = 0.0006;     ///< of the drawn weave [m]; cloth only; 0: not drawn

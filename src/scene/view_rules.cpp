@@ -60,14 +60,14 @@ const Table& camera_key_rules() {
           .number("time", &CameraKey::time, kMoment, "s", "later than the key before")
           .need(Need::required)
           .vector("position", &CameraKey::position, kXyz, kPlace, "m", "of the eye")
-          .by_default(kHeld)
+          .by_default(kDefaultOfKey)
           .vector("target", &CameraKey::target, kXyz, kPlace, "m", "point in the middle of the picture")
-          .by_default(kHeld)
+          .by_default(kDefaultOfKey)
           .number("field_of_view", &CameraKey::field_of_view, kFieldOfView, "degrees", "vertical")
-          .by_default(kHeld)
+          .by_default(kDefaultOfKey)
           .written_if([](CameraKey& key) { return key.focal_length == 0; })
           .with([](auto& rows) {
-            focal_length_row(rows, &CameraKey::focal_length, kHeld, [](CameraKey&) { return true; });
+            focal_length_row(rows, &CameraKey::focal_length, kDefaultOfKey, [](CameraKey&) { return true; });
           })
           .build();
   return kTable;
@@ -146,7 +146,7 @@ Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) 
       .with(rows)
       .number("intensity", &LightKey::intensity, kIntensity, "",
               "1 lights a white surface that faces it to white, a spot one at its target")
-      .by_default(kHeld)
+      .by_default(kDefaultOfKey)
       .build();
 }
 
@@ -154,15 +154,15 @@ const Table& sun_key_rules() {
   static const Table kTable = light_key_table([](auto& rows) {
     rows.vector("direction", &LightKey::direction, kXyz, kPlace, "", "the way the light travels")
         .nonzero()
-        .by_default(kHeld);
+        .by_default(kDefaultOfKey);
   });
   return kTable;
 }
 
 const Table& spot_key_rules() {
   static const Table kTable = light_key_table([](auto& rows) {
-    rows.vector("position", &LightKey::position, kXyz, kPlace, "m", "of the lamp").by_default(kHeld);
-    rows.vector("target", &LightKey::target, kXyz, kPlace, "m", "point that it shines at").by_default(kHeld);
+    rows.vector("position", &LightKey::position, kXyz, kPlace, "m", "of the lamp").by_default(kDefaultOfKey);
+    rows.vector("target", &LightKey::target, kXyz, kPlace, "m", "point that it shines at").by_default(kDefaultOfKey);
   });
   return kTable;
 }
@@ -184,7 +184,7 @@ const Table& camera_rules() {
               [](Camera& c) { return static_cast<std::size_t>(c.kind); },
               [](Camera& c, std::size_t index) {
                 c.kind = static_cast<CameraKind>(index);
-                if (is_found(c.kind)) c.keys.front().field_of_view = kFoundFieldOfView;
+                if (is_computed(c.kind)) c.keys.front().field_of_view = kComputedFieldOfView;
                 if (c.kind == CameraKind::track) c.keys.front().field_of_view = 0;
               })
           .selects()

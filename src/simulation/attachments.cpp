@@ -119,7 +119,7 @@ void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
   }
 }
 
-bool Attachments::stay(double t0, double t1) const {
+bool Attachments::are_constant_between(double t0, double t1) const {
   return std::ranges::all_of(attachments_, [&](const Attachment& attachment) {
     if (holds_at(attachment, t0) != holds_at(attachment, t1)) return false;
     if (attachment.target_has_particles() || !holds_at(attachment, t1)) return true;
@@ -215,7 +215,7 @@ std::vector<frame::AttachmentLoad> Attachments::measure() const {
   return loads;
 }
 
-void Attachments::take_over(const Attachments& there, std::span<const std::size_t> cloths) {
+void Attachments::copy_state_from(const Attachments& there, std::span<const std::size_t> cloths) {
   for (const Attachment& before : there.attachments_) {
     const auto found = std::ranges::find(attachments_, before.name, &Attachment::name);
     if (found == attachments_.end()) continue;

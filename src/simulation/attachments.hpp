@@ -34,7 +34,7 @@ class Attachments {
   /// step, ties new ones, and places their points on key-framed bodies at t1.
   void begin_step(double t0, double t1, std::span<const Vec3> x);
   /// Whether the attachments that hold, and their key-framed triangles, are the same at t0 and t1 [s].
-  bool stay(double t0, double t1) const;
+  bool are_constant_between(double t0, double t1) const;
 
   /// Adds the spring forces to `force` [N]; `x_end`: all particles at the end of the step [m].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
@@ -48,7 +48,7 @@ class Attachments {
   std::vector<frame::AttachmentLoad> measure() const;
 
   /// Copies the state of attachments of the same name; `cloths`: number here of each cloth there.
-  void take_over(const Attachments& there, std::span<const std::size_t> cloths);
+  void copy_state_from(const Attachments& there, std::span<const std::size_t> cloths);
 
   template <class Archive>
   void serialize(Archive& archive);

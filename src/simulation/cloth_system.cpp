@@ -185,7 +185,7 @@ solver::BlockMatrix ClothSystem::lay_out_matrix() const {
 solver::LinearSystem ClothSystem::make_linear_system() const {
   solver::LinearSystem system;
   system.matrix = lay_out_matrix();
-  system.groupings = groupings_;
+  system.aggregate_levels = aggregate_levels_;
   for (std::size_t p = 0; p < parts(); ++p)
     system.parts.push_back({.begin = first_[p], .end = first_[p + 1], .is_small = p >= cloths()});
   return system;
@@ -302,7 +302,7 @@ void ClothSystem::build_aggregates(const environment::Environment& environment) 
   for (const environment::ClothObject& cloth : environment.cloths) lattices.push_back(lattice_of(cloth));
   bool is_coarse = false;
   do {
-    solver::Grouping grouping;
+    solver::Aggregates grouping;
     for (Lattice& lattice : lattices) {
       coarsen(lattice);
       std::vector<Box>& members = lattice.boxes;
@@ -317,26 +317,26 @@ void ClothSystem::build_aggregates(const environment::Environment& environment) 
     }
     const Index of_cloths = grouping.count;
     for (Index i = first_[cloths()]; i < first_.back(); ++i) grouping.of.push_back(grouping.count++);
-    groupings_.push_back(std::move(grouping));
+    aggregate_levels_.push_back(std::move(grouping));
     is_coarse = of_cloths <= std::max(numerics.linear.coarsest_aggregates, static_cast<Index>(lattices.size()));
   } while (!is_coarse);
 }
 
 void ClothSystem::Sewing::set_progress(double new_progress) {
   progress = new_progress;
-  membrane->rest_between_start_and_pattern(progress);
+  membrane->interpolate_rest_shape(progress);
   if (limit != nullptr) limit->follow(*membrane);
-  if (bands != nullptr) bands->rest_between_start_and_pattern(progress);
+  if (bands != nullptr) bands->interpolate_rest_shape(progress);
 }
 
-bool ClothSystem::lengths_stay(double t0, double t1) const {
+bool ClothSystem::lengths_are_constant(double t0, double t1) const {
   return std::ranges::all_of(
       keyed_ropes_, [&](const KeyedRope& rope) { return rope.lengths.at(t0).value == rope.lengths.at(t1).value; });
 }
 
 void ClothSystem::sew(double t) {
   for (const KeyedRope& rope : keyed_ropes_)
-    rope.cord->use_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
+    rope.cord->set_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
   for (Sewing& sewing : sewing_) {
     const double progress = sewing.duration > 0 ? ease((t - sewing.begin) / sewing.duration) : 1;
     if (sewing.ties != nullptr) {
@@ -381,7 +381,7 @@ void ClothSystem::serialize(Archive& archive) {
 template void ClothSystem::serialize(ByteWriter&);
 template void ClothSystem::serialize(ByteReader&);
 
-void ClothSystem::take_weight_off(std::span<Vec3> force) const {
+void ClothSystem::cancel_weight_of_sewn_cloth(std::span<Vec3> force) const {
   for (const Sewing& sewing : sewing_) {
     if (sewing.progress == 1) continue;
     const auto end = static_cast<std::size_t>(first_[sewing.cloth + 1]);
@@ -393,16 +393,16 @@ void ClothSystem::add_forces(std::size_t cloth, const forces::Evaluation& at) co
   for (const auto& force : forces_[cloth]) force->add(at);
 }
 
-void ClothSystem::begin_locks(std::span<const Vec3> x, LockLags& lags) const {
+void ClothSystem::begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const {
   lags.resize(cloths());
   for (const auto& [cloth, limit] : limits_) limit->begin(x, lags[cloth]);
 }
 
-void ClothSystem::update_locks(std::span<const Vec3> x, bool first, LockLags& lags) const {
+void ClothSystem::update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const {
   for (const auto& [cloth, limit] : limits_) limit->update(x, first, lags[cloth]);
 }
 
-void ClothSystem::add_lock_lags(std::span<const Vec3> x, const LockLags& lags, std::span<Vec3> force) const {
+void ClothSystem::add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const {
   for (const auto& [cloth, limit] : limits_) limit->add_lag(x, lags[cloth], force);
 }
 
@@ -444,7 +444,7 @@ ClothSystem::Overstretch ClothSystem::overstretch(std::span<const Vec3> x) const
   Overstretch largest;
   for (const auto& [cloth, limit] : limits_) {
     const forces::StretchLimit::Worst worst = limit->worst(x);
-    if (const double ratio = worst.extension / limit->limit(); ratio > largest.share)
+    if (const double ratio = worst.extension / limit->limit(); ratio > largest.ratio)
       largest = {ratio, cloth, worst.extension, worst.place};
   }
   return largest;

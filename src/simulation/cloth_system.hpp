@@ -20,7 +20,7 @@
 namespace weft::forces {
 class Cord;
 class StretchLimit;
-struct LockLag;
+struct LockLinearisation;
 }  // namespace weft::forces
 
 namespace weft::simulation {
@@ -52,7 +52,7 @@ class ClothSystem {
   /// Sets gravity for the following steps [m/s²].
   void use_gravity(const Vec3& gravity) { gravity_ = gravity; }
   /// Cancels the weight of cloth that is being sewn, which would otherwise fall before it fits.
-  void take_weight_off(std::span<Vec3> force) const;
+  void cancel_weight_of_sewn_cloth(std::span<Vec3> force) const;
 
   /// Particles of one part whose forces can be evaluated in parallel with those of other ranges.
   struct Range {
@@ -67,10 +67,10 @@ class ClothSystem {
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
   /// State of the thread locks (forces::StretchLimit), per cloth; empty for cloths without a limit.
-  using LockLags = std::vector<forces::LockLag>;
-  void begin_locks(std::span<const Vec3> x, LockLags& lags) const;
-  void update_locks(std::span<const Vec3> x, bool first, LockLags& lags) const;
-  void add_lock_lags(std::span<const Vec3> x, const LockLags& lags, std::span<Vec3> force) const;
+  using LockLinearisations = std::vector<forces::LockLinearisation>;
+  void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
+  void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
+  void add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const;
 
   /// Fills in rate² M and the constant part of the stiffness, which only hold() changes.
   void fill_constant(double rate, solver::Assembly& assembly) const;
@@ -82,7 +82,7 @@ class ClothSystem {
   void sew(double t);
 
   /// Whether the key-framed rope lengths are equal at times t0 and t1 of the scene [s].
-  bool lengths_stay(double t0, double t1) const;
+  bool lengths_are_constant(double t0, double t1) const;
 
   /// Updates the enclosed air for the step that ends at time t [s since the start of the run]; call it after sew(t).
   /// `x`: particles at the start of the step [m].
@@ -106,7 +106,7 @@ class ClothSystem {
   double max_strain(std::span<const Vec3> x) const;
   /// The largest extension of threads, relative to the limit of their cloth.
   struct Overstretch {
-    double share = 0;       ///< extension / limit; 0 if no cloth has a limit
+    double ratio = 0;       ///< extension / limit; 0 if no cloth has a limit
     std::size_t cloth = 0;  ///< number of the cloth
     double extension = 0;   ///< length / rest length − 1
     Vec3 place = Vec3::Zero();
@@ -160,7 +160,7 @@ class ClothSystem {
   Vec3 gravity_;
   double begin_;  // start of the run, in the time of the scene [s]
   double spacing_ = std::numeric_limits<double>::infinity();
-  std::vector<solver::Grouping> groupings_;  // aggregates of the preconditioner, finest first
+  std::vector<solver::Aggregates> aggregate_levels_;  // aggregates of the preconditioner, finest first
 };
 
 }  // namespace weft::simulation

@@ -13,7 +13,7 @@
 #include "core/numerics.hpp"
 #include "mesh/geometry.hpp"
 #include "scene/ropes.hpp"
-#include "simulation/meetings.hpp"
+#include "simulation/intersections.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -95,7 +95,7 @@ collision::Bodies make_bodies(const scene::Scene& scene, const environment::Envi
   collision::Bodies bodies;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const scene::Material& material = scene.cloths[c].material;
-    const double of_spacing = scene.cloths[c].rope ? 1 / scene::kLeastRopePiece : numerics.contact.thickness_of_spacing;
+    const double of_spacing = scene.cloths[c].rope ? 1 / scene::kMinRopePiece : numerics.contact.thickness_of_spacing;
     const double thickness = std::min(material.thickness, of_spacing * environment.cloths[c].spacing);
     const mesh::Mesh& mesh = environment.cloths[c].mesh;
     bodies.add(mesh.topology.triangles, static_cast<Index>(mesh.positions.size()),
@@ -146,7 +146,7 @@ bool CollisionStage::needed(const scene::Scene& scene) {
 }
 
 CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Environment& environment,
-                               const ClothSystem& cloth, Moment& start)
+                               const ClothSystem& cloth, SystemState& start)
     : environment_(environment),
       bodies_(colliding_bodies(scene, environment)),
       particles_(cloth.masses().size()),
@@ -177,23 +177,23 @@ std::vector<double> CollisionStage::masses_of_all(const ClothSystem& cloth) cons
   return masses;
 }
 
-const std::vector<Vec3>& CollisionStage::append_bodies(Moment& start) const {
+const std::vector<Vec3>& CollisionStage::append_bodies(SystemState& start) const {
   start.x.resize(static_cast<std::size_t>(rigid_.end()));
   rigid_.place(start.x);
   for (std::size_t b : bodies_) {
     if (environment_.bodies[b].dynamics) continue;
     const std::size_t first = start.x.size();
     start.x.resize(first + environment_.bodies[b].mesh.positions.size());
-    environment_.place(b, start.placed_for, std::span(start.x).subspan(first));
+    environment_.place(b, start.bodies_time, std::span(start.x).subspan(first));
   }
   return start.x;
 }
 
-std::vector<MeetingPlace> CollisionStage::find_meetings(const Moment& start) {
-  return meeting_places(engine_.find_meetings(start.x), engine_.bodies(), names_, start.x);
+std::vector<IntersectionPlace> CollisionStage::find_intersections(const SystemState& start) {
+  return group_intersections(engine_.find_intersections(start.x), engine_.bodies(), names_, start.x);
 }
 
-double CollisionStage::lift_bodies(const Vec3& up, double t, Moment& start) {
+double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start) {
   constexpr int kMaxStackHeight = 32;  // bodies on top of each other; each round lifts one more
   const std::size_t cloths = environment_.cloths.size();
   const collision::Bodies& bodies = engine_.bodies();
@@ -210,7 +210,7 @@ double CollisionStage::lift_bodies(const Vec3& up, double t, Moment& start) {
   std::map<std::size_t, int> lifts;
   for (int round = 0; round <= kMaxStackHeight; ++round) {
     std::set<std::size_t> touching;
-    for (const collision::CornerPair& pair : engine_.find_meetings(start.x)) {
+    for (const collision::CornerPair& pair : engine_.find_intersections(start.x)) {
       const std::size_t a = bodies.body_of(pair.a[0]), b = bodies.body_of(pair.b[0]);
       if (is_free(a) && (!is_free(b) || height(a) > height(b)))
         touching.insert(a);
@@ -225,7 +225,7 @@ double CollisionStage::lift_bodies(const Vec3& up, double t, Moment& start) {
     }
     rigid_.place(start.x);
   }
-  if (!lifts.empty() && !engine_.find_meetings(start.x).empty()) {
+  if (!lifts.empty() && !engine_.find_intersections(start.x).empty()) {
     start.x = given;
     return 0;
   }
@@ -235,10 +235,10 @@ double CollisionStage::lift_bodies(const Vec3& up, double t, Moment& start) {
 }
 
 // Bodies that do not move stay where append_bodies() has put them.
-void CollisionStage::place_bodies(double t, Moment& moment) const {
+void CollisionStage::place_bodies(double t, SystemState& moment) const {
   rigid_.place(moment.x);
-  if (moment.placed_for == t) return;
-  moment.placed_for = t;
+  if (moment.bodies_time == t) return;
+  moment.bodies_time = t;
   auto first = static_cast<std::size_t>(rigid_.end());
   for (std::size_t b : bodies_) {
     if (environment_.bodies[b].dynamics) continue;
@@ -249,7 +249,7 @@ void CollisionStage::place_bodies(double t, Moment& moment) const {
 }
 
 // Text that names the objects and triangles of a pair, and its place.
-std::string CollisionStage::describe(const collision::CornerPair& pair, const Moment& moment) const {
+std::string CollisionStage::describe(const collision::CornerPair& pair, const SystemState& moment) const {
   const Vec3& at = moment.x[pair.a[0]];
   const collision::Bodies& bodies = engine_.bodies();
   return fmt::format("'{}' (triangle {}) and '{}' (triangle {}) touching near ({:.4g}, {:.4g}, {:.4g}) m",
@@ -257,11 +257,11 @@ std::string CollisionStage::describe(const collision::CornerPair& pair, const Mo
                      bodies.triangle_of(pair.b), at.x(), at.y(), at.z());
 }
 
-bool CollisionStage::begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now,
-                                Moment& next) {
+bool CollisionStage::begin_step(double t, double h, std::span<const integrator::HeldParticle> held, SystemState& now,
+                                SystemState& next) {
   place_bodies(t, now);
   movable_.assign(now.x.size(), collision::kFixed);
-  gave_way_.clear();
+  obstructed_pins_.clear();
   x_restart_.clear();
   std::fill_n(movable_.begin(), rigid_.end(), std::uint8_t{collision::kFree});
   for (std::size_t i = 0; i < particles_; ++i) next.x[i] = now.x[i] + h * now.v[i];
@@ -285,8 +285,8 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
   return engine_.begin_step(now.x, next.x, movable_, h, motions_);
 }
 
-bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const {
-  const double max_sagitta = numerics.separation.creep * engine_.reach();
+bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemState& now) const {
+  const double max_sagitta = numerics.separation.creep * engine_.detection_distance();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (radii_[b] == 0 || (is_dynamic(b) && t >= environment_.bodies[bodies_[b]].dynamics->release)) continue;
     // The angular velocity hardly changes between keys; a body stops at its last key.
@@ -298,7 +298,7 @@ bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const 
   return false;
 }
 
-bool CollisionStage::bodies_stay(double t0, double t1, Moment& now, Moment& next) const {
+bool CollisionStage::bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const {
   place_bodies(t0, now);
   place_bodies(t1, next);
   const Box3 cloth = mesh::bounding_box(now.particles());
@@ -308,15 +308,15 @@ bool CollisionStage::bodies_stay(double t0, double t1, Moment& now, Moment& next
     const auto from = bodies.part(b, std::span<const Vec3>(now.x)), to = bodies.part(b, std::span<const Vec3>(next.x));
     if (std::ranges::equal(from, to)) continue;
     Box3 swept = mesh::bounding_box(from).merged(mesh::bounding_box(to));
-    swept.min().array() -= engine_.reach();
-    swept.max().array() += engine_.reach();
+    swept.min().array() -= engine_.detection_distance();
+    swept.max().array() += engine_.detection_distance();
     if (swept.intersects(cloth)) return false;
   }
   return true;
 }
 
-bool CollisionStage::obstacles_creep(const Moment& now, const Moment& next) const {
-  const double max_motion = numerics.separation.creep * engine_.reach();
+bool CollisionStage::obstacles_move_little(const SystemState& now, const SystemState& next) const {
+  const double max_motion = numerics.separation.creep * engine_.detection_distance();
   for (auto v = static_cast<std::size_t>(rigid_.end()); v < now.x.size(); ++v)
     if ((next.x[v] - now.x[v]).squaredNorm() > max_motion * max_motion &&
         !engine_.is_clear(engine_.bodies().body_of(static_cast<Index>(v))))
@@ -325,7 +325,8 @@ bool CollisionStage::obstacles_creep(const Moment& now, const Moment& next) cons
 }
 
 // Whether a triangle of cloth, with its velocity, enters the box that an obstacle sweeps as it turns by `angle` [rad].
-bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, double angle, const Moment& now) const {
+bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, double angle,
+                                      const SystemState& now) const {
   constexpr double kMaxPieceAngle = 0.25;  // [rad]
   const int pieces = 1 + static_cast<int>(std::min(angle, 100.0) / kMaxPieceAngle);
   Box3 box;
@@ -334,7 +335,8 @@ bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, doub
     for (int corner = 0; corner < 8; ++corner)
       box.extend(Vec3(pose.position + pose.rotation * boxes_[body].corner(static_cast<Box3::CornerType>(corner))));
   }
-  const double margin = engine_.reach() + std::min(1.0, sagitta(1, angle / pieces)) * boxes_[body].diagonal().norm();
+  const double margin =
+      engine_.detection_distance() + std::min(1.0, sagitta(1, angle / pieces)) * boxes_[body].diagonal().norm();
   box.min().array() -= margin;
   box.max().array() += margin;
   const auto meets = [&](const collision::Triangle& triangle) {
@@ -359,18 +361,18 @@ collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, dou
   return motion;
 }
 
-void CollisionStage::append_prescribed(std::vector<integrator::HeldParticle>& held) const {
+void CollisionStage::append_prescribed_particles(std::vector<integrator::HeldParticle>& held) const {
   for (const collision::PrescribedParticle& particle : response().prescribed())
     if (movable_[particle.constraint.particle] == collision::kFree)
       held.push_back({particle.constraint, particle.x_end, particle.v_end});
 }
 
-std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, bool may_give_way, const Moment& now,
-                                                      Moment& next) {
+std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, bool may_move_pins,
+                                                      const SystemState& now, SystemState& next) {
   solved_.assign(next.particles().begin(), next.particles().end());
   const collision::SeparationReport report =
-      engine_.push_apart(trajectory_start(now), next.x, movable_, may_pinch, may_give_way);
-  gave_way_ = report.gave_way;
+      engine_.push_apart(trajectory_start(now), next.x, movable_, may_pinch, may_move_pins);
+  obstructed_pins_ = report.obstructed_pins;
   if (!report.separated) {
     std::ranges::copy(solved_, next.x.begin());
     return "cannot keep " + describe(report.stuck, now) + " apart";
@@ -380,23 +382,23 @@ std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, 
   return std::nullopt;
 }
 
-bool CollisionStage::find_pressing_pins() {
+bool CollisionStage::find_pins_between_cloths() {
   const auto is_cloth = [&](Index v) { return engine_.bodies().body_of(v) < environment_.cloths.size(); };
   for (const collision::CornerPair& pair : engine_.failing()) {
     if (!is_cloth(pair.a[0]) || !is_cloth(pair.b[0])) continue;
     for (const collision::Triangle& corners : {pair.a, pair.b})
       for (Index v : corners)
-        if (movable_[static_cast<std::size_t>(v)] == collision::kPinned) gave_way_.push_back({v, pair});
+        if (movable_[static_cast<std::size_t>(v)] == collision::kPinned) obstructed_pins_.push_back({v, pair});
   }
-  return !gave_way_.empty();
+  return !obstructed_pins_.empty();
 }
 
-void CollisionStage::go_on_from(const Moment& next) {
+void CollisionStage::continue_from(const SystemState& next) {
   x_restart_ = next.x;
-  engine_.go_on_from(x_restart_);
+  engine_.continue_from(x_restart_);
 }
 
-std::string CollisionStage::describe(const collision::GivenWay& given, const Moment& now) const {
+std::string CollisionStage::describe(const collision::ObstructedPin& given, const SystemState& now) const {
   const auto is_it = [&](Index v) { return v == given.particle; };
   const collision::Triangle& other = std::ranges::any_of(given.pair.a, is_it) ? given.pair.b : given.pair.a;
   const Vec3& at = now.x[given.particle];
@@ -415,7 +417,7 @@ std::string CollisionStage::describe(const collision::Pinch& pinch) const {
                      pinch.place.x(), pinch.place.y(), pinch.place.z());
 }
 
-void CollisionStage::note_pinches(const Moment& start) {
+void CollisionStage::note_pinches(const SystemState& start) {
   if (engine_.pinched_pairs() == 0) return;
   pinches_.pairs = std::max(pinches_.pairs, engine_.pinched_pairs());
   for (const collision::Pinch& pinch : engine_.pinches(start.x)) {
@@ -425,7 +427,7 @@ void CollisionStage::note_pinches(const Moment& start) {
   }
 }
 
-void CollisionStage::take_over(const CollisionStage& before, std::span<const std::size_t> cloths) {
+void CollisionStage::copy_state_from(const CollisionStage& before, std::span<const std::size_t> cloths) {
   const collision::Bodies &old_bodies = before.engine_.bodies(), &bodies = engine_.bodies();
   const auto here = [&](std::size_t body) {
     return body < cloths.size() ? cloths[body] : body - cloths.size() + environment_.cloths.size();
@@ -445,7 +447,7 @@ void CollisionStage::take_over(const CollisionStage& before, std::span<const std
   for (const auto& [cloth, obstacle] : before.pinching_before_) pinching_before_.insert({here(cloth), here(obstacle)});
 }
 
-CollisionStage::Pinches CollisionStage::take_pinches(const Moment& last_start) {
+CollisionStage::Pinches CollisionStage::take_pinches(const SystemState& last_start) {
   note_pinches(last_start);
   pinching_before_ = std::move(pinching_);
   pinching_.clear();
@@ -453,7 +455,7 @@ CollisionStage::Pinches CollisionStage::take_pinches(const Moment& last_start) {
 }
 
 template <class Archive>
-void CollisionStage::serialize(Archive& archive, double t, Moment& now) {
+void CollisionStage::serialize(Archive& archive, double t, SystemState& now) {
   place_bodies(t, now);
   engine_.serialize(archive, now.x);
   std::vector<PinchingObjects> before(pinching_before_.begin(), pinching_before_.end());
@@ -462,7 +464,7 @@ void CollisionStage::serialize(Archive& archive, double t, Moment& now) {
   pinching_before_ = {before.begin(), before.end()};
 }
 
-template void CollisionStage::serialize(ByteWriter&, double, Moment&);
-template void CollisionStage::serialize(ByteReader&, double, Moment&);
+template void CollisionStage::serialize(ByteWriter&, double, SystemState&);
+template void CollisionStage::serialize(ByteReader&, double, SystemState&);
 
 }  // namespace weft::simulation

@@ -20,16 +20,16 @@ namespace weft::simulation {
 
 /// The state of everything at one time. `x` has the particles, then the vertices of the bodies that collide, those of
 /// bodies that forces move first. `v` has the particles alone.
-struct Moment : integrator::State {
-  double placed_for = 0;  ///< time at which the key-framed bodies in x are placed [s]
+struct SystemState : integrator::State {
+  double bodies_time = 0;  ///< time at which the key-framed bodies in x are placed [s]
 
   std::span<const Vec3> particles() const { return {x.data(), v.size()}; }
 };
 
 /// Whether untangle() may move this cloth at the start.
-bool untangles(const scene::Cloth& cloth);
+bool may_be_untangled(const scene::Cloth& cloth);
 /// Whether untangle() may move any cloth of the scene.
-bool untangles(const scene::Scene& scene);
+bool may_be_untangled(const scene::Scene& scene);
 
 class CollisionStage {
  public:
@@ -38,74 +38,79 @@ class CollisionStage {
 
   /// Appends the vertices of the bodies to `start`, at its time. The environment must outlive it.
   CollisionStage(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
-                 Moment& start);
+                 SystemState& start);
 
   /// All places where surfaces touch or cross at the start. A run may begin only if there is none: the guarantee
   /// against penetration holds only for surfaces that start apart.
-  std::vector<MeetingPlace> find_meetings(const Moment& start);
+  std::vector<IntersectionPlace> find_intersections(const SystemState& start);
 
   /// Lifts bodies that forces move off what they touch at the start, because scenes place a block exactly where it
   /// stands. Of two bodies that touch, the upper one rises by 0.2 mm at a time, until nothing touches; bodies held by
   /// keys stay. Returns the largest lift [m]. If something still touches in the end, changes nothing and returns 0.
-  double lift_bodies(const Vec3& up, double t, Moment& start);
+  double lift_bodies(const Vec3& up, double t, SystemState& start);
 
-  /// Moves cloth that touches or crosses something at the start, if untangles() is true for it, until nothing does.
-  /// Particles in `held` stay, as do cloths that were `dressed` before (numbers); others get outside of a dressed cloth
-  /// if one of them is worn over it. Throws Error(scene_invalid) with objects and places if there is no solution.
+  /// Moves cloth that touches or crosses something at the start, if may_be_untangled() is true for it, until nothing
+  /// does. Particles in `held` stay, as do cloths that were `dressed` before (numbers); others get outside of a dressed
+  /// cloth if one of them is worn over it. Throws Error(scene_invalid) with objects and places if there is no solution.
   void untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
-                std::span<const std::size_t> dressed, Moment& start);
+                std::span<const std::size_t> dressed, SystemState& start);
 
   /// Takes over the pinched pairs of another stage; `cloths`: number here of each cloth there.
-  void take_over(const CollisionStage& before, std::span<const std::size_t> cloths);
+  void copy_state_from(const CollisionStage& before, std::span<const std::size_t> cloths);
 
   /// Begins a step, before its solve. Places bodies at t in `now` and at t + h in `next`. Predicts the particles of
   /// `next`: held ones at their targets, others with unchanged velocity. Finds contacts for `now` and this prediction,
   /// and moves predicted particles apart that would meet on the way. Returns whether it moved any.
-  bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now, Moment& next);
+  bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, SystemState& now,
+                  SystemState& next);
 
   /// Whether an obstacle with cloth near it turns so far between t and t + h that its vertices leave the straight
   /// trajectories that the search assumes.
-  bool turns_too_far(double t, double h, const Moment& now) const;
+  bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
   /// Whether no body near the cloth moves between t0 and t1 [s]; t0 is the time of `now`. Places bodies in both states.
-  bool bodies_stay(double t0, double t1, Moment& now, Moment& next) const;
+  bool bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const;
 
   /// Whether no obstacle moves so far from `now` to `next` that a shorter step could find space for cloth.
-  bool obstacles_creep(const Moment& now, const Moment& next) const;
+  bool obstacles_move_little(const SystemState& now, const SystemState& next) const;
 
   /// The vertices of bodies that forces move; nullptr if there are none.
   const RigidVertices* rigid_vertices() const { return rigid_.empty() ? nullptr : &rigid_; }
   /// After a solve that ends at `next`: computes the vertices of these bodies from their frames.
-  void follow_frames(Moment& next) const { rigid_.place(next.x); }
+  void place_rigid_vertices(SystemState& next) const { rigid_.place(next.x); }
 
   collision::ContactResponse& response() { return engine_.response(); }
   const collision::ContactResponse& response() const { return engine_.response(); }
 
   /// Appends the particles whose motion the contact response prescribes, without those that pins hold.
-  void append_prescribed(std::vector<integrator::HeldParticle>& held) const;
+  void append_prescribed_particles(std::vector<integrator::HeldParticle>& held) const;
 
   /// After the solve: whether no pair meets on the trajectory to `next`.
-  bool apart(const Moment& now, const Moment& next) { return engine_.apart(trajectory_start(now), next.x); }
+  bool is_separated(const SystemState& now, const SystemState& next) {
+    return engine_.is_separated(trajectory_start(now), next.x);
+  }
 
-  /// After apart() has failed: makes contacts of the pairs that would meet, and returns how many are new. If some are,
-  /// solving again lets forces do what push_apart() would do by moving particles.
-  int adopt_failing(const Moment& now, const Moment& next) { return engine_.adopt_failing(now.x, next.x); }
+  /// After is_separated() has failed: makes contacts of the pairs that would meet, and returns how many are new. If
+  /// some are, solving again lets forces do what push_apart() would do by moving particles.
+  int add_failing_contacts(const SystemState& now, const SystemState& next) {
+    return engine_.add_failing_contacts(now.x, next.x);
+  }
 
   /// Corrects positions and velocities of `next` so that no pair meets. Cloth that obstacles leave no space becomes
   /// pinched: exempted from this. Without `may_pinch`, only obstacles that pinched a cloth before may pinch it. With
-  /// `may_give_way`, pinned particles may move too if nothing else helps; without it, gave_way() only lists them.
-  /// Returns nothing on success, else a text that says which objects are stuck, and where.
-  std::optional<std::string> push_apart(double h, bool may_pinch, bool may_give_way, const Moment& now, Moment& next);
+  /// `may_move_pins`, pinned particles may move too if nothing else helps; without it, obstructed_pins() only lists
+  /// them. Returns nothing on success, else a text that says which objects are stuck, and where.
+  std::optional<std::string> push_apart(double h, bool may_pinch, bool may_move_pins, const SystemState& now,
+                                        SystemState& next);
   /// Restarts the trajectory of the step from `next`, where push_apart() has led, and finds contacts there.
-  void go_on_from(const Moment& next);
-  /// Whether pins hold particles of pairs of cloth that apart() found to meet. If so, gave_way() lists them.
-  bool find_pressing_pins();
-  /// Whether the step may restart its trajectory: if contacts are springs.
-  bool may_bend() const { return response().form() == collision::ResponseForm::springs; }
-  /// The pinned particles that the last push_apart() or find_pressing_pins() found.
-  std::span<const collision::GivenWay> gave_way() const { return gave_way_; }
+  void continue_from(const SystemState& next);
+  /// Whether pins hold particles of pairs of cloth that is_separated() found to meet. If so, obstructed_pins() lists
+  /// them.
+  bool find_pins_between_cloths();
+  /// The pinned particles that the last push_apart() or find_pins_between_cloths() found.
+  std::span<const collision::ObstructedPin> obstructed_pins() const { return obstructed_pins_; }
   /// Text that says what such a particle would have met, and where: "'a' near (0, 0, 0) m".
-  std::string describe(const collision::GivenWay& given, const Moment& now) const;
+  std::string describe(const collision::ObstructedPin& given, const SystemState& now) const;
 
   /// What obstacles pinched in the steps of a frame. take_pinches() also begins the next frame.
   struct Pinches {
@@ -113,7 +118,7 @@ class CollisionStage {
     /// One text per pair of objects that is new in this frame: "'a' has no room between ..."
     std::vector<std::string> begun;
   };
-  Pinches take_pinches(const Moment& last_start);  ///< `last_start`: start of the last step
+  Pinches take_pinches(const SystemState& last_start);  ///< `last_start`: start of the last step
 
   /// Accepts the step.
   void accept() { engine_.accept(); }
@@ -123,24 +128,26 @@ class CollisionStage {
 
   /// All that the next step from `now`, at t [s], depends on. Throws std::runtime_error if the archive does not fit.
   template <class Archive>
-  void serialize(Archive& archive, double t, Moment& now);
+  void serialize(Archive& archive, double t, SystemState& now);
 
   int proximities() const { return engine_.proximities(); }
   double min_distance() const { return engine_.min_distance(); }
 
  private:
   // Where the trajectory of the step starts: at the start of the step, or where it was last restarted.
-  const std::vector<Vec3>& trajectory_start(const Moment& now) const { return x_restart_.empty() ? now.x : x_restart_; }
+  const std::vector<Vec3>& trajectory_start(const SystemState& now) const {
+    return x_restart_.empty() ? now.x : x_restart_;
+  }
   RigidVertices make_rigid_vertices(const ClothSystem& cloth) const;
   std::vector<double> masses_of_all(const ClothSystem& cloth) const;
-  const std::vector<Vec3>& append_bodies(Moment& start) const;
+  const std::vector<Vec3>& append_bodies(SystemState& start) const;
   bool is_dynamic(std::size_t body) const { return environment_.bodies[bodies_[body]].dynamics != nullptr; }
-  void place_bodies(double t, Moment& moment) const;
-  bool cloth_comes_near(std::size_t body, double t, double h, double angle, const Moment& now) const;
+  void place_bodies(double t, SystemState& moment) const;
+  bool cloth_comes_near(std::size_t body, double t, double h, double angle, const SystemState& now) const;
   collision::RigidMotion motion_of(std::size_t body, double t, double h) const;
-  std::string describe(const collision::CornerPair& pair, const Moment& moment) const;
+  std::string describe(const collision::CornerPair& pair, const SystemState& moment) const;
   std::string describe(const collision::Pinch& pinch) const;
-  void note_pinches(const Moment& start);
+  void note_pinches(const SystemState& start);
 
   const environment::Environment& environment_;
   std::vector<std::string> names_;   // of all cloths, then of all bodies_
@@ -152,7 +159,7 @@ class CollisionStage {
   std::vector<double> masses_;  // of particles, then of the vertices of bodies that forces move [kg]
   std::vector<std::uint8_t> movable_;
   std::vector<collision::RigidMotion> motions_;  // of the current step, per cloth and body
-  std::vector<collision::GivenWay> gave_way_;
+  std::vector<collision::ObstructedPin> obstructed_pins_;
   std::vector<Vec3> x_restart_;  // where the trajectory of the step was last restarted; empty: it was not
   std::vector<Vec3> solved_;     // scratch: solved particles, before push_apart() moves them
   collision::Engine engine_;

@@ -99,7 +99,7 @@ void Inflation::begin_step(double t, std::span<const Vec3> x, const std::functio
   }
 }
 
-bool Inflation::stays(double t0, double t1) const {
+bool Inflation::is_constant_between(double t0, double t1) const {
   return std::ranges::all_of(cloths_,
                              [&](const Cloth& cloth) { return cloth.track.at(t0).value == cloth.track.at(t1).value; });
 }
@@ -135,7 +135,7 @@ std::vector<frame::EnclosedAir> Inflation::measure(std::span<const Vec3> x) cons
   return measured;
 }
 
-void Inflation::take_over(const Inflation& there, std::span<const std::size_t> numbers) {
+void Inflation::copy_state_from(const Inflation& there, std::span<const std::size_t> numbers) {
   for (const Cloth& before : there.cloths_)
     for (Cloth& cloth : cloths_)
       if (cloth.number == numbers[before.number])

@@ -37,7 +37,7 @@ class Inflation {
   /// Error(scene_invalid) if the scene gives an amount of air, but the closed cloth encloses no volume.
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
   /// Whether the values of the scene are equal at t0 and t1 [s].
-  bool stays(double t0, double t1) const;
+  bool is_constant_between(double t0, double t1) const;
 
   /// Positions, forces [N] and rows are those of all particles.
   void add_forces(std::span<const Vec3> x, std::span<Vec3> force) const;
@@ -48,7 +48,7 @@ class Inflation {
   std::vector<frame::EnclosedAir> measure(std::span<const Vec3> x) const;
 
   /// Copies the enclosed air from another simulation; `numbers`: number here of each cloth there.
-  void take_over(const Inflation& there, std::span<const std::size_t> numbers);
+  void copy_state_from(const Inflation& there, std::span<const std::size_t> numbers);
 
   template <class Archive>
   void serialize(Archive& archive);

@@ -11,7 +11,7 @@
 #include "scene/layers.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
-#include "simulation/pin_doubts.hpp"
+#include "simulation/pin_warnings.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::simulation {
@@ -170,7 +170,8 @@ void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
       },
       "no cloth is sewn from flat panels"));
   items.push_back(cloth_item(
-      "preparation: untangling", scene, [](const Cloth& c) { return untangles(c); }, "every cloth starts as given"));
+      "preparation: untangling", scene, [](const Cloth& c) { return may_be_untangled(c); },
+      "every cloth starts as given"));
   const int frames = scene.preroll_frames();
   const std::vector<scene::Layer> layers = scene::list_layers(scene);
   std::string begins;
@@ -242,7 +243,7 @@ std::vector<PlanItem> plan(const Scene& scene) {
   return items;
 }
 
-std::vector<std::string> doubts(const scene::Scene& scene) {
+std::vector<std::string> find_warnings(const scene::Scene& scene) {
   std::vector<std::string> found;
   if (scene.time.integrator == scene::Integrator::implicit_euler)
     for (const scene::Obstacle& obstacle : scene.obstacles)

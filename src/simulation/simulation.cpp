@@ -20,8 +20,8 @@
 #include "environment/environment.hpp"
 #include "scene/layers.hpp"
 #include "simulation/energy_bound.hpp"
-#include "simulation/meetings.hpp"
-#include "simulation/pin_doubts.hpp"
+#include "simulation/intersections.hpp"
+#include "simulation/pin_warnings.hpp"
 #include "simulation/snapshots.hpp"
 #include "simulation/step_loop.hpp"
 
@@ -36,7 +36,7 @@ template <class Archive>
 void serialize(Archive& archive, FrameReport& report) {
   serialize_values(archive, report.frame, report.time, report.steps, report.rejected_steps, report.inexact_steps,
                    report.error_estimate, report.solver_error, report.newton_iterations, report.linear_iterations,
-                   report.proximities, report.constraints, report.min_distance, report.max_strain, report.stretch_share,
+                   report.proximities, report.constraints, report.min_distance, report.max_strain, report.stretch_ratio,
                    report.kinetic_energy, report.potential_energy, report.elastic_energy, report.air_energy,
                    report.pin_work, report.solver_work, report.pinched_pairs, report.lagging_particles);
   serialize_each(archive, report.enclosed, [&](frame::EnclosedAir& air) {
@@ -51,11 +51,11 @@ void serialize(Archive& archive, FrameReport& report) {
 }
 
 // Whether something touches a character whose arms hang, where they are in the way of most skirts.
-bool touches_hanging_arms(const scene::Scene& scene, const std::vector<MeetingPlace>& places) {
+bool touches_hanging_arms(const scene::Scene& scene, const std::vector<IntersectionPlace>& places) {
   return std::ranges::any_of(scene.characters, [&](const scene::Character& character) {
     const auto* file = std::get_if<scene::CharacterFile>(&character.source);
     return file != nullptr && !file->stance_arms && character.dressing > 0 &&
-           std::ranges::any_of(places, [&](const MeetingPlace& place) {
+           std::ranges::any_of(places, [&](const IntersectionPlace& place) {
              return place.a == character.name || place.b == character.name;
            });
   });
@@ -63,14 +63,14 @@ bool touches_hanging_arms(const scene::Scene& scene, const std::vector<MeetingPl
 
 // Throws Error(scene_invalid) if surfaces touch or cross at the start.
 void check_start(const scene::Scene& scene, StepLoop& steps) {
-  const std::vector<MeetingPlace> places = steps.find_meetings();
+  const std::vector<IntersectionPlace> places = steps.find_intersections();
   if (places.empty()) return;
   throw Error(
       ExitCode::scene_invalid, "{}: expected surfaces that are apart at the start{}, got {}; {}{}", scene.file.string(),
-      untangles(scene) ? ", or can be untangled" : "", describe(places),
-      untangles(scene) ? "'weft thumbnail --start' draws it as it was; move one of them"
-                       : "'weft thumbnail --start' draws it; move one of them, leave it out of contact, or give "
-                         "a cloth start = \"untangle\"",
+      may_be_untangled(scene) ? ", or can be untangled" : "", describe(places),
+      may_be_untangled(scene) ? "'weft thumbnail --start' draws it as it was; move one of them"
+                              : "'weft thumbnail --start' draws it; move one of them, leave it out of contact, or give "
+                                "a cloth start = \"untangle\"",
       touches_hanging_arms(scene, places) ? "; where arms are in the way, stance_arms = 45 holds them off the body"
                                           : "");
 }
@@ -174,7 +174,7 @@ void Simulation::Impl::put_on_next() {
     std::vector<std::size_t> numbers;  // number of each cloth dressed before, among those dressed now
     for (const std::size_t c : before)
       numbers.push_back(static_cast<std::size_t>(std::ranges::find(now, c) - now.begin()));
-    steps->take_over(*inner, numbers);
+    steps->copy_state_from(*inner, numbers);
     make_start();
   }
 }
@@ -184,7 +184,7 @@ void Simulation::Impl::make_start() {
   const scene::Scene& dressed = dressed_scene ? dressed_scene->scene : scene;
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)
     log::info(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));
-  if (untangles(dressed)) steps->untangle();
+  if (may_be_untangled(dressed)) steps->untangle();
   check_start(dressed, *steps);
 }
 
@@ -214,7 +214,7 @@ FrameReport Simulation::Impl::advance() {
 }
 
 void Simulation::Impl::measure_energies(FrameReport& report) const {
-  const Moment& now = steps->progress().now;
+  const SystemState& now = steps->progress().now;
   report.kinetic_energy = steps->cloth().kinetic_energy(now.v);
   report.potential_energy = steps->cloth().potential_energy(now.particles(), steps->weather().gravity(report.time));
   report.elastic_energy = steps->cloth().elastic_energy(now.particles()) + steps->attachments().energy(now.particles());
@@ -224,7 +224,7 @@ void Simulation::Impl::measure_energies(FrameReport& report) const {
 }
 
 void Simulation::Impl::measure(FrameReport& report) const {
-  const Moment& now = steps->progress().now;
+  const SystemState& now = steps->progress().now;
   report.constraints = static_cast<int>(steps->held());
   report.min_distance = std::numeric_limits<double>::infinity();
   const CollisionStage* collisions = steps->collisions();
@@ -245,7 +245,7 @@ void Simulation::Impl::report_obstructions(FrameReport& report) const {
 }
 
 frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
-  const Moment& now = steps->progress().now;
+  const SystemState& now = steps->progress().now;
   std::vector<std::vector<float>> heat;
   std::vector<std::vector<Vec3>> moved;
   for (std::size_t b = 0; b < environment.bodies.size(); ++b) moved.push_back(steps->vertices_of(b));
@@ -330,7 +330,7 @@ StartView view_start(const scene::Scene& scene) {
   for (const scene::Layer& layer : scene::list_layers(scene)) {
     const DressedScene dressed_scene(scene, environment, layer.cloths);
     StepLoop steps(dressed_scene.scene, dressed_scene.environment, time);
-    const std::vector<MeetingPlace> places = steps.find_meetings();
+    const std::vector<IntersectionPlace> places = steps.find_intersections();
     view.places.insert(view.places.end(), places.begin(), places.end());
   }
   if (!view.places.empty()) view.description = describe(view.places);
@@ -358,7 +358,7 @@ MatrixSize Simulation::matrix() const {
 }
 
 ParticleState Simulation::state() const {
-  const Moment& now = impl_->steps->progress().now;
+  const SystemState& now = impl_->steps->progress().now;
   const ClothSystem& cloth = impl_->steps->cloth();
   const std::size_t count = at(cloth.first_particle(cloth.cloths()));  // without the frames of bodies
   return {now.particles().first(count), std::span(now.v).first(count), cloth.masses().first(count)};
@@ -370,7 +370,7 @@ ClothMotion Simulation::motion_of(std::size_t cloth) const {
   if (found == dressed.end()) return {};
   const auto number = static_cast<std::size_t>(found - dressed.begin());
   const ClothSystem& cloths = impl_->steps->cloth();
-  const Moment& now = impl_->steps->progress().now;
+  const SystemState& now = impl_->steps->progress().now;
   const Index first = cloths.first_particle(number), end = cloths.first_particle(number + 1);
   return {std::span(now.v).subspan(at(first), at(end - first)), cloths.strain_per_particle(number, now.particles())};
 }

@@ -15,8 +15,8 @@
 
 namespace weft::simulation {
 
-/// FrameReport::stretch_share above which a run warns.
-inline constexpr double kOverstretch = 1.1;
+/// FrameReport::stretch_ratio above which a run warns.
+inline constexpr double kMaxStretchRatio = 1.1;
 
 using frame::FrameReport;
 using frame::ObjectInfo;
@@ -47,10 +47,10 @@ std::vector<PlanItem> plan(const scene::Scene& scene);
 
 /// Warnings of `weft check`, one text each: settings that may end a run, or that the author hardly intends. If the
 /// scene has moving pins, throws as Simulation's constructor does.
-std::vector<std::string> doubts(const scene::Scene& scene);
+std::vector<std::string> find_warnings(const scene::Scene& scene);
 
 /// A place where two objects, or one object and itself, touch or cross at the start.
-struct MeetingPlace {
+struct IntersectionPlace {
   std::string a, b;                            ///< the objects
   std::size_t pairs = 0;                       ///< number of pairs of triangles
   Vec3 centre = Vec3::Zero();                  ///< [m]
@@ -61,8 +61,8 @@ struct MeetingPlace {
 /// The start of a scene before its preroll, even if a run from it would be refused.
 struct StartView {
   frame::SnapshotPtr snapshot;
-  std::vector<MeetingPlace> places;  ///< largest number of pairs first; empty if a run may begin
-  std::string description;           ///< describes the places, for a message; empty if there are none
+  std::vector<IntersectionPlace> places;  ///< largest number of pairs first; empty if a run may begin
+  std::string description;                ///< describes the places, for a message; empty if there are none
 };
 
 /// Makes the start as the scene gives it, without untangling; layers are not checked against each other. Throws

@@ -34,7 +34,7 @@ frame::Appearance appearance(const scene::Look& look) {
   frame::Appearance result;
   result.roughness = look.roughness;
   result.metal = look.metal;
-  result.finish = {look.gloss.value_or(0), look.warp_share, look.fuzz.value_or(0), look.sheer.value_or(0),
+  result.finish = {look.gloss.value_or(0), look.warp_fraction, look.fuzz.value_or(0), look.sheer.value_or(0),
                    look.threads};
   result.thread_spacing = look.thread_spacing;
   result.thickness = look.cloth_thickness;
@@ -64,7 +64,7 @@ scene::Look look_of(const scene::Cloth& cloth) {
   look.gloss = look.gloss.value_or(finish.gloss);
   look.fuzz = look.fuzz.value_or(finish.fuzz);
   look.sheer = look.sheer.value_or(finish.sheer);
-  look.warp_share = finish.warp_share;
+  look.warp_fraction = finish.warp_fraction;
   look.threads = finish.threads;
   look.cloth_thickness = fabric ? fabric->measured.thickness.value : kThicknessPerDensity * cloth.material.density;
   const double hem = cloth.shape == scene::ClothShape::pattern ? kGarmentHem : kHem;
@@ -193,9 +193,9 @@ std::shared_ptr<frame::Surface> make_body_surface(const environment::BodyObject&
   if (!body.collide) surface->passed_through.assign(surface->triangles.size(), 1);
   if (body.character) surface->crease_angle = kCharacterCrease;
   scene::Look look = body.look;
-  const bool over_look = body.coloring && body.coloring->over_look;
-  if (over_look) look.as_file = false;
-  if (body.coloring && (look.as_file || over_look)) {
+  const bool covers_look = body.coloring && body.coloring->covers_look;
+  if (covers_look) look.as_file = false;
+  if (body.coloring && (look.as_file || covers_look)) {
     for (const character::Material& material : body.coloring->materials)
       surface->parts.push_back(part_of(material, body.name));
     surface->part_of_triangle = body.coloring->material_of_triangle;
@@ -325,8 +325,8 @@ Looks::Looks(const scene::Scene& scene, const environment::Environment* environm
   for (const auto& character : scene.characters) looks_[character.name] = character.look;
   for (const scene::Camera& camera : scene.cameras) {
     cameras_.push_back({.name = camera.name,
-                        .kind = scene::is_found(camera.kind) ? static_cast<frame::Camera::Kind>(camera.kind)
-                                                             : frame::Camera::Kind::placed,
+                        .kind = scene::is_computed(camera.kind) ? static_cast<frame::Camera::Kind>(camera.kind)
+                                                                : frame::Camera::Kind::placed,
                         .subjects = camera.subjects,
                         .azimuth = camera.azimuth,
                         .elevation = camera.elevation,

@@ -24,10 +24,10 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
     Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
                                        : solve_with_velocity_constraints(attempt, start, report);
     if (!rejection && may_shorten(attempt)) rejection = check_overstretch(h);
-    if (collisions_->gave_way().empty() || attempt.may_move_pins) return rejection;
+    if (collisions_->obstructed_pins().empty() || attempt.may_move_pins) return rejection;
     if (!is_short_enough(attempt) && !pins_.any_lags()) return rejection;
-    for (const collision::GivenWay& given : collisions_->gave_way())
-      pins_.let_go(given.particle, collisions_->describe(given, progress_.now));
+    for (const collision::ObstructedPin& given : collisions_->obstructed_pins())
+      pins_.release_particle(given.particle, collisions_->describe(given, progress_.now));
   }
 }
 
@@ -56,20 +56,20 @@ void StepLoop::update_weather(double t, double h) {
   const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
   gravity_ = weather_.gravity(t + until_stage);
   cloth_.use_gravity(gravity_);
-  if (!weather_.is_local()) return;
-  const Moment& now = progress_.now;
-  std::vector<solver::Quad<double>> air(now.v.size());
+  if (!weather_.varies_in_space()) return;
+  const SystemState& now = progress_.now;
+  std::vector<solver::PaddedVec3<double>> air(now.v.size());
   parallel_for(air.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      air[i] = solver::quad_of<double>(weather_.air(now.x[i] + until_stage * now.v[i], t + until_stage));
+      air[i] = solver::padded<double>(weather_.air(now.x[i] + until_stage * now.v[i], t + until_stage));
   });
-  problem_.blow(std::move(air));
+  problem_.set_air_velocity(std::move(air));
 }
 
 // Solves, checks, pushes apart and continues from there with the contacts of that place, until every candidate pair has
 // a separating plane.
 StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
-  const Moment& now = progress_.now;
+  const SystemState& now = progress_.now;
   int continuations = 0;
   bool is_separated = false;
   for (bool is_first = true;; is_first = false, start = Start::next) {
@@ -79,7 +79,7 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
     bool solved = false;
     if (Rejection rejection = solve_contacts(attempt, start, is_first, check_early, solved, report)) return rejection;
     const Stopwatch watch(report.collide);
-    is_separated = collisions_->apart(now, next_);
+    is_separated = collisions_->is_separated(now, next_);
     if (is_separated && solved) return std::nullopt;
     if (!is_separated && !may_continue && solved) return push_apart(attempt);
     if (is_separated || !may_continue) continue;
@@ -87,26 +87,26 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
     // Pins that press cloth into cloth: a continued solve has not moved that cloth out of the way.
     const bool may_release_pins =
         continuations > 0 && !attempt.may_move_pins && (is_short_enough(attempt) || pins_.any_lags());
-    if (may_release_pins && collisions_->find_pressing_pins()) return "pins press cloth into cloth";
+    if (may_release_pins && collisions_->find_pins_between_cloths()) return "pins press cloth into cloth";
     const double energy_before = solved ? energy(next_) : 0;
     const double strain_before = solved ? cloth_.max_strain(next_.particles()) : 0;
     if (collisions_->push_apart(attempt.h, false, false, now, next_)) {
       continuations = numerics.repair.restarts;  // some pairs cannot be pushed apart: push_apart(attempt) decides
       continue;
     }
-    if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.repair.unfelt_energy &&
-        cloth_.max_strain(next_.particles()) <= strain_before + numerics.repair.unfelt_strain)
+    if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.repair.added_energy &&
+        cloth_.max_strain(next_.particles()) <= strain_before + numerics.repair.added_strain)
       return std::nullopt;
     ++continuations;
-    collisions_->go_on_from(next_);
-    problem_.forget_contacts();
+    collisions_->continue_from(next_);
+    problem_.limit_friction_updates();
   }
 }
 
 // The paper's response. After each solve constraints are set and released; pairs without a separating plane add some.
 StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
                                                               FrameReport& report) {
-  const Moment& now = progress_.now;
+  const SystemState& now = progress_.now;
   collision::ContactResponse& response = collisions_->response();
   const auto force_on = [&](Index particle) { return stepper_.constraint_force(particle, cloth_.masses()[particle]); };
   int revisions = 0;
@@ -117,9 +117,9 @@ StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& att
     const bool may_revise = revisions + 1 < numerics.walls.solves;
     if (solved && response.revise(now.x, next_.x, force_on) > 0 && may_revise) {
       ++revisions;
-    } else if (collisions_->apart(now, next_)) {
+    } else if (collisions_->is_separated(now, next_)) {
       if (solved) return std::nullopt;
-    } else if (may_revise && collisions_->adopt_failing(now, next_) > 0) {
+    } else if (may_revise && collisions_->add_failing_contacts(now, next_) > 0) {
       ++revisions;
       if (solved) response.revise(now.x, next_.x, force_on);
     } else if (solved) {
@@ -132,14 +132,14 @@ StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& att
 StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early,
                                              bool& solved, FrameReport& report) {
   held_.resize(pinned_);
-  collisions_->append_prescribed(held_);
+  collisions_->append_prescribed_particles(held_);
   integrator::StepReport step = solve(attempt.h, start, check_early, report);
   // Normal forces that follow friction, and friction that follows them, can increase each other without end. With fixed
   // normal forces friction has a potential, and dissipates (measured: a sheet of 0.5 J with friction 10 gained 1,300
   // J).
   if (is_first && step.verdict == integrator::Verdict::unfinished &&
       added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.astray_energy) {
-    problem_.keep_loads();
+    problem_.fix_normal_forces();
     step = solve(attempt.h, Start::unchanged_velocity, check_early, report);
   }
   if (Rejection rejection = rejection_of(step)) {
@@ -152,11 +152,11 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
 
 // `check_early`: the solve ends unfinished after a few iterations, so that contacts that it reveals are found soon.
 integrator::StepReport StepLoop::solve(double h, Start start, bool check_early, FrameReport& report) {
-  stepper_.use(method());
+  stepper_.set_method(method());
   const integrator::StepReport step =
       stepper_.step(problem_, progress_.now, h, gravity_, held_, next_, start,
                     check_early ? numerics.newton.check_after : std::numeric_limits<int>::max());
-  if (collisions_) collisions_->follow_frames(next_);
+  if (collisions_) collisions_->place_rigid_vertices(next_);
   report.newton_iterations += step.newton_iterations;
   report.linear_iterations += step.linear_iterations;
   report.forces += step.times.forces;
@@ -184,7 +184,7 @@ StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
     return stuck;
   if (!may_shorten(attempt)) return std::nullopt;
   const double ratio = added_energy_ratio(energy_before, attempt.h);
-  if (ratio <= numerics.repair.corrected_energy) return std::nullopt;
+  if (ratio <= numerics.repair.added_energy) return std::nullopt;
   progress_.longest = 0.5 * attempt.h;
   return fmt::format("keeping cloth from passing through adds {:.2g} times the energy of its motion and threads",
                      ratio);
@@ -197,7 +197,7 @@ bool StepLoop::may_shorten(const Attempt& attempt) {
 // Whether a shorter step would find no more space for cloth than this one.
 bool StepLoop::is_short_enough(const Attempt& attempt) const {
   return attempt.is_last ||
-         (attempt.rejections >= numerics.repair.halvings && collisions_->obstacles_creep(progress_.now, next_));
+         (attempt.rejections >= numerics.repair.halvings && collisions_->obstacles_move_little(progress_.now, next_));
 }
 
 // Asks for a shorter step if an unfinished solve has stretched cloth far. Such a solve scatters particles: all pairs of
@@ -212,15 +212,15 @@ StepLoop::Rejection StepLoop::check_divergence(double h) {
 
 // Asks for a shorter step if this one stretches threads far beyond their limit.
 StepLoop::Rejection StepLoop::check_overstretch(double h) {
-  const double ratio = cloth_.overstretch(next_.particles()).share;
+  const double ratio = cloth_.overstretch(next_.particles()).ratio;
   const double most = numerics.repair.overstretch;
-  if (ratio <= 1 + most || ratio <= cloth_.overstretch(progress_.now.particles()).share + most) return std::nullopt;
+  if (ratio <= 1 + most || ratio <= cloth_.overstretch(progress_.now.particles()).ratio + most) return std::nullopt;
   progress_.longest = 0.5 * h;
   return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", ratio);
 }
 
 // [J]
-double StepLoop::energy(const Moment& moment) const {
+double StepLoop::energy(const SystemState& moment) const {
   return cloth_.elastic_energy(moment.particles()) + cloth_.air_energy(moment.particles()) +
          attachments_.energy(moment.particles()) + cloth_.kinetic_energy(moment.v) +
          cloth_.potential_energy(moment.particles(), gravity_);

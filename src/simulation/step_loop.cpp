@@ -33,7 +33,7 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
       attachments_(scene, environment, first_particles(cloth_), cloth_.first_of_frames(environment)),
       weather_(scene),
       gravity_(weather_.gravity(start)) {
-  Moment& now = progress_.now;
+  SystemState& now = progress_.now;
   pins_.begin_step(start, 0, now.x);
   held_ = pins_.held();
   cloth_.hold(held_);
@@ -47,14 +47,14 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
   next_ = now;
 }
 
-void StepLoop::take_over(const StepLoop& before, std::span<const std::size_t> cloths) {
+void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths) {
   dressed_.assign(cloths.begin(), cloths.end());
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const Index there = before.cloth_.first_particle(c), here = cloth_.first_particle(cloths[c]);
     const Index count = before.cloth_.first_particle(c + 1) - there;
     std::copy_n(before.progress_.now.x.begin() + there, count, progress_.now.x.begin() + here);
     std::copy_n(before.progress_.now.v.begin() + there, count, progress_.now.v.begin() + here);
-    pins_.take_over(before.pins_, there, here, count);
+    pins_.copy_state_from(before.pins_, there, here, count);
     reported_overstretch_[cloths[c]] = before.reported_overstretch_[c];
   }
   for (std::size_t p = 0; p + before.cloth_.cloths() < before.cloth_.parts(); ++p) {
@@ -63,10 +63,10 @@ void StepLoop::take_over(const StepLoop& before, std::span<const std::size_t> cl
     std::copy_n(before.progress_.now.x.begin() + there, mesh::RigidFrame::kParticles, progress_.now.x.begin() + here);
     std::copy_n(before.progress_.now.v.begin() + there, mesh::RigidFrame::kParticles, progress_.now.v.begin() + here);
   }
-  if (collisions_) collisions_->follow_frames(progress_.now);
-  if (collisions_ && before.collisions_) collisions_->take_over(*before.collisions_, cloths);
-  cloth_.inflation().take_over(before.cloth_.inflation(), cloths);
-  attachments_.take_over(before.attachments_, cloths);
+  if (collisions_) collisions_->place_rigid_vertices(progress_.now);
+  if (collisions_ && before.collisions_) collisions_->copy_state_from(*before.collisions_, cloths);
+  cloth_.inflation().copy_state_from(before.cloth_.inflation(), cloths);
+  attachments_.copy_state_from(before.attachments_, cloths);
   next_ = progress_.now;
 }
 
@@ -131,10 +131,12 @@ bool StepLoop::may_rest(double t, double h, int steps) {
     return false;
   for (int s = 1; s <= steps; ++s) {
     const double end = t + s * h;
-    if (!weather_.stays(t, end) || !cloth_.inflation().stays(t, end) || !attachments_.stay(t, end)) return false;
-    if (!cloth_.lengths_stay(t, end)) return false;
-    if (!pins_.stay(t, end) || !frames_stay(environment_, t, end) ||
-        (collisions_ && !collisions_->bodies_stay(t, end, progress_.now, next_)))
+    if (!weather_.is_constant_between(t, end) || !cloth_.inflation().is_constant_between(t, end) ||
+        !attachments_.are_constant_between(t, end))
+      return false;
+    if (!cloth_.lengths_are_constant(t, end)) return false;
+    if (!pins_.are_constant_between(t, end) || !frames_are_constant(environment_, t, end) ||
+        (collisions_ && !collisions_->bodies_are_constant(t, end, progress_.now, next_)))
       return false;
   }
   return true;
@@ -150,7 +152,7 @@ bool StepLoop::has_settled() const {
   return sum <= most * most * static_cast<double>(last.before.v.size());
 }
 
-bool StepLoop::is_slow(const Moment& moment) {
+bool StepLoop::is_slow(const SystemState& moment) {
   return std::ranges::all_of(moment.v, [](const Vec3& v) {
     return v.squaredNorm() <= numerics.steps.rest_velocity * numerics.steps.rest_velocity;
   });
@@ -169,7 +171,7 @@ bool StepLoop::rest(double t, double h, FrameReport& report) {
 // while steps are still short for them (measured: without, pinched cloth took 75,202 steps in place of 160).
 void StepLoop::advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report) {
   const bool after_rejection = h > (1 + 1e-9) * progress_.longest;
-  const bool too_long = after_rejection || h > (1 + 1e-9) * stepper_.longest_step() || turns_too_far(t, h);
+  const bool too_long = after_rejection || h > (1 + 1e-9) * stepper_.longest_step() || obstacle_turns_too_far(t, h);
   if (!too_long) {
     const Rejection rejection = attempt(t, h, rejections, halvings_left == 0, report);
     if (!rejection) return accept(h, report);
@@ -189,24 +191,24 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
   double t = t_t0, h = 0;
   int left = 0, rejections = 0;
   for (;;) {
-    const double longest = std::min(control.wanted(), stepper_.longest_step());
+    const double longest = std::min(control.next_step_size(), stepper_.longest_step());
     const int needed = std::max(1, static_cast<int>(std::ceil((t_t1 - t) / longest - 1e-9)));
     if (needed != left) {
       left = needed;
       h = (t_t1 - t) / left;
     }
-    for (; turns_too_far(t, h); h *= 0.5) left *= 2;
+    for (; obstacle_turns_too_far(t, h); h *= 0.5) left *= 2;
     const bool is_last = rejections == scene_.solver.halvings || h < numerics.steps.least;
     const Rejection rejection = attempt(t, h, rejections, is_last, report);
     if (rejection && is_last) fail(report.frame, t, h, *rejection);
     // An impact may ask for shorter steps without end. The last attempt is accepted whatever its error.
     if (rejection || !(is_last || control.accepts(h, local_error_))) {
       ++report.rejected_steps, ++rejections;
-      rejection ? control.unsolved(h) : control.too_inexact(h, local_error_);
+      rejection ? control.record_unsolved_step(h) : control.record_rejected_step(h, local_error_);
       continue;
     }
     report.inexact_steps += !control.meets(local_error_);
-    control.accepted(h, local_error_);
+    control.record_accepted_step(h, local_error_);
     accept(h, report);
     rejections = 0;
     if (--left == 0) return;
@@ -241,22 +243,22 @@ void StepLoop::accept(double h, FrameReport& report) {
 void StepLoop::measure_stretch(FrameReport& report) {
   report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
   const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());
-  const bool begins = report.stretch_share <= kOverstretch && most.share > kOverstretch;
-  report.stretch_share = std::max(report.stretch_share, most.share);
-  if (!begins || cloth_.overstretch(next_.particles()).share > kOverstretch) return;
+  const bool begins = report.stretch_ratio <= kMaxStretchRatio && most.ratio > kMaxStretchRatio;
+  report.stretch_ratio = std::max(report.stretch_ratio, most.ratio);
+  if (!begins || cloth_.overstretch(next_.particles()).ratio > kMaxStretchRatio) return;
   double& reported = reported_overstretch_[most.cloth];
-  if (most.share < kReportAgainRatio * reported) return;
-  reported = most.share;
+  if (most.ratio < kReportAgainRatio * reported) return;
+  reported = most.ratio;
   report.warnings.push_back(
       fmt::format("frame {}: '{}' is stretched by {:.0f} %, which its threads do not allow (max_stretch {:g}), near "
                   "({:.4g}, {:.4g}, {:.4g}) m",
-                  report.frame, scene_.cloths[most.cloth].name, 100 * most.extension, most.extension / most.share,
+                  report.frame, scene_.cloths[most.cloth].name, 100 * most.extension, most.extension / most.ratio,
                   most.place.x(), most.place.y(), most.place.z()));
 }
 
 template <class Archive>
 void StepLoop::serialize(Archive& archive) {
-  Moment& now = progress_.now;
+  SystemState& now = progress_.now;
   const std::size_t particles = cloth_.masses().size();
   std::vector<Vec3> x(now.particles().begin(), now.particles().end());
   serialize_points(archive, x, particles);

@@ -31,15 +31,15 @@ class StepLoop {
 
   /// Before the first advance(): continues with the cloths of a loop that ends here. `cloths`: their numbers in this
   /// loop, in the order of `before`.
-  void take_over(const StepLoop& before, std::span<const std::size_t> cloths);
-  /// Before the first advance(): untangles cloths that touch or intersect at the start, if the scene allows it. Cloths
-  /// that were taken over stay as they are.
+  void copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths);
+  /// Before the first advance(): may_be_untangled cloths that touch or intersect at the start, if the scene allows it.
+  /// Cloths that were taken over stay as they are.
   void untangle();
   /// Before the first advance(): lifts dynamic bodies off what they touch. Returns the largest lift [m].
   double lift_bodies();
   /// Before the first advance(): places where surfaces touch or intersect at the start.
-  std::vector<MeetingPlace> find_meetings() {
-    return collisions_ ? collisions_->find_meetings(progress_.now) : std::vector<MeetingPlace>{};
+  std::vector<IntersectionPlace> find_intersections() {
+    return collisions_ ? collisions_->find_intersections(progress_.now) : std::vector<IntersectionPlace>{};
   }
 
   /// Advances from the time t_t0 of a frame to the time t_t1 of the next one [s], which is report.frame, and counts in
@@ -48,7 +48,7 @@ class StepLoop {
 
   /// State from which the next step begins.
   struct Progress {
-    Moment now;
+    SystemState now;
     std::optional<integrator::StepControl> control;  // if the scene has a tolerance in place of a step
     double longest;                                  // longest step after a rejected one [s]; infinite before one
   };
@@ -109,10 +109,10 @@ class StepLoop {
   void advance_controlled(double t_t0, double t_t1, FrameReport& report);
   bool may_rest(double t, double h, int steps);
   bool has_settled() const;
-  static bool is_slow(const Moment& moment);
+  static bool is_slow(const SystemState& moment);
   bool rest(double t, double h, FrameReport& report);
-  bool turns_too_far(double t, double h) const {
-    return collisions_ && collisions_->turns_too_far(t, h, progress_.now);
+  bool obstacle_turns_too_far(double t, double h) const {
+    return collisions_ && collisions_->obstacle_turns_too_far(t, h, progress_.now);
   }
   void accept(double h, FrameReport& report);
   static void count_work(const StepWork& work, FrameReport& report) {
@@ -137,7 +137,7 @@ class StepLoop {
   bool is_short_enough(const Attempt& attempt) const;
   Rejection check_divergence(double h);
   Rejection check_overstretch(double h);
-  double energy(const Moment& moment) const;
+  double energy(const SystemState& moment) const;
   double added_energy_ratio(double before, double h) const;
   static Rejection rejection_of(const integrator::StepReport& step);
 
@@ -150,7 +150,7 @@ class StepLoop {
   YieldingPins pins_;
   Progress progress_;
   integrator::Stepper stepper_;
-  Moment next_;                                // end of the current step; its start once the step is accepted
+  SystemState next_;                           // end of the current step; its start once the step is accepted
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
   std::vector<double> reported_overstretch_;   // stretch over its limit that was last reported of each cloth; 0: none
   std::vector<integrator::HeldParticle> held_;

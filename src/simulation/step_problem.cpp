@@ -10,7 +10,7 @@
 namespace weft::simulation {
 namespace {
 
-std::size_t size_of(const solver::Part& part) {
+std::size_t size_of(const solver::DiagonalBlock& part) {
   return static_cast<std::size_t>(part.end - part.begin);
 }
 
@@ -29,11 +29,11 @@ StepProblem::StepProblem(ClothSystem& cloth) : cloth_(cloth) {
 void StepProblem::reset_memory() {
   memory_.linearised_at.clear();
   const double nowhere = std::numeric_limits<double>::quiet_NaN();  // unequal to any number
-  memory_.x.assign(masses().size(), solver::quad_of(nowhere, nowhere, nowhere));
+  memory_.x.assign(masses().size(), solver::padded(nowhere, nowhere, nowhere));
 }
 
 void StepProblem::begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
-                             std::span<const Pull> pulls) {
+                             std::span<const PinSpring> pulls) {
   pulls_ = pulls;
   reset_memory();
   cloth_.sew(t);
@@ -43,7 +43,7 @@ void StepProblem::begin_step(double t, std::span<const Vec3> x, std::span<const 
   cloth_.begin_locks(x, memory_.locks);
 }
 
-void StepProblem::blow(SolveMemory::Quads air) {
+void StepProblem::set_air_velocity(SolveMemory::PaddedVec3s air) {
   air_ = std::move(air);
 }
 
@@ -101,7 +101,7 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   system.terms.clear();
   system.wide_terms.clear();
   system.diagonal_terms.clear();
-  for (const Pull& pull : pulls_)
+  for (const PinSpring& pull : pulls_)
     system.diagonal_terms.push_back(
         {pull.particle, (at.end_rate * pull.stiffness + at.rate * pull.damping) * Mat3::Identity()});
   if (attachments_ != nullptr) attachments_->add_terms(at.x_end, at.end_rate, system);
@@ -117,13 +117,14 @@ bool StepProblem::contact_forces(const integrator::StagePoint& at, std::span<Vec
                                  std::span<double> limit) const {
   if (contacts_ == nullptr || contacts_->empty()) return false;
   if (vertices_ == nullptr) {
-    contacts_->add_parts_of_forces(at.x_end, memory_.contacts, push, friction, limit);
+    contacts_->add_normal_and_friction_forces(at.x_end, memory_.contacts, push, friction, limit);
     return true;
   }
   const auto all = static_cast<std::size_t>(vertices_->end());
   std::vector<Vec3> push_of_all(all, Vec3::Zero()), friction_of_all = push_of_all;
   std::vector<double> limit_of_all(all, 0);
-  contacts_->add_parts_of_forces(with_vertices(at.x_end), memory_.contacts, push_of_all, friction_of_all, limit_of_all);
+  contacts_->add_normal_and_friction_forces(with_vertices(at.x_end), memory_.contacts, push_of_all, friction_of_all,
+                                            limit_of_all);
   for (std::size_t i = 0; i < masses().size(); ++i) {
     push[i] += push_of_all[i];
     friction[i] += friction_of_all[i];
@@ -156,7 +157,7 @@ bool StepProblem::find_impacts(const integrator::StagePoint& at, const StepStart
 
 void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const {
   if (attachments_ != nullptr) attachments_->add_forces(at.x_end, force);
-  for (const Pull& pull : pulls_)
+  for (const PinSpring& pull : pulls_)
     force[pull.particle] +=
         pull.stiffness * (pull.x - at.x_end[pull.particle]) + pull.damping * (pull.v - at.v[pull.particle]);
 }
@@ -178,12 +179,12 @@ void StepProblem::use_rate(double rate) {
 
 // Updates the remembered positions and velocities of a part. Returns whether any of them has changed.
 bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoint& at) {
-  const solver::Part& part = memory_.system.parts[cloth];
+  const solver::DiagonalBlock& part = memory_.system.parts[cloth];
   return parallel_sum(size_of(part), kGrainSize, [&](std::size_t begin, std::size_t end) {
            bool moved = false;
            for (std::size_t k = begin; k < end; ++k) {
              const auto i = static_cast<std::size_t>(part.begin) + k;
-             const auto x = solver::quad_of<double>(at.x[i]), v = solver::quad_of<double>(at.v[i]);
+             const auto x = solver::padded<double>(at.x[i]), v = solver::padded<double>(at.v[i]);
              auto &own_x = memory_.x[i], &own_v = memory_.v[i];
              for (int axis = 0; axis < 3; ++axis) moved |= x[axis] != own_x[axis] || v[axis] != own_v[axis];
              own_x = x;
@@ -208,17 +209,17 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
       if (cloth < memory_.locks.size()) evaluation.locks = &memory_.locks[cloth];
       evaluation.assembly = solver::AssemblyRows(memory_.assembly, begin, end);
       if (iteration >= numerics.newton.clamped_iterations)
-        evaluation.linearisation = forces::Linearisation::abs_projected;
+        evaluation.linearisation = forces::Linearisation::absolute_value;
       memory_.assembly.start(begin, end);
     }
-    std::fill(memory_.force.begin() + begin, memory_.force.begin() + end, solver::Quad<double>{});
+    std::fill(memory_.force.begin() + begin, memory_.force.begin() + end, solver::PaddedVec3<double>{});
     cloth_.add_forces(cloth, evaluation);
   });
 }
 
 // Whether a part has moved too far from where its rows of the matrix were assembled.
 bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
-  const solver::Part& part = memory_.system.parts[cloth];
+  const solver::DiagonalBlock& part = memory_.system.parts[cloth];
   const double most = part.is_small ? 0 : numerics.newton.stale_motion * cloth_.spacing();
   for (auto i = part.begin; i < part.end; ++i)
     if (!((x[i] - memory_.linearised_at[i]).squaredNorm() <= most * most)) return true;
@@ -229,7 +230,7 @@ bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
 void StepProblem::assemble_rows(const integrator::StagePoint& at, int iteration) {
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;
-    solver::Part& part = memory_.system.parts[c];
+    solver::DiagonalBlock& part = memory_.system.parts[c];
     std::copy_n(at.x.begin() + part.begin, part.end - part.begin, memory_.linearised_at.begin() + part.begin);
     update_positions(c, at);
     ++part.version;
@@ -237,7 +238,7 @@ void StepProblem::assemble_rows(const integrator::StagePoint& at, int iteration)
   evaluate(at, true, iteration);
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;
-    const solver::Part& part = memory_.system.parts[c];
+    const solver::DiagonalBlock& part = memory_.system.parts[c];
     parallel_for(size_of(part), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
       memory_.assembly.write_rows(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end),
                                   memory_.system.matrix);

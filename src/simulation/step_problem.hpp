@@ -22,16 +22,16 @@ struct SolveMemory {
   double rate = 0;                  ///< of system and assembly [1/s]; 0: not set
   std::vector<Vec3> linearised_at;  ///< positions where each cloth's rows were assembled; empty: not assembled
   collision::ContactLag contacts;
-  ClothSystem::LockLags locks;  ///< empty before the first step
+  ClothSystem::LockLinearisations locks;  ///< empty before the first step
 
   // Internal forces of cloths, kept to save time: most cloths of a scene stop moving in a solve before the last one.
-  using Quads = std::vector<solver::Quad<double>>;
-  Quads x, v;   ///< where each cloth's forces were last evaluated; NaN: nowhere
-  Quads force;  ///< the forces there [N]
+  using PaddedVec3s = std::vector<solver::PaddedVec3<double>>;
+  PaddedVec3s x, v;   ///< where each cloth's forces were last evaluated; NaN: nowhere
+  PaddedVec3s force;  ///< the forces there [N]
 };
 
 /// A damped spring that pulls a particle to a point.
-struct Pull {
+struct PinSpring {
   Index particle;
   Vec3 x, v;         ///< the point and its velocity at the end of the step [m], [m/s]
   double stiffness;  ///< [N/m]
@@ -58,24 +58,24 @@ class StepProblem final : public integrator::System {
   /// locks from the tensions, at the start x [m]. The next linearisation assembles the matrix anew. `pulls` must
   /// outlive the step.
   void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
-                  std::span<const Pull> pulls = {});
+                  std::span<const PinSpring> pulls = {});
 
   /// Sets the air velocity at each particle in the step that begins [m/s]. Without it, the air velocity is uniform.
-  void blow(SolveMemory::Quads air);
+  void set_air_velocity(SolveMemory::PaddedVec3s air);
 
   /// Called within a step whose contacts have changed: friction follows the normal forces for numerics.newton.patience
   /// / 2 more updates, or longer if there were fewer updates so far.
-  void forget_contacts() {
+  void limit_friction_updates() {
     memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.patience / 2)};
   }
 
   /// Before a step is solved again: friction uses the normal forces at its start, even if they change.
-  void keep_loads() { memory_.contacts = {{}, {}, {}, numerics.newton.patience}; }
+  void fix_normal_forces() { memory_.contacts = {{}, {}, {}, numerics.newton.patience}; }
 
   const SolveMemory& memory() const { return memory_; }
 
   std::span<const double> masses() const override { return cloth_.masses(); }
-  void constant_forces(std::span<Vec3> force) const override { cloth_.take_weight_off(force); }
+  void constant_forces(std::span<Vec3> force) const override { cloth_.cancel_weight_of_sewn_cloth(force); }
   void forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
   void linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
   void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
@@ -102,8 +102,8 @@ class StepProblem final : public integrator::System {
   const collision::ContactResponse* contacts_ = nullptr;  // nullptr if nothing in the scene can collide
   const RigidVertices* vertices_ = nullptr;               // nullptr if there are none
   const Attachments* attachments_ = nullptr;
-  std::span<const Pull> pulls_;
-  SolveMemory::Quads air_;
+  std::span<const PinSpring> pulls_;
+  SolveMemory::PaddedVec3s air_;
   SolveMemory memory_;
   std::vector<char> is_active_;  // scratch, per part: whether to evaluate it
 };

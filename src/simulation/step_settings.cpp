@@ -59,10 +59,10 @@ std::array<Vec3, mesh::RigidFrame::kParticles> velocities_of_frame(const environ
 
 }  // namespace
 
-Moment start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
-                double t) {
-  Moment start;
-  start.placed_for = t;
+SystemState start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
+                     double t) {
+  SystemState start;
+  start.bodies_time = t;
   for (std::size_t c = 0; c < environment.cloths.size(); ++c) {
     const environment::ClothObject& object = environment.cloths[c];
     start.x.insert(start.x.end(), object.start.begin(), object.start.end());
@@ -118,7 +118,7 @@ bool release_frames(const environment::Environment& environment, const ClothSyst
   return any;
 }
 
-bool frames_stay(const environment::Environment& environment, double t0, double t1) {
+bool frames_are_constant(const environment::Environment& environment, double t0, double t1) {
   return std::ranges::none_of(environment.bodies, [&](const environment::BodyObject& body) {
     return body.dynamics && t0 < body.dynamics->release && (body.moving || t1 > body.dynamics->release);
   });

@@ -22,8 +22,8 @@ std::optional<integrator::StepControl> step_control_of(const scene::Scene& scene
 std::vector<Index> first_particles(const ClothSystem& cloth);
 
 /// Positions of all particles at the start, and their velocities as the scene gives them, at time t [s].
-Moment start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
-                double t);
+SystemState start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
+                     double t);
 
 /// Appends the frame particles of bodies that keys still move at t [s], the end of a step, where the keys place them.
 void hold_frames(const environment::Environment& environment, const ClothSystem& cloth, double t,
@@ -35,6 +35,6 @@ bool release_frames(const environment::Environment& environment, const ClothSyst
                     std::span<Vec3> v);
 
 /// Whether no body is released or moved by its keys between t0 and t1 [s], of those not yet released at t0.
-bool frames_stay(const environment::Environment& environment, double t0, double t1);
+bool frames_are_constant(const environment::Environment& environment, double t0, double t1);
 
 }  // namespace weft::simulation

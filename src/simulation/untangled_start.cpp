@@ -35,16 +35,16 @@ bool is_layer(const scene::Scene& scene, std::size_t cloth, std::span<const std:
 
 }  // namespace
 
-bool untangles(const scene::Cloth& cloth) {
+bool may_be_untangled(const scene::Cloth& cloth) {
   return cloth.start == scene::ClothStart::untangle || !cloth.over.empty();
 }
 
-bool untangles(const scene::Scene& scene) {
-  return std::ranges::any_of(scene.cloths, [](const scene::Cloth& c) { return untangles(c); });
+bool may_be_untangled(const scene::Scene& scene) {
+  return std::ranges::any_of(scene.cloths, [](const scene::Cloth& c) { return may_be_untangled(c); });
 }
 
 void CollisionStage::untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
-                              std::span<const std::size_t> dressed, Moment& start) {
+                              std::span<const std::size_t> dressed, SystemState& start) {
   // Dressed cloths stand still, like obstacles. They come last, so that cloth that leaves a body then leaves them too.
   std::vector<std::size_t> order;  // numbers of the engine's bodies
   const std::size_t cloths = environment_.cloths.size();
@@ -74,7 +74,7 @@ void CollisionStage::untangle(const scene::Scene& scene, std::span<const integra
       kinds.push_back(is_layer(scene, b, dressed) ? untangle::Kind::layer : untangle::Kind::open);
     for (std::size_t v = first; v < first + static_cast<std::size_t>(surface.vertex_count); ++v) {
       x.push_back(start.x[v]);
-      movable.push_back(fresh && untangles(scene.cloths[b]) && is_held[v] == 0);
+      movable.push_back(fresh && may_be_untangled(scene.cloths[b]) && is_held[v] == 0);
     }
     const std::vector<Vec3>& given = b < cloths ? environment_.cloths[b].mesh.positions : rest;
     if (fresh) rest.insert(rest.end(), given.begin(), given.end());

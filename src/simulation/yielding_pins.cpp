@@ -74,7 +74,7 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   }
 }
 
-bool YieldingPins::stay(double t0, double t1) {
+bool YieldingPins::are_constant_between(double t0, double t1) {
   if (std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; })) return false;
   pins_.held_at(t0, environment_, at_start_);
   pins_.held_at(t1, environment_, targets_);
@@ -106,7 +106,7 @@ void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::s
   pulls_.push_back({particle, x[i], speed, 0, max_force / std::max(numerics.pins.slowest, speed.norm())});
 }
 
-void YieldingPins::let_go(Index particle, const std::string& obstruction) {
+void YieldingPins::release_particle(Index particle, const std::string& obstruction) {
   forced_[static_cast<std::size_t>(particle)] = 1;
   obstructions_.emplace(pins_.pin_of(particle), obstruction);
 }
@@ -141,7 +141,7 @@ YieldingPins::Lags YieldingPins::take_lags() {
   return std::exchange(seen_, {});
 }
 
-void YieldingPins::take_over(const YieldingPins& there, Index first_there, Index first, Index count) {
+void YieldingPins::copy_state_from(const YieldingPins& there, Index first_there, Index first, Index count) {
   std::copy_n(there.lagged_.begin() + first_there, count, lagged_.begin() + first);
   if (there.lagging_before_.empty()) return;
   for (Index i = 0; i < count; ++i)

@@ -25,15 +25,15 @@ class YieldingPins {
   /// Begins a step from t to t + h [s] with particles at x [m]: finds which are held at its end, and which are pulled.
   void begin_step(double t, double h, std::span<const Vec3> x);
   const std::vector<integrator::HeldParticle>& held() const { return held_; }
-  const std::vector<Pull>& pulls() const { return pulls_; }
+  const std::vector<PinSpring>& pulls() const { return pulls_; }
 
   /// Whether the pins hold the same particles at the same places at t0 and t1 [s], and no particle lags.
-  bool stay(double t0, double t1);
+  bool are_constant_between(double t0, double t1);
 
   bool release_between(double t0, double t1) const { return pins_.release_between(t0, t1); }
 
   /// Makes a held particle lag, before the step begins again. `obstruction`: what is in its way and where, as text.
-  void let_go(Index particle, const std::string& obstruction);
+  void release_particle(Index particle, const std::string& obstruction);
   /// Whether any particle lags in this step.
   bool any_lags() const { return any_lags_; }
   /// Accepts the step: particles that lag in it lag in the next one too, until they arrive.
@@ -48,7 +48,7 @@ class YieldingPins {
 
   /// Between two frames: copies which particles lag from another simulation of a cloth with `count` particles. Its
   /// first particle is `first_there` there and `first` here. Pins that were reported there are not reported again.
-  void take_over(const YieldingPins& there, Index first_there, Index first, Index count);
+  void copy_state_from(const YieldingPins& there, Index first_there, Index first, Index count);
 
   /// Which particles lag, and which pins were reported.
   template <class Archive>
@@ -62,7 +62,7 @@ class YieldingPins {
   std::span<const double> masses_;
   std::vector<double> pull_force_;  // total force on the lagging particles, per pin [N]
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;
-  std::vector<Pull> pulls_;
+  std::vector<PinSpring> pulls_;
   std::vector<std::uint8_t> lagged_, lags_;          // per particle: in the previous step, and in this one
   std::vector<std::uint8_t> forced_;                 // per particle: let go in this step
   std::vector<std::size_t> lagging_particles_;       // number of particles in this step, per pin

@@ -6,7 +6,7 @@
 
 #include "core/types.hpp"
 #include "solver/block_matrix.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 
 namespace weft::solver {
 
@@ -40,7 +40,7 @@ class Assembly {
   void add(Index block, const PackedBlock& value) { add_at(blocks_, block, value); }
   void add(Index block, const Mat3& value) { add(block, packed(value)); }
   /// Adds a symmetric block to a row's own block.
-  void add_to_own(Index row, const PackedBlock& value) { add_at(own_, row, value); }
+  void add_to_own_block(Index row, const PackedBlock& value) { add_at(own_, row, value); }
 
   /// Writes the rows [begin, end) of a matrix that has the pattern of this assembly.
   void write_rows(Index begin, Index end, BlockMatrix& matrix) const;
@@ -94,8 +94,8 @@ class AssemblyRows {
   void add(Index block, const Block& value) const {
     if (blocks_.has(block)) assembly_->add(block, value);
   }
-  void add_to_own(Index row, const PackedBlock& value) const {
-    if (rows_.has(row)) assembly_->add_to_own(row, value);
+  void add_to_own_block(Index row, const PackedBlock& value) const {
+    if (rows_.has(row)) assembly_->add_to_own_block(row, value);
   }
 
  private:

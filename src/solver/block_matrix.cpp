@@ -97,7 +97,7 @@ void BlockMatrix::multiply(std::span<const Vector> x, std::span<Vector> y, std::
 }
 
 template void BlockMatrix::multiply(std::span<const Vec3>, std::span<Vec3>, std::size_t, std::size_t) const;
-template void BlockMatrix::multiply(std::span<const Quad<double>>, std::span<Quad<double>>, std::size_t,
+template void BlockMatrix::multiply(std::span<const PaddedVec3<double>>, std::span<PaddedVec3<double>>, std::size_t,
                                     std::size_t) const;
 
 }  // namespace weft::solver

@@ -7,20 +7,20 @@
 #include <vector>
 
 #include "core/types.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 
 namespace weft::solver {
 
 /// Position of one block among the values of a BlockMatrix; negative if the block is a multiple of the identity.
 using Slot = Index;
 
-using Lanes = Quad<double>;
+using Lanes = PaddedVec3<double>;
 
 inline Lanes load_lanes(const double* p) {
-  return load_quad(p);
+  return load_padded(p);
 }
 inline void store_lanes(double* p, const Lanes& lanes) {
-  store_quad(p, lanes);
+  store_padded(p, lanes);
 }
 
 /// A 3×3 block in registers, column by column as the matrix stores it: entries 0 to 3, 4 to 7, and 8.
@@ -116,7 +116,7 @@ class BlockMatrix {
     }
   }
 
-  /// y = A x over the rows [begin, end). x and y hold Vec3 or Quad<double> per block row, and must not overlap.
+  /// y = A x over the rows [begin, end). x and y hold Vec3 or PaddedVec3<double> per block row, and must not overlap.
   template <class Vector>
   void multiply(std::span<const Vector> x, std::span<Vector> y, std::size_t begin, std::size_t end) const;
 

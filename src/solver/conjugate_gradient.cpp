@@ -17,9 +17,9 @@ constexpr double kMaxSingleStiffness = 1e7;
 
 // Whether all particles are below kMaxSingleStiffness. False without a mass-weighted norm.
 bool allows_single_precision(const LinearSystem& system) {
-  if (system.metric.empty()) return false;
+  if (system.norm_weights.empty()) return false;
   const auto fits = [&](Index particle, double stiffness) {
-    return stiffness <= kMaxSingleStiffness * system.metric[static_cast<std::size_t>(particle)];
+    return stiffness <= kMaxSingleStiffness * system.norm_weights[static_cast<std::size_t>(particle)];
   };
   const auto particle_fits = [&](Index i) {
     const double* block = system.matrix.values().data() + 9 * static_cast<std::size_t>(system.matrix.diagonal(i));
@@ -42,8 +42,8 @@ bool allows_single_precision(const LinearSystem& system) {
   return all_fit;
 }
 
-template <class Quad>
-void copy_as_vec3(std::span<const Quad> from, std::vector<Vec3>& to) {
+template <class Padded>
+void copy_as_vec3(std::span<const Padded> from, std::vector<Vec3>& to) {
   to.resize(from.size());
   parallel_for(from.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) to[i] = vec3_of(from[i]);
@@ -61,18 +61,19 @@ void ConjugateGradient::filter(std::span<Vec3> b) const {
 
 template <class Real>
 Recurrence<Real>& ConjugateGradient::prepare_recurrence(PrecisionState<Real>& in) {
-  if (!in.is_prepared) in.recurrence.prepare(*system_, in.has_aggregate_sums ? Sums::kept : Sums::anew);
+  if (!in.is_prepared)
+    in.recurrence.prepare(*system_, in.has_aggregate_sums ? AggregateSums::reuse : AggregateSums::recompute);
   in.is_prepared = in.has_aggregate_sums = true;
   return in.recurrence;
 }
 
-void ConjugateGradient::prepare(const LinearSystem& system, Sums sums) {
+void ConjugateGradient::prepare(const LinearSystem& system, AggregateSums sums) {
   system_ = &system;
   all_parts_.resize(parts_of(system).size());
   std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
   allows_single_ = allows_single_precision(system);
   single_.is_prepared = double_.is_prepared = false;
-  if (sums == Sums::anew) single_.has_aggregate_sums = double_.has_aggregate_sums = false;
+  if (sums == AggregateSums::recompute) single_.has_aggregate_sums = double_.has_aggregate_sums = false;
 }
 
 std::span<const Vec3> ConjugateGradient::precondition(std::span<const Vec3> b) {

@@ -24,9 +24,9 @@ struct LinearReport {
 /// its residual in double, which contains whatever a solve in single precision leaves.
 class ConjugateGradient {
  public:
-  /// Prepares the preconditioner for `system`, which must outlive the following calls. With Sums::kept, sums over
-  /// aggregates are reused if they have been made since the last call with Sums::anew.
-  void prepare(const LinearSystem& system, Sums sums = Sums::anew);
+  /// Prepares the preconditioner for `system`, which must outlive the following calls. With AggregateSums::reuse, sums
+  /// over aggregates are reused if they have been made since the last call with AggregateSums::recompute.
+  void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
   /// P⁻¹ b, a rough solution that obeys the constraints. Valid until the next call.
   std::span<const Vec3> precondition(std::span<const Vec3> b);
@@ -57,7 +57,7 @@ class ConjugateGradient {
   template <class Real>
   struct PrecisionState {
     Recurrence<Real> recurrence;
-    bool has_aggregate_sums = false;  // made since the last Sums::anew
+    bool has_aggregate_sums = false;  // made since the last AggregateSums::recompute
     bool is_prepared = false;         // for the current system
   };
   template <class Real>

@@ -79,10 +79,10 @@ bool IncompleteCholesky::try_factorise(double shift) {
   return true;
 }
 
-double IncompleteCholesky::add(double factor, std::span<const Quad<double>> r, std::span<Quad<double>> z,
-                               std::span<const Part> parts) {
+double IncompleteCholesky::add(double factor, std::span<const PaddedVec3<double>> r, std::span<PaddedVec3<double>> z,
+                               std::span<const DiagonalBlock> parts) {
   double sum = 0;
-  for (const Part& part : parts) {
+  for (const DiagonalBlock& part : parts) {
     const std::size_t first = at(part.begin), end = at(part.end);
     for (std::size_t i = first; i < end; ++i) {
       Vec3 left = vec3_of(r[i]);
@@ -95,7 +95,7 @@ double IncompleteCholesky::add(double factor, std::span<const Quad<double>> r, s
       const Vec3 of_row = factor_[last].transpose() * y_[i];
       for (std::size_t s = row_start_[i]; s < last; ++s)
         y_[at(columns_[s])].noalias() -= factor_[s].transpose() * of_row;
-      z[i] += factor * quad_of<double>(of_row);
+      z[i] += factor * padded<double>(of_row);
       sum += factor * vec3_of(r[i]).dot(of_row);
     }
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/linear_system.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 
 namespace weft::solver {
 
@@ -20,7 +20,8 @@ class IncompleteCholesky {
 
   /// z += factor (L Lᵀ)⁻¹ r on the rows of `parts`; returns the increase of r·z. r must obey the constraints; z then
   /// does up to rounding.
-  double add(double factor, std::span<const Quad<double>> r, std::span<Quad<double>> z, std::span<const Part> parts);
+  double add(double factor, std::span<const PaddedVec3<double>> r, std::span<PaddedVec3<double>> z,
+             std::span<const DiagonalBlock> parts);
 
  private:
   void read(const LinearSystem& system);

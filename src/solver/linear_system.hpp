@@ -50,13 +50,13 @@ struct RankOneTerm {
 };
 
 /// Partition into aggregates, of particles or of the aggregates of the next finer level.
-struct Grouping {
+struct Aggregates {
   std::vector<Index> of;  ///< aggregate of each member, 0 to count − 1
   Index count = 0;
 };
 
 /// A diagonal block: rows [begin, end) that the matrix does not couple with others. Terms may couple them.
-struct Part {
+struct DiagonalBlock {
   Index begin = 0, end = 0;
   std::uint64_t version = 1;  ///< changes whenever the values of these rows change
   /// Few rows that are stiff against each other, such as those of a rigid body. On every level of the preconditioner
@@ -65,8 +65,8 @@ struct Part {
 };
 
 struct LinearSystem {
-  BlockMatrix matrix;       ///< positive definite on the free directions
-  std::vector<Part> parts;  ///< all rows, in order; empty: one diagonal block
+  BlockMatrix matrix;                ///< positive definite on the free directions
+  std::vector<DiagonalBlock> parts;  ///< all rows, in order; empty: one diagonal block
   std::vector<StencilTerm> terms;
   std::vector<WideTerm> wide_terms;
   std::vector<DiagonalTerm> diagonal_terms;
@@ -74,11 +74,11 @@ struct LinearSystem {
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
   /// Weights of the mass-weighted norm in which errors are measured, one per row. Must not exceed the matrix, as rate²
   /// M does not exceed rate² M + K. Empty: the energy norm is used instead.
-  std::vector<double> metric;
+  std::vector<double> norm_weights;
   /// Multigrid levels of the preconditioner, finest first: aggregates of particles, aggregates of those, and so on. The
   /// coarsest level must be small enough for a dense factorisation. No aggregate spans two diagonal blocks, and the
   /// aggregates of one diagonal block have consecutive numbers. Empty: no coarse level.
-  std::vector<Grouping> groupings;
+  std::vector<Aggregates> aggregate_levels;
 };
 
 /// Calls visit(term) for each StencilTerm, then for each WideTerm.
@@ -88,12 +88,12 @@ void for_each_term(const LinearSystem& system, const Visit& visit) {
   for (const WideTerm& term : system.wide_terms) visit(term);
 }
 
-inline std::vector<Part> parts_of(const LinearSystem& system) {
-  return system.parts.empty() ? std::vector<Part>{{0, system.matrix.rows()}} : system.parts;
+inline std::vector<DiagonalBlock> parts_of(const LinearSystem& system) {
+  return system.parts.empty() ? std::vector<DiagonalBlock>{{0, system.matrix.rows()}} : system.parts;
 }
 
 /// The rows of the diagonal blocks with these numbers.
-inline std::vector<RowRange> ranges_of(std::span<const Part> parts, std::span<const std::size_t> numbers) {
+inline std::vector<RowRange> ranges_of(std::span<const DiagonalBlock> parts, std::span<const std::size_t> numbers) {
   std::vector<RowRange> ranges;
   for (std::size_t p : numbers)
     ranges.push_back({static_cast<std::size_t>(parts[p].begin), static_cast<std::size_t>(parts[p].end)});

@@ -39,17 +39,17 @@ class TermBlocks {
 // Position of a particle's diagonal block among the selected ones; -1 if it is not selected.
 class SelectionIndex {
  public:
-  SelectionIndex(std::vector<Part> parts, std::span<const std::size_t> selected)
+  SelectionIndex(std::vector<DiagonalBlock> parts, std::span<const std::size_t> selected)
       : parts_(std::move(parts)), numbers_(parts_.size(), -1) {
     for (std::size_t s = 0; s < selected.size(); ++s) numbers_[selected[s]] = static_cast<int>(s);
   }
   int of(Index particle) const {
-    const auto after = std::ranges::upper_bound(parts_, particle, {}, &Part::begin);
+    const auto after = std::ranges::upper_bound(parts_, particle, {}, &DiagonalBlock::begin);
     return numbers_[static_cast<std::size_t>(after - parts_.begin()) - 1];
   }
 
  private:
-  std::vector<Part> parts_;
+  std::vector<DiagonalBlock> parts_;
   std::vector<int> numbers_;
 };
 
@@ -74,7 +74,7 @@ void PartMotions::find_used(std::size_t part, const Block& block) {
 
 template <class Real>
 void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_t> selected,
-                          const std::array<std::span<const Quad<Real>>, kMaxMotions>& motions,
+                          const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,
                           std::span<const Mat3> row_sums, std::span<const Products> products) {
   const SelectionIndex numbers(parts_of(system), selected);
   std::array<bool, kDirections> all;
@@ -160,10 +160,10 @@ std::vector<AlongMotions> PartMotions::solve(std::span<const AlongMotions> force
 }
 
 template void PartMotions::prepare<float>(const LinearSystem&, std::span<const std::size_t>,
-                                          const std::array<std::span<const Quad<float>>, kMaxMotions>&,
+                                          const std::array<std::span<const PaddedVec3<float>>, kMaxMotions>&,
                                           std::span<const Mat3>, std::span<const Products>);
 template void PartMotions::prepare<double>(const LinearSystem&, std::span<const std::size_t>,
-                                           const std::array<std::span<const Quad<double>>, kMaxMotions>&,
+                                           const std::array<std::span<const PaddedVec3<double>>, kMaxMotions>&,
                                            std::span<const Mat3>, std::span<const Products>);
 
 }  // namespace weft::solver

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "solver/linear_system.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 
 namespace weft::solver {
 
@@ -30,8 +30,8 @@ class PartMotions {
   /// block. `products`: per selected block.
   template <class Real>
   void prepare(const LinearSystem& system, std::span<const std::size_t> selected,
-               const std::array<std::span<const Quad<Real>>, kMaxMotions>& motions, std::span<const Mat3> row_sums,
-               std::span<const Products> products);
+               const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,
+               std::span<const Mat3> row_sums, std::span<const Products> products);
 
   /// Returns the coordinates that balance `forces`, both per selected block.
   std::vector<AlongMotions> solve(std::span<const AlongMotions> forces) const;

@@ -37,7 +37,7 @@ Mat3 Preconditioner<Real>::filtered(Index i, const Mat3& block, Index j) const {
 }
 
 template <class Real>
-void Preconditioner<Real>::prepare(const LinearSystem& system, Sums sums) {
+void Preconditioner<Real>::prepare(const LinearSystem& system, AggregateSums sums) {
   const bool same_constraints =
       std::equal(constraints_.begin(), constraints_.end(), system.constraints.begin(), system.constraints.end(),
                  [](const auto& a, const auto& b) { return a.particle == b.particle && a.free == b.free; });
@@ -45,7 +45,7 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, Sums sums) {
   const bool interpolated_before = std::exchange(interpolates_, !has_stiff_threads());
   const bool same_levels = system_before == &system && interpolated_before == interpolates_;
   const bool same = same_levels && same_constraints;
-  const std::vector<Part> before = std::exchange(parts_, parts_of(system));
+  const std::vector<DiagonalBlock> before = std::exchange(parts_, parts_of(system));
   if (!same_levels) allocate_levels();
   if (!same) {
     constraints_ = system.constraints;
@@ -54,9 +54,9 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, Sums sums) {
     for (std::size_t c = 0; c < constraints_.size(); ++c) {
       const Index particle = constraints_[c].particle;
       constraint_of_[at(particle)] = static_cast<Index>(c);
-      const auto part = std::ranges::find_if(parts_, [&](const Part& rows) { return particle < rows.end; });
+      const auto part = std::ranges::find_if(parts_, [&](const DiagonalBlock& rows) { return particle < rows.end; });
       filters_[at(static_cast<Index>(part - parts_.begin()))].push_back(
-          {particle, QuadBlock<Real>(constraints_[c].free)});
+          {particle, PaddedMat3<Real>(constraints_[c].free)});
     }
   }
   rows_changed_.resize(parts_.size());
@@ -64,7 +64,7 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, Sums sums) {
   summed_version_.resize(parts_.size());
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     rows_changed_[p] = !same || parts_[p].version != before[p].version;
-    sums_changed_[p] = !same || (sums == Sums::anew && parts_[p].version != summed_version_[p]);
+    sums_changed_[p] = !same || (sums == AggregateSums::recompute && parts_[p].version != summed_version_[p]);
     if (sums_changed_[p]) summed_version_[p] = parts_[p].version;
   }
   mark_touched_particles();
@@ -94,17 +94,18 @@ void Preconditioner<Real>::select(std::span<const std::size_t> parts) {
 
 template <class Real>
 bool Preconditioner<Real>::has_stiff_threads() const {
-  if (system_->metric.empty()) return false;
-  return std::ranges::any_of(parts_of(*system_), [&](const Part& part) {
+  if (system_->norm_weights.empty()) return false;
+  return std::ranges::any_of(parts_of(*system_), [&](const DiagonalBlock& part) {
     if (part.is_small) return false;
-    const double metric = parallel_sum(at(part.end - part.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t k = begin; k < end; ++k) sum += system_->metric[at(part.begin) + k];
-      return sum;
-    });
+    const double norm_weights =
+        parallel_sum(at(part.end - part.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
+          double sum = 0;
+          for (std::size_t k = begin; k < end; ++k) sum += system_->norm_weights[at(part.begin) + k];
+          return sum;
+        });
     const auto stiff = [&](std::size_t i) {
       const double* block = system_->matrix.values().data() + 9 * at(system_->matrix.diagonal(static_cast<Index>(i)));
-      return block[0] + block[4] + block[8] > numerics.linear.stiff_particle * metric;
+      return block[0] + block[4] + block[8] > numerics.linear.stiff_particle * norm_weights;
     };
     return parallel_sum(at(part.end - part.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
              int any = 0;
@@ -120,22 +121,22 @@ void Preconditioner<Real>::allocate_levels() {
   const std::size_t rows = at(system_->matrix.rows());
   inverse_.resize(rows);
   touched_.assign(rows, 0);
-  levels_.resize(system_->groupings.size());
+  levels_.resize(system_->aggregate_levels.size());
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    const Grouping& grouping = system_->groupings[l];
+    const Aggregates& grouping = system_->aggregate_levels[l];
     Level& level = levels_[l];
     level.aggregate_of = grouping.of;
     if (l > 0) {
       level.aggregate_of = levels_[l - 1].aggregate_of;
       for (Index& group : level.aggregate_of) group = grouping.of[at(group)];
     }
-    level.parent = l + 1 < levels_.size() ? system_->groupings[l + 1].of : std::vector<Index>();
+    level.parent = l + 1 < levels_.size() ? system_->aggregate_levels[l + 1].of : std::vector<Index>();
     level.of_matrix.assign(at(grouping.count), Mat3::Zero());
     level.touched.assign(at(grouping.count), 0);
     level.inverse.resize(at(grouping.count));
-    for (auto* vectors : {&level.residual, &level.correction}) vectors->assign(at(grouping.count), Quad<Real>{});
+    for (auto* vectors : {&level.residual, &level.correction}) vectors->assign(at(grouping.count), PaddedVec3<Real>{});
     level.of_part.clear();
-    for (const Part& part : parts_) {
+    for (const DiagonalBlock& part : parts_) {
       const auto [lowest, highest] =
           std::minmax_element(level.aggregate_of.begin() + part.begin, level.aggregate_of.begin() + part.end);
       level.of_part.push_back(part.begin == part.end ? RowRange{} : RowRange{at(*lowest), at(*highest) + 1});
@@ -143,9 +144,9 @@ void Preconditioner<Real>::allocate_levels() {
   }
   selected_.clear();
   if (levels_.empty()) return;
-  const Index size = 3 * system_->groupings.back().count;
+  const Index size = 3 * system_->aggregate_levels.back().count;
   coarse_matrix_without_terms_.setZero(size, size);
-  members_of_coarse_.assign(at(system_->groupings.back().count), {});
+  members_of_coarse_.assign(at(system_->aggregate_levels.back().count), {});
   for (std::size_t i = 0; i < rows; ++i)
     members_of_coarse_[at(levels_.back().aggregate_of[i])].push_back(static_cast<Index>(i));
   compute_weights();
@@ -160,13 +161,13 @@ void Preconditioner<Real>::compute_weights() {
   std::vector<std::vector<Index>> neighbours(inverse_.size());
   // Each particle of a small diagonal block is an aggregate of its own, and follows no other.
   std::vector<char> is_small(neighbours.size(), 0);
-  for (const Part& part : parts_)
+  for (const DiagonalBlock& part : parts_)
     if (part.is_small) std::fill(is_small.begin() + part.begin, is_small.begin() + part.end, 1);
   for (std::size_t i = 0; i < neighbours.size(); ++i)
     for (Index s = full.start[i]; s < full.start[i + 1]; ++s)
       if (full.columns[s] != static_cast<Index>(i) && is_small[i] == 0) neighbours[i].push_back(full.columns[s]);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    const Grouping& grouping = system_->groupings[l];
+    const Aggregates& grouping = system_->aggregate_levels[l];
     Weights<Real> weights = Weights<Real>::make_interpolation(grouping, smoothing, neighbours);
     coarse_weights_ = l == 0 ? weights : coarse_weights_.times(weights);
     levels_[l].restriction = weights.transposed(at(grouping.count));
@@ -221,7 +222,7 @@ void Preconditioner<Real>::invert_particles() {
       const Mat3 &free = constraints_[at(c)].free, held = Mat3::Identity() - free;
       inverse = free * (free * block * free + held).inverse() * free;
     }
-    inverse_[at(i)] = QuadBlock<Real>(inverse);
+    inverse_[at(i)] = PaddedMat3<Real>(inverse);
   };
   for (std::size_t p = 0; p < parts_.size(); ++p)
     parallel_for(at(parts_[p].end - parts_[p].begin), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
@@ -230,8 +231,8 @@ void Preconditioner<Real>::invert_particles() {
     });
 }
 
-// Sums the blocks of one diagonal block of the matrix, without its mass-weighted norm: each 3×3 block into the finest
-// aggregate that contains both its row and its column, from there into coarser ones.
+// AggregateSums the blocks of one diagonal block of the matrix, without its mass-weighted norm: each 3×3 block into the
+// finest aggregate that contains both its row and its column, from there into coarser ones.
 template <class Real>
 void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
   const std::size_t depth = levels_.size();
@@ -258,7 +259,7 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
     std::array<double, kMaxLevels> own_scalars{};
     std::fill_n(own.begin(), depth, Mat3::Zero());
     std::fill_n(own_scalars.begin(), depth, 0.0);
-    if (!system_->metric.empty()) own[0] -= filtered(i, system_->metric[i] * Mat3::Identity(), i);
+    if (!system_->norm_weights.empty()) own[0] -= filtered(i, system_->norm_weights[i] * Mat3::Identity(), i);
     for (Index s = full.start[i]; s < full.start[i + 1]; ++s) {
       const Index j = full.columns[s];
       const Eigen::Map<const Mat3> block(matrix.values().data() + 9 * at(s));
@@ -299,7 +300,7 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
 template <class Real>
 void Preconditioner<Real>::scale_sums(std::size_t part) {
   const auto unscaled_block_of = [&](Index i) -> Mat3 {
-    Mat3 unscaled = (system_->metric.empty() ? 0 : system_->metric[i]) * Mat3::Identity();
+    Mat3 unscaled = (system_->norm_weights.empty() ? 0 : system_->norm_weights[i]) * Mat3::Identity();
     if (is_free(i)) return unscaled;
     const Mat3 free = constraints_[at(constraint_of_[i])].free, held = Mat3::Identity() - free;
     return free * unscaled * free + held * own_block(i) * held;
@@ -314,7 +315,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
         l == 0 ? RowRange{at(parts_[part].begin), at(parts_[part].end)} : levels_[l - 1].of_part[part];
     std::vector<Mat3> sums(groups.end - groups.begin, Mat3::Zero());
     for (std::size_t m = members.begin; m < members.end; ++m)
-      sums[at(system_->groupings[l].of[m]) - groups.begin] +=
+      sums[at(system_->aggregate_levels[l].of[m]) - groups.begin] +=
           l == 0 ? unscaled_block_of(static_cast<Index>(m)) : unscaled[m - members.begin];
     for (std::size_t g = groups.begin; g < groups.end; ++g)
       level.of_matrix[g] = stiffness_fraction * level.of_matrix[g] + sums[g - groups.begin];
@@ -386,7 +387,7 @@ void Preconditioner<Real>::invert_aggregates() {
       for (std::size_t g = begin; g < end; ++g) {
         if (!needs_inverse[g]) continue;
         const Mat3 block = level.of_matrix[g] + numerics.linear.contact_weight * of_groups[g];
-        level.inverse[g] = QuadBlock<Real>((block + singular_shift(block)).inverse());
+        level.inverse[g] = PaddedMat3<Real>((block + singular_shift(block)).inverse());
       }
     });
     of_members = std::move(of_groups);
@@ -436,10 +437,11 @@ void Preconditioner<Real>::factorise_coarsest() {
 
 // From particles to finer, then to coarser aggregates.
 template <class Real>
-void Preconditioner<Real>::restrict_residual(std::span<const Quad<Real>> r) {
+void Preconditioner<Real>::restrict_residual(std::span<const PaddedVec3<Real>> r) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
-    const std::span<const Quad<Real>> members = l == 0 ? r : std::span<const Quad<Real>>(levels_[l - 1].residual);
+    const std::span<const PaddedVec3<Real>> members =
+        l == 0 ? r : std::span<const PaddedVec3<Real>>(levels_[l - 1].residual);
     level.chunks.for_each([&](std::size_t begin, std::size_t end) {
       for (std::size_t g = begin; g < end; ++g) level.residual[g] = level.restriction.sum(g, members);
     });
@@ -458,7 +460,7 @@ void Preconditioner<Real>::correct_aggregates() {
   coarse_factor_.template triangularView<Eigen::Lower>().adjoint().solveInPlace(coarse_vector_);
   for (std::size_t g = 0; g < coarsest.correction.size(); ++g) {
     const Real* of_patch = coarse_vector_.data() + 3 * g;
-    coarsest.correction[g] = quad_of(of_patch[0], of_patch[1], of_patch[2]);
+    coarsest.correction[g] = padded(of_patch[0], of_patch[1], of_patch[2]);
   }
   for (std::size_t l = levels_.size() - 1; l-- > 0;) {
     Level& level = levels_[l];
@@ -471,7 +473,7 @@ void Preconditioner<Real>::correct_aggregates() {
 }
 
 template <class Real>
-void Preconditioner<Real>::apply(std::span<const Quad<Real>> r, std::span<Quad<Real>> z,
+void Preconditioner<Real>::apply(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z,
                                  std::span<const std::size_t> parts) {
   select(parts);
   if (!levels_.empty()) {

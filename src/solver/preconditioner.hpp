@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "solver/linear_system.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 #include "solver/weights.hpp"
 
 namespace weft::solver {
 
 /// Whether sums over aggregates are made from the current matrix, or kept from an earlier matrix with the same
 /// constraints. Particle blocks and terms are always current.
-enum class Sums { anew, kept };
+enum class AggregateSums { recompute, reuse };
 
 /// P⁻¹ = S Σ_l P_l A_l⁻¹ P_lᵀ S, where S is the projection on the free directions. P_0 is the identity, and A_0 the
 /// diagonal of 3×3 blocks of S A S + (I − S) (prefiltered, Tamstorf, Jones & McCormick, "Smoothed Aggregation Multigrid
@@ -38,25 +38,25 @@ template <class Real>
 class Preconditioner {
  public:
   /// Reads `system`, which must outlive the following calls. Keeps what has not changed since the last call.
-  void prepare(const LinearSystem& system, Sums sums = Sums::anew);
+  void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
   /// z = P⁻¹ r on the rows of these diagonal blocks, as if r were zero on all others. r must obey the constraints; z
   /// then does too.
-  void apply(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, std::span<const std::size_t> parts);
+  void apply(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z, std::span<const std::size_t> parts);
 
  private:
   /// One level of aggregates.
   struct Level {
-    std::vector<Index> aggregate_of;       // per particle
-    std::vector<Index> parent;             // per aggregate: its aggregate on the next level
-    Weights<Real> interpolation;           // per member (a particle, or an aggregate of the finer level)
-    Weights<Real> restriction;             // per aggregate
-    std::vector<RowRange> of_part;         // aggregates of each diagonal block
-    RowChunks chunks;                      // of aggregates, in the selected blocks
-    std::vector<Mat3> of_matrix;           // per aggregate, without terms
-    std::vector<char> touched;             // per aggregate: terms acted on it when `inverse` was made
-    std::vector<QuadBlock<Real>> inverse;  // per aggregate, with terms
-    std::vector<Quad<Real>> residual, correction;
+    std::vector<Index> aggregate_of;        // per particle
+    std::vector<Index> parent;              // per aggregate: its aggregate on the next level
+    Weights<Real> interpolation;            // per member (a particle, or an aggregate of the finer level)
+    Weights<Real> restriction;              // per aggregate
+    std::vector<RowRange> of_part;          // aggregates of each diagonal block
+    RowChunks chunks;                       // of aggregates, in the selected blocks
+    std::vector<Mat3> of_matrix;            // per aggregate, without terms
+    std::vector<char> touched;              // per aggregate: terms acted on it when `inverse` was made
+    std::vector<PaddedMat3<Real>> inverse;  // per aggregate, with terms
+    std::vector<PaddedVec3<Real>> residual, correction;
   };
   bool has_stiff_threads() const;
   void allocate_levels();
@@ -78,7 +78,7 @@ class Preconditioner {
   void invert_aggregates();
   void factorise_coarsest();
   void select(std::span<const std::size_t> parts);
-  void restrict_residual(std::span<const Quad<Real>> r);
+  void restrict_residual(std::span<const PaddedVec3<Real>> r);
   void correct_aggregates();
   bool is_free(Index i) const { return constraint_of_[i] < 0; }
   Mat3 own_block(Index i) const { return system_->matrix.block(system_->matrix.diagonal(i)); }
@@ -86,18 +86,18 @@ class Preconditioner {
 
   const LinearSystem* system_ = nullptr;
   bool interpolates_ = true;                       // levels interpolate
-  std::vector<Part> parts_;                        // when the sums were made
+  std::vector<DiagonalBlock> parts_;               // when the sums were made
   std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
   std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: its rows, its sums over aggregates
   std::vector<ParticleConstraint> constraints_;    // when the sums were made
   std::vector<Index> constraint_of_;               // per particle, −1 for none
   struct Filter {
     Index particle;
-    QuadBlock<Real> free;
+    PaddedMat3<Real> free;
   };
   std::vector<std::vector<Filter>> filters_;    // per diagonal block
   std::vector<char> touched_, touched_before_;  // per particle: terms act on it
-  std::vector<QuadBlock<Real>> inverse_;        // per particle, filtered: S P⁻¹ S
+  std::vector<PaddedMat3<Real>> inverse_;       // per particle, filtered: S P⁻¹ S
   std::vector<Level> levels_;                   // the last one is the coarsest
   Weights<Real> coarse_weights_;                // per particle, from the coarsest aggregates
   // Per block of the matrix: first level that has row and column in one aggregate, or the number of levels.

@@ -24,13 +24,13 @@ BlockMatrix::Pattern without_diagonal(const BlockMatrix::Pattern& pattern) {
 
 using Octet = float __attribute__((vector_size(32)));
 
-Octet to_octet(const Quad<double>& low, const Quad<double>& high) {
-  return __builtin_shufflevector(__builtin_convertvector(low, Quad<float>), __builtin_convertvector(high, Quad<float>),
-                                 0, 1, 2, 3, 4, 5, 6, 7);
+Octet to_octet(const PaddedVec3<double>& low, const PaddedVec3<double>& high) {
+  return __builtin_shufflevector(__builtin_convertvector(low, PaddedVec3<float>),
+                                 __builtin_convertvector(high, PaddedVec3<float>), 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
 // Factors of the first eight entries of a block, column by column.
-Octet repeat_per_column(const Quad<float>& v) {
+Octet repeat_per_column(const PaddedVec3<float>& v) {
   return __builtin_shufflevector(v, v, 0, 0, 0, 1, 1, 1, 2, 2);
 }
 
@@ -51,10 +51,10 @@ void DifferenceMatrix::copy_rows(const BlockMatrix& matrix, std::size_t begin, s
   for (std::size_t row = begin; row < end; ++row) {
     const double* from = matrix.values().data() + 9 * static_cast<std::size_t>(full.start[row]);
     auto to = static_cast<std::size_t>(full_.start[row]);
-    Quad<double> low{}, high{};
+    PaddedVec3<double> low{}, high{};
     double last = 0, scalars = 0;
     for (Index s = full.start[row]; s < full.start[row + 1]; ++s, from += 9) {
-      const Quad<double> low_of_block = load_quad(from), high_of_block = load_quad(from + 4);
+      const PaddedVec3<double> low_of_block = load_padded(from), high_of_block = load_padded(from + 4);
       low += low_of_block;
       high += high_of_block;
       last += from[8];
@@ -67,29 +67,30 @@ void DifferenceMatrix::copy_rows(const BlockMatrix& matrix, std::size_t begin, s
       scalars += matrix.scalars()[s];
       scalars_[s] = static_cast<float>(matrix.scalars()[s]);
     }
-    octets_of_sum_[row] = to_octet(low + Quad<double>{scalars, 0, 0, 0}, high + Quad<double>{scalars, 0, 0, 0});
+    octets_of_sum_[row] =
+        to_octet(low + PaddedVec3<double>{scalars, 0, 0, 0}, high + PaddedVec3<double>{scalars, 0, 0, 0});
     ninths_of_sum_[row] = static_cast<float>(last + scalars);
   }
 }
 
-void DifferenceMatrix::multiply(std::span<const Quad<float>> x, std::span<Quad<float>> y, std::size_t begin,
+void DifferenceMatrix::multiply(std::span<const PaddedVec3<float>> x, std::span<PaddedVec3<float>> y, std::size_t begin,
                                 std::size_t end) const {
   for (std::size_t row = begin; row < end; ++row) {
-    const Quad<float> own = x[row];
+    const PaddedVec3<float> own = x[row];
     // Products with all columns side by side; in `ninth` only lane 2 counts.
     Octet sum = octets_of_sum_[row] * repeat_per_column(own);
-    Quad<float> ninth = ninths_of_sum_[row] * own, isotropic{};
+    PaddedVec3<float> ninth = ninths_of_sum_[row] * own, isotropic{};
     for (Index s = full_.start[row]; s < full_.start[row + 1]; ++s) {
-      const Quad<float> difference = x[full_.columns[s]] - own;
+      const PaddedVec3<float> difference = x[full_.columns[s]] - own;
       sum += octets_[s] * repeat_per_column(difference);
       ninth += ninths_[s] * difference;
     }
     for (Index s = isotropic_.start[row]; s < isotropic_.start[row + 1]; ++s)
       isotropic += scalars_[s] * (x[isotropic_.columns[s]] - own);
-    const Quad<float> of_first = __builtin_shufflevector(sum, sum, 0, 1, 2, 3),
-                      of_second = __builtin_shufflevector(sum, sum, 3, 4, 5, 6),
-                      of_third = __builtin_shufflevector(sum, sum, 6, 7, 6, 7);
-    const Quad<float> third = __builtin_shufflevector(of_third, ninth, 0, 1, 6, 7);
+    const PaddedVec3<float> of_first = __builtin_shufflevector(sum, sum, 0, 1, 2, 3),
+                            of_second = __builtin_shufflevector(sum, sum, 3, 4, 5, 6),
+                            of_third = __builtin_shufflevector(sum, sum, 6, 7, 6, 7);
+    const PaddedVec3<float> third = __builtin_shufflevector(of_third, ninth, 0, 1, 6, 7);
     y[row] = clear_last_lane((of_first + of_second) + (third + isotropic));
   }
 }
@@ -110,8 +111,8 @@ void Product<Real>::prepare(const LinearSystem& system) {
 
 template <class Real>
 void Product<Real>::read_matrix(bool is_new_system) {
-  const std::vector<Part> before = std::exchange(parts_, parts_of(*system_));
-  metric_.assign(system_->metric.begin(), system_->metric.end());
+  const std::vector<DiagonalBlock> before = std::exchange(parts_, parts_of(*system_));
+  metric_.assign(system_->norm_weights.begin(), system_->norm_weights.end());
   if constexpr (std::is_same_v<Real, float>) {
     if (is_new_system) matrix_.copy_pattern(system_->matrix);
     for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -129,7 +130,7 @@ void Product<Real>::add_stencil(const Term& term, const IsInside& is_inside, std
   bool acts = false;
   for (std::size_t k = 0; k < N && !acts; ++k) acts = term.weights[k] != 0 && is_inside(term.particles[k]);
   if (!acts) return;
-  Stencil<N>& stencil = stencils.emplace_back(Stencil<N>{term.particles, {}, QuadBlock<Real>(term.stiffness)});
+  Stencil<N>& stencil = stencils.emplace_back(Stencil<N>{term.particles, {}, PaddedMat3<Real>(term.stiffness)});
   for (std::size_t k = 0; k < N; ++k) stencil.weights[k] = static_cast<Real>(term.weights[k]);
 }
 
@@ -148,17 +149,17 @@ void Product<Real>::select(std::span<const std::size_t> parts) {
   for (const WideTerm& term : system_->wide_terms) add_stencil(term, is_inside, wide_stencils_);
   terms_.clear();
   for (const DiagonalTerm& term : system_->diagonal_terms)
-    if (is_inside(term.particle)) terms_.push_back({term.particle, QuadBlock<Real>(term.stiffness)});
+    if (is_inside(term.particle)) terms_.push_back({term.particle, PaddedMat3<Real>(term.stiffness)});
   filters_.clear();
   for (const ParticleConstraint& c : system_->constraints)
-    if (is_inside(c.particle)) filters_.push_back({c.particle, QuadBlock<Real>(c.free)});
+    if (is_inside(c.particle)) filters_.push_back({c.particle, PaddedMat3<Real>(c.free)});
 }
 
 template <class Real>
-double Product<Real>::multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q,
+double Product<Real>::multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q,
                                std::span<double> norms_sq) const {
   const auto sums = rows_.sums([&](std::size_t begin, std::size_t end) {
-    Quad<double> of_product{}, of_metric{};
+    PaddedVec3<double> of_product{}, of_metric{};
     for (std::size_t from = begin; from < end; from += kFineGrainSize) {
       const std::size_t to = std::min(from + kFineGrainSize, end);
       if constexpr (std::is_same_v<Real, float>)
@@ -169,7 +170,7 @@ double Product<Real>::multiply(std::span<const Quad<Real>> p, std::span<Quad<Rea
       if (!metric_.empty())
         for (std::size_t i = from; i < to; ++i) of_metric += products(metric_[i] * p[i], p[i]);
     }
-    return Quad<double>{sum_of_first_three(of_product), sum_of_first_three(of_metric), 0, 0};
+    return PaddedVec3<double>{sum_of_first_three(of_product), sum_of_first_three(of_metric), 0, 0};
   });
   double curvature = 0;
   for (std::size_t part = 0; part < selected_.size(); ++part) {
@@ -177,7 +178,7 @@ double Product<Real>::multiply(std::span<const Quad<Real>> p, std::span<Quad<Rea
     norms_sq[part] = sums[part][1];
   }
   for (const ParticleBlock& term : terms_) {
-    const Quad<Real> force = term.block * p[term.particle];
+    const PaddedVec3<Real> force = term.block * p[term.particle];
     q[term.particle] += force;
     curvature += sum_of_first_three(products(p[term.particle], force));
   }
@@ -215,7 +216,7 @@ std::vector<Mat3> Product<Real>::row_sums() const {
 }
 
 template <class Real>
-void Product<Real>::filter(std::span<Quad<Real>> b) const {
+void Product<Real>::filter(std::span<PaddedVec3<Real>> b) const {
   for (const ParticleBlock& c : filters_) b[c.particle] = c.block * b[c.particle];
 }
 

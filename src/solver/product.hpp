@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/linear_system.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 
 namespace weft::solver {
 
@@ -17,7 +17,8 @@ class DifferenceMatrix {
   void copy_pattern(const BlockMatrix& matrix);
   /// Copies the rows [begin, end).
   void copy_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end);
-  void multiply(std::span<const Quad<float>> x, std::span<Quad<float>> y, std::size_t begin, std::size_t end) const;
+  void multiply(std::span<const PaddedVec3<float>> x, std::span<PaddedVec3<float>> y, std::size_t begin,
+                std::size_t end) const;
   /// D_i
   Mat3 sum_of_row(std::size_t row) const;
 
@@ -42,35 +43,35 @@ class Product {
   /// Restricts the following products to vectors that are zero outside of these diagonal blocks.
   void select(std::span<const std::size_t> parts);
 
-  /// q = S A p on the rows of the selected blocks; returns p·q, and writes Σ metric ‖p‖² of each selected block, in
-  /// their order, into `norms_sq`. p must obey the constraints.
-  double multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q, std::span<double> norms_sq) const;
+  /// q = S A p on the rows of the selected blocks; returns p·q, and writes Σ norm_weights ‖p‖² of each selected block,
+  /// in their order, into `norms_sq`. p must obey the constraints.
+  double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q, std::span<double> norms_sq) const;
 
   /// Sum of all 3×3 blocks of the matrix, without terms and constraints, per selected block.
   std::vector<Mat3> row_sums() const;
 
   /// S b in place, on the rows of the selected blocks.
-  void filter(std::span<Quad<Real>> b) const;
+  void filter(std::span<PaddedVec3<Real>> b) const;
 
  private:
   template <std::size_t N>
   struct Stencil {
     std::array<Index, N> particles;
     std::array<Real, N> weights;
-    QuadBlock<Real> stiffness;
+    PaddedMat3<Real> stiffness;
 
     /// Adds the term's product with p to q; returns the increase of p·q.
-    double add_product(std::span<const Quad<Real>> p, std::span<Quad<Real>> q) const {
-      Quad<Real> combined = weights[0] * p[particles[0]];
+    double add_product(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q) const {
+      PaddedVec3<Real> combined = weights[0] * p[particles[0]];
       for (std::size_t k = 1; k < N; ++k) combined += weights[k] * p[particles[k]];
-      const Quad<Real> force = stiffness * combined;
+      const PaddedVec3<Real> force = stiffness * combined;
       for (std::size_t k = 0; k < N; ++k) q[particles[k]] += weights[k] * force;
       return sum_of_first_three(products(combined, force));
     }
   };
   struct ParticleBlock {
     Index particle;
-    QuadBlock<Real> block;
+    PaddedMat3<Real> block;
   };
   void read_matrix(bool anew);
   template <class Term, std::size_t N, class IsInside>
@@ -78,8 +79,8 @@ class Product {
   Mat3 sum_of_row(std::size_t row) const;
 
   const LinearSystem* system_ = nullptr;
-  std::vector<Part> parts_;  // when the matrix was read
-  DifferenceMatrix matrix_;  // used in single precision only
+  std::vector<DiagonalBlock> parts_;  // when the matrix was read
+  DifferenceMatrix matrix_;           // used in single precision only
   std::vector<Real> metric_;
   std::vector<std::size_t> selected_;
   RowChunks rows_;  // of the selected blocks

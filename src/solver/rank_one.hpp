@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/linear_system.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 
 namespace weft::solver {
 
@@ -16,7 +16,7 @@ namespace weft::solver {
 template <class Real>
 class RankOneTerms {
  public:
-  using Apply = std::function<void(std::span<const Quad<Real>> r, std::span<Quad<Real>> z)>;
+  using Apply = std::function<void(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z)>;
 
   /// Reads `system`, which must outlive the following calls.
   void prepare(const LinearSystem& system);
@@ -27,10 +27,10 @@ class RankOneTerms {
   void use(const Apply& apply);
 
   /// Adds k d dᵀ p of each selected term to q, filtered; returns their part of p·q.
-  double multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q) const;
+  double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q) const;
 
   /// Corrects z = P⁻¹ r to the preconditioner of the whole matrix.
-  void correct(std::span<Quad<Real>> z) const;
+  void correct(std::span<PaddedVec3<Real>> z) const;
 
   bool empty() const { return terms_.empty(); }
 
@@ -38,13 +38,13 @@ class RankOneTerms {
   struct Term {
     std::size_t begin = 0, part = 0;
     double stiffness = 0;
-    std::vector<Quad<Real>> direction;  // filtered by the constraints
-    std::vector<Quad<Real>> inverse;    // w, on all rows
-    double factor = 0;                  // k / (1 + k d·w)
+    std::vector<PaddedVec3<Real>> direction;  // filtered by the constraints
+    std::vector<PaddedVec3<Real>> inverse;    // w, on all rows
+    double factor = 0;                        // k / (1 + k d·w)
     bool is_selected = false;
   };
-  static double dot(const Term& term, std::span<const Quad<Real>> v);
-  void correct(std::span<Quad<Real>> z, std::size_t terms) const;
+  static double dot(const Term& term, std::span<const PaddedVec3<Real>> v);
+  void correct(std::span<PaddedVec3<Real>> z, std::size_t terms) const;
 
   std::size_t rows_ = 0;
   std::vector<Term> terms_;

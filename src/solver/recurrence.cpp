@@ -24,9 +24,9 @@ double absolute_goal(const LinearGoal& goal, std::size_t part) {
 }
 
 template <class Real>
-void convert_to_quads(std::span<const Vec3> from, std::span<Quad<Real>> to) {
+void convert_to_quads(std::span<const Vec3> from, std::span<PaddedVec3<Real>> to) {
   parallel_for(from.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) to[i] = quad_of<Real>(from[i]);
+    for (std::size_t i = begin; i < end; ++i) to[i] = padded<Real>(from[i]);
   });
 }
 
@@ -71,11 +71,11 @@ double Progress::largest_error_ratio(const LinearGoal& goal, std::span<const std
 constexpr double kRoundedEnergy = 1e-11;
 
 template <class Real>
-void Recurrence<Real>::prepare(const LinearSystem& system, Sums sums) {
+void Recurrence<Real>::prepare(const LinearSystem& system, AggregateSums sums) {
   system_ = &system;
   const auto rows = static_cast<std::size_t>(system.matrix.rows());
   for (auto* vector : {&x_, &r_, &z_, &p_, &q_})
-    if (vector->size() != rows) vector->assign(rows, Quad<Real>{});
+    if (vector->size() != rows) vector->assign(rows, PaddedVec3<Real>{});
   parts_ = parts_of(system);
   all_parts_.resize(parts_.size());
   std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
@@ -86,7 +86,7 @@ void Recurrence<Real>::prepare(const LinearSystem& system, Sums sums) {
 }
 
 template <class Real>
-std::span<const Quad<Real>> Recurrence<Real>::precondition(std::span<const Vec3> b) {
+std::span<const PaddedVec3<Real>> Recurrence<Real>::precondition(std::span<const Vec3> b) {
   convert_to_quads<Real>(b, q_);
   if (!rank_one_.empty()) {
     selected_ = all_parts_;
@@ -106,7 +106,7 @@ bool Recurrence<Real>::make_factor() {
 }
 
 template <class Real>
-void Recurrence<Real>::apply_levels_and_factor(std::span<const Quad<Real>> r, std::span<Quad<Real>> z,
+void Recurrence<Real>::apply_levels_and_factor(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z,
                                                bool uses_factor) {
   preconditioner_.apply(r, z, selected_);
   if constexpr (std::is_same_v<Real, double>) {
@@ -122,16 +122,18 @@ void Recurrence<Real>::apply_levels_and_factor(std::span<const Quad<Real>> r, st
 // Prepares the outer products for the preconditioner of the selected blocks, with or without the factor.
 template <class Real>
 void Recurrence<Real>::precondition_rank_one(bool uses_factor) {
-  rank_one_.use(
-      [&](std::span<const Quad<Real>> r, std::span<Quad<Real>> z) { apply_levels_and_factor(r, z, uses_factor); });
+  rank_one_.use([&](std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z) {
+    apply_levels_and_factor(r, z, uses_factor);
+  });
 }
 
 // a·b of each selected block
 template <class Real>
-std::vector<double> Recurrence<Real>::dots(std::span<const Quad<Real>> a, std::span<const Quad<Real>> b) const {
+std::vector<double> Recurrence<Real>::dots(std::span<const PaddedVec3<Real>> a,
+                                           std::span<const PaddedVec3<Real>> b) const {
   std::vector<double> result;
-  for (const Quad<double>&of_part : rows_.sums([&](std::size_t first, std::size_t end) {
-         Quad<double> of_chunk{};
+  for (const PaddedVec3<double>&of_part : rows_.sums([&](std::size_t first, std::size_t end) {
+         PaddedVec3<double> of_chunk{};
          for (std::size_t i = first; i < end; ++i) of_chunk += products(a[i], b[i]);
          return of_chunk;
        }))
@@ -141,7 +143,7 @@ std::vector<double> Recurrence<Real>::dots(std::span<const Quad<Real>> a, std::s
 
 // z = P⁻¹ r, with or without the factor; returns r·z.
 template <class Real>
-double Recurrence<Real>::apply_preconditioner(std::span<Quad<Real>> z, bool uses_factor) {
+double Recurrence<Real>::apply_preconditioner(std::span<PaddedVec3<Real>> z, bool uses_factor) {
   apply_levels_and_factor(r_, z, uses_factor);
   rank_one_.correct(z);
   rz_ = dots(r_, z);
@@ -157,7 +159,7 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
   rank_one_.select(selected_);
   norms_sq_.resize(selected_.size());
   rz_.resize(selected_.size());
-  for (auto* vector : {&x_, &p_, &q_}) std::fill(vector->begin(), vector->end(), Quad<Real>{});
+  for (auto* vector : {&x_, &p_, &q_}) std::fill(vector->begin(), vector->end(), PaddedVec3<Real>{});
   convert_to_quads<Real>(b, r_);
   product_.filter(r_);
   if (progress.iterations > 0) {
@@ -178,7 +180,7 @@ void Recurrence<Real>::step_along_start(std::span<const Vec3> start) {
   for (const ParticleConstraint& c : system_->constraints)
     start_[static_cast<std::size_t>(c.particle)] = c.free * start_[static_cast<std::size_t>(c.particle)];
   rows_.for_each([&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) p_[i] = quad_of<Real>(start_[i]);
+    for (std::size_t i = first; i < end; ++i) p_[i] = padded<Real>(start_[i]);
   });
   const double curvature = multiply();
   if (!(curvature > 0)) return;
@@ -205,7 +207,7 @@ void Recurrence<Real>::advance(double alpha, Progress& progress) {
   for (std::size_t k = 0; k < selected_.size(); ++k) {
     Progress::OfPart& part = progress.parts[selected_[k]];
     const double gain = alpha * rz_[k];
-    const bool has_norm = !system_->metric.empty() && gain > 0;
+    const bool has_norm = !system_->norm_weights.empty() && gain > 0;
     part.gains.push_back(gain);
     part.norm_ratios.push_back(has_norm ? std::min(1.0, alpha * alpha * norms_sq_[k] / gain) : 1);
     part.energy += gain;
@@ -255,12 +257,12 @@ End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progre
 
 // Forces v along the directions of each selected block. The motions are p_ and, if there is a second one, z_.
 template <class Real>
-std::vector<AlongMotions> Recurrence<Real>::along_motions(std::span<const Quad<Real>> v, bool has_second) const {
+std::vector<AlongMotions> Recurrence<Real>::along_motions(std::span<const PaddedVec3<Real>> v, bool has_second) const {
   const std::vector<double> first = dots(p_, v),
                             second = has_second ? dots(z_, v) : std::vector<double>(selected_.size(), 0);
   const auto sums = rows_.sums([&](std::size_t begin, std::size_t end) {
-    Quad<double> of_chunk{};
-    for (std::size_t i = begin; i < end; ++i) of_chunk += __builtin_convertvector(v[i], Quad<double>);
+    PaddedVec3<double> of_chunk{};
+    for (std::size_t i = begin; i < end; ++i) of_chunk += __builtin_convertvector(v[i], PaddedVec3<double>);
     return of_chunk;
   });
   std::vector<AlongMotions> result(selected_.size());
@@ -275,9 +277,9 @@ template <class Real>
 void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) {
   const bool has_second = !directions.drift.empty();
   rows_.for_each([&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) p_[i] = quad_of<Real>(Vec3(directions.motion[i] + x[i]));
+    for (std::size_t i = first; i < end; ++i) p_[i] = padded<Real>(Vec3(directions.motion[i] + x[i]));
     if (!has_second) return;
-    for (std::size_t i = first; i < end; ++i) z_[i] = quad_of<Real>(directions.drift[i]);
+    for (std::size_t i = first; i < end; ++i) z_[i] = padded<Real>(directions.drift[i]);
   });
   product_.filter(p_);
   std::vector<PartMotions::Products> products(selected_.size(), PartMotions::Products::Zero());
@@ -294,12 +296,12 @@ void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) 
     std::swap(p_, z_);
     store_products(1);
   }
-  part_motions_.prepare<Real>(*system_, selected_, {p_, has_second ? z_ : std::span<const Quad<Real>>()},
+  part_motions_.prepare<Real>(*system_, selected_, {p_, has_second ? z_ : std::span<const PaddedVec3<Real>>()},
                               product_.row_sums(), products);
   const std::vector<AlongMotions> change = part_motions_.solve(along_motions(r_, has_second));
   for (std::size_t k = 0; k < selected_.size(); ++k) {
     const auto first = static_cast<std::size_t>(parts_[selected_[k]].begin);
-    const Quad<Real> shift = quad_of<Real>(Vec3(change[k].template head<3>()));
+    const PaddedVec3<Real> shift = padded<Real>(Vec3(change[k].template head<3>()));
     const Real of_motion = static_cast<Real>(change[k][3]), of_drift = static_cast<Real>(change[k][4]);
     parallel_for(static_cast<std::size_t>(parts_[selected_[k]].end) - first, kGrainSize,
                  [&](std::size_t begin, std::size_t end) {

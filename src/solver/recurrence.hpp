@@ -72,17 +72,17 @@ template <class Real>
 class Recurrence {
  public:
   /// Reads `system`, which must outlive the following calls.
-  void prepare(const LinearSystem& system, Sums sums);
+  void prepare(const LinearSystem& system, AggregateSums sums);
 
   /// P⁻¹ b. Valid until the next call.
-  std::span<const Quad<Real>> precondition(std::span<const Vec3> b);
+  std::span<const PaddedVec3<Real>> precondition(std::span<const Vec3> b);
 
   /// Adds the solution of A x = b on these diagonal blocks to x; all others are held.
   End solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
             const Directions& directions, std::span<const std::size_t> parts, Progress& progress);
 
   /// b − A x of the last solve, on the rows that it solved for.
-  std::span<const Quad<Real>> residual() const { return r_; }
+  std::span<const PaddedVec3<Real>> residual() const { return r_; }
 
  private:
   void begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start, Progress& progress);
@@ -92,17 +92,17 @@ class Recurrence {
     const double curvature = product_.multiply(p_, q_, norms_sq_);
     return curvature + rank_one_.multiply(p_, q_);
   }
-  void apply_levels_and_factor(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, bool uses_factor);
+  void apply_levels_and_factor(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z, bool uses_factor);
   void precondition_rank_one(bool uses_factor);
   void advance(double alpha, Progress& progress);
-  double apply_preconditioner(std::span<Quad<Real>> z, bool uses_factor);
+  double apply_preconditioner(std::span<PaddedVec3<Real>> z, bool uses_factor);
   bool make_factor();
   void balance(const Directions& directions, std::span<Vec3> x);
-  std::vector<double> dots(std::span<const Quad<Real>> a, std::span<const Quad<Real>> b) const;
-  std::vector<AlongMotions> along_motions(std::span<const Quad<Real>> v, bool has_second) const;
+  std::vector<double> dots(std::span<const PaddedVec3<Real>> a, std::span<const PaddedVec3<Real>> b) const;
+  std::vector<AlongMotions> along_motions(std::span<const PaddedVec3<Real>> v, bool has_second) const;
 
   const LinearSystem* system_ = nullptr;
-  std::vector<Part> parts_;
+  std::vector<DiagonalBlock> parts_;
   std::vector<std::size_t> all_parts_, selected_;
   RowChunks rows_;  // of the selected blocks
   Product<Real> product_;
@@ -111,12 +111,12 @@ class Recurrence {
   PartMotions part_motions_;
   IncompleteCholesky factor_;                                                   // in double only
   enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // for the prepared system
-  std::vector<Part> factor_parts_;                                              // scratch
-  std::vector<Quad<Real>> x_, r_, z_, p_, q_;
+  std::vector<DiagonalBlock> factor_parts_;                                     // scratch
+  std::vector<PaddedVec3<Real>> x_, r_, z_, p_, q_;
   std::vector<Vec3> start_;            // filtered by the constraints
   double start_multiple_ = 0;          // multiple of start_ in the solution, beside x_
   double start_gain_ = 0;              // decrease of ‖e‖²_A by it
-  std::vector<double> norms_sq_, rz_;  // per selected block: Σ metric ‖p‖², r·z
+  std::vector<double> norms_sq_, rz_;  // per selected block: Σ norm_weights ‖p‖², r·z
 };
 
 extern template class Recurrence<float>;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 
 namespace weft::solver {
 
@@ -40,8 +40,8 @@ class RowChunks {
 
   /// Σ body(begin, end) of each range, in the order of its chunks.
   template <class Body>
-  std::vector<Quad<double>> sums(const Body& body) const {
-    std::vector<Quad<double>> of_chunks(chunks_.size()), of_ranges(ranges_);
+  std::vector<PaddedVec3<double>> sums(const Body& body) const {
+    std::vector<PaddedVec3<double>> of_chunks(chunks_.size()), of_ranges(ranges_);
     for_each_chunk([&](std::size_t c) { of_chunks[c] = body(chunks_[c].begin, chunks_[c].end); });
     for (std::size_t c = 0; c < chunks_.size(); ++c) of_ranges[chunks_[c].range] += of_chunks[c];
     return of_ranges;

@@ -46,7 +46,7 @@ Weights<Real> Weights<Real>::times(const Weights& next) const {
 }
 
 template <class Real>
-Weights<Real> Weights<Real>::make_interpolation(const Grouping& grouping, double smoothing,
+Weights<Real> Weights<Real>::make_interpolation(const Aggregates& grouping, double smoothing,
                                                 std::vector<std::vector<Index>>& neighbours) {
   std::vector<std::vector<Index>> next(static_cast<std::size_t>(grouping.count));
   Weights weights;

@@ -6,7 +6,7 @@
 
 #include "core/types.hpp"
 #include "solver/linear_system.hpp"
-#include "solver/quads.hpp"
+#include "solver/padded_vec3.hpp"
 
 namespace weft::solver {
 
@@ -17,15 +17,15 @@ struct Weights {
   std::vector<Index> columns;
   std::vector<Real> values;
 
-  Quad<Real> sum(std::size_t row, std::span<const Quad<Real>> of) const {
-    Quad<Real> result{};
+  PaddedVec3<Real> sum(std::size_t row, std::span<const PaddedVec3<Real>> of) const {
+    PaddedVec3<Real> result{};
     for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
     return result;
   }
   /// Interpolation from aggregates to their members. A member takes the fraction `smoothing` from the aggregates of its
   /// neighbours, and the rest from its own. `neighbours`: neighbours of each member; replaced by those of the
   /// aggregates.
-  static Weights make_interpolation(const Grouping& grouping, double smoothing,
+  static Weights make_interpolation(const Aggregates& grouping, double smoothing,
                                     std::vector<std::vector<Index>>& neighbours);
   /// The transpose, with `rows` rows.
   Weights transposed(std::size_t rows) const;

@@ -1,4 +1,4 @@
-// Holds the source tree against the design, after showing on small made-up trees that each check sees what it is for.
+// Checks the source tree against the design. Small made-up trees first show that each check detects its violations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 
 const fs::path kRoot = WEFT_SOURCE_DIR;
 
-// Tables and generated code may be long.
+// Tables and generated code may exceed the limit.
 const std::vector<std::string> kMayBeLong = {};
 
-/// A source tree on disk that holds just what a test writes, and goes away with it.
+/// A source tree on disk that contains only the files of a test and is deleted with it.
 class MadeTree : public support::TestFolder {
  protected:
   void SetUp() override {
@@ -118,8 +118,8 @@ TEST(Architecture, NoFileIsLongerThan500Lines) {
   EXPECT_EQ(long_files(kRoot, 500, kMayBeLong), "");
 }
 
-// The words are put together here so that this file does not name them itself.
-// Parsers recurse, and streams wait for pipes: core has the one way to each, with its limits.
+// The words are assembled here so that this file does not contain them.
+// Parsers recurse, and streams wait for pipes: core has the only access to both, with limits.
 TEST(Architecture, TextAndFilesFromOutsideAreReadByCoreAlone) {
   std::string found;
   std::istringstream lines(

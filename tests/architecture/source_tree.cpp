@@ -29,11 +29,10 @@ std::vector<std::string> lines_of(const fs::path& path) {
 }
 
 const std::set<std::string> kCode = {".cpp", ".hpp", ".c", ".h", ".glsl", ".vert", ".frag", ".geom", ".comp"};
-// What else is written by hand; scripts and dotfiles have no extension.
+// Extensions of other hand-written files; scripts and dotfiles have none.
 const std::set<std::string> kOtherText = {".toml", ".txt", ".md", ".json", ".sh", ".js", ".css", ".html", ""};
 
-// Files of the folders that we write, and of the top level itself, in order of their names, relative to root. What is
-// built or put out lies elsewhere.
+// Hand-written files in these folders and at the top level, sorted by name, relative to root.
 std::vector<fs::path> written_files(const fs::path& root, const std::vector<std::string>& folders) {
   std::vector<fs::path> files;
   const auto add = [&](const fs::directory_entry& entry) {
@@ -48,7 +47,7 @@ std::vector<fs::path> written_files(const fs::path& root, const std::vector<std:
   return files;
 }
 
-// Headers that the build writes.
+// Headers that the build generates.
 const std::set<std::string> kGeneratedHeaders = {"embedded_shaders.hpp", "embedded_review.hpp", "embedded_cli.hpp",
                                                  "embedded_templates.hpp", "embedded_export.hpp"};
 

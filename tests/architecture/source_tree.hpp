@@ -1,4 +1,4 @@
-// What the design asks of the source tree, read from the files as text.
+// Design rules for the source tree, checked on the text of the files.
 #pragma once
 
 #include <filesystem>
@@ -10,29 +10,28 @@ namespace weft::architecture {
 /// A module as src/CMakeLists.txt declares it: `weft_module(name DOES "..." USES ... LINKS ...)`.
 struct Module {
   std::string name, does;
-  std::vector<std::string> uses;  ///< besides core, which all may use
+  std::vector<std::string> uses;  ///< in addition to core, which all may use
 };
 
-/// The modules in the order of the file. Throws std::runtime_error where the file cannot be read.
+/// Returns the modules in the order of the file. Throws std::runtime_error if the file cannot be read.
 std::vector<Module> read_modules(const std::filesystem::path& root);
 
-// Each check returns one line for each violation, "file:line: what is wrong", paths relative to root; empty if all is
-// well.
+// Each check returns a line for each violation, "file:line: what is wrong" (paths relative to root), or nothing.
 
-/// Includes of src/ that name a module which neither USES nor core allows, or no file at all. <weft/...> is of library,
-/// and its headers there include nothing but each other and the standard library.
+/// Includes of src/ that name a module which is neither in USES nor core, or a file that does not exist. <weft/...>
+/// belongs to library; its headers there include only each other and the standard library.
 std::string wrong_includes(const std::filesystem::path& root);
 
-/// Names in USES that are not declared earlier in the file (which also rules out cycles), folders of src/ that are
-/// not declared, and modules without a folder.
+/// Names in USES that are not declared earlier in the file (which also excludes cycles), folders of src/ that are not
+/// declared, and modules without a folder.
 std::string wrong_declarations(const std::filesystem::path& root);
 
-/// Source files longer than `limit` lines, but for those listed (tables and generated code, relative to root). A listed
-/// file that is not that long, or not there, is reported too.
+/// Source files longer than `limit` lines, except those listed (tables and generated code, relative to root). A listed
+/// file that is shorter or missing is reported too.
 std::string long_files(const std::filesystem::path& root, int limit, const std::vector<std::string>& exempt);
 
-/// Lines of what we write (sources, shaders, scenes, scripts, build files, README) with one of these words in them.
-/// Words count only where no letter, digit or underscore continues them.
+/// Lines of hand-written files (sources, shaders, scenes, scripts, build files, README) that contain one of these words
+/// as a whole word: no letter, digit or underscore is adjacent.
 std::string lines_with(const std::filesystem::path& root, const std::vector<std::string>& words);
 
 }  // namespace weft::architecture

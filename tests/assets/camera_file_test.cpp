@@ -1,4 +1,4 @@
-// Cameras of glTF files stand, look and move as the files say.
+// Position, direction and motion of cameras from glTF files.
 #include "assets/camera_file.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 class CameraFile : public support::TestFolder {
  protected:
-  /// On a rig that turns by 90 degrees to the left about y in two seconds, 3 m out along z, 1 m up.
+  /// The camera is on a rig that turns by 90 degrees to the left about y in two seconds, 3 m out along z, 1 m up.
   nlohmann::json document_ = nlohmann::json::parse(gltf_camera());
 
   LoadedCamera load(const std::string& object = "") {
@@ -37,7 +37,7 @@ class CameraFile : public support::TestFolder {
   }
 };
 
-// Single precision of positions some metres out.
+// Single precision, for positions of some metres.
 constexpr double kSingle = 1e-6;
 
 TEST_F(CameraFile, GoesAroundWithTheRigThatItIsOn) {

@@ -1,4 +1,4 @@
-// What assimp gives, made by hand and spoilt part by part.
+// Scenes as assimp returns them, made by hand and damaged in one part after another.
 #include "assets/character_reader.hpp"
 
 #include <assimp/GltfMaterial.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// Two triangles that hang on two joints, and a mesh without bones at two nodes. aiScene owns and deletes all of it.
+/// Two triangles skinned to two joints, and a mesh without bones at two nodes. aiScene owns and deletes everything.
 class Scenes : public testing::Test {
  protected:
   Scenes() {
@@ -87,7 +87,7 @@ class Scenes : public testing::Test {
     std::copy(meshes.begin(), meshes.end(), at.mMeshes);
   }
 
-  /// Through bytes and back, as between processes.
+  /// Converts to bytes and back, as between processes.
   ReadCharacter read() {
     ReadCharacter read = to_character(scene_, {});
     return character_from_bytes(to_bytes(read));
@@ -127,7 +127,7 @@ TEST_F(Scenes, BecomeNodesBonesOneMeshAndClips) {
   ASSERT_EQ(body.clips.size(), 1u);
   EXPECT_EQ(body.clips[0].duration, 2);
   EXPECT_EQ(body.clips[0].channels[0].position.times, (std::vector<double>{0, 2}));
-  // In the middle of the clip the knee is 1.5 m up; vertex 1 has half of it, vertex 3 all.
+  // In the middle of the clip the knee is 1.5 m up; vertex 1 has half of its weight, vertex 3 all.
   std::vector<Vec3> x(10);
   character::skin(body, character::pose_at(body, body.clips[0], 1), x);
   EXPECT_EQ(x[1], Vec3(1, 0, 0.75));
@@ -157,7 +157,7 @@ TEST_F(Scenes, HaveTheMeshesThatAreChosen) {
     }
 }
 
-// The knee is turned by 180 degrees about the origin after it was bound: vertex 3 goes from (2, 0, 0) to (0, 0, 0).
+// The knee was turned by 180 degrees about the origin after binding: vertex 3 moves from (2, 0, 0) to (0, 0, 0).
 TEST_F(Scenes, WhoseRestPoseIsNotThatInWhichTheSkinWasBoundAreWarnedAbout) {
   knee_->mTransformation.a1 = knee_->mTransformation.b2 = -1;
   EXPECT_EQ(warning(),
@@ -165,7 +165,7 @@ TEST_F(Scenes, WhoseRestPoseIsNotThatInWhichTheSkinWasBoundAreWarnedAbout) {
             "\"knee\"; if the body looks wrong, export it in its bind pose, or as glTF");
 }
 
-// FBX binds a mesh where its node is; a mesh with one bone agrees with itself in any pose.
+// In FBX a mesh is bound at its node; a mesh with one bone is consistent in any pose.
 TEST_F(Scenes, OfFbxAreComparedWithTheirNodes) {
   leg_->mBones[1]->mWeights[0].mWeight = leg_->mBones[1]->mWeights[1].mWeight = 0;
   hip_->mTransformation.c4 = 25;
@@ -189,7 +189,7 @@ TEST_F(Scenes, WithABindPoseElsewhereStandWhereTheirMostImportantBoneHoldsThem) 
 }
 
 TEST_F(Scenes, WithSeamsAreJoinedWhereCopiesMoveTogether) {
-  // A third triangle on copies of vertices 1 and 2; the copy of 2 has other weights.
+  // A third triangle uses copies of vertices 1 and 2; the copy of 2 has other weights.
   delete[] leg_->mVertices;
   set_vertices(*leg_, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {1, 0, -0.0F}, {0, 1, 0}, {3, 3, 0}});
   delete[] leg_->mFaces;
@@ -261,8 +261,8 @@ TEST_F(Scenes, WithKeysPastTheEndOrForNoNodeAreTakenWithAWarning) {
   EXPECT_EQ(warning(), "clip \"walk\": 1 channel left out, which name no part of the file: \"tail\"");
 }
 
-// Nodes of FBX whose transform is in parts stand in a line, of which the last has the name of the file; a clip that
-// moves that one has the whole of it.
+// If the transform of an FBX node is in parts, assimp makes a chain of nodes; the last one has the name in the file. A
+// clip that animates this node contains the whole transform.
 TEST_F(Scenes, OfFbxWithTransformsInPartsPlayClipsThatHaveThemWhole) {
   auto* helper = node("knee_$AssimpFbx$_Translation");
   helper->mTransformation.a4 = 7;
@@ -287,7 +287,7 @@ TEST_F(Scenes, OfFbxWithTransformsInPartsPlayClipsThatHaveThemWhole) {
   EXPECT_TRUE(read().warnings.empty());
 }
 
-// Assimp 5.2 tells the unit as a float, others as a double.
+// Assimp 5.2 stores the unit as a float, other versions as a double.
 TEST_F(Scenes, OfFbxSayTheirUnit) {
   EXPECT_FALSE(read().metres_per_unit);
   scene_.mMetaData = new aiMetadata;
@@ -381,7 +381,7 @@ TEST_F(Scenes, PicturesThatCannotBeHadAreLeftOutWithAWarning) {
   EXPECT_EQ(got.character.coloring.material_of_triangle.size(), 4u);
 }
 
-// FBX of avatars whose pictures were not embedded: one line for what was eight.
+// FBX avatars whose pictures are not embedded: one warning replaces eight.
 TEST_F(Scenes, PicturesThatAreNeitherNamedNorHeldAreToldOfOnce) {
   scene_.mNumMaterials = 5;
   scene_.mMaterials = new aiMaterial*[5];

@@ -1,5 +1,5 @@
-// Files cut short and with bytes changed: each is loaded or refused by name, whatever it holds, and what is loaded is a
-// sound mesh.
+// Truncated files and files with changed bytes: each is loaded, or refused with its name, whatever it contains. A
+// loaded mesh is valid.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// File name ending and the bytes of a whole file.
+/// File name extension, and the function that makes a whole file.
 using Format = std::pair<const char*, std::string (*)()>;
 
 class DamagedFiles : public testing::TestWithParam<Format> {
@@ -35,7 +35,7 @@ class DamagedFiles : public testing::TestWithParam<Format> {
   }
   ~DamagedFiles() override { fs::remove_all(folder_); }
 
-  /// Loads these bytes; returns true if they were taken. Anything but a sound mesh or an asset error fails the test.
+  /// Returns true if these bytes were accepted. Anything except a valid mesh or an asset error fails the test.
   bool try_to_load(const std::string& bytes) {
     std::ofstream(file_, std::ios::binary) << bytes;
     try {
@@ -70,7 +70,7 @@ TEST_P(DamagedFiles, WithBytesChangedAreLoadedOrRefused) {
     for (std::uint32_t k = 0; k < changes; ++k) bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
     refused += try_to_load(bytes) ? 0 : 1;
   }
-  EXPECT_GT(refused, 0);  // else the changes would not have been seen at all
+  EXPECT_GT(refused, 0);  // otherwise no change was detected at all
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,

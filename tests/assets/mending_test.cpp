@@ -1,4 +1,4 @@
-// Surfaces that are no sheets, made here.
+// Repair of surfaces that are not valid sheets, made here.
 #include "assets/mending.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ Vec3 normal(const LoadedMesh& loaded, const mesh::Triangle& t) {
   return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
 }
 
-/// UVs are still where their corners are.
+/// Expects each UV to equal the position of its corner.
 void expect_uv_of_places(const LoadedMesh& loaded) {
   for (std::size_t t = 0; t < loaded.uv.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
@@ -54,7 +54,7 @@ void expect_uv_of_places(const LoadedMesh& loaded) {
 TEST(MendedSheet, IsLeftAsItIsWhereNothingIsWrong) {
   LoadedMesh loaded = strip(5);
   const std::vector<mesh::Triangle> triangles = loaded.mesh.topology.triangles;
-  const Mended mended = mend_sheet(loaded, kFlattest);
+  const MendingReport mended = mend_sheet(loaded, kFlattest);
   EXPECT_FALSE(mended.any()) << mended.describe();
   EXPECT_EQ(loaded.mesh.topology.triangles, triangles);
 }
@@ -64,7 +64,7 @@ TEST(MendedSheet, FacesAsMostOfItsAreaDoes) {
   for (const std::size_t t : {1, 4, 5, 10})
     std::swap(loaded.mesh.topology.triangles[t][0], loaded.mesh.topology.triangles[t][1]);
   paint(loaded);
-  const Mended mended = mend_sheet(loaded, kFlattest);
+  const MendingReport mended = mend_sheet(loaded, kFlattest);
   EXPECT_EQ(mended.turned, 4U);
   EXPECT_EQ(mended.cut, 0U);
   ASSERT_TRUE(manifold(loaded));
@@ -72,7 +72,7 @@ TEST(MendedSheet, FacesAsMostOfItsAreaDoes) {
   expect_uv_of_places(loaded);
 }
 
-// As SketchUp writes faces that are seen from both sides.
+// As SketchUp writes two-sided faces.
 TEST(MendedSheet, HasOneOfTwoTrianglesThatLieOnEachOther) {
   LoadedMesh loaded = strip(3);
   for (std::size_t t = 0; t < 6; ++t) {
@@ -86,7 +86,7 @@ TEST(MendedSheet, HasOneOfTwoTrianglesThatLieOnEachOther) {
   expect_uv_of_places(loaded);
 }
 
-/// A flap of so many triangles that stands on the edge between the third and the fourth square of a strip of eight.
+/// A flap of this many triangles, attached to the edge between the third and the fourth square of a strip of eight.
 LoadedMesh with_flap(int triangles) {
   LoadedMesh loaded = strip(8);
   for (int i = 0; i < triangles; ++i) {
@@ -102,7 +102,7 @@ LoadedMesh with_flap(int triangles) {
 TEST(MendedSheet, LosesASmallFlap) {
   LoadedMesh loaded = with_flap(1);
   loaded.mesh.positions.back() = {3, 0.5, 0.1};
-  const Mended mended = mend_sheet(loaded, kFlattest);
+  const MendingReport mended = mend_sheet(loaded, kFlattest);
   EXPECT_EQ(mended.cut, 1U);
   EXPECT_EQ(mended.pieces, 1U);
   EXPECT_NEAR(mended.left_out, 0.05 / 8.05, 1e-12);
@@ -113,7 +113,7 @@ TEST(MendedSheet, LosesASmallFlap) {
 
 TEST(MendedSheet, KeepsALargeFlapALittleBeforeTheEdge) {
   LoadedMesh loaded = with_flap(2);
-  const Mended mended = mend_sheet(loaded, kFlattest);
+  const MendingReport mended = mend_sheet(loaded, kFlattest);
   EXPECT_EQ(mended.cut, 1U);
   EXPECT_EQ(mended.pieces, 0U);
   ASSERT_TRUE(manifold(loaded));
@@ -134,7 +134,7 @@ TEST(MendedSheet, KeepsALargeFlapALittleBeforeTheEdge) {
 
 TEST(MendedSheet, CannotFaceAlikeAllAroundAMoebiusStrip) {
   LoadedMesh loaded = strip(8);
-  // The ends become one, upside down.
+  // The ends are joined upside down.
   for (mesh::Triangle& t : loaded.mesh.topology.triangles)
     for (Index& v : t) v = v == 16 ? 1 : v == 17 ? 0 : v;
   for (std::size_t v = 0; v < 16; ++v) {
@@ -145,14 +145,14 @@ TEST(MendedSheet, CannotFaceAlikeAllAroundAMoebiusStrip) {
   loaded.mesh.positions.resize(16);
   loaded.groups["all"].resize(16);
   EXPECT_FALSE(manifold(loaded));
-  const Mended mended = mend_sheet(loaded, kFlattest);
+  const MendingReport mended = mend_sheet(loaded, kFlattest);
   EXPECT_EQ(mended.cut, 1U);
   EXPECT_TRUE(manifold(loaded));
 }
 
 TEST(MendedSheet, LosesNeedlesAndTurnsTheEdgeOfWhatIsFlat) {
   LoadedMesh loaded = strip(4);
-  // A vertex close to another within the strip makes two needles, one close to the middle of an edge a flat triangle.
+  // A vertex close to another makes two needle triangles, one close to the middle of an edge makes a flat triangle.
   std::vector<mesh::Triangle>& triangles = loaded.mesh.topology.triangles;
   const auto near_corner = static_cast<Index>(loaded.mesh.positions.size());
   loaded.mesh.positions.emplace_back(1.004, 0.003, 0);
@@ -169,7 +169,7 @@ TEST(MendedSheet, LosesNeedlesAndTurnsTheEdgeOfWhatIsFlat) {
   loaded.groups["all"].resize(12, 0.5);
   paint(loaded);
   ASSERT_TRUE(manifold(loaded));
-  const Mended mended = mend_sheet(loaded, kFlattest);
+  const MendingReport mended = mend_sheet(loaded, kFlattest);
   EXPECT_EQ(mended.collapsed, 2U) << mended.describe();
   ASSERT_TRUE(manifold(loaded));
   EXPECT_EQ(loaded.mesh.topology.triangles.size(), 10U) << "8, and 2 around the vertex near an edge";
@@ -185,7 +185,7 @@ TEST(MendedSheet, LosesNeedlesAndTurnsTheEdgeOfWhatIsFlat) {
 
 TEST(MendedSheet, KeepsItsOutlineWhereNeedlesAreAtTheBorder) {
   LoadedMesh loaded = strip(2);
-  // The corner (2, 1) is cut by a needle along the border.
+  // A needle along the border cuts off the corner (2, 1).
   loaded.mesh.positions.emplace_back(2, 0.997, 0);
   loaded.groups["all"].push_back(0);
   const auto close = static_cast<Index>(loaded.mesh.positions.size() - 1);

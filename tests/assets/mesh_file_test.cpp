@@ -42,7 +42,7 @@ class MeshFiles : public testing::Test {
     return load_mesh(put(name, bytes), {scale}, "scenes/a.toml:12:8: obstacle.chair");
   }
 
-  /// The words after scene, file and `mesh file`, or "loaded".
+  /// The message after scene, file and `mesh file`, or "loaded".
   std::string refusal(const std::string& name, const std::string& bytes) const { return refusal_of(put(name, bytes)); }
 
   static std::string refusal_of(const fs::path& file) {
@@ -80,7 +80,7 @@ TEST_F(MeshFiles, OfQuadsAloneStayQuadsAndLoseTheirSeams) {
   EXPECT_TRUE(cube.mesh.uv.empty());
 }
 
-// The data of a binary file may begin with any byte, also with those that end lines and part words in its header.
+// The data of a binary file may begin with any byte, including those that end lines and separate words in its header.
 TEST_F(MeshFiles, OfOurOwnAreReadWhateverByteTheirDataBeginWith) {
   for (const unsigned char first : {9, 10, 13, 32})
     for (const unsigned char second : {10, 13, 32}) {
@@ -102,7 +102,7 @@ TEST_F(MeshFiles, KeepTheOrderInWhichFacesNameVertices) {
   EXPECT_TRUE(loaded.mesh.topology.quads.empty());
 }
 
-// The second triangle repeats two places of the first; of what became one vertex the largest counts.
+// The second triangle repeats two positions of the first; joined vertices take the largest value.
 TEST_F(MeshFiles, KeepColoursAndGroupsOfVerticesThatTheyJoin) {
   const LoadedMesh colored = load("colors.obj",
                                   "v 0 0 0 0.25 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nv 1 0 0 1 0 0\nv 0 1 0 0 0 0\n"
@@ -158,7 +158,7 @@ TEST_F(MeshFiles, OfGltfFollowTheirNodesAndFaceOutwardThoughMirrored) {
   EXPECT_TRUE(support::watertight(inspected(loaded)));
   EXPECT_NEAR(volume(loaded), 1.0 / 6, 1e-15);
   const Box3 box = mesh::bounding_box(loaded.mesh.positions);
-  // It is 1 to 2 along z of the file, which has y up.
+  // The file has y up and z from 1 to 2.
   EXPECT_EQ(Vec3(box.min()), Vec3(0, -2, 0));
   EXPECT_EQ(Vec3(box.max()), Vec3(1, -1, 1));
 }
@@ -171,7 +171,7 @@ std::string with_up_axis_of_fbx(std::string fbx, int up) {
   return fbx.insert(fbx.find(unit), "\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\"," + std::to_string(up) + "\n");
 }
 
-// A square of 1 m from the origin along x and y of the file.
+// A square of 1 m with a corner at the origin, along x and y of the file.
 TEST_F(MeshFiles, ThatSayWhichAxisIsUpAreTurnedToThatOfTheScene) {
   const Vec3 level(1, 1, 0), upright(1, 0, 1);
   struct Case {
@@ -222,7 +222,7 @@ TEST_F(MeshFiles, ThatSayTheirUnitAreInMetresWithTheirTextureCoordinates) {
   }
 }
 
-// Binary glTF under another name, as VRM is.
+// Binary glTF under another name, as in VRM.
 TEST_F(MeshFiles, OfBinaryGltfAreReadWhateverTheyAreCalled) {
   for (const char* name : {"body.vrm", "body.VRM", "body.glb"})
     EXPECT_NEAR(volume(load(name, glb_tetrahedron())), 1.0 / 6, 1e-15) << name;
@@ -247,9 +247,9 @@ TEST_F(MeshFiles, OfGltfThatNestsTooDeepAreRefusedBeforeTheyAreRead) {
   EXPECT_EQ(refusal("deep.glb", binary), words);
 }
 
-/// Two squares of 0.1 m side by side, so far apart.
-std::string two_squares(double apart) {
-  const double x = 0.1 + apart;
+/// Two squares of 0.1 m side by side, at this distance.
+std::string two_squares(double gap) {
+  const double x = 0.1 + gap;
   return "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nv " + std::to_string(x) + " 0 0.001\nv 0.3 0 0\nv 0.3 0.1 0\nv " +
          std::to_string(x) + " 0.1 0 1 0 0\nf 1 2 3 4\nf 5 6 7 8\n";
 }
@@ -292,10 +292,10 @@ TEST_F(MeshFiles, JoinZeroAndMinusZero) {
 TEST_F(MeshFiles, LoseFacesWithoutAreaAndSaySo) {
   const LoadedMesh loaded = load("flat.obj",
                                  "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 2 0 0\nv 0.5 1e-9 0\n"
-                                 "f 1 2 3\n"    // sound
-                                 "f 1 4 3\n"    // twice the same place
-                                 "f 1 2 5\n"    // on a line
-                                 "f 1 2 6\n");  // nearly so
+                                 "f 1 2 3\n"    // valid
+                                 "f 1 4 3\n"    // two corners coincide
+                                 "f 1 2 5\n"    // corners on a line
+                                 "f 1 2 6\n");  // corners almost on a line
   EXPECT_EQ(loaded.removed_triangles, 3u);
   EXPECT_EQ(loaded.mesh.topology.triangles.size(), 1u);
 }
@@ -338,7 +338,7 @@ TEST_F(MeshFiles, ThatAreEmptyMissingFoldersOrTooLargeAreRefusedBeforeReading) {
   EXPECT_EQ(refusal_of(folder_ / "absent.obj"), "expected a readable file, got none at this path");
   EXPECT_EQ(refusal_of(folder_), "expected a regular file, got a folder or a device");
   const fs::path large = put("large.obj", "v 0 0 0\n");
-  fs::resize_file(large, kMaxMeshFileBytes + 1);  // sparse: takes no room
+  fs::resize_file(large, kMaxMeshFileBytes + 1);  // sparse: occupies no disk space
   EXPECT_EQ(refusal_of(large), "expected at most 268435456 bytes, got 268435457; reduce the mesh");
 }
 

@@ -1,4 +1,4 @@
-// Real files: those of the Debian package assimp-testmodels.
+// Real files from the Debian package assimp-testmodels.
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ using character::Character;
 
 const fs::path kModels = "/usr/share/assimp/models";
 
-/// Poses of a clip that are compared.
+/// Number of compared poses of a clip.
 constexpr int kPoses = 10;
 
 class Packaged : public testing::Test {
@@ -59,7 +59,7 @@ void expect_sound(const Character& body, const std::string& name) {
     ASSERT_NEAR(sum, 1, 1e-12) << name << " vertex " << v;
   }
   for (std::size_t n = 0; n < body.nodes.size(); ++n) ASSERT_LT(body.nodes[n].parent, static_cast<Index>(n)) << name;
-  // The first pose of the first clip is somewhere.
+  // The positions of the first pose of the first clip are finite.
   std::vector<Vec3> x(body.mesh.positions.size());
   skin(body, body.clips.empty() ? rest_pose(body) : pose_at(body, body.clips[0], 0), x);
   EXPECT_TRUE(std::all_of(x.begin(), x.end(), [](const Vec3& at) { return at.allFinite(); })) << name;
@@ -91,14 +91,13 @@ TEST_F(Packaged, FilesAreEachLoadedOrRefusedByName) {
   }
   RecordProperty("loaded", loaded);
   RecordProperty("refused", refused);
-  // Of version 5.2.5~ds0-1; other versions may have others.
+  // Counts of version 5.2.5~ds0-1; other versions may differ.
   EXPECT_GE(loaded, 300);
   EXPECT_GE(animated, 50);
   EXPECT_GE(skinned, 6) << "with vertices that several bones hold";
 }
 
-/// An evaluation of its own, straight from assimp's scene: nodes are walked recursively, every vertex of every mesh by
-/// itself.
+/// An independent evaluation of assimp's scene: nodes are visited recursively, each vertex of each mesh separately.
 struct Evaluation {
   const aiScene& scene;
   const aiAnimation& clip;
@@ -111,17 +110,17 @@ struct Evaluation {
     return k;
   }
   template <class Key>
-  static double share(const Key* keys, std::size_t k, double t) {
+  static double key_fraction(const Key* keys, std::size_t k, double t) {
     return std::clamp((t - keys[k].mTime) / (keys[k + 1].mTime - keys[k].mTime), 0.0, 1.0);
   }
   Vec3 vector_at(const aiVectorKey* keys, unsigned count) const {
     const std::size_t k = key_before(keys, count, ticks);
     const auto value = [&](std::size_t i) { return Vec3(keys[i].mValue.x, keys[i].mValue.y, keys[i].mValue.z); };
     if (k + 1 >= count) return value(k);
-    const double f = share(keys, k, ticks);
+    const double f = key_fraction(keys, k, ticks);
     return (1 - f) * value(k) + f * value(k + 1);
   }
-  /// As a matrix, by the sines of the parts of the angle between two keys.
+  /// Rotation as a matrix, from the sines of the two fractions of the angle between two keys.
   Mat3 rotation_at(const aiQuatKey* keys, unsigned count) const {
     const std::size_t k = key_before(keys, count, ticks);
     const auto value = [&](std::size_t i) {
@@ -132,7 +131,7 @@ struct Evaluation {
     if (k + 1 < count) {
       Eigen::Vector4d next = value(k + 1);
       if (q.dot(next) < 0) next = -next;
-      const double f = share(keys, k, ticks), angle = std::atan2((next - q).norm(), (next + q).norm()) * 2;
+      const double f = key_fraction(keys, k, ticks), angle = std::atan2((next - q).norm(), (next + q).norm()) * 2;
       q = angle < 1e-9
               ? q
               : Eigen::Vector4d((std::sin((1 - f) * angle) * q + std::sin(f * angle) * next) / std::sin(angle));
@@ -152,7 +151,7 @@ struct Evaluation {
   Eigen::Matrix4d local(const aiNode& node) const {
     for (unsigned c = 0; c < clip.mNumChannels; ++c) {
       const aiNodeAnim& channel = *clip.mChannels[c];
-      // Of several nodes of one name a channel moves the first.
+      // If several nodes have one name, a channel moves the first.
       if (scene.mRootNode->FindNode(channel.mNodeName) != &node) continue;
       Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
       m.topLeftCorner<3, 3>() = rotation_at(channel.mRotationKeys, channel.mNumRotationKeys) *
@@ -166,7 +165,7 @@ struct Evaluation {
     return node.mParent == nullptr ? local(node) : Eigen::Matrix4d(global(*node.mParent) * local(node));
   }
 
-  /// Positions of all vertices that faces name, mesh by mesh.
+  /// Positions of all vertices that faces use, mesh by mesh.
   std::vector<Vec3> vertices() const {
     std::vector<Vec3> all;
     std::set<unsigned> skinned;
@@ -207,9 +206,9 @@ struct Evaluation {
   }
 };
 
-/// Largest distance that a vertex of `from` has over all poses to the vertex of `to` that follows it most closely.
-double furthest(const std::vector<std::vector<Vec3>>& from, const std::vector<std::vector<Vec3>>& to) {
-  // Sorted along x of the first pose, so that only near ones are compared.
+/// Largest distance of a vertex of `from`, over all poses, to the vertex of `to` that stays closest to it.
+double max_distance(const std::vector<std::vector<Vec3>>& from, const std::vector<std::vector<Vec3>>& to) {
+  // Sorted by x in the first pose, so that only nearby vertices are compared.
   std::multimap<double, std::size_t> along_x;
   for (std::size_t v = 0; v < to[0].size(); ++v) along_x.emplace(to[0][v].x(), v);
   constexpr double kNear = 1e-3;
@@ -254,10 +253,10 @@ TEST_P(Skinned, FollowsAnEvaluationOfItsOwnOverTheWholeClip) {
       theirs.push_back(Evaluation{*scene, clip, t * ticks_per_second}.vertices());
       for (Vec3& x : theirs.back()) x *= scale;
     }
-    EXPECT_LT(furthest(theirs, ours), 1e-5) << clip.mName.C_Str();
-    EXPECT_LT(furthest(ours, theirs), 1e-5) << clip.mName.C_Str();
+    EXPECT_LT(max_distance(theirs, ours), 1e-5) << clip.mName.C_Str();
+    EXPECT_LT(max_distance(ours, theirs), 1e-5) << clip.mName.C_Str();
     std::printf("%s, %s: %.2g m\n", GetParam(), clip.mName.C_Str(),
-                std::max(furthest(theirs, ours), furthest(ours, theirs)));
+                std::max(max_distance(theirs, ours), max_distance(ours, theirs)));
   }
 }
 

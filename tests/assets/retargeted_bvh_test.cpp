@@ -28,12 +28,12 @@ struct Bone {
   std::string name;
   int parent = -1;
   Vec3 offset;      // from the parent, with arms stretched out, y up, facing z [cm]
-  Vec3 axis;        // about which it swings
-  double from = 0;  // degrees, and to
+  Vec3 axis;        // of its rotation
+  double from = 0;  // range of the angle [degrees]
   double to = 0;
 };
 
-/// Somebody with long shins and short arms, who swings arms and legs, turns and nods; with names of CMU.
+/// A body with long shins and short arms, who swings arms and legs, turns and nods; joint names of CMU.
 std::vector<Bone> somebody() {
   std::vector<Bone> bones = {{"Hips", -1, {0, 95, 0}, {0, 1, 0}, -20, 20},
                              {"LowerBack", 0, {0, 8, -1}, {1, 0, 0}, 5, -3},
@@ -55,17 +55,17 @@ std::vector<Bone> somebody() {
   return bones;
 }
 
-/// The turn of a bone against its parent at a key.
+/// Rotation of a bone relative to its parent at a key.
 Quat turn_of(const Bone& bone, int key) {
-  const double share = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * key / kKeys);
-  const double degrees = bone.from + (bone.to - bone.from) * share;
+  const double fraction = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * key / kKeys);
+  const double degrees = bone.from + (bone.to - bone.from) * fraction;
   return Quat(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, bone.axis.normalized()));
 }
 
-/// Of the joints below the root, which then have six channels.
+/// Translations of the joints below the root, which then have six channels.
 enum class Translations { none, of_zero, of_offsets };
 
-/// BVH text in which joint j at zero angles is turned by zero[j] in the world; children come in the order of `order`.
+/// BVH text with joint j turned by zero[j] in the world when all angles are zero; children are sorted by `order`.
 std::string write_bvh(const std::vector<Bone>& bones, const std::vector<Quat>& zero, const std::vector<double>& order,
                       Translations translations = Translations::none) {
   std::string text = "HIERARCHY\n", channels;
@@ -111,7 +111,7 @@ std::string write_bvh(const std::vector<Bone>& bones, const std::vector<Quat>& z
 
 class RetargetedBvh : public support::TestFolder {
  protected:
-  /// Where the vertices of the body are at some keys.
+  /// Positions of the vertices of the body at some keys.
   std::vector<Vec3> vertices(const std::string& bvh) {
     const std::filesystem::path file = folder_ / "motion.bvh";
     support::write_bytes(file, bvh);
@@ -145,14 +145,14 @@ TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
       order[b] = number();
     }
     const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order));
-    double furthest = 0;
-    for (std::size_t v = 0; v < got.size(); ++v) furthest = std::max(furthest, (got[v] - expected[v]).norm());
-    // assimp holds offsets and rotations in single precision: measured 2e-6 m.
-    EXPECT_LT(furthest, 1e-4) << seed;
+    double max_distance = 0;
+    for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
+    // assimp stores offsets and rotations in single precision: measured 2e-6 m.
+    EXPECT_LT(max_distance, 1e-4) << seed;
   }
 }
 
-// As MakeHuman writes it, whose translations come on top of the offsets, and as recordings are, whose are the places.
+// MakeHuman writes translations that are added to the offsets; recordings write translations that replace them.
 TEST_F(RetargetedBvh, WithSixChannelsOnEveryJointKeepsItsBones) {
   const std::vector<Bone> bones = somebody();
   const std::vector<double> order(bones.size(), 0);
@@ -160,9 +160,9 @@ TEST_F(RetargetedBvh, WithSixChannelsOnEveryJointKeepsItsBones) {
   const std::vector<Vec3> expected = vertices(write_bvh(bones, zero, order));
   for (const Translations translations : {Translations::of_zero, Translations::of_offsets}) {
     const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order, translations));
-    double furthest = 0;
-    for (std::size_t v = 0; v < got.size(); ++v) furthest = std::max(furthest, (got[v] - expected[v]).norm());
-    EXPECT_LT(furthest, 1e-4) << (translations == Translations::of_zero ? "of zero" : "of the offsets");
+    double max_distance = 0;
+    for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
+    EXPECT_LT(max_distance, 1e-4) << (translations == Translations::of_zero ? "of zero" : "of the offsets");
   }
 }
 
@@ -177,9 +177,9 @@ TEST_F(RetargetedBvh, NeedsNoNames) {
     zero.push_back(Quat(1 + static_cast<double>(b % 3), static_cast<double>(b % 5), 2, -1).normalized());
   }
   const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order));
-  double furthest = 0;
-  for (std::size_t v = 0; v < got.size(); ++v) furthest = std::max(furthest, (got[v] - expected[v]).norm());
-  EXPECT_LT(furthest, 1e-4);  // as above
+  double max_distance = 0;
+  for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
+  EXPECT_LT(max_distance, 1e-4);  // as above
 }
 
 TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) {
@@ -193,7 +193,7 @@ TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) 
     for (const Bone& bone : bones)
       turned.push_back(bone.parent < 0 ? turn_of(bone, key) : turned[bone.parent] * turn_of(bone, key));
     const auto posture = skeleton.at(character::pose_at(body_, result_.clip, key * kKeyTime));
-    // z up instead of y; the body has its left at +x, the motion to the left of hips and shoulders at first.
+    // z up instead of y. The left of the body is +x, that of the motion follows its hips and shoulders at the start.
     const Quat up(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()));
     const Quat hips = turn_of(bones[0], 0), chest = hips * turn_of(bones[1], 0) * turn_of(bones[2], 0);
     const Vec3 left_first = up * Vec3(hips * Vec3::UnitX() + chest * Vec3::UnitX());

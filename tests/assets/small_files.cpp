@@ -19,7 +19,7 @@ void append(std::string& bytes, const T& value) {
 std::string base64(const std::string& bytes) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {  // the length is a multiple of three here
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {  // the length must be a multiple of three
     std::uint32_t group = 0;
     for (std::size_t k = 0; k < 3; ++k) group = group << 8 | static_cast<std::uint8_t>(bytes[i + k]);
     for (const int shift : {18, 12, 6, 0}) text += kDigits[group >> shift & 63];
@@ -47,7 +47,7 @@ std::string stl_tetrahedron() {
   std::string bytes(80, ' ');
   append(bytes, static_cast<std::uint32_t>(kFaces.size()));
   for (const auto& face : kFaces) {
-    bytes.append(12, '\0');  // the normal may be left zero
+    bytes.append(12, '\0');  // the normal may be zero
     for (const auto corner : face) append(bytes, kCorners[corner]);
     bytes.append(2, '\0');
   }
@@ -63,7 +63,7 @@ std::string tetrahedron_buffer() {
   return buffer;
 }
 
-/// `uri`: where the buffer is, as a member of it.
+/// `uri`: JSON member that locates the buffer.
 std::string tetrahedron_json(const std::string& uri) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"mesh":0,"scale":[1,1,-1],"translation":[0,0,2]}],
@@ -99,7 +99,7 @@ std::string gltf_camera() {
   std::string keys;
   for (const float time : {0.0F, 2.0F}) append(keys, time);
   for (const float part : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.70710678F, 0.0F, 0.70710678F}) append(keys, part);
-  keys.append(2, '\0');  // up to a multiple of three
+  keys.append(2, '\0');  // pad to a multiple of three
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"name":"rig","children":[1]},{"name":"eye","camera":0,"translation":[0,1,3]}],
 "cameras":[{"name":"lens","type":"perspective","perspective":{"yfov":0.5,"aspectRatio":1.6,"znear":0.1,"zfar":100}}],

@@ -1,6 +1,6 @@
 #!/bin/sh
-# age.sh: for each file of measured/, how many commits have changed the code of the program since the one that it is of.
-# Needs the history of the repository.
+# age.sh: prints, for each file of measured/, how many commits have changed the program's code since the commit it was
+# measured with. Needs the history of the repository.
 set -eu
 cd "$(dirname "$0")/measured"
 for file in *.md; do

@@ -1,7 +1,7 @@
-// Speed of the collision heuristics, as Markdown tables: CPU milliseconds on one core, medians.
+// Measures the collision heuristics and prints Markdown tables: medians of CPU milliseconds on one core.
 //   bench_collision replay DIR FIRST COUNT REACH   each heuristic on frames of `weft run SCENE --meshes DIR`
 //   bench_collision build                          building and refitting trees of 10³ to 10⁶ triangles
-//   bench_collision ball                           a sheet wound round a ball, with CGAL's AABB tree beside
+//   bench_collision ball                           a sheet wound around a ball, compared with CGAL's AABB tree
 //   bench_collision distances                      GJK and the closed forms
 #include <cstdlib>
 #include <string>

@@ -1,4 +1,4 @@
-// Each heuristic on recorded meshes of a scene.
+// Runs each heuristic on recorded meshes of a scene.
 #include <map>
 #include <optional>
 #include <set>
@@ -18,12 +18,12 @@ namespace {
 
 using namespace weft::collision;
 
-/// A scene has four steps to a frame; between frames positions are interpolated.
+/// Steps per frame; positions between frames are interpolated.
 constexpr int kSteps = 4;
 
 struct Recording {
   collision::testing::MovingScene scene;
-  std::vector<std::vector<Vec3>> frames;  ///< positions of all objects
+  std::vector<std::vector<Vec3>> frames;  ///< positions of all objects, per frame
   std::vector<bool> deformable;           ///< by object
 
   std::vector<Vec3> at(int step) const {
@@ -36,7 +36,7 @@ struct Recording {
   int steps() const { return static_cast<int>(frames.size() - 1) * kSteps; }
 };
 
-/// Whether the shape changes, so that it is cloth.
+/// Whether the shape changes: then the object is cloth.
 bool deforms(const support::PlyMesh& first, const support::PlyMesh& last) {
   for (const auto& t : first.triangles) {
     const auto length = [&](const support::PlyMesh& m) {
@@ -47,7 +47,7 @@ bool deforms(const support::PlyMesh& first, const support::PlyMesh& last) {
   return false;
 }
 
-/// Objects come in the order of their names, cloth first.
+/// Reads the frames; objects are in the order of their names, cloth first.
 Recording read(const std::filesystem::path& folder, int first, int count) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -77,7 +77,7 @@ Recording read(const std::filesystem::path& folder, int first, int count) {
 }
 
 struct Costs {
-  double refit = 0, pairs = 0, proximities = 0;  // [ms], of all steps
+  double refit = 0, pairs = 0, proximities = 0;  // sums over all steps [ms]
   std::size_t candidates = 0, found = 0;
   double total() const { return refit + pairs + proximities; }
 };
@@ -114,8 +114,8 @@ Costs run(const Recording& recording, const BroadPhaseOptions& options, double r
   return costs;
 }
 
-/// With results kept between steps; the default tree. All is told as the cost of proximities.
-Costs run_coherent(const Recording& recording, double reach, double budget, int& reused, int& asked) {
+/// Reuses results between steps, with the default tree. Reports all costs as those of near pairs.
+Costs run_with_reuse(const Recording& recording, double reach, double budget, int& reused, int& asked) {
   const std::vector<Surface> surfaces = recording.scene.surfaces();
   std::vector<SurfacePair> wanted;
   for (std::size_t a = 0; a < surfaces.size(); ++a)
@@ -123,7 +123,7 @@ Costs run_coherent(const Recording& recording, double reach, double budget, int&
   std::vector<Vec3> x_t0, x_t1 = recording.at(0);
   BroadPhase broad_phase(surfaces, x_t1);
   ProximityFinder finder(recording.scene.triangles, static_cast<Index>(x_t1.size()));
-  CoherentDetection detection(surfaces, wanted, x_t1, {.reach = reach, .budget = budget});
+  CoherentDetection detection(surfaces, wanted, x_t1, {.detection_distance = reach, .budget = budget});
   Costs costs;
   for (int step = 0; step < recording.steps(); ++step) {
     x_t0 = x_t1;
@@ -150,8 +150,8 @@ void print_row(const std::string& name, const std::vector<Costs>& runs, int step
              runs[0].found / static_cast<std::size_t>(steps));
 }
 
-/// Pairs of a frame that normal cones leave out, and how many of these are within reach.
-void count_left_out(const Recording& recording, double reach) {
+/// Counts the pairs of a frame that normal cones skip, and those of them within the detection distance.
+void count_skipped_pairs(const Recording& recording, double reach) {
   const std::vector<Surface> surfaces = recording.scene.surfaces();
   std::size_t left_out = 0, missed = 0;
   for (std::size_t f = 0; f < recording.frames.size(); f += 2)
@@ -178,7 +178,7 @@ void count_left_out(const Recording& recording, double reach) {
   fmt::print("\n{} pairs left out by normal cones, {} of them within reach\n", left_out, missed);
 }
 
-/// The default, and from it one thing at a time.
+/// The default options, and variants that change one option each.
 std::vector<std::pair<std::string, BroadPhaseOptions>> settings() {
   std::vector<std::pair<std::string, BroadPhaseOptions>> all{{"default: k 6, 8 children, leaf 8", {}}};
   const auto add = [&](const std::string& name, auto change) {
@@ -209,7 +209,7 @@ void replay(const std::filesystem::path& meshes, int first_frame, int frames, do
       "|\n|---|---|---|---|---|---|---|\n");
   constexpr int kRuns = 3;
   const auto all = settings();
-  // Runs take turns, so that a busy machine slows all of them.
+  // Runs alternate, so that a busy machine slows all of them.
   std::vector<std::vector<Costs>> costs(all.size());
   for (int r = 0; r < kRuns; ++r)
     for (std::size_t i = 0; i < all.size(); ++i) costs[i].push_back(run(recording, all[i].second, reach));
@@ -220,11 +220,11 @@ void replay(const std::filesystem::path& meshes, int first_frame, int frames, do
   for (const double part : {0.125, 0.5}) {
     std::vector<Costs> coherent;
     int reused = 0, asked = 0;
-    for (int r = 0; r < kRuns; ++r) coherent.push_back(run_coherent(recording, reach, part * reach, reused, asked));
+    for (int r = 0; r < kRuns; ++r) coherent.push_back(run_with_reuse(recording, reach, part * reach, reused, asked));
     print_row(fmt::format("velocity cones, results kept, budget {} of reach ({} % kept)", part, 100 * reused / asked),
               coherent, recording.steps());
   }
-  count_left_out(recording, reach);
+  count_skipped_pairs(recording, reach);
 }
 
 }  // namespace weft::bench

@@ -1,4 +1,4 @@
-// Building and refitting, a sheet wound round a ball, and single distances.
+// Measures building and refitting, a sheet wound around a ball, and single distances.
 #include <array>
 #include <numeric>
 
@@ -20,8 +20,8 @@ using collision::testing::folded_sheet;
 using collision::testing::random_vec;
 using collision::testing::TestMesh;
 
-/// A sheet wound four times round a ball of radius 0.2 m, 2 mm from turn to turn, 60° up and down, of 91,760 triangles
-/// with edges of 7 mm.
+/// A sheet wound four times around a ball of radius 0.2 m, 2 mm between turns, from 60° below to 60° above the equator,
+/// with 91,760 triangles and edges of 7 mm.
 TestMesh wound_sheet() {
   constexpr int kAround = 741, kUp = 63;
   TestMesh mesh;
@@ -48,7 +48,7 @@ void build_row(const TestMesh& mesh, int children) {
   fmt::print("| {} | {} | {} | {:.2f} | {:.3f} |\n", mesh.triangles.size(), K, children, build, refit);
 }
 
-/// Least distance of two triangles that do not meet, by the closed forms.
+/// Minimum distance of two triangles that do not intersect, by the closed forms.
 double closed_form(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   double least_sq = 1e300;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -117,7 +117,7 @@ void distances() {
     std::mt19937 generator(3);
     std::vector<std::array<std::array<Vec3, 3>, 2>> all(kPairs);
     for (auto& [a, b] : all) {
-      // Two nearly parallel triangles of size 1, side by side at a distance, as of two layers of cloth.
+      // Two nearly parallel triangles of size 1 at this distance, as in two layers of cloth.
       const Vec3 shift{0.3, 0.2, away};
       const std::array<Vec3, 3> shape{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}};
       for (std::size_t c = 0; c < 3; ++c) {

@@ -1,4 +1,4 @@
-// Frames to bytes and back, and what comes of bytes that are no frames.
+// Frames to bytes and back, and the treatment of bytes that are not a frame.
 #include "cache/codec.hpp"
 
 #include <gtest/gtest.h>
@@ -130,7 +130,7 @@ TEST(Codec, FramesComeBackBitForBit) {
     }
     for (const auto number :
          {&frame::FrameReport::error_estimate, &frame::FrameReport::solver_error, &frame::FrameReport::min_distance,
-          &frame::FrameReport::max_strain, &frame::FrameReport::stretch_share, &frame::FrameReport::kinetic_energy,
+          &frame::FrameReport::max_strain, &frame::FrameReport::stretch_ratio, &frame::FrameReport::kinetic_energy,
           &frame::FrameReport::potential_energy, &frame::FrameReport::elastic_energy, &frame::FrameReport::pin_work,
           &frame::FrameReport::solver_work})
       EXPECT_EQ(before.*number, after.*number);
@@ -144,7 +144,7 @@ TEST(Codec, FramesComeBackBitForBit) {
   }
 }
 
-// A field that is left out of serialize(FrameReport) leaves the report as long as before this one was added.
+// A field that is missing in serialize(FrameReport) would leave the report as short as before the field was added.
 TEST(Codec, WhatHasNotMovedTakesTwoBytes) {
   const Sample sample;
   frame::FrameSnapshot resting = *sample.snapshot(0);
@@ -160,7 +160,7 @@ TEST(Codec, PositionsAreStoredInPlanesOfEqualBytes) {
   const Sample sample;
   const frame::SnapshotPtr snapshot = sample.snapshot(2);
   const std::string payload = encode_frame(*snapshot, {}, surfaces_of(*sample.snapshot(0)));
-  // At the end: planes of the cloth's positions, 1, planes of its heat, and 0, 0 for the floor.
+  // The end of the payload: planes of the cloth's positions, 1, planes of its heat, and 0, 0 for the floor.
   const std::string_view planes = std::string_view(payload).substr(payload.size() - 2 - 16 - 1 - 96, 96);
   const auto* bytes = reinterpret_cast<const char*>(snapshot->states[0].positions.data());
   for (std::size_t vertex = 0; vertex < 4; ++vertex)
@@ -203,7 +203,7 @@ TEST(Container, EveryTruncationAndEveryFlippedBitIsFound) {
   }
 }
 
-// Header and checksum right, promises wrong.
+// Header and checksum are valid, the promised sizes are not.
 TEST(Container, PromisedSizeIsNotBelieved) {
   for (const std::uint64_t size : {std::uint64_t{0}, std::uint64_t{4}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     std::string bytes = pack({}, "12345");
@@ -234,10 +234,11 @@ TEST(Codec, SurfacesThatMakeNoSenseAreRefused) {
   refuse("not finite", [](frame::Surface& s, Positions&) { s.appearance.roughness = INFINITY; });
   refuse("name of a surface", [](frame::Surface& s, Positions&) { s.name = "../../etc/passwd"; });
   refuse("name of a surface", [](frame::Surface& s, Positions&) { s.name = ""; });
-  refuse("stands for nothing", [](frame::Surface& s, Positions&) { s.kind = static_cast<frame::ObjectKind>(4); });
+  refuse("is no known value", [](frame::Surface& s, Positions&) { s.kind = static_cast<frame::ObjectKind>(4); });
 }
 
-// Changed behind the checksum, as only a broken writer could: refused or read, never a crash (sanitizers look on).
+// Content changed with a valid checksum, as only a has_mistake writer could do: it is refused or read, never a crash
+// (the sanitizers run on this test).
 TEST(Codec, NoBytesCrashTheDecoder) {
   const Sample sample;
   const Surfaces surfaces = surfaces_of(*sample.snapshot(0));

@@ -1,4 +1,4 @@
-// Caches cut short and with bytes changed: each is refused with the name of the file, or read as it was.
+// Caches with truncated files and changed bytes: each is refused with the name of the file, or read unchanged.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -26,7 +26,7 @@ class DamagedCache : public support::TestFolder {
     writer.save_state(1, std::string(500, 's'));
   }
 
-  /// Everything that a reader can be asked for. True if it was all there, false if it was refused by name.
+  /// Reads everything that a reader offers. True if all was read, false if it was refused with the name of the file.
   bool read(const std::string& broken_file) const {
     try {
       const Reader reader(folder_ / "c");
@@ -70,7 +70,7 @@ TEST_F(DamagedCache, ManifestCutShortAnywhereIsRefusedByName) {
   }
 }
 
-/// One to four bytes of a text are others now.
+/// Changes one to four bytes of a text.
 std::string with_bytes_changed(std::string bytes, std::mt19937& random) {
   const std::string before = bytes;
   const std::size_t changes = 1 + random() % 4;
@@ -99,7 +99,7 @@ TEST_F(DamagedCache, NoneOfAHundredThousandChangesOfBytesIsMissed) {
   }
 }
 
-// As if the checksum were right: what a faulty writer, or someone who means it, could put into a cache.
+// Invalid content with a valid checksum, from a has_mistake writer or an attacker.
 TEST_F(DamagedCache, ContentThatIsWrongUnderARightChecksumIsReadOrRefused) {
   const Surfaces surfaces = surfaces_of(*sample_.snapshot(0));
   const std::string frame = encode_frame(*sample_.snapshot(1), sample_.report(1), surfaces);

@@ -1,4 +1,4 @@
-// The folder as writers fill it and readers find it.
+// The folder as writers leave it and readers find it.
 #include <gtest/gtest.h>
 
 #include "cache/names.hpp"
@@ -174,7 +174,7 @@ TEST_F(CacheFolder, ForeignFilesAreNeverTouched) {
                [&] { Lock lock(cache()); });
   EXPECT_EQ(support::read_bytes(cache() / "thesis.tex"), "precious");
   fs::remove(cache() / "thesis.tex");
-  // Under names of a cache too, unless it says itself that it is a part of one.
+  // Files with names of a cache are kept too, unless their content marks them as parts of one.
   for (const char* name : {".notes.tmp", ".notes.weft-12.tmp", "outputs.txt", "lock", "manifest.json", "state.weft",
                            "frame_00007.weft", "scene.effective.toml"}) {
     support::write_bytes(cache() / name, "precious");
@@ -195,13 +195,13 @@ TEST_F(CacheFolder, ForeignFilesWithNamesOfFramesAreKept) {
     support::write_bytes(cache() / "frame_00007.weft", "precious");
     expect_error(ExitCode::output_failed, "frame_00007.weft: was made by somebody else",
                  [&] { writer.add(*sample_.snapshot(7), {}); });
-    writer.add(*sample_.snapshot(1), {});  // which was there before
+    writer.add(*sample_.snapshot(1), {});  // this frame was added before
   }
   EXPECT_NE(support::read_bytes(cache() / "frame_00001.weft"), frame);
-  // A manifest of ours beside it says nothing of it.
+  // A valid manifest beside it does not mention it.
   expect_error(ExitCode::output_failed, "holds frame_00007.weft", [&] { Lock(cache()).clear(); });
   EXPECT_EQ(support::read_bytes(cache() / "frame_00007.weft"), "precious");
-  support::write_bytes(cache() / "frame_00007.weft", std::string(100, '\0'));  // as a crash of the machine leaves it
+  support::write_bytes(cache() / "frame_00007.weft", std::string(100, '\0'));  // as after a crash of the machine
   Lock(cache()).remove();
   EXPECT_FALSE(fs::exists(cache()));
 }
@@ -217,7 +217,7 @@ TEST_F(CacheFolder, ClearingLeavesNothingOfIt) {
   EXPECT_FALSE(fs::exists(cache() / ".frame_00003.weft.weft-1234.tmp"));
 }
 
-// As a kill may leave it in between: without its manifest, nobody else's files either.
+// State after a kill during clearing: without the manifest, but without files of others too.
 TEST_F(CacheFolder, ThatWasClearedInPartIsClearedToTheEnd) {
   fill(3);
   fs::remove(cache() / kSceneFile);

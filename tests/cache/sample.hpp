@@ -1,4 +1,4 @@
-// A made-up scene of two surfaces, one of which moves, with numbers that are easily spoilt.
+// A made-up scene of two surfaces, one of them moving, with numbers for which lossy coding shows.
 #pragma once
 
 #include <cstring>
@@ -121,7 +121,7 @@ struct Sample {
     report.min_distance = std::numeric_limits<double>::infinity();
     report.elastic_energy = 1.0 / 3;
     report.pinched_pairs = 2;
-    report.stretch_share = 1.25;
+    report.stretch_ratio = 1.25;
     report.lagging_particles = 5;
     report.warnings = {"frame 3: 'sheet' has no room", ""};
     return report;

@@ -1,4 +1,4 @@
-// How a body stands to be dressed: on skeletons made here, and on the mannequin.
+// Poses for dressing: on skeletons made here, and on the mannequin.
 #include "character/dressing.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace weft::character {
 namespace {
 
-/// Hips at (0, 0, 1), and below them two legs of one bone and its end, 0.1 m to either side.
+/// Hips at (0, 0, 1) with two legs of one bone and its end each, 0.1 m to either side.
 Character two_legs() {
   const auto at = [](double x, double y, double z) { return Affine(Eigen::Translation3d(x, y, z)); };
   Character body;
@@ -26,7 +26,7 @@ Character two_legs() {
                 {"right_end", 3, at(0, 0, -0.9)}};
   for (Index n = 0; n < 5; ++n)
     body.bones.push_back({n, Affine(global_transforms(body, rest_pose(body))[n].inverse())});
-  // Around the left leg; between the legs, held by both alike; below the left end, which holds it alone.
+  // A vertex beside the left leg, one between the legs with equal weights, one below the left end with its weight only.
   body.mesh.positions = {{0.15, 0, 0.6}, {0, 0, 0.8}, {0.1, 0.05, 0.05}};
   body.first_influence = {0, 1, 3, 4};
   body.influences = {{1, 1}, {1, 0.5}, {3, 0.5}, {2, 1}};
@@ -35,7 +35,7 @@ Character two_legs() {
 
 TEST(Dressing, FindsEachVertexOnItsBonesAndBetweenLegsWhereTheyPart) {
   const Character body = two_legs();
-  const std::vector<Vec3> places = places_on_bones(body, rest_pose(body));
+  const std::vector<Vec3> places = growth_start_positions(body, rest_pose(body));
   EXPECT_LT((places[0] - Vec3(0.1, 0, 0.6)).norm(), 1e-12) << "beside the vertex, on the bone";
   EXPECT_LT((places[1] - Vec3(0, 0, 1)).norm(), 1e-12) << "between the joints, not in the middle of the gap";
   EXPECT_LT((places[2] - body.mesh.positions[2]).norm(), 1e-12) << "an end goes on through what it holds";
@@ -56,7 +56,7 @@ TEST(Dressing, RaisesStraightArmsAndLeavesTheRest) {
     for (const bool right : {false, true}) {
       const auto place = [&](Joint left) { return raised.places[place_of(on_side(left, right))]; };
       const Vec3 arm = place(Joint::left_hand) - place(Joint::left_upper_arm);
-      // It looks along -y: its left is at +x.
+      // The body faces -y: its left is at +x.
       const Vec3 expected((right ? -1 : 1) * std::sin(angle), 0, -std::cos(angle));
       EXPECT_LT((arm.normalized() - expected).norm(), 1e-6) << degrees;
       EXPECT_NEAR((place(Joint::left_lower_arm) - place(Joint::left_upper_arm)).norm() +
@@ -73,8 +73,8 @@ TEST(Dressing, BonesOfTheMannequinAreInsideOfIt) {
   const Character body = make_mannequin({.edge_length = 0.1});
   std::vector<Vec3> skinned(body.mesh.positions.size());
   skin(body, rest_pose(body), skinned);
-  const std::vector<Vec3> places = places_on_bones(body, rest_pose(body));
-  // Winding number of the skin around them (van Oosterom & Strackee 1983): 1 inside, 0 outside.
+  const std::vector<Vec3> places = growth_start_positions(body, rest_pose(body));
+  // Winding number of the skin around each place (van Oosterom & Strackee 1983): 1 inside, 0 outside.
   int outside = 0;
   for (std::size_t v = 0; v < places.size(); ++v) {
     double angle = 0;
@@ -127,16 +127,17 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   std::vector<Vec3> after = before;
   room().make(pose, after);
   EXPECT_GT(crossings(before), 100u);
-  // 546 and 464: what only one of both limbs sees is opened by half, and bent fingers have many small triangles there.
+  // Measured: 546 before, 464 after. Where only one of two limbs detects the other, half of the clearance is made, and
+  // bent fingers have many small triangles there.
   EXPECT_LT(crossings(after), 9 * crossings(before) / 10);
-  // Of the skin of each forearm the nearest of the trunk, by their corners.
+  // Least distance from the skin of the left forearm to that of the trunk, between vertices.
   double least = 1;
   int moved = 0;
   const std::vector<Limb> limbs = limbs_of(body_, joints_);
   const Posture posture = Skeleton({body_, joints_}).at(pose);
   for (std::size_t v = 0; v < after.size(); ++v) {
     moved += after[v] != before[v] ? 1 : 0;
-    // As far as dents reach from round to round: 0.2 mm were seen.
+    // Dents spread a little in each round: measured 0.2 mm.
     if (after[v].z() > 1.5) {
       EXPECT_LT((after[v] - before[v]).norm(), 1e-3) << "head";
     }
@@ -148,7 +149,7 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   EXPECT_GT(least, 0.6 * kRoom);  // 5.1 mm, between fingers and thighs
 }
 
-// A crease is skin of one body that folds: room does not open it, and makes no new crossings.
+// A crease is a fold in the skin of one body: making clearance does not open it and adds no crossings.
 TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
   Pose pose = rest_pose(body_);
   const Index thigh = joints_[place_of(Joint::left_upper_leg)];
@@ -164,7 +165,7 @@ TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
   EXPECT_LE(moved.distance, 0.032 + 1e-9) << "twice the room";
 }
 
-// Ten centimetres are not there at rest, between its legs above all.
+// At rest the body does not have ten centimetres of clearance, above all between its legs.
 TEST_F(RoomOfAMannequin, LeavesARestingBodyToTheBit) {
   const std::vector<Vec3> before = skinned(rest_pose(body_));
   std::vector<Vec3> after = before;
@@ -182,7 +183,7 @@ TEST_F(RoomOfAMannequin, LeavesSkinWithoutClothToTheBit) {
   EXPECT_EQ(after, before);
 }
 
-// Cloth on the left of the trunk alone: the left arm comes down on it, the right one on skin.
+// Cloth covers only the left of the trunk: the left arm comes down on cloth, the right one on skin.
 TEST_F(RoomOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
   const Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   const std::vector<Vec3> before = skinned(pose);
@@ -206,12 +207,12 @@ TEST_F(RoomOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
   EXPECT_TRUE((moved.limb == "trunk") != (moved.away_from == "trunk")) << moved.limb << ", " << moved.away_from;
 }
 
-// A thigh against the belly, in a body that is a tenth as wide as it is deep there: it may not become a peg.
+// A limb deep inside another, as a thigh against the belly, must not shrink to a thin peg.
 TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
   Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   for (const bool right : {false, true}) {
     const Index arm = joints_[place_of(on_side(Joint::left_upper_arm, right))];
-    // Both arms go 20 degrees into the trunk.
+    // Both arms are turned 20 degrees into the trunk.
     const Quat above(global_transforms(body_, pose)[body_.nodes[arm].parent].linear());
     const Quat turn(Eigen::AngleAxisd((right ? -20 : 20) * kDegree, above.conjugate() * Vec3::UnitY()));
     pose.nodes[arm].rotation = (turn * pose.nodes[arm].rotation).normalized();
@@ -222,7 +223,7 @@ TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
   EXPECT_GT(crossings(before), 100u);
   EXPECT_GT(moved.distance, 0.01);
   EXPECT_LT(moved.distance, 0.08) << "half of a trunk that is 0.3 m wide";
-  // The middles of forearms keep the half of their girth: of 7 cm across nothing is closer than that.
+  // Arms are 7 cm across and keep half of that: no vertex moves by 40 mm or more.
   const std::vector<Limb> limbs = limbs_of(body_, joints_);
   for (std::size_t v = 0; v < before.size(); ++v) {
     if (limbs[v] == Limb::left_arm) {
@@ -234,7 +235,7 @@ TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
 TEST_F(RoomOfAMannequin, FlattensItAboveTheGroundButForItsFeet) {
   const std::vector<Vec3> before = skinned(rest_pose(body_));
   std::vector<Vec3> after = before;
-  // Against its back, 3 cm into it.
+  // The ground is a wall along the back of the body, 3 cm inside the skin.
   double back = 0;
   for (const Vec3& x : before) back = std::max(back, x.z() > 0.3 ? x.y() : 0);
   const Ground wall{Vec3(0, -1, 0), 0.03 - back};
@@ -258,8 +259,8 @@ TEST(TriangleGrids, FindTheFirstFrontThatBruteForceFinds) {
   int hits = 0;
   for (std::size_t v = 0; v + 7 < x.size(); v += 7) {
     const Vec3 from = x[v] + Vec3(0.1, 0.02, 0.01), to = x[v + 7] - Vec3(0.1, 0.03, 0.02);
-    const mesh::Entry entry = grid.first_entry(from, to, [](Index t) { return t % 3 != 0; });
-    // Of each triangle where the way goes through its plane, by barycentric coordinates.
+    const mesh::Entry entry = grid.find_first_crossing(from, to, [](Index t) { return t % 3 != 0; });
+    // The first crossing of the path with a triangle, by barycentric coordinates.
     double first = 1;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       if (t % 3 == 0) continue;

@@ -8,7 +8,7 @@
 namespace weft::character {
 namespace {
 
-/// R G B A of the picture where a triangle's middle lies.
+/// RGBA of the picture at the middle of a triangle.
 std::array<int, 4> painted(const Character& body, std::size_t triangle) {
   const Material& material = body.coloring.materials[body.coloring.material_of_triangle[triangle]];
   const auto& places = body.coloring.uv[triangle];
@@ -26,7 +26,7 @@ TEST(Figure, HairIsOnTheHeadShoesAreOnTheFeetAndNothingIsBetween) {
     build.edge_length = 0.03;
     const Character body = make_mannequin(build);
     ASSERT_EQ(body.coloring.uv.size(), body.mesh.topology.triangles.size());
-    EXPECT_TRUE(body.coloring.over_look);
+    EXPECT_TRUE(body.coloring.covers_look);
     int hair = 0, sole = 0, face = 0, skin = 0;
     for (std::size_t t = 0; t < body.coloring.uv.size(); ++t) {
       Vec3 middle = Vec3::Zero();

@@ -10,7 +10,7 @@
 namespace weft::character {
 namespace {
 
-/// A leg that faces -y, with thigh and shin of 0.4 m, bent by 2 · 0.2 radians, its ankle 8 cm over the sole.
+/// A leg of a body that faces -y: thigh and shin of 0.4 m, bent by 2 · 0.2 radians, the ankle 8 cm above the sole.
 Leg leg_at(const Vec3& hip) {
   Leg leg;
   leg.hip = hip;
@@ -30,8 +30,8 @@ struct Glide {
   Footsteps steps;
 };
 
-/// Hips that travel at 1 m/s over feet which go with them; `sunk`: below the floor [m]. The left foot is said to stand
-/// from 0.3 to 0.6 s.
+/// Hips that travel at 1 m/s with feet that move along; `sunk`: depth below the floor [m]. The left foot is marked as
+/// standing from 0.3 to 0.6 s.
 Glide gliding(double sunk) {
   Glide walk;
   for (int k = 0; k <= 20; ++k) {
@@ -86,11 +86,11 @@ TEST(Footing, ReachBringsTheAnkleThereAndBendsTheKneeForward) {
     for (const Vec3& ankle : {Vec3(0.1, -0.2, -0.6), Vec3(0, 0.3, -0.5), Vec3(-0.1, 0, -0.4)}) {
       const LegTurns turns = reach(leg, ankle);
       const Vec3 thigh = turns.upper * (leg.knee - leg.hip), shin = turns.lower * (leg.ankle - leg.knee);
-      // Through the arc cosine of the law of cosines.
+      // 1e-9 instead of rounding: the law of cosines is inverted by an arc cosine.
       EXPECT_LT((leg.hip + thigh + shin - ankle).norm(), 1e-9);
       EXPECT_GT(thigh.cross(shin).x(), 0);
     }
-  // Out of reach: along the way there.
+  // Out of reach: the leg points toward the target.
   const LegTurns turns = reach(straight, Vec3(0, -2, 0));
   EXPECT_LT((turns.lower * Vec3(0, 0, -1) - Vec3(0, -1, 0)).norm(), 1e-6);
 }

@@ -28,14 +28,14 @@ std::size_t keys(const Clip& clip) {
   return clip.channels[0].rotation.times.size();
 }
 
-/// One stride of even walking, from left heel strike to left heel strike, out of the middle of a long walk. Strides lie
-/// before and after it until nothing of the start is left, and until the end is felt.
+/// One stride of steady walking, between two strikes of the left heel, from the middle of a long walk. The strides
+/// before and after it are so many that neither start nor end affects it.
 Clip make_stride(const Character& body, double speed) {
   const Physique physique = physique_of(body);
   const Pace pace = pace_of(speed, physique.height);
   Walk walk = at_speed(speed);
   walk.distance = 20 * pace.step_length;
-  // The walk adjusts its steps to the distance: that in which they are as long as the pace has them.
+  // The walk adjusts its steps to the distance. Choose the distance for which they have the step length of the pace.
   const StepPlan adjusted = plan_walk(physique, walk);
   walk.distance *= pace.step_length / (adjusted.speed * adjusted.key_time * adjusted.step_keys);
   const StepPlan plan = plan_walk(physique, walk);
@@ -82,7 +82,7 @@ TEST(Gait, StrideIsPeriodicWithItsVelocity) {
     const auto p = [&](std::size_t k) { return places(clip, k); };
     for (std::size_t j = 0; j < kJointCount; ++j) {
       EXPECT_LT((p(last)[j] - p(0)[j] - stride).norm(), 1e-9) << name(static_cast<Joint>(j));
-      // Second differences: at the seam as inside.
+      // The velocity changes as little at the seam as inside.
       jump = std::max(jump, (p(1)[j] - p(0)[j] - (p(last)[j] - p(last - 1)[j])).norm());
     }
     for (std::size_t k = 1; k < last; ++k) {
@@ -112,18 +112,19 @@ TEST(Gait, HasTheSpeedAskedForAndStepsOfConstantWalkRatio) {
   double first_ratio = 0;
   for (const double speed : kSpeeds) {
     const Clip clip = make_stride(mannequin(), speed);
-    const double way = places(clip, 0)[0].y() - places(clip, keys(clip) - 1)[0].y();
-    EXPECT_NEAR(way / clip.duration, speed, 1e-9);
-    const double ratio = (way / 2) / (120 / clip.duration);  // m/(steps/min)
+    const double travelled = places(clip, 0)[0].y() - places(clip, keys(clip) - 1)[0].y();
+    EXPECT_NEAR(travelled / clip.duration, speed, 1e-9);
+    const double ratio = (travelled / 2) / (120 / clip.duration);  // m/(steps/min)
     EXPECT_NEAR(ratio, 0.0065, 0.0005);
     if (first_ratio == 0) first_ratio = ratio;
     EXPECT_NEAR(ratio, first_ratio, 1e-12);
   }
 }
 
-/// How far a point of a sole slides while it stands, the worst over all of them; lowest: the deepest point below the
-/// floor. Soles are the undersides of `Foot` and `Toes`, in contact below a millimetre. `period` of a stride that
-/// begins with a strike of the left foot; 0 where it is not known when feet stand, and what skims the floor counts too.
+/// Largest slip of any point of a sole while it stands, and `lowest`, the deepest point below the floor. Soles are the
+/// undersides of `Foot` and `Toes`; they are in contact if closer than a millimetre. `period` is that of a stride that
+/// begins with a strike of the left foot; 0 if the times of contact are unknown: then points that skim the floor count
+/// too.
 struct FootAtRest {
   double slip = 0, lowest = 1;
 };
@@ -137,9 +138,9 @@ FootAtRest contact_of(const Clip& clip, double period) {
     const double phase = period > 0 ? clip.channels[0].rotation.times[k] / period : 0;
     for (std::size_t v = 0; v < now.size(); ++v) {
       worst.lowest = std::min(worst.lowest, now[v].z());
-      const double since_strike =
+      const double strides_since_strike =
           now[v].x() == 0 ? 0 : std::fmod(phase + (body.mesh.positions[v].x() > 0 ? 0 : 0.5), 1);
-      const bool stands = period == 0 || since_strike <= kStance;
+      const bool stands = period == 0 || strides_since_strike <= kStance;
       if (!before.empty() && stands && now[v].z() < 1e-3 && before[v].z() < 1e-3) {
         slip[v] += (now[v] - before[v]).head<2>().norm();
         worst.slip = std::max(worst.slip, slip[v]);
@@ -161,8 +162,8 @@ TEST(Gait, FeetNeitherSlideNorSink) {
   }
 }
 
-// Small steps too. Counted is also what skims the floor within a millimetre while it is set down: measured 5.1 mm at
-// most, where a foot that stands slides by 1.7.
+// Includes small steps. Points that skim the floor within a millimetre while the foot is set down count too:
+// measured 5.1 mm at most; a standing foot slides by 1.7 mm.
 TEST(Gait, FeetDoNotSlideFromStandingThroughATurnToStanding) {
   for (const double speed : kSpeeds) {
     Walk walk = at_speed(speed);
@@ -179,22 +180,21 @@ double flexion(const Clip& clip, std::size_t key, Joint hip) {
   const auto joints = joints_at_key(mannequin(), clip, key);
   const auto at = [&](std::size_t next) { return Vec3(joints[index_of(hip) + next].translation()); };
   const Vec3 thigh = at(1) - at(0), shin = at(2) - at(1);
-  // Seen from the left (+x), a shin that is bent back is turned counter-clockwise against the thigh.
+  // Seen from the left (+x), a shin bent back is turned counter-clockwise relative to the thigh.
   return std::atan2(thigh.cross(shin).x(), thigh.dot(shin)) / kDegree;
 }
 
 // Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13): 5° at contact, 15 to 20° in loading response, 5° in
-// terminal stance, 40° when the toes leave, 60° in initial swing. Measured at 0.7, 1.2, 1.5 m/s: 4.8
-// to 5.0°; 16.7, 19.8, 22.6°; 6.6, 6.9, 6.9°; 25, 30, 31°, which is less, for a mannequin's toes are short; 54, 60,
-// 60°.
+// terminal stance, 40° at toe-off, 60° in initial swing. Measured at 0.7, 1.2, 1.5 m/s: 4.8
+// to 5.0°; 16.7, 19.8, 22.6°; 6.6, 6.9, 6.9°; 25, 30, 31° (lower, because a mannequin's toes are short); 54, 60, 60°.
 TEST(Gait, KneesBendAsMeasuredOnPeople) {
   for (const double speed : kSpeeds) {
     const Clip clip = make_stride(mannequin(), speed);
     const double last = static_cast<double>(keys(clip) - 1);
-    double loading = 0, late = 0, terminal = 90, off = 0, swing = 0, least = 90;
+    double loading = 0, late = 0, terminal = 90, off = 0, swing = 0, min_flexion = 90;
     for (std::size_t k = 0; k < keys(clip); ++k) {
       const double phase = static_cast<double>(k) / last, bend = flexion(clip, k, Joint::left_upper_leg);
-      least = std::min(least, bend);
+      min_flexion = std::min(min_flexion, bend);
       if (phase < 0.2) loading = std::max(loading, bend);
       if (phase > 0.3 && phase < 0.5) terminal = std::min(terminal, bend);
       if (phase <= kStance) off = bend;
@@ -208,7 +208,7 @@ TEST(Gait, KneesBendAsMeasuredOnPeople) {
     EXPECT_NEAR(terminal, 5, 3) << speed;
     EXPECT_NEAR(off, 32, 9) << speed;
     EXPECT_NEAR(swing, 60, 8) << speed;
-    EXPECT_GT(least, 3) << speed << ": snaps straight";
+    EXPECT_GT(min_flexion, 3) << speed << ": snaps straight";
   }
 }
 
@@ -221,7 +221,7 @@ TEST(Gait, WeightGoesToTheStandingLegBeforeTheFirstStep) {
   const auto then = places(clip, lift);
   EXPECT_GT(then[0].x() - start[0].x(), 0.02);
   EXPECT_LT(then[0].y() - start[0].y(), -0.05) << "leans into the step";
-  // No jerk: the hips gain no more than 4 m/s² anywhere in the first step.
+  // Smooth start: the acceleration of the hips stays below 4 m/s² in the whole first step.
   for (std::size_t k = 1; k < lift + 40; ++k) {
     const double h = clip.channels[0].rotation.times[1];
     const Vec3 bend = places(clip, k + 1)[0] - 2 * places(clip, k)[0] + places(clip, k - 1)[0];
@@ -306,7 +306,7 @@ TEST(Gait, WalkStartsAndEndsStillAndTurnsRound) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     EXPECT_LT((second[j] - start[j]).norm(), 1e-4);
     EXPECT_LT((end[j] - places(clip, last - 1)[j]).norm(), 1e-4);
-    // There and back, and half a turn.
+    // After the walk there and back the body stands at its start, turned by half a turn.
     const Vec3 turned(-start[j].x(), -start[j].y(), start[j].z());
     EXPECT_LT((end[j] - turned).norm(), 1e-3) << name(static_cast<Joint>(j));
   }
@@ -323,7 +323,7 @@ TEST(Gait, WalkStartsAndEndsStillAndTurnsRound) {
   }
   EXPECT_NEAR(farthest, 3, 0.05);
   EXPECT_GT(lowest, -0.003);
-  // No jump anywhere: a knee at its straightest has 0.025 m, a foot that touches down 0.015.
+  // No jumps: second differences are 0.025 m at a straightening knee, 0.015 m at a foot that touches down.
   EXPECT_LT(bend, 0.04);
 }
 

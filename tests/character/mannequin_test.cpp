@@ -23,7 +23,7 @@ const Character& standard() {
   return body;
 }
 
-/// Length of the section of the mesh with a plane, of the part where `take` holds [m].
+/// Length [m] of the section of the mesh with a plane, of the part in which `take` is true.
 double girth(const Character& body, const Vec3& at, const Vec3& normal, const std::function<bool(const Vec3&)>& take) {
   double length = 0;
   for (const auto& t : body.mesh.topology.triangles) {
@@ -73,7 +73,7 @@ void expect_whole(const Character& body) {
   EXPECT_TRUE(judgement.degenerate.empty());
 }
 
-// Drillis & Contini (1966), in Winter, Fig. 4.1, as fractions of the height.
+// Drillis & Contini (1966), in Winter, Fig. 4.1, as fractions of the body height.
 TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
   for (const double h : {1.5, 1.75, 1.95}) {
     MannequinBuild build;
@@ -81,17 +81,17 @@ TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
     build.edge_length = 0.03;
     const Character body = make_mannequin(build);
     const auto at = mannequin_joints(build);
-    const auto apart = [&](Joint a, Joint b) { return (at[index_of(a)] - at[index_of(b)]).norm() / h; };
+    const auto distance = [&](Joint a, Joint b) { return (at[index_of(a)] - at[index_of(b)]).norm() / h; };
     EXPECT_NEAR(at[index_of(Joint::left_foot)].z() / h, 0.039, 1e-12);
     EXPECT_NEAR(at[index_of(Joint::left_lower_leg)].z() / h, 0.285, 1e-12);
     EXPECT_NEAR(at[index_of(Joint::left_upper_leg)].z() / h, 0.530, 1e-12);
-    EXPECT_NEAR(apart(Joint::left_upper_arm, Joint::left_lower_arm), 0.186, 1e-12);
-    EXPECT_NEAR(apart(Joint::left_lower_arm, Joint::left_hand), 0.146, 1e-12);
-    // Legs lean outward, by less than two degrees.
-    EXPECT_NEAR(apart(Joint::left_upper_leg, Joint::left_lower_leg), 0.245, 0.001);
-    EXPECT_NEAR(apart(Joint::left_lower_leg, Joint::left_foot), 0.246, 0.001);
+    EXPECT_NEAR(distance(Joint::left_upper_arm, Joint::left_lower_arm), 0.186, 1e-12);
+    EXPECT_NEAR(distance(Joint::left_lower_arm, Joint::left_hand), 0.146, 1e-12);
+    // The legs slope outward by less than two degrees.
+    EXPECT_NEAR(distance(Joint::left_upper_leg, Joint::left_lower_leg), 0.245, 0.001);
+    EXPECT_NEAR(distance(Joint::left_lower_leg, Joint::left_foot), 0.246, 0.001);
 
-    // The skin: between inscribed triangles and the table within a hundredth of the height, the foot's length too.
+    // The skin and the length of the foot match the table within a hundredth of the height: triangles are inscribed.
     const Box3 box = mesh::bounding_box(body.mesh.positions);
     EXPECT_NEAR(box.min().z() / h, 0, 0.001);
     EXPECT_NEAR(box.max().z() / h, 1, 0.003);
@@ -159,8 +159,8 @@ TEST(Mannequin, IsWholeInEveryBuild) {
 }
 
 TEST(Mannequin, HasTrianglesOfTheLengthAskedForAndOfGoodShape) {
-  // Head, hands and feet have shorter edges, which from 0.02 m on grow no more: on average 0.60, 0.60 and 0.32 of the
-  // length, measured.
+  // Head, hands and feet have shorter edges, which do not grow beyond the size for 0.02 m. The mean edge is 0.60, 0.60
+  // and 0.32 of the requested length (measured).
   for (const auto& [edge, share] : {std::pair(0.015, 0.60), std::pair(0.02, 0.60), std::pair(0.04, 0.32)}) {
     MannequinBuild build;
     build.edge_length = edge;
@@ -170,7 +170,7 @@ TEST(Mannequin, HasTrianglesOfTheLengthAskedForAndOfGoodShape) {
   }
 }
 
-/// Nearest to the front at a height of the middle of the face, both in centimetres of a body of 1.75 m.
+/// Foremost point of the middle of the face at a height; both in centimetres for a body of 1.75 m.
 double profile(const Character& body, double up) {
   double forward = -20;
   for (const auto& e : mesh::collect_edges(body.mesh.topology.triangles).edges) {
@@ -182,7 +182,7 @@ double profile(const Character& body, double up) {
   return forward;
 }
 
-// Heights of the features are those of the tables; each stands out by more than a triangle would be off.
+// Heights of the features come from the tables; each feature stands out by more than the error of a triangle.
 TEST(Mannequin, HasAFaceInProfileAndEarsAndFingers) {
   const Character& body = standard();
   const double root = profile(body, 164.5), tip = profile(body, 160.6), below = profile(body, 158.8),
@@ -193,7 +193,7 @@ TEST(Mannequin, HasAFaceInProfileAndEarsAndFingers) {
   EXPECT_GT(upper, below);
   EXPECT_GT(lower, groove + 0.1);
   EXPECT_GT(chin, 6);
-  // Ears stand off the head, which is narrower above and below them.
+  // Ears project from the head, which is narrower above and below them.
   double ear = 0, temple = 0;
   for (const Vec3& p : body.mesh.positions) {
     if (p.y() < 0 || p.y() > 0.05) continue;
@@ -201,7 +201,7 @@ TEST(Mannequin, HasAFaceInProfileAndEarsAndFingers) {
     if (p.z() > 1.675 && p.z() < 1.75) temple = std::max(temple, p.x());
   }
   EXPECT_GT(ear, temple + 0.003);
-  // Between two fingers the hand is less thick than on them.
+  // The hand is thinner between two fingers than on them.
   const BlendedBody surface = mannequin_body({});
   const auto at = mannequin_joints({});
   const Vec3 along = (at[index_of(Joint::left_hand)] - at[index_of(Joint::left_lower_arm)]).normalized();
@@ -212,7 +212,7 @@ TEST(Mannequin, HasAFaceInProfileAndEarsAndFingers) {
       if (surface(middle + height * out) < 0) return height;
     return -0.06;
   };
-  // Counted where the back of the hand falls by half a millimetre after it has risen by that.
+  // A ridge is counted where the back of the hand falls by half a millimetre after it has risen by that much.
   int ridges = 0;
   double high = 1, low = 1;
   for (double forward = -4; forward < 4; forward += 0.05) {
@@ -234,7 +234,7 @@ TEST(Mannequin, VerticesLieOnTheSurface) {
     const double h = 1e-6;
     Vec3 slope;
     for (int k = 0; k < 3; ++k) slope[k] = (surface(p + h * Vec3::Unit(k)) - surface(p - h * Vec3::Unit(k))) / (2 * h);
-    // Two Newton steps a round: 1e-5 m, ten times what is measured.
+    // The mesher makes two Newton steps a round: 1e-5 m is ten times the measured error.
     EXPECT_LT(std::abs(surface(p)) / slope.norm(), 1e-5) << p.transpose();
   }
 }
@@ -270,8 +270,8 @@ TEST(Mannequin, SkinWeightsAddUpAndAreSmoothAndMirrored) {
   }
   for (std::size_t j = 0; j < kJointCount; ++j) EXPECT_GT(largest[j], 0.9) << name(static_cast<Joint>(j));
   for (std::size_t j = 5; j < 13; ++j) EXPECT_EQ(largest[j], largest[j + kSideJointCount]);
-  // The shortest way over which a weight goes from 0 to 1 is 4 cm, at the toes: 1.875 / 0.04 m at the steepest; between
-  // the thighs it is a quarter of that.
+  // The shortest distance over which a weight rises from 0 to 1 is 4 cm, at the toes: at most 1.875 / 0.04 per metre;
+  // between the thighs a quarter of that.
   for (const auto& e : mesh::collect_edges(body.mesh.topology.triangles).edges) {
     const auto [a, b] = std::pair(static_cast<std::size_t>(e.vertices[0]), static_cast<std::size_t>(e.vertices[1]));
     const double length = (body.mesh.positions[a] - body.mesh.positions[b]).norm();

@@ -11,8 +11,8 @@
 namespace weft::character {
 namespace {
 
-/// A body of sticks with z up that faces -y, arms stretched out: its left is +x. Nodes are called j0, j1 and so on;
-/// what they are stands in `parts`.
+/// A body of sticks, z up, facing -y (left at +x), arms stretched out. Nodes are called j0, j1, ...; `parts` names
+/// them.
 struct Sticks {
   Character body;
   std::vector<std::string> parts;
@@ -47,7 +47,7 @@ struct Sticks {
   }
 };
 
-/// `right_first`: limbs of the right side come first; `pelvis`: legs hang from a node beside the spine.
+/// `right_first`: limbs of the right side come first; `pelvis`: the legs are children of a node beside the spine.
 Sticks somebody(bool right_first, bool pelvis, double collar = 0.15, double hand = 0.09) {
   Sticks s;
   const Index hips = s.add("Hips", s.add("", -1, {0, 0, 0}), {0, 0, 1});
@@ -79,7 +79,7 @@ TEST(NamelessJoints, OfLongCollarbonesAndLargeHandsAreFound) {
   expect_all_found(somebody(false, false, 0.15, 0.3));
 }
 
-// As rigs have them that twist by halves: a node in the middle of upper and lower arms and legs.
+// Rigs with twist bones have a node in the middle of upper and lower arms and legs.
 TEST(NamelessJoints, OfBonesInTwoHalvesAreTheirEnds) {
   const Sticks whole = somebody(false, true);
   Sticks s;

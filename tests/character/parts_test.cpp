@@ -1,4 +1,4 @@
-// Parts of bodies: what belongs to them, against the nearest bone of the mannequin and a skeleton made here.
+// Parts of bodies: their skin, compared with the nearest bone of the mannequin and with a skeleton made here.
 #include "character/parts.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(Parts, OfTheMannequinLieWhereTheyBelong) {
     Vec3 x = body.mesh.positions[v];
     x.x() = std::abs(x.x());
     in_hands += hands[v];
-    // Skin passes over from one bone to the next within 4 cm of a joint.
+    // Within 4 cm of a joint the skin may belong to either bone.
     const Vec3 arm = joint(Joint::left_hand) - joint(Joint::left_lower_arm);
     const double beyond = (x - joint(Joint::left_hand)).dot(arm.normalized());
     EXPECT_TRUE(!hands[v] || beyond > -0.04) << x.transpose();
@@ -56,7 +56,7 @@ Character hand_with(int fingers) {
   body.nodes = {{"Hips", -1, {}}, {"LeftLowerArm", 0, {}}, {"LeftHand", 1, {}}, {"ring", 2, {}}};
   for (int f = 0; f < fingers; ++f) body.nodes.push_back({"finger" + std::to_string(f), 2, {}});
   for (Index n = 0; n < static_cast<Index>(body.nodes.size()); ++n) {
-    if (n == 3) continue;  // holds no skin
+    if (n == 3) continue;  // this bone has no skin
     const auto bone = static_cast<Index>(body.bones.size());
     body.bones.push_back({n, Affine::Identity()});
     body.first_influence.push_back(static_cast<Index>(body.influences.size()));
@@ -103,7 +103,7 @@ TEST(Parts, LimbsAreArmsAndLegsAndTheRestIsTrunk) {
     const Limb expected = arms[v] != 0   ? left ? Limb::left_arm : Limb::right_arm
                           : legs[v] != 0 ? left ? Limb::left_leg : Limb::right_leg
                                          : Limb::trunk;
-    // In the crotch both legs hold half of the skin.
+    // In the crotch both legs share the skin equally.
     const bool between = limbs[v] == Limb::trunk && legs[v] != 0 && std::abs(body.mesh.positions[v].x()) < 0.02;
     if (!between) {
       EXPECT_EQ(limbs[v], expected) << v << " at " << body.mesh.positions[v].transpose();

@@ -7,7 +7,7 @@
 namespace weft::character {
 namespace {
 
-/// One node that slides: in 2 s by (3, 0, 1) along a way that is not even, z up; it holds one vertex at its origin.
+/// One node that moves by (3, 0, 1) in 2 s on an uneven path, z up, with one vertex at its origin.
 struct Slider {
   Character body;
   Clip clip{"slide", 2, {}, {}};
@@ -34,7 +34,7 @@ TEST(ClipTime, StandsThenGetsGoingSmoothlyThenRunsAtItsSpeed) {
   EXPECT_EQ(clip_time(timing, 1), 0.25);
   EXPECT_NEAR(clip_time(timing, 1.5), 0.25 + 1.5 * 0.25, 1e-15);
   EXPECT_NEAR(clip_time(timing, 3.5) - clip_time(timing, 1.5), 3, 1e-14);
-  // Central differences of first and second order, across the ends of the blend: no jump of velocity or acceleration.
+  // First and second central differences: velocity and acceleration are continuous across the ends of the blend.
   const auto velocity = [&](double t, double h) {
     return (clip_time(timing, t + h) - clip_time(timing, t - h)) / (2 * h);
   };
@@ -94,7 +94,7 @@ TEST(Performance, TurnsTheTravelIntoTheDirectionsOfTheRootsParent) {
   const auto world = [&](double t) -> Vec3 {
     return global_transforms(slider.body, performance.at(t))[1].translation();
   };
-  // y of the clip is now the height, which each round begins anew; -z became y.
+  // y of the clip is now the height, which starts again in each repetition; -z became y.
   EXPECT_LT((world(2.5) - (world(0.5) + Vec3(3, -1, 0))).norm(), 1e-12);
 }
 

@@ -10,7 +10,7 @@
 namespace weft::character {
 namespace {
 
-// A few roundings of numbers of size 1.
+// A few rounding errors of numbers of size 1.
 constexpr double kRounding = 1e-14;
 
 Affine shift(double x, double y, double z) {
@@ -19,7 +19,7 @@ Affine shift(double x, double y, double z) {
   return map;
 }
 
-/// An arm along x: shoulder at the origin, elbow at 1, three vertices at 0.5, 1 and 2; the middle one in equal shares.
+/// An arm along x: shoulder at 0, elbow at 1, vertices at 0.5, 1 and 2. The middle one has equal weights.
 Character arm() {
   Character arm;
   arm.nodes = {{"shoulder", -1, Affine::Identity()}, {"elbow", 0, shift(1, 0, 0)}};
@@ -49,7 +49,7 @@ TEST(Skin, FollowsItsBonesAndBlendsThem) {
   const auto x = vertices(body, pose);
   EXPECT_LT((x[0] - Vec3(0.5, 0, 0)).norm(), kRounding);
   EXPECT_LT((x[2] - Vec3(1, 1, 0)).norm(), kRounding);
-  // Halfway between (1, 0.1) and where the forearm takes it, (0.9, 0).
+  // Halfway between (1, 0.1) and its image under the forearm, (0.9, 0).
   EXPECT_LT((x[1] - Vec3(0.95, 0.05, 0)).norm(), kRounding);
 }
 
@@ -86,7 +86,8 @@ TEST(Placement, PutTogetherIsTheMapItCameFrom) {
   std::uniform_real_distribution<double> number(-2, 2);
   for (int trial = 0; trial < 100; ++trial) {
     Affine map = Affine::Identity();
-    for (int i = 0; i < 12; ++i) map.matrix()(i % 3, i / 3) = number(random);  // any, with shear, mirrored or not
+    for (int i = 0; i < 12; ++i)
+      map.matrix()(i % 3, i / 3) = number(random);  // any affine map, with shear, mirrored or not
     const Placement placement = to_placement(map);
     EXPECT_LT((placement.to_affine().matrix() - map.matrix()).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_NEAR(placement.rotation.norm(), 1, kRounding);

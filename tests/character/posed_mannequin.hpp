@@ -1,4 +1,4 @@
-// A mannequin in a pose: hierarchy and linear blend skinning in their plainest form.
+// A mannequin in a pose: hierarchy and linear blend skinning in their simplest form.
 #pragma once
 
 #include <algorithm>
@@ -8,13 +8,13 @@
 
 namespace weft::character {
 
-inline const Vec3 kUp = Vec3::UnitZ();  ///< of all bodies here
+inline const Vec3 kUp = Vec3::UnitZ();  ///< up axis of all bodies in these tests
 
 inline std::size_t index_of(Joint joint) {
   return static_cast<std::size_t>(joint);
 }
 
-/// Node to world at a key of a clip that has a rotation for every joint, and a place for the hips.
+/// Node-to-world transforms at a key of a clip with a rotation for every joint and a position for the hips.
 inline std::vector<Affine> joints_at_key(const Character& body, const Clip& clip, std::size_t key) {
   std::vector<Affine> global(body.nodes.size());
   for (std::size_t n = 0; n < global.size(); ++n) {

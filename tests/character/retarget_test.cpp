@@ -14,15 +14,15 @@
 namespace weft::character {
 namespace {
 
-// Rotations go through quaternions and back some ten times.
+// Rotations are converted to quaternions and back about ten times.
 constexpr double kRoundingOfTurns = 1e-12;
 
 Quat about(const Vec3& axis, double degrees) {
   return Quat(Eigen::AngleAxisd(degrees * kDegree, axis));
 }
 
-/// A body of sticks, z up, facing -y, so that its left is +x. Its joints have frames of their own: each node is turned
-/// by `frame` against the world at rest.
+/// A body of sticks, z up, facing -y, so that its left is +x. Its nodes have frames of their own: each is turned by
+/// `frame` relative to the world at rest.
 struct Builder {
   Character body;
   Quat frame;
@@ -42,7 +42,7 @@ struct Builder {
   }
 };
 
-/// `size`: of all lengths. `arm`: angle of the left arm below level at rest [degrees]. Turned about z by `facing`.
+/// `size`: factor of lengths; `arm`: angle of the left arm below horizontal at rest [degrees]; `facing`: turn about z.
 Character sticks(double size, double arm, double facing, const Quat& frame, bool biped = false) {
   Builder b{{}, frame, {}};
   const Quat turn = about(Vec3::UnitZ(), facing);
@@ -67,13 +67,13 @@ Character sticks(double size, double arm, double facing, const Quat& frame, bool
   return b.body;
 }
 
-/// The arm bends at the elbow by 90° upward, in world directions of a body that faces -y, while the hips walk `way`.
+/// The arm bends at the elbow by 90° upward, in the world of a body that faces -y, while the hips walk along `way`.
 Clip waving(const Character& body, const Vec3& way) {
   const auto joints = find_joints(body);
   const auto node = [&](const char* joint) { return joints[joint_number(joint)]; };
   const auto globals = global_transforms(body, rest_pose(body));
   const Index elbow = node("LeftLowerArm"), hips = node("Hips");
-  const Quat frame(globals[elbow].linear());  // all nodes have the same
+  const Quat frame(globals[elbow].linear());  // the same for all nodes
   Channel bend;
   bend.node = elbow;
   bend.rotation = {{0, 1}, {Quat::Identity(), frame.conjugate() * about(Vec3::UnitY(), -90) * frame}};
@@ -93,7 +93,7 @@ struct Result {
     const auto globals = global_transforms(body, pose_at(body, clip, t));
     return globals[joints[joint_number(joint)]].translation();
   }
-  Vec3 finger(double t) const {  // of no joint
+  Vec3 finger(double t) const {  // a node that is no joint
     const auto globals = global_transforms(body, pose_at(body, clip, t));
     for (std::size_t n = 0; n < body.nodes.size(); ++n)
       if (body.nodes[n].name == "finger") return globals[n].translation();
@@ -109,7 +109,7 @@ Result retargeted(const Character& body, const Character& motion, const Clip& cl
   return {body, retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ()).clip};
 }
 
-/// Joints of a body whose bones say nothing by their lengths, so that only names count.
+/// Finds the joints of a body with uninformative bone lengths, so that only names count.
 std::vector<Index> find_prefixed(Character body) {
   double length = 0.1;
   for (Node& node : body.nodes)
@@ -154,7 +154,7 @@ TEST(Retarget, ScalesTheWayByTheLegsAndTurnsItToWhereTheBodyFaces) {
 }
 
 TEST(Retarget, PutsTheLowestFootOfTheClipWhereTheFeetStandAtRest) {
-  // A motion whose ground is 3 m below its origin.
+  // The ground of the motion is 3 m below its origin.
   Character motion = sticks(1, 0, 0, Quat::Identity());
   Clip clip = waving(motion, {0, 0, 0.25});
   for (Vec3& x : clip.channels[1].position.values) x.z() -= 3;
@@ -232,7 +232,7 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
 }
 
 TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
-  // As 100STYLE has it: four chests and no spine.
+  // As in 100STYLE: four chests and no spine.
   std::vector<Node> nodes;
   const auto add = [&](const std::string& name, Index parent) {
     nodes.push_back({name, parent, Affine(Eigen::Translation3d(0, 0, 0.1))});
@@ -247,7 +247,7 @@ TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
   EXPECT_EQ(found[place_of(Joint::hips)], 0);
   EXPECT_EQ(found[place_of(Joint::spine)], 2);
   EXPECT_EQ(found[place_of(Joint::chest)], 4);
-  // As Character Creator and Rigify have it: legs hang from a pelvis beside the spine; nothing is called hips.
+  // As in Character Creator and Rigify: the legs are children of a pelvis beside the spine; no node is called hips.
   nodes.clear();
   const Index hip = add("CC_Base_Hip", add("root", -1)), pelvis = add("CC_Base_Pelvis", hip);
   last = add("CC_Base_Spine01", add("CC_Base_Waist", hip));
@@ -266,7 +266,7 @@ TEST(Joints, OfRigifyAndBipedAreFoundInTheirTrees) {
     nodes.push_back({name, parent, Affine(Eigen::Translation3d(0, 0, 1))});
     return static_cast<Index>(nodes.size() - 1);
   };
-  // Halves of limbs follow each other.
+  // Limbs consist of two halves each.
   Index last = add("DEF-spine", add("root", -1));
   for (const char* leg : {"DEF-thigh.L", "DEF-thigh.R"}) add(leg, last);
   for (const char* name : {"DEF-spine.001", "DEF-spine.002", "DEF-spine.003"}) last = add(name, last);
@@ -286,7 +286,7 @@ TEST(Joints, OfRigifyAndBipedAreFoundInTheirTrees) {
   EXPECT_EQ(name_of(Joint::head), "DEF-spine.006");
   EXPECT_EQ(name_of(Joint::left_upper_arm), "DEF-upper_arm.L");
   EXPECT_EQ(name_of(Joint::right_lower_arm), "DEF-forearm.R");
-  // Arms hang from the neck.
+  // The arms are children of the neck.
   nodes.clear();
   const Index pelvis = add("Bip01 Pelvis", add("Bip01", -1));
   last = add("Bip01 Spine", pelvis);
@@ -308,7 +308,7 @@ TEST(Joints, OfRigsWhoseNameStandsBeforeAllNodesAreFound) {
     Character body = plain;
     for (Node& node : body.nodes) node.name = rig + node.name;
     EXPECT_EQ(find_joints(body), expected) << rig;
-    // A rig that holds nothing stands before it.
+    // A rig without skin precedes it.
     const auto shift = static_cast<Index>(plain.nodes.size());
     for (Node& node : body.nodes) node.parent += node.parent < 0 ? 0 : shift;
     for (Bone& bone : body.bones) bone.node += shift;
@@ -321,7 +321,7 @@ TEST(Joints, OfRigsWhoseNameStandsBeforeAllNodesAreFound) {
   }
 }
 
-// As "EthanLeftArm" of a body that is well known, or with the ending of what a program makes of joints.
+// As in "EthanLeftArm", or with a suffix that a program adds to joints.
 TEST(Joints, OfRigsWhoseNameIsPartOfAllNamesAreFound) {
   const Character plain = make_mannequin({.edge_length = 0.1});
   const std::vector<Index> expected = find_joints(plain);
@@ -329,14 +329,14 @@ TEST(Joints, OfRigsWhoseNameIsPartOfAllNamesAreFound) {
        {std::pair{"Ethan", ""}, {"soldier", ""}, {"", "_jnt"}, {"", "Bind"}, {"Ethan", "_jnt"}, {"Hero_", "_end"}}) {
     Character body = plain;
     for (Node& node : body.nodes) node.name = beginning + node.name + end;
-    // Nodes beside the skeleton have names of their own.
+    // Nodes outside the skeleton have unrelated names.
     body.nodes.push_back({"Camera", -1, Affine::Identity()});
     EXPECT_EQ(find_prefixed(body), expected) << beginning << "..." << end;
   }
 }
 
 TEST(Joints, AreFoundWithTheNumbersThatSketchfabPutsBehindNamesAndWithoutColons) {
-  // Bones of characters as they are to be had, without what the tree could tell.
+  // Bone names of available characters, without the help of the hierarchy.
   const std::vector<std::vector<std::string>> rigs = {
       {"CC_Base_Hip_02", "CC_Base_L_Upperarm_050", "CC_Base_L_Forearm_051", "CC_Base_R_Upperarm_078",
        "CC_Base_R_Forearm_079", "CC_Base_L_Thigh_04", "CC_Base_L_Calf_05", "CC_Base_R_Thigh_019", "CC_Base_R_Calf_020",
@@ -372,7 +372,7 @@ TEST(Joints, AreFoundWithTheNumbersThatSketchfabPutsBehindNamesAndWithoutColons)
   }
 }
 
-/// Local rotations that point upper and lower arms of a mannequin at rest in such directions.
+/// Local rotations that point upper and lower arms of a mannequin at rest in the given directions.
 Clip arms_along(const Character& body, const std::array<std::array<Vec3, 2>, 2>& directions) {
   Clip clip{"arms", 1, {}, {}};
   const auto joints = find_joints(body);
@@ -394,7 +394,7 @@ Clip arms_along(const Character& body, const std::array<std::array<Vec3, 2>, 2>&
   return clip;
 }
 
-// Arms of the motion are longer below the elbow; without the other hand in mind ours are 10 cm farther apart.
+// The forearms of the motion are longer: retargeted arm by arm, the hands would be 10 cm farther apart.
 TEST(Retarget, KeepsHandsTogetherThatAreTogetherInTheMotion) {
   const Character body = make_mannequin({.edge_length = 0.1});
   Character motion = body;
@@ -404,7 +404,7 @@ TEST(Retarget, KeepsHandsTogetherThatAreTogetherInTheMotion) {
   const auto way = [](double x, double y, double z) { return Vec3(x, y, z).normalized(); };
   const Clip clip =
       arms_along(motion, {{{way(0.1, -0.6, -0.8), way(-0.42, -0.9, 0)}, {way(-0.1, -0.6, -0.8), way(0.42, -0.9, 0)}}});
-  const auto apart = [&](const Character& of, const Clip& by) {
+  const auto hand_difference = [&](const Character& of, const Clip& by) {
     const auto at = global_transforms(of, pose_at(of, by, 0.5));
     const auto hand = [&](Joint joint) -> Vec3 { return at[joints[place_of(joint)]].translation(); };
     return Vec3(hand(Joint::left_hand) - hand(Joint::right_hand));
@@ -413,9 +413,10 @@ TEST(Retarget, KeepsHandsTogetherThatAreTogetherInTheMotion) {
     const auto length = [&](Joint joint) { return of.nodes[joints[place_of(joint)]].local.translation().norm(); };
     return length(Joint::left_lower_arm) + length(Joint::left_hand);
   };
-  ASSERT_LT(apart(motion, clip).norm(), 0.24 * arm(motion)) << "they are together";
+  ASSERT_LT(hand_difference(motion, clip).norm(), 0.24 * arm(motion)) << "they are together";
   const Retargeted result = retarget({body, joints}, {motion, joints}, clip, Vec3::UnitZ());
-  EXPECT_LT((apart(body, result.clip) - arm(body) / arm(motion) * apart(motion, clip)).norm(), 1e-3);
+  EXPECT_LT((hand_difference(body, result.clip) - arm(body) / arm(motion) * hand_difference(motion, clip)).norm(),
+            1e-3);
 }
 
 TEST(Retarget, DoubtsWhatNoBodyDoes) {
@@ -429,7 +430,7 @@ TEST(Retarget, DoubtsWhatNoBodyDoes) {
   EXPECT_EQ(result.doubts[0], "LeftLowerArm bends by 175° at 1 s of the motion; people reach 165°");
 }
 
-// A trunk that lies along -y, on four legs of 0.5 m.
+// A horizontal trunk along -y, on four legs of 0.5 m.
 TEST(Retarget, NamesTheMotionOfAnAnimalWithFourLegs) {
   Builder b{{}, Quat::Identity(), {}};
   const Index hips = b.add("Hips", -1, {0, 0, 0.5});
@@ -465,7 +466,7 @@ TEST(Retarget, DoubtsABodyThatDoesNotStandInItsFile) {
   EXPECT_NE(doubts()[0].find("a knee bent by 60°"), std::string::npos) << doubts()[0];
 }
 
-// Whose hips are a control above the spine.
+// The hips are a control above the spine.
 TEST(Retarget, OfHipsAboveTheSpineIsUpright) {
   Character motion = make_mannequin({.edge_length = 0.1});
   const auto joints = find_joints(motion);
@@ -473,7 +474,7 @@ TEST(Retarget, OfHipsAboveTheSpineIsUpright) {
   motion.nodes[joints[0]].local.pretranslate(Vec3(0, 0, 0.4));
   for (const Joint joint : {Joint::spine, Joint::left_upper_leg, Joint::right_upper_leg})
     motion.nodes[joints[place_of(joint)]].local.pretranslate(Vec3(0, 0, -0.4));
-  Clip clip{"lean", 1, {}, {}};  // too far for one who stands
+  Clip clip{"lean", 1, {}, {}};  // too far for a standing body
   Channel lean;
   lean.node = joints[0];
   lean.rotation = {{0, 1}, {about(Vec3::UnitX(), 30), about(Vec3::UnitX(), 30)}};

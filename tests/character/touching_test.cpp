@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRoundingOfPlaces = 1e-12;
 
-/// Who faces -y, z up; arms of 0.3 and 0.25 m end at the given hands.
+/// Joint places of a body that faces -y, z up; arms of 0.3 and 0.25 m end at the given hands.
 Places standing(const Vec3& left_hand, const Vec3& right_hand) {
   Places places;
   places.fill(Vec3::Zero());
@@ -41,7 +41,7 @@ const Proportions kLarger{1.2, 1.1, 0.55};
 TEST(Touching, HandsThatAreTogetherComeTogetherInTheMiddleBetweenThem) {
   const Places theirs = standing({0.04, -0.4, 1.2}, {-0.04, -0.4, 1.18});
   const Places ours = standing({0.15, -0.4, 1.2}, {-0.05, -0.45, 1.3});
-  const auto pull = pull_hands(theirs, ours, all(), kLarger, {0, 0});
+  const auto pull = displace_hands(theirs, ours, all(), kLarger, {0, 0});
   const Vec3 left = ours[hand(false)] + pull[0], right = ours[hand(true)] + pull[1];
   EXPECT_LT((left - right - 1.2 * (theirs[hand(false)] - theirs[hand(true)])).norm(), kRoundingOfPlaces);
   EXPECT_LT((pull[0] + pull[1]).norm(), kRoundingOfPlaces);
@@ -49,29 +49,29 @@ TEST(Touching, HandsThatAreTogetherComeTogetherInTheMiddleBetweenThem) {
 
 TEST(Touching, HandsThatAreFarFromAllStayWhereTheyAre) {
   const Places theirs = standing({0.3, -0.4, 1.2}, {-0.3, -0.4, 1.2}), ours = standing({0.2, 0, 1}, {-0.2, 0, 1});
-  for (const Vec3& pull : pull_hands(theirs, ours, all(), kLarger, {0, 0})) EXPECT_EQ(pull, Vec3(Vec3::Zero()));
+  for (const Vec3& pull : displace_hands(theirs, ours, all(), kLarger, {0, 0})) EXPECT_EQ(pull, Vec3(Vec3::Zero()));
 }
 
 TEST(Touching, AHandOnTheHipStaysThereIfItRestsAndItsArmIsBent) {
   const Vec3 on_hip(0.18, 0, 0.98), away(-0.4, -0.4, 1.3);
   const Places theirs = standing(on_hip, away), ours = standing({0.3, 0, 0.9}, away);
   const Vec3 middle(0, 0, 0.9);
-  const auto rests = pull_hands(theirs, ours, all(), kLarger, {1, 0});
+  const auto rests = displace_hands(theirs, ours, all(), kLarger, {1, 0});
   EXPECT_LT((ours[hand(false)] + rests[0] - (middle + 1.1 * (on_hip - middle))).norm(), kRoundingOfPlaces);
-  EXPECT_EQ(pull_hands(theirs, ours, all(), kLarger, {0, 0})[0], Vec3(Vec3::Zero())) << "it passes";
+  EXPECT_EQ(displace_hands(theirs, ours, all(), kLarger, {0, 0})[0], Vec3(Vec3::Zero())) << "it passes";
   Places hanging = theirs;
   hanging[place_of(Joint::left_lower_arm)] = 0.5 * (hanging[place_of(Joint::left_upper_arm)] + on_hip);
-  EXPECT_EQ(pull_hands(hanging, ours, all(), kLarger, {1, 0})[0], Vec3(Vec3::Zero())) << "it hangs";
+  EXPECT_EQ(displace_hands(hanging, ours, all(), kLarger, {1, 0})[0], Vec3(Vec3::Zero())) << "it hangs";
 }
 
 TEST(Touching, ComesAndGoesWithoutAJump) {
   const Places ours = standing({0.2, -0.4, 1.2}, {-0.2, -0.4, 1.2});
   Vec3 last = Vec3::Zero();
   for (int k = 400; k >= 0; --k) {
-    const double apart = 1e-3 * k;
+    const double gap = 1e-3 * k;
     const auto pull =
-        pull_hands(standing({apart / 2, -0.4, 1.2}, {-apart / 2, -0.4, 1.2}), ours, all(), kLarger, {0, 0});
-    EXPECT_LT((pull[0] - last).norm(), 5e-3) << apart;  // 2 mm a millimetre where it grows fastest
+        displace_hands(standing({gap / 2, -0.4, 1.2}, {-gap / 2, -0.4, 1.2}), ours, all(), kLarger, {0, 0});
+    EXPECT_LT((pull[0] - last).norm(), 5e-3) << gap;  // grows by at most 2 mm for each millimetre
     last = pull[0];
   }
   EXPECT_LT((last - Vec3(-0.2, 0, 0)).norm(), kRoundingOfPlaces);
@@ -81,12 +81,12 @@ TEST(Touching, WithoutAnElbowAnArmDoesNotMove) {
   auto both = all();
   both[place_of(Joint::left_lower_arm)] = false;
   const Places theirs = standing({0.04, -0.4, 1.2}, {-0.04, -0.4, 1.2}), ours = standing({0.2, 0, 1}, {-0.2, 0, 1});
-  const auto pull = pull_hands(theirs, ours, both, kLarger, {0, 0});
+  const auto pull = displace_hands(theirs, ours, both, kLarger, {0, 0});
   EXPECT_EQ(pull[0], Vec3(Vec3::Zero()));
   EXPECT_GT(pull[1].norm(), 0.1);
 }
 
-// A hand that stays for a second goes with hips that turn, and swings after that.
+// A hand that rests for a second follows the turning hips, and swings after that.
 TEST(Touching, HandsRestWhereTheyStayAgainstTheHips) {
   std::vector<Posture> postures;
   std::vector<double> times;
@@ -106,7 +106,7 @@ TEST(Touching, HandsRestWhereTheyStayAgainstTheHips) {
     postures.push_back(posture);
     times.push_back(t);
   }
-  const auto rests = find_rests(postures, times, 0.55);
+  const auto rests = find_resting_hands(postures, times, 0.55);
   for (std::size_t k = 0; k + 3 < 20; ++k) EXPECT_EQ(rests[k], (std::array<double, 2>{1, 1})) << times[k];
   EXPECT_EQ(rests[21][0], 0) << "1.8 m/s";
 }

@@ -24,7 +24,7 @@ class Travel : public testing::Test {
 
   Vec3 hips(const Clip& clip, double t) const { return skeleton_.at(pose_at(body_, clip, t)).places[0]; }
 
-  /// How far the ball of a foot goes at most while it stands in the walk.
+  /// Largest slip of the ball of a foot while it stands in the walk.
   double slip(const Clip& clip) const {
     const std::vector<double> times = key_times(clip);
     const Footsteps steps = find_footsteps(skeleton_, postures(walk_), key_times(walk_), kUp);
@@ -49,10 +49,11 @@ class Travel : public testing::Test {
 TEST_F(Travel, OfNoneLeavesTheBodyWhereItIs) {
   const Clip clip = in_place(rig_, walk_, kUp);
   ASSERT_GT((hips(walk_, walk_.duration) - hips(walk_, 0)).norm(), 0.9 * kWay);
-  EXPECT_LT((hips(clip, walk_.duration) - hips(clip, 0)).norm(), 1e-5);  // its last key is 2 µs before its end
+  EXPECT_LT((hips(clip, walk_.duration) - hips(clip, 0)).norm(),
+            1e-5);  // the last key is 2 µs before the end of the clip
   for (const double t : key_times(walk_)) {
     const Vec3 from_start = hips(clip, t) - hips(clip, 0);
-    EXPECT_LT(std::hypot(from_start.x(), from_start.y()), 0.1) << t;  // sways by 5 cm, gets going within a step
+    EXPECT_LT(std::hypot(from_start.x(), from_start.y()), 0.1) << t;  // sways by 5 cm, reaches its speed within a step
     EXPECT_NEAR(hips(clip, t).z(), hips(walk_, t).z(), 1e-9) << "heights stay";
   }
 }
@@ -61,8 +62,8 @@ TEST_F(Travel, AtTheSpeedOfTheFeetMakesThemStand) {
   const Clip still = in_place(rig_, walk_, kUp);
   ASSERT_GT(slip(still), 0.5);
   const double mean = kWay / walk_.duration;
-  const Traveled traveled = at_speed(rig_, still, mean, kUp);
-  // Balls of feet roll before and after they stand: measured 6 %.
+  const TravelResult traveled = at_speed(rig_, still, mean, kUp);
+  // The ball of the foot rolls before and after it stands: measured 6 %.
   EXPECT_NEAR(traveled.feet, mean, 0.1 * mean);
   EXPECT_NEAR((hips(traveled.clip, walk_.duration) - hips(traveled.clip, 0)).norm(), kWay, 0.02 * kWay);
   EXPECT_LT(slip(traveled.clip), 0.05);
@@ -70,22 +71,23 @@ TEST_F(Travel, AtTheSpeedOfTheFeetMakesThemStand) {
 }
 
 TEST_F(Travel, TakesTheWayOfTheClipOutFirst) {
-  const Traveled once = at_speed(rig_, in_place(rig_, walk_, kUp), 0.5, kUp), twice = at_speed(rig_, walk_, 0.5, kUp);
+  const TravelResult once = at_speed(rig_, in_place(rig_, walk_, kUp), 0.5, kUp),
+                     twice = at_speed(rig_, walk_, 0.5, kUp);
   for (const double t : {0.5, 1.5, walk_.duration})
     EXPECT_LT((hips(once.clip, t) - hips(twice.clip, t)).norm(), 0.05) << t;
 }
 
 TEST_F(Travel, GoesAheadWhereNoFeetTell) {
-  Clip stands = walk_;
-  for (Channel& channel : stands.channels) {
+  Clip standing_clip = walk_;
+  for (Channel& channel : standing_clip.channels) {
     for (Quat& turned : channel.rotation.values) turned = channel.rotation.values.front();
     for (Vec3& place : channel.position.values) place = channel.position.values.front();
   }
-  const Traveled traveled = at_speed(rig_, stands, 0.5, kUp);
+  const TravelResult traveled = at_speed(rig_, standing_clip, 0.5, kUp);
   EXPECT_EQ(traveled.feet, 0);
-  const Vec3 way = hips(traveled.clip, stands.duration) - hips(traveled.clip, 0);
-  EXPECT_LT((way - 0.5 * stands.duration * -Vec3::UnitY()).norm(),
-            1e-3);  // hips and shoulders stand level but for 0.01°
+  const Vec3 displacement = hips(traveled.clip, standing_clip.duration) - hips(traveled.clip, 0);
+  EXPECT_LT((displacement - 0.5 * standing_clip.duration * -Vec3::UnitY()).norm(),
+            1e-3);  // hips and shoulders are level within 0.01°
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Error against run time: what the user chooses, the first line of the report, the check of the reference, the page.
+// Error against run time: user options, first line of the report, check of the reference, results page.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,8 +54,8 @@ TEST(AccuracyPlan, LeavesAxesOut) {
   plan.tolerances.emplace();
   plan.meshes.emplace();
   const Accuracy accuracy = measure_accuracy(tiny_sheet(), {}, plan);
-  EXPECT_TRUE(of_axis(accuracy, Axis::tolerance).empty());
-  EXPECT_TRUE(of_axis(accuracy, Axis::mesh).empty());
+  EXPECT_TRUE(runs_of_axis(accuracy, Axis::tolerance).empty());
+  EXPECT_TRUE(runs_of_axis(accuracy, Axis::mesh).empty());
   EXPECT_TRUE(accuracy.cross_checks.empty()) << "a single step shows nothing of its own error";
   EXPECT_NE(accuracy_markdown("x", accuracy, "a", "b").find("nothing else checks the reference"), std::string::npos);
 }
@@ -67,17 +67,17 @@ TEST(AccuracyPlan, HoldsTheSceneAsItStandsWhateverItsStep) {
     plan.tolerances.emplace();
     plan.meshes.emplace();
     const Accuracy accuracy = measure_accuracy(tiny_sheet({fmt::format("time.step={}", step)}), {}, plan);
-    const bench::Run* stands = accuracy.as_it_stands();
-    ASSERT_NE(stands, nullptr) << step;
-    EXPECT_EQ(stands->work.steps, 2 * steps_a_frame) << "in two frames";
+    const bench::Run* at_scene_settings = accuracy.scene_setting_run();
+    ASSERT_NE(at_scene_settings, nullptr) << step;
+    EXPECT_EQ(at_scene_settings->work.steps, 2 * steps_a_frame) << "in two frames";
   }
   AccuracyPlan plan;
   plan.integrators = {Integrator::implicit_euler};
   plan.steps = {0.5};
   plan.tolerances = {1e-4};
   const Accuracy accuracy = measure_accuracy(tiny_sheet({"time.tolerance=3e-4"}), {}, plan);
-  ASSERT_NE(accuracy.as_it_stands(), nullptr);
-  EXPECT_EQ(accuracy.as_it_stands()->setting.tolerance, 3e-4);
+  ASSERT_NE(accuracy.scene_setting_run(), nullptr);
+  EXPECT_EQ(accuracy.scene_setting_run()->setting.tolerance, 3e-4);
 }
 
 TEST(AccuracyPlan, IsRefusedWhereItDoesNotSuitTheScene) {
@@ -105,7 +105,8 @@ TEST(AccuracyReference, IsAsUncertainAsItsCrossChecksShow) {
   EXPECT_DOUBLE_EQ(at(uncertainty, Quantity::position), 2e-3);
 }
 
-// A sheet of 1 m. Euler with errors 1/n and costs n, BDF2 with 1/n² and costs 2 n; the scene has Euler at 10 ms.
+// Made-up results for a sheet of 1 m: Euler with errors 1/n and costs n, BDF2 with errors 1/n² and costs 2 n. The scene
+// uses Euler at 10 ms.
 Accuracy accuracy_of_one_metre() {
   Accuracy accuracy;
   accuracy.cloth_size = 1;
@@ -173,7 +174,7 @@ TEST(Recommendation, IsTheMostExactOfThoseThatCostTheSame) {
   EXPECT_NE(recommendation(accuracy).find("`time.step = 0.01`"), std::string::npos) << recommendation(accuracy);
 }
 
-// 25 frames a second in three steps: 0.01333 s would take four.
+// At 25 frames a second with three steps a frame, 0.01333 s would be rounded to four steps.
 TEST(Recommendation, RoundsStepsUp) {
   Accuracy accuracy = accuracy_of_one_metre();
   for (bench::Run& run : accuracy.runs) run.setting.step = 1.0 / 75;

@@ -1,4 +1,4 @@
-// Error against run time: shapes, comparisons, whole measurements on a small sheet, tables and plots.
+// Error against run time: shapes, comparisons, complete measurements on a small sheet, tables and plots.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 using scene::Integrator;
 using Triangles = std::vector<mesh::Triangle>;
 
-// A rectangle of 0.6 m by 0.5 m in the plane through the origin across `normal`.
+// A rectangle of 0.6 m by 0.5 m in the xy plane, turned by `rotation`.
 std::vector<Vec3> rectangle(const Quat& rotation, const Vec3& middle = Vec3::Zero()) {
   std::vector<Vec3> x{{-0.3, -0.25, 0}, {0.3, -0.25, 0}, {0.3, 0.25, 0}, {-0.3, 0.25, 0}};
   for (Vec3& point : x) point = middle + rotation * point;
@@ -111,7 +111,7 @@ TEST(Trajectories, MedianIsThatOfEachNumber) {
 }
 
 TEST(Trajectories, HoldTheNumbersOfAFlatSheetAtTheEnd) {
-  // Held all over, 2 m high, half of it turned away from the sight from above.
+  // All particles are pinned at a height of 2 m; one half of the sheet faces away from the camera above.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 0.08\nintegrator = \"bdf2\"\n[contact]\nself = false\n[[cloth]]\nname = \"a\"\nsize = [0.6, "
       "0.5]\n"
@@ -141,7 +141,7 @@ TEST(Trajectories, ParticlesOfAMeshLieOnThoseOfTheFinerOne) {
     EXPECT_FALSE(can_refine(coarse, 0.5)) << "three cells";
     refine(fine, 2);
     const simulation::Simulation a(coarse), b(fine);
-    const auto same = same_in_twice_as_fine(coarse);
+    const auto same = matching_particles_in_refined(coarse);
     ASSERT_EQ(same.size(), a.particles());
     for (std::size_t i = 0; i < same.size(); ++i)
       EXPECT_LT((a.state().positions[i] - b.state().positions[same[i]]).norm(), 1e-14) << shape << " " << i;
@@ -157,7 +157,7 @@ TEST(Trajectories, MeshesFromElsewhereAreNotRefined) {
   }
 }
 
-// The sheet that swings, small and short.
+// The swinging sheet, small and short.
 scene::Scene small_sheet(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"cloth.sheet.particles=6", "time.duration=0.2"};
   overrides.insert(overrides.end(), more.begin(), more.end());
@@ -177,7 +177,7 @@ TEST(AccuracyOfASheet, ObservedOrdersAreThoseOfTheMethods) {
     EXPECT_DOUBLE_EQ(control_of(coarse), 2 * control_of(fine));
     for (Quantity q : {Quantity::position, Quantity::energy}) {
       ASSERT_TRUE(measured().resolved(fine, q));
-      // Measured: within 0.1; what is missing is the next term of the error, and the tenth that the solver may leave.
+      // Measured: within 0.1. The rest is the next term of the error and the tenth that the solver tolerance allows.
       EXPECT_NEAR(std::log2(error_of(coarse, q) / error_of(fine, q)), expected_order(fine), 0.25) << name_of(q);
     }
   }
@@ -215,7 +215,7 @@ TEST(AccuracyOfASheet, ReferenceIsTheBetterKnownOfTwo) {
   EXPECT_LT(at(accuracy.reference.doubt(), Quantity::position), at(accuracy.second.doubt(), Quantity::position));
   EXPECT_GE(at(accuracy.uncertainty, Quantity::position), at(accuracy.reference.doubt(), Quantity::position));
   EXPECT_GT(at(accuracy.apart, Quantity::position), 0);
-  // Steps an eighth as long, against steps a quarter as long: 3/64, and as much again from the solver.
+  // Steps of an eighth against steps of a quarter: 3/64, and as much again from the solver.
   EXPECT_LT(at(accuracy.uncertainty, Quantity::position),
             0.1 * error_of(*accuracy.decided(Integrator::implicit_midpoint).back(), Quantity::position));
 }
@@ -230,7 +230,7 @@ TEST(AccuracyOfASheet, FailsOnlyWithBothReferences) {
   }
 }
 
-// The cheapest row of a table whose error and doubt reach the target, as do those of all finer ones; with its columns.
+// The cheapest row with error and uncertainty within the target, if those of all finer rows are too.
 struct Row {
   std::string axis, integrator;
   double step, tolerance, newton, cpu, error, doubt;
@@ -286,12 +286,12 @@ TEST(AccuracyOfASheet, ConclusionFollowsFromTheTable) {
   const std::string text = conclusion(measured());
   for (const auto& [target, words] : {std::pair{0.01, "of 0.01 m: "}, {0.001, "; 0.001 m: "}, {0.0001, "; 0.0001 m: "}})
     EXPECT_NE(text.find(words + cheapest_of(rows, target)), std::string::npos) << target << "\n" << text;
-  // What the solver leaves at the scene's step.
-  const auto stands = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
+  // The residual of the solver at the step of the scene.
+  const auto at_scene_settings = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
     return row.axis == "grid" && row.integrator == "implicit_euler" && row.step == 0.01 && row.newton == 0.3;
   });
-  ASSERT_NE(stands, rows.end());
-  const auto& run = measured().runs[static_cast<std::size_t>(stands - rows.begin())];
+  ASSERT_NE(at_scene_settings, rows.end());
+  const auto& run = measured().runs[static_cast<std::size_t>(at_scene_settings - rows.begin())];
   EXPECT_NE(text.find(fmt::format("the solver {:.1e} m", run.left)), std::string::npos) << text;
 }
 
@@ -316,12 +316,12 @@ TEST(AccuracyWhereNothingMoves, SaysSoWithoutInfinities) {
   const std::string text = accuracy_markdown("x", accuracy, "a", "b") + csv(accuracy_table(accuracy)) +
                            work_svg("x", accuracy) + settings_svg("x", accuracy);
   EXPECT_NE(text.find("Nothing moves"), std::string::npos);
-  // Rounding is no share of anything.
+  // Rounding errors are not reported as ratios.
   for (const bench::Run& run : accuracy.runs) EXPECT_LT(error_of(run, Quantity::energy), 1e-9);
   for (const char* word : {"inf", "nan"}) EXPECT_EQ(text.find(word), std::string::npos) << word;
 }
 
-// Euler with errors 1/n and costs n, midpoint with 1/n² and costs 2 n.
+// Made-up results: Euler with errors 1/n and costs n, midpoint with errors 1/n² and costs 2 n.
 Accuracy made_up_accuracy() {
   Accuracy accuracy;
   accuracy.uncertainty.fill(1e-7);
@@ -348,7 +348,7 @@ TEST(Conclusion, NamesTheCheapestSettingForEachAccuracyAndTheCostOfADigit) {
       << text;
   EXPECT_NE(text.find("0.001 m: implicit_midpoint, step 5 ms, newton_tolerance 0.1 (16 CPU s"), std::string::npos)
       << text;
-  // A digit: ten times the steps with Euler, √10 times with midpoint.
+  // One more digit costs ten times the steps with Euler, √10 times with midpoint.
   EXPECT_NE(text.find("implicit_euler 10.0 times and unknown, implicit_midpoint 3.2 times"), std::string::npos) << text;
 }
 
@@ -357,9 +357,9 @@ TEST(Conclusion, DoesNotPromiseWhatTheReferenceDoesNotKnow) {
   accuracy.uncertainty.fill(5e-5);
   const std::string text = conclusion(accuracy);
   EXPECT_NE(text.find("0.0001 m: the reference is not known so exactly"), std::string::npos) << text;
-  EXPECT_NE(text.find("1.7e-04 m, about as exact as can be told: implicit_midpoint, step 2.5 ms"), std::string::npos)
+  EXPECT_NE(text.find("1.7e-04 m, as exact as this report can show: implicit_midpoint, step 2.5 ms"), std::string::npos)
       << text;
-  // And marks it in the tables.
+  // The tables mark it too.
   const bench::Run& fine = *accuracy.series(Axis::grid, Integrator::implicit_midpoint).back();
   EXPECT_FALSE(accuracy.resolved(fine, Quantity::position));
   EXPECT_NE(accuracy_markdown("x", accuracy, "a", "b").find(fmt::format("~{:.1e}", fine.errors[0])), std::string::npos);
@@ -380,7 +380,7 @@ TEST(Conclusion, LeavesOutRunsThatFailedAndTheReportListsThemWithTheirReason) {
 
 TEST(Conclusion, TakesNoRowThatIsExactByLuckOrWhoseStartsDisagree) {
   Accuracy accuracy = made_up_accuracy();
-  // Very cheap and very exact, but the run with half its step is not.
+  // This run is very cheap and very accurate, but the run with half its step is not.
   bench::Run& lucky = accuracy.runs[0];
   lucky.errors.fill(1e-5);
   accuracy.runs[2].errors.fill(0.05);

@@ -1,4 +1,4 @@
-// run, simulate, render and --resume: the same bits whichever way the frames come.
+// run, simulate, render and --resume give the same bits, whichever command makes the frames.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 
 constexpr const char* kPictures = "{frame:05}.png";
 
-// Statistics without what depends on the moment: times, memory, and where it was.
-Json lasting(const fs::path& file) {
+// Statistics without values that differ between runs: times, memory, machine and folder.
+Json read_reproducible_statistics(const fs::path& file) {
   Json stats = Json::parse(support::read_bytes(file));
   for (const char* key : {"totals", "peak_memory_bytes", "scene_file", "output", "cache_bytes"}) stats.erase(key);
   for (Json& frame : stats.at("frames"))
@@ -37,7 +37,7 @@ TEST_F(CachedRun, SimulateAndRenderGiveThePixelsMeshesAndFiguresOfRun) {
   expect_same("a", "b", ".png", kFrames);
   expect_same("ma", "mb", ".ply", 3 * kFrames);
   expect_same("ma", "mc", ".ply", 3 * kFrames);
-  EXPECT_EQ(lasting(folder_ / "a.json"), lasting(folder_ / "b.json"));
+  EXPECT_EQ(read_reproducible_statistics(folder_ / "a.json"), read_reproducible_statistics(folder_ / "b.json"));
   expect_same("a", "b", ".toml", 1);
 }
 
@@ -51,7 +51,7 @@ TEST_F(CachedRun, VideoFromACacheIsThatOfRun) {
 
 TEST_F(CachedRun, OddSizesOfVideosAreTold) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", "0:2"});
-  const auto told = [&](const std::string& size, const Arguments& more) {
+  const auto reported_size = [&](const std::string& size, const Arguments& more) {
     Arguments arguments{"render", "c", "--size", size, "--partial", "--overwrite", "-o"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = run_weft(arguments, folder_);
@@ -59,11 +59,11 @@ TEST_F(CachedRun, OddSizesOfVideosAreTold) {
     const auto at = outcome.err.find("the video gets ");
     return at == std::string::npos ? "" : outcome.err.substr(at + 15, outcome.err.find(',', at) - at - 15);
   };
-  EXPECT_EQ(told("65x37", {"a.mp4"}), "66x38");
-  EXPECT_EQ(told("64x37", {"a.mov", "--codec", "prores"}), "64x38");
-  EXPECT_EQ(told("64x36", {"a.mp4"}), "");
-  EXPECT_EQ(told("65x37", {"a.mkv", "--codec", "ffv1"}), "") << "which keeps any size";
-  EXPECT_EQ(told("65x37", {"{frame}.png"}), "");
+  EXPECT_EQ(reported_size("65x37", {"a.mp4"}), "66x38");
+  EXPECT_EQ(reported_size("64x37", {"a.mov", "--codec", "prores"}), "64x38");
+  EXPECT_EQ(reported_size("64x36", {"a.mp4"}), "");
+  EXPECT_EQ(reported_size("65x37", {"a.mkv", "--codec", "ffv1"}), "") << "which keeps any size";
+  EXPECT_EQ(reported_size("65x37", {"{frame}.png"}), "");
 }
 
 TEST_F(CachedRun, FourProcessesAtOnceRenderTheQuartersOfOneCache) {
@@ -106,7 +106,7 @@ TEST_F(CachedRun, SimulationGoesOnFromTheMiddleOfItsPreroll) {
   };
   expect_well(simulate({"--cache", "whole"}));
   Subprocess weft(simulate({"--cache", "c", "--set", "time.step=2.5e-4", "--progress", "none"}), folder_);
-  // Not before the first state is there.
+  // Wait until the first state file exists.
   for (int i = 0; i < 3000 && !fs::exists(folder_ / "c/state.weft"); ++i) usleep(20'000);
   weft.send(SIGTERM);
   EXPECT_EQ(weft.wait().exit_code, 75);
@@ -147,7 +147,7 @@ TEST_F(CachedRun, ChangedLooksGoOnAndDressWhatWasKept) {
   expect_well({"render", "c", "-o", std::string("a/") + kPictures});
   expect_well({"render", "whole", "-o", std::string("b/") + kPictures});
   expect_same("a", "b", ".png", kFrames);
-  // Longer too, from a whole cache.
+  // A complete cache can also be extended.
   expect_well(with_looks({"simulate", "s.toml", "--cache", "c", "--resume", "--set", "time.duration=0.88"}));
   EXPECT_EQ(cache::Reader(folder_ / "c").frames().size(), kFrames + 2u);
 }
@@ -186,7 +186,7 @@ TEST_F(CachedRun, OverwriteOfAShorterRunLeavesNoFrameOfTheLongerOne) {
   EXPECT_EQ(contents("p", ".png").size(), 4u);
   EXPECT_EQ(contents("m", ".ply").size(), 3u * 4);
   EXPECT_TRUE(fs::exists(folder_ / "p/00077.jpg"));
-  // A part that is drawn anew is no shorter film.
+  // Redrawing a part does not shorten the film.
   expect_well({"simulate", "s.toml", "--cache", "c"});
   expect_well({"render", "c", "-o", std::string("q/") + kPictures});
   expect_well({"render", "c", "-o", std::string("q/") + kPictures, "--frames", "3:5", "--overwrite"});
@@ -240,7 +240,7 @@ TEST_F(CachedRun, SecondProcessAtTheSamePlaceIsRefused) {
 
 class KilledRun : public CachedRun {
  protected:
-  // Kills a run after so many frames.
+  // Kills a run after the given number of frames.
   void kill_after(int frames) const {
     Subprocess process({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--size", "64x36", "--quality", "draft",
                         "--progress", "none", "--log-json", "-"},
@@ -281,7 +281,7 @@ TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_TRUE(contains(outcome.err, "nothing to resume; starting at the beginning")) << outcome.err;
   const auto written = fs::last_write_time(folder_ / "a.mp4");
-  fs::create_directory(folder_ / ".a.weft-cache");  // killed while it took the cache away
+  fs::create_directory(folder_ / ".a.weft-cache");  // as if the run was killed while it removed the cache
   support::write_bytes(folder_ / ".a.weft-cache/frame_00003.weft", "\x89WEFT\r\n\x1A-");
   const Outcome again = resume();
   EXPECT_EQ(again.exit_code, 0);
@@ -342,7 +342,7 @@ TEST_F(CachedRun, InterruptedByCtrlCRunGoesOnToTheWholeVideo) {
 }
 
 TEST_F(CachedRun, InterruptedWithinALongFrameSimulationKeepsTheFramesBefore) {
-  // Ten million steps for the second frame.
+  // Ten million steps are needed for the second frame.
   Subprocess process({"simulate", "s.toml", "--cache", "c", "--progress", "none", "--log-json", "-", "--set",
                       "time.step=1e-7", "--set", "time.fps=1", "--set", "time.duration=3"},
                      folder_);
@@ -367,14 +367,14 @@ TEST_F(CachedRun, FullDiskEndsASimulationButOnlyTheCacheOfARun) {
   const Outcome simulated = limited({"simulate", "s.toml", "--cache", "c"}, 3000);
   EXPECT_EQ(simulated.exit_code, 6);
   EXPECT_TRUE(contains(simulated.err, "cannot be written: File too large")) << simulated.err;
-  // Pictures of a few kilobytes fit where states do not.
+  // The limit leaves enough space for pictures of a few kilobytes, but not for states.
   const std::string camera = "camera=[{name='v',position=[1,-1,1],target=[0,0,0.2]}]";
   const Outcome run = limited({"run", "s.toml", "-o", std::string("p/") + kPictures, "--set", camera}, 8000);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(contains(run.err, "the run goes on, but")) << run.err;
   EXPECT_EQ(contents("p", ".png").size(), static_cast<std::size_t>(kFrames));
   EXPECT_FALSE(fs::exists(folder_ / "p/.s.weft-cache"));
-  // A camera that is found has the pictures drawn from the cache.
+  // With a computed camera the pictures are drawn from the cache.
   EXPECT_EQ(limited({"run", "s.toml", "-o", std::string("q/") + kPictures}, 3000).exit_code, 6);
 }
 

@@ -1,4 +1,4 @@
-// What runs with a cache are tested on: a cloth that falls over a ball, and comparisons to the last bit.
+// Fixture for tests of runs with a cache: a cloth that falls over a ball, and bitwise comparisons.
 #pragma once
 
 #include <filesystem>
@@ -18,17 +18,17 @@ class CachedRun : public support::TestFolder {
 
   void SetUp() override;
 
-  /// `weft command...`, small and quick, in the folder of the test.
+  /// Runs `weft command...` with small, quick settings in the folder of the test.
   Outcome weft(Arguments arguments) const;
   void expect_well(const Arguments& arguments) const;
 
-  /// Files below a folder that end so, by their name, without those of working caches.
+  /// Files below a folder with this name ending, by name; those of working caches are left out.
   std::map<std::string, std::string> contents(const std::string& folder, const std::string& ending) const;
-  /// Expects the same files with the same bytes in both, and `count` of them.
+  /// Expects `count` files in both folders, with the same names and bytes.
   void expect_same(const std::string& a, const std::string& b, const std::string& ending, std::size_t count) const;
-  /// Checksums of the decoded frames, by another program.
+  /// Checksums of the decoded frames, computed by another program.
   std::string decoded(const std::string& video) const;
-  /// One number for all that is drawn: positions, heat, cameras and lights of all frames of a cache.
+  /// Hash of all that is drawn: positions, heat, cameras and lights of all frames of a cache.
   std::uint64_t hash_of_frames(const std::string& cache, int count) const;
 };
 

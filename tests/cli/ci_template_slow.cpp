@@ -1,5 +1,5 @@
-// The repository of `weft new --template ci`, made and kept as its README says: what is changed by mistake is caught,
-// by the script that its workflow runs.
+// The repository of `weft new --template ci`, made and used as its README describes: the script that its workflow runs
+// detects accidental changes.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -22,7 +22,7 @@ class CiRepository : public support::TestFolder {
     repo_ = folder_ / "repo";
   }
 
-  // What the workflow runs.
+  // Runs the same script as the workflow; returns its exit code.
   int check(const std::string& options = "", const std::string& environment = "") {
     const std::string command = fmt::format("cd '{}' && {} WEFT='{}' sh pictures.sh {} >log 2>&1", repo_.string(),
                                             environment, WEFT_PROGRAM, options);
@@ -31,8 +31,8 @@ class CiRepository : public support::TestFolder {
     return WEXITSTATUS(status);
   }
 
-  // With a change, which is then taken back: its exit code, that all that is named in `found` is in the log, and how
-  // many pictures are as they were.
+  // Applies a change, runs the check and undoes the change. Expects the exit code, all strings of `found` in the log,
+  // and the number of unchanged pictures.
   void expect_caught(const char* what, const std::function<void()>& change, int code,
                      const std::vector<std::string>& found, const std::string& options = "",
                      const std::string& environment = "") {
@@ -51,7 +51,7 @@ class CiRepository : public support::TestFolder {
     support::write_bytes(repo_ / file, text.replace(text.find(from), from.size(), to));
   }
 
-  // The reference of the flag's video as it would be with a square in one of its frames.
+  // Replaces the reference of the flag's video by one with a square in one of its frames.
   void change_frame(const char* frame) const {
     ASSERT_EQ(run_weft({"render", "caches/flag", "-o", "all/{frame:05}.png", "--size", "480x270"}, repo_).exit_code, 0);
     image::Metadata metadata;
@@ -61,7 +61,7 @@ class CiRepository : public support::TestFolder {
     ASSERT_EQ(run_weft({"join", "all", "-o", "references/flag.mp4", "--overwrite"}, repo_).exit_code, 0);
   }
 
-  // In the middle of the picture, where the cloth is, by 16 levels.
+  // Changes a square in the middle of the picture, on the cloth, by 16 levels.
   void make_hole(const std::string& file) const {
     image::Image picture = image::read_png(repo_ / file);
     for (int i = 0; i < 4; ++i) {
@@ -71,7 +71,7 @@ class CiRepository : public support::TestFolder {
     image::write_png(repo_ / file, picture);
   }
 
-  // The same picture with other bytes: 16 bits a channel, no metadata.
+  // Writes the same picture with other bytes: 16 bits a channel, no metadata.
   void compress_anew(const std::string& file) const {
     const std::string before = support::read_bytes(repo_ / file);
     const image::Image picture = image::read_png(repo_ / file);
@@ -91,9 +91,9 @@ TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
   EXPECT_EQ(check(), 8) << log_;
   ASSERT_EQ(run_weft({"accept", "references", "out", "--reason", "first pictures"}, repo_).exit_code, 0);
   ASSERT_EQ(check(), 0) << log_;
-  EXPECT_NE(log_.find("\n9 of 9 are as their references\n"), std::string::npos) << log_;
+  EXPECT_NE(log_.find("\n9 of 9 match their references\n"), std::string::npos) << log_;
 
-  // Nine that a viewer would see.
+  // Nine changes that a viewer would see.
   expect_caught("physics", [&] { replace("scenes/flag.toml", "wind = [8, 2, 0]", "wind = [8, 3, 0]"); }, 7,
                 {"\nflag/00010.png: DIFFERS", "\nflag.mp4: 30 of 31 frames differ, the first is frame 1; ",
                  "\ndrapes/scarf.mp4: 0 of 21 frames differ"});
@@ -105,9 +105,9 @@ TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
                 7, {"\nflag/00030.png: missing", "\nflag.mp4: 30 frames, the reference has 31"});
   expect_caught("a picture that was not there",
                 [&] { fs::copy_file(repo_ / "scenes/flag.toml", repo_ / "scenes/drapes/flag.toml"); }, 8,
-                {"\ndrapes/flag/00020.png: no reference", "9 of 14 are as their references"});
+                {"\ndrapes/flag/00020.png: no reference", "9 of 14 match their references"});
   expect_caught("one frame of a video", [&] { change_frame("00015.png"); }, 7,
-                {"worst is frame 15: ", "8 of 9 are as their references"});
+                {"worst is frame 15: ", "8 of 9 match their references"});
 
   expect_caught("a pin that is missing",
                 [&] { replace("scenes/flag.toml", "low = [0, 1]\nhigh = [0, 1]", "low = [0, 0]\nhigh = [0, 0]"); }, 7,
@@ -117,7 +117,7 @@ TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
   expect_caught("a hole of four pixels", [&] { make_hole("references/drapes/scarf/00020.png"); }, 7,
                 {"\ndrapes/scarf/00020.png: DIFFERS: 4 of 129600 pixels differ", "\nflag/00020.png: same"});
 
-  // Four that nobody sees.
+  // Four invisible changes.
   expect_caught("a comment", [&] { replace("scenes/flag.toml", "# A flag", "# One flag"); }, 0, {"9 of 9"});
   expect_caught("another compression", [&] { compress_anew("references/flag/00010.png"); }, 0, {"9 of 9"});
   expect_caught(

@@ -1,4 +1,4 @@
-// What runs tell of their error, against what it is.
+// The reported error estimate of runs, compared with their true error.
 #include "bench/companions.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ ErrorEstimate estimate_of(const scene::Scene& scene, const CompanionOptions& opt
   return estimate_error(scene, follow(scene), options);
 }
 
-// Of second order, each with a sixteenth of the step and solved to a millionth.
+// Reference: second order, a sixteenth of the step, solved to a millionth.
 const Trajectory& truth() {
   static const Trajectory kTruth = follow(swinging({"time.integrator=implicit_midpoint", "time.step=0.000625",
                                                     "solver.newton_tolerance=1e-6", "solver.linear_tolerance=1e-3"}));
@@ -73,17 +73,17 @@ TEST(Companions, NameTheSourceOfTheError) {
 TEST(Companions, TellTheErrorOfTheMeshWhereItsCellsCanBeHalved) {
   const std::vector<std::string> exact{"time.integrator=bdf2", "time.step=0.0025", "solver.newton_tolerance=1e-3"};
   scene::Scene scene = swinging(exact);
-  const double told = part_of(estimate_of(scene, {.mesh = true}), ErrorSource::mesh);
-  // Against a mesh with four times the cells: all but a sixteenth of the error.
+  const double estimated = part_of(estimate_of(scene, {.mesh = true}), ErrorSource::mesh);
+  // Compared with a mesh of four times the cells, only a sixteenth of the error is missing.
   scene::Scene twice = scene, four_times = scene;
   refine(twice, 2);
   refine(four_times, 4);
-  std::vector<std::size_t> same = same_in_twice_as_fine(scene);
-  const std::vector<std::size_t> next = same_in_twice_as_fine(twice);
+  std::vector<std::size_t> same = matching_particles_in_refined(scene);
+  const std::vector<std::size_t> next = matching_particles_in_refined(twice);
   for (std::size_t& particle : same) particle = next[particle];
   const double is = at(compare(follow(scene), follow(four_times), same), Quantity::position);
-  EXPECT_GT(told, is / 3);
-  EXPECT_LT(told, is * 3);
+  EXPECT_GT(estimated, is / 3);
+  EXPECT_LT(estimated, is * 3);
 
   scene = swinging({"cloth.sheet.particles=6"});
   const ErrorEstimate odd = estimate_of(scene, {.mesh = true});
@@ -92,7 +92,7 @@ TEST(Companions, TellTheErrorOfTheMeshWhereItsCellsCanBeHalved) {
   EXPECT_NE(cli::error_summary(odd).find("mesh not known: the cells cannot be halved"), std::string::npos);
 }
 
-// A strip that stands on its edge and may fall either way.
+// A strip that stands on its edge and may fall to either side.
 scene::Scene undecided() {
   return support::scene_of_text(
       "[time]\nduration = 0.8\n[[cloth]]\nname = \"a\"\nsize = [0.2, 0.3]\nparticles = [5, 7]\nstart_noise = 1e-7\n"
@@ -109,16 +109,16 @@ TEST(Companions, SayWherePathsPart) {
   EXPECT_FALSE(cli::error_json(estimate).at("comparable"));
 }
 
-// Of second order, where nothing touches: what half and twice the step change is in ratio, whether frames are cut
-// evenly (5 ms; at 10 ms twice the step changes just as much as says nothing), twice the step is two steps and a half
-// (8 ms), or the error chooses the steps.
+// Without contact BDF2 shows its second order: the changes from half and twice the step are in the expected ratio.
+// Cases: steps that divide a frame evenly (5 ms; at 10 ms the change from twice the step is just inconclusive), twice
+// the step is two and a half steps a frame (8 ms), and steps chosen by the error.
 TEST(Companions, ObserveTheOrder) {
   for (const char* steps : {"time.step=0.005", "time.step=0.008", "time.tolerance=1e-5"}) {
     const scene::Scene scene = swinging({"time.integrator=bdf2", steps});
     const Trajectory run = follow(scene);
     const ErrorEstimate estimate = estimate_error(scene, run);
-    EXPECT_FALSE(estimate.doubtful()) << steps;
-    // 1.42, 1.30 and 1.10.
+    EXPECT_FALSE(estimate.is_lower_bound()) << steps;
+    // Measured: 1.42, 1.30 and 1.10.
     const double ratio = at(estimate.all, Quantity::position) / at(compare(run, truth()), Quantity::position);
     EXPECT_GT(ratio, 0.67) << steps;
     EXPECT_LT(ratio, 1.6) << steps;
@@ -126,13 +126,13 @@ TEST(Companions, ObserveTheOrder) {
 }
 
 TEST(Companions, DoubtStepsWhoseErrorDoesNotFall) {
-  // A stiff sheet that springs off a floor: twice the step changes it hardly more than half of it does.
+  // A stiff sheet bounces off a floor: doubling the step changes the result hardly more than halving it.
   const scene::Scene bounces = support::scene_of_text(
       "[time]\nduration = 0.48\nintegrator = \"bdf2\"\n[[cloth]]\nname = \"a\"\nsize = 0.4\nparticles = 9\n"
       "position = [0, 0, 0.2]\nrotation = [20, 10, 0]\nmaterial = { stretch = 200, shear = 60, bend = 3e-3, "
       "stretch_viscosity = 0.2, shear_viscosity = 0.1, bend_friction = 0 }\n"
       "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n");
-  // Twice the step of the midpoint rule gains energy on a stiff sheet, and is refused.
+  // With twice the step the midpoint rule gains energy on a stiff sheet, and that run is refused.
   scene::Scene fails = swinging({"time.integrator=implicit_midpoint", "time.step=0.02"});
   fails.cloths[0].material.stretch_weft = fails.cloths[0].material.stretch_warp = 1e5;
   for (const scene::Scene& scene : {bounces, fails}) {

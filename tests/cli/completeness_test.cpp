@@ -1,4 +1,4 @@
-// What is not whole is no output: missing and broken frames, pictures that are drawn later, parts of videos.
+// Incomplete results are not output: missing and broken frames, pictures that are drawn later, parts of videos.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -23,10 +23,10 @@ TEST(FramesText, TellsFramesInARowAsARange) {
 
 class Completeness : public CachedRun {
  protected:
-  void expect_not_whole(const Arguments& arguments, const std::string& said) const {
+  void expect_not_whole(const Arguments& arguments, const std::string& message) const {
     const Outcome outcome = weft(arguments);
     EXPECT_EQ(outcome.exit_code, 9) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, said)) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, message)) << outcome.err;
   }
   /// Cuts a file of the cache in half.
   void break_file(const std::string& name) const {
@@ -37,14 +37,14 @@ class Completeness : public CachedRun {
 
 TEST_F(Completeness, RenderOfAPartTakesTheFramesBeforeItsEndIfTold) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
-  expect_not_whole({"render", "c", "-o", "all.mp4"}, "c: of frames 0:21 frames 8:21 are not there; weft simulate");
+  expect_not_whole({"render", "c", "-o", "all.mp4"}, "c: of frames 0:21 frames 8:21 are missing; weft simulate");
   expect_not_whole({"render", "c", "-o", "all.mp4", "--frames", "5:12:2"}, "c: of frames 5:12:2 frames 9, 11 are not");
-  expect_not_whole({"render", "c", "-o", "all.mp4", "--frames", "8:12", "--partial"}, "frames 8:12 are not there");
-  expect_not_whole({"thumbnail", "c", "-o", "t.png", "--frame", "8"}, "frame 8 is not there");
+  expect_not_whole({"render", "c", "-o", "all.mp4", "--frames", "8:12", "--partial"}, "frames 8:12 are missing");
+  expect_not_whole({"thumbnail", "c", "-o", "t.png", "--frame", "8"}, "frame 8 is missing");
   EXPECT_FALSE(fs::exists(folder_ / "all.mp4"));
   const Outcome part = weft({"render", "c", "-o", "part.mp4", "--partial"});
   EXPECT_EQ(part.exit_code, 0);
-  EXPECT_TRUE(contains(part.err, "frames 8:21 are not there; only 0:8 are taken")) << part.err;
+  EXPECT_TRUE(contains(part.err, "frames 8:21 are missing; only 0:8 are taken")) << part.err;
   EXPECT_EQ(probe_video(folder_ / "part.mp4").frames, 8);
   EXPECT_EQ(probe_video(folder_ / "part.mp4").metadata.at("frames"), "0:8");
 }
@@ -64,9 +64,9 @@ TEST_F(Completeness, FramesThatAreMissingInTheMiddleOrBrokenAreNamedBeforeAnythi
   fs::remove(folder_ / "c/frame_00004.weft");
   break_file("c/frame_00007.weft");
   break_file("c/frame_00012.weft");
-  const std::string said =
-      "c: of frames 0:21 frame 4 is not there; frames 7, 12 cannot be used: c/frame_00007.weft: broken";
-  expect_not_whole({"render", "c", "-o", kPicturesInP, "--meshes", "m", "--stats", "s.json"}, said);
+  const std::string message =
+      "c: of frames 0:21 frame 4 is missing; frames 7, 12 cannot be used: c/frame_00007.weft: broken";
+  expect_not_whole({"render", "c", "-o", kPicturesInP, "--meshes", "m", "--stats", "s.json"}, message);
   for (const char* output : {"p", "m", "s.json"}) EXPECT_FALSE(fs::exists(folder_ / output)) << output;
 }
 
@@ -96,7 +96,7 @@ TEST_F(Completeness, LayersAreThoseOfOneRunAfterAResumeAndInParts) {
   const auto drawn = fs::last_write_time(folder_ / "p/00003.exr");
   expect_well({"render", "c", "-o", "p/{frame:05}.exr", "--frames", ":9", "--resume"});
   EXPECT_EQ(fs::last_write_time(folder_ / "p/00003.exr"), drawn);
-  expect_same("whole", "p", ".exr", 9);  // motion is since the frame before, whoever has drawn that
+  expect_same("whole", "p", ".exr", 9);  // motion is relative to the previous frame, whichever command drew that one
   support::write_bytes(folder_ / "p/00004.exr", support::read_bytes(folder_ / "p/00004.exr").substr(0, 2000));
   EXPECT_EQ(weft({"render", "c", "-o", "p/{frame:05}.exr", "--frames", ":9", "--resume"}).exit_code, 6);
 }
@@ -106,7 +106,7 @@ TEST_F(Completeness, RenderDoesNotGoOnWithOtherPictures) {
   const Arguments render{"render", "c", "-o", kPicturesInP, "--frames", ":4", "--resume"};
   expect_well(render);
   const std::string third = support::read_bytes(folder_ / "p/00002.png");
-  // A picture of another frame under this name is not this one, and may be all that there is of it.
+  // A picture of another frame under this name is not overwritten: it may be the only copy.
   fs::copy_file(folder_ / "p/00003.png", folder_ / "p/00002.png", fs::copy_options::overwrite_existing);
   const Outcome refused = weft(render);
   EXPECT_EQ(refused.exit_code, 6);
@@ -153,10 +153,10 @@ class Joining : public Completeness {
     const Outcome outcome = join(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   }
-  void expect_refused(const Arguments& arguments, int code, const std::string& said) const {
+  void expect_refused(const Arguments& arguments, int code, const std::string& message) const {
     const Outcome outcome = join(arguments);
     EXPECT_EQ(outcome.exit_code, code) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, said)) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, message)) << outcome.err;
     EXPECT_FALSE(fs::exists(folder_ / "joined.mp4"));
   }
 };
@@ -190,7 +190,7 @@ TEST_F(Joining, OfPicturesIsInTheCodecThatIsAskedFor) {
 TEST_F(Joining, OfVideosKeepsEveryPictureAndItsTime) {
   std::string pictures;
   const auto lines = [&](const std::string& video) {
-    // Without the times of the part: "0, pts, duration, size, hash".
+    // The hash column only: times differ between a part and the whole. Columns: "0, pts, duration, size, hash".
     std::string hashes;
     std::istringstream text(decoded(video));
     for (std::string line; std::getline(text, line);) hashes += line.substr(line.rfind(',')) + "\n";
@@ -206,7 +206,7 @@ TEST_F(Joining, OfVideosKeepsEveryPictureAndItsTime) {
   EXPECT_EQ(facts.frames, kFrames);
   EXPECT_NEAR(facts.duration, kFrames / 25.0, 1e-9);
   EXPECT_EQ(facts.metadata.at("frames"), "0:21");
-  // It counts as the film itself.
+  // The joined video is accepted as complete.
   EXPECT_EQ(weft({"render", "c", "-o", "joined.mp4", "--resume"}).err,
             "note: joined.mp4 is whole already: frames 0:21\n");
 }

@@ -1,4 +1,4 @@
-// diff and accept as their users call them: exit codes, what is said, and the files that are there afterwards.
+// diff and accept as their users call them: exit codes, messages, and the files that exist afterwards.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -63,7 +63,7 @@ TEST_F(Diff, FoldersNameWhatIsMissingAndWhatIsSurplus) {
   write("out/gone.png", 1);
   write("out/new.png", 1);
   expect({"diff", "ref", "out"}, 8, "new.png: no reference: there is none for out/new.png");
-  EXPECT_NE(outcome_.out.find("2 of 3 are as their references"), std::string::npos) << outcome_.out;
+  EXPECT_NE(outcome_.out.find("2 of 3 match their references"), std::string::npos) << outcome_.out;
   expect({"diff", "ref", "out/a.png"}, 0, "a.png: same");
   expect({"diff", "ref/a.png", "out"}, 0, "a.png: same");
 }
@@ -97,7 +97,7 @@ TEST_F(Diff, AcceptedPictureIsTheReferenceFromThenOn) {
   expect({"accept", "ref/a.png", "out", "--reason", "all"}, 2, "out: a folder cannot become ref/a.png");
   expect({"accept", "ref/a.png", "out/a.png", "out/b.png", "--reason", "two"}, 2, "cannot all become ref/a.png");
   expect({"accept", "ref", "out/a.png", "out/none.png", "--reason", "half"}, 4, "none.png: does not exist");
-  expect({"diff", "ref", "out"}, 7, "0 of 2 are as their references");
+  expect({"diff", "ref", "out"}, 7, "0 of 2 match their references");
   expect({"accept", "ref", "out/a.png", "--reason", "brighter by design"}, 0, "ref/a.png: now as out/a.png");
   expect({"diff", "ref", "out"}, 7, "a.png: same");
   EXPECT_NE(support::read_bytes(folder_ / "ref/accepted.md").find("| brighter by design |"), std::string::npos);
@@ -112,19 +112,19 @@ TEST_F(Diff, FoldersAreComparedWithAllBelowThem) {
   write("out/front/a.png", 9);
   expect({"diff", "ref", "out"}, 7, "front/a.png: DIFFERS");
   EXPECT_NE(outcome_.out.find("front/deep/b.png: missing: the reference ref/front/deep/b.png"), std::string::npos);
-  EXPECT_NE(outcome_.out.find("\n1 of 3 are as their references"), std::string::npos) << outcome_.out;
+  EXPECT_NE(outcome_.out.find("\n1 of 3 match their references"), std::string::npos) << outcome_.out;
   write("out/front/a.png", 1);
   write("out/front/deep/b.png", 1);
   write("out/back/c.png", 1);
   expect({"diff", "ref", "out", "--heatmap", "maps"}, 8, "back/c.png: no reference");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "maps/front/deep/b.png"));
   std::filesystem::remove_all(folder_ / "out/back");
-  expect({"diff", "ref", "out"}, 0, "3 of 3 are as their references");
-  // Folders of classes are no folders of pictures.
+  expect({"diff", "ref", "out"}, 0, "3 of 3 match their references");
+  // The folder of a machine class (`default`) is no folder of pictures.
   std::filesystem::rename(folder_ / "ref/front", folder_ / "front");
   std::filesystem::create_directories(folder_ / "ref/default");
   std::filesystem::rename(folder_ / "front", folder_ / "ref/default/front");
-  expect({"diff", "ref", "out"}, 0, "3 of 3 are as their references");
+  expect({"diff", "ref", "out"}, 0, "3 of 3 match their references");
 }
 
 TEST_F(Diff, LimitsOfSinglePicturesComeFromAFile) {
@@ -184,7 +184,7 @@ TEST_F(Diff, FoldersAreAcceptedWithAllBelowThem) {
   EXPECT_NE(outcome_.err.find("ref/front/b.png: now as out/front/b.png"), std::string::npos) << outcome_.err;
   EXPECT_NE(outcome_.err.find("ref/a.png: is the same already"), std::string::npos) << outcome_.err;
   EXPECT_NE(support::read_bytes(folder_ / "ref/accepted.md").find("| front/b.png | none |"), std::string::npos);
-  expect({"diff", "ref", "out"}, 7, "2 of 3 are as their references");
+  expect({"diff", "ref", "out"}, 7, "2 of 3 match their references");
   std::filesystem::create_directories(folder_ / "empty");
   expect({"accept", "ref", "empty", "--reason", "none"}, 4, "empty: holds no pictures or videos");
 }
@@ -235,7 +235,7 @@ TEST_F(Diff, PageShowsBeforeAfterAndDifferenceOfWhatDiffers) {
     for (std::size_t at = 0; (at = page.find(words, at)) != std::string::npos; ++at) ++found;
     return found;
   };
-  EXPECT_EQ(count("<h1>1 of 3 are as their references</h1>"), 1);
+  EXPECT_EQ(count("<h1>1 of 3 match their references</h1>"), 1);
   EXPECT_EQ(count("<h2>f/&lt;b&gt;&amp;.png</h2>"), 1);
   EXPECT_EQ(count("<b>"), 0);
   EXPECT_EQ(count("<figure class=\"before\">"), 2) << "of the one that is missing too";
@@ -243,7 +243,7 @@ TEST_F(Diff, PageShowsBeforeAfterAndDifferenceOfWhatDiffers) {
   EXPECT_EQ(count("<figure class=\"difference\">"), 1);
   EXPECT_EQ(count("<li>a.png: same</li>"), 1);
   EXPECT_EQ(count("http"), 1) << "the policy that forbids them, and no address";
-  // The pictures are in it as they were read.
+  // The page embeds the pictures unchanged.
   const std::string mark = "<figure class=\"after\"><img alt=\"after\" src=\"data:image/png;base64,";
   const std::size_t begin = page.find(mark) + mark.size();
   std::ofstream(folder_ / "after.base64") << page.substr(begin, page.find('"', begin) - begin);

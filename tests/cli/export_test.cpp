@@ -11,7 +11,7 @@
 namespace weft::cli {
 namespace {
 
-/// A PLY file without the texture coordinates of its vertices.
+/// Removes the texture coordinates of the vertices from a PLY file.
 std::string without_uv(const std::string& ply) {
   const std::string_view words = "property float s\nproperty float t\n", end = "end_header\n";
   const std::size_t at = ply.find(words), body = ply.find(end) + end.size();
@@ -45,7 +45,8 @@ TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   for (const auto& [name, bytes] : exported) EXPECT_EQ(without_uv(bytes), meshes.at(name)) << name;
   expect_exported({"c", "--format", "obj", "-o", "obj", "--frames", "2:21:6"});
   EXPECT_EQ(contents("obj", ".obj").size(), 3U * 4);
-  expect_exported({"c", "--format", "obj", "-o", "obj", "--frames", "3:4"});  // beside the same materials
+  expect_exported(
+      {"c", "--format", "obj", "-o", "obj", "--frames", "3:4"});  // the material files exist already and are equal
   EXPECT_EQ(contents("obj", ".mtl").size(), 3U);
   expect_exported({"c", "--format", "pc2", "-o", "pc2"});
   EXPECT_EQ(contents("pc2", ".pc2").size(), 3U);
@@ -61,7 +62,7 @@ TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   EXPECT_EQ(contents("blender", ".py").size(), 1U);
 }
 
-// Out, and in again: a camera that a glTF file has is that of the scene that wrote it, with either axis up.
+// Export and import: a camera read from a glTF file equals the camera of the scene that wrote it, with either axis up.
 TEST_F(ExportCommand, CamerasOfGltfFilesAreTakenByScenes) {
   const std::string film = R"([time]
 duration = 0.4

@@ -1,4 +1,4 @@
-// The program on the scenes of `weft bench stability`: it ends as the verdict says, and leaves whole files only.
+// Runs the scenes of `weft bench stability`: each ends with the expected verdict and leaves only complete files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,19 +18,19 @@ namespace fs = std::filesystem;
 
 struct Trial {
   std::string name, text;
-  int frames = 0;                      // at most, the start among them
+  int frames = 0;                      // maximum, including the start
   std::vector<std::string> overrides;  // KEY=VALUE
   bench::EnergyLimit limit;
   friend void PrintTo(const Trial& trial, std::ostream* out) { *out << trial.name; }
 };
 
-// The list as it is, but for its length; and ways to ask for too much.
+// The scenes of the list, shortened; and options that request too much.
 std::vector<Trial> trials() {
   std::vector<Trial> trials;
   std::string hanging;
   for (const bench::ExtremeCase& extreme : bench::extreme_cases()) {
-    const int most = extreme.name == "many" ? 2 : extreme.name == "resting" ? 4 : 9;
-    trials.push_back({extreme.name, extreme.text, std::min(most, extreme.frames), {}, extreme.limit});
+    const int max_frames = extreme.name == "many" ? 2 : extreme.name == "resting" ? 4 : 9;
+    trials.push_back({extreme.name, extreme.text, std::min(max_frames, extreme.frames), {}, extreme.limit});
     if (extreme.name == "ratio_1e8") hanging = extreme.text;
   }
   trials.push_back({"no_iterations", hanging, 5, {"solver.newton_iterations=1", "solver.halvings=0"}, {}});
@@ -75,14 +75,14 @@ TEST_P(ExtremeScene, EndsWithTheExitCodeOfItsVerdictAndWholeFiles) {
   const Trial& trial = GetParam();
   const bench::Outcome expected =
       bench::try_scene(support::scene_of_text(trial.text, trial.overrides), trial.frames - 1, trial.limit);
-  // That energy comes from nowhere shows in the report of `bench stability`, not in the exit code of a run.
+  // Spurious energy appears in the report of `bench stability`, not in the exit code of a run.
   ASSERT_NE(expected.verdict, bench::Verdict::not_finite);
   const bool refused = expected.verdict == bench::Verdict::refused;
   const Outcome outcome = run();
   EXPECT_EQ(outcome.exit_code, refused ? 5 : 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
-  // No temporary name is left but in the cache of a run that took so long that its state was saved, and the video holds
-  // every frame that was finished.
+  // The only temporary files are in the cache of a run that was long enough to save its state. The video contains every
+  // finished frame.
   std::set<std::string> left = tree();
   if (refused) std::erase_if(left, [](const std::string& name) { return name.starts_with("output/.s.weft-cache/"); });
   EXPECT_EQ(left, (std::set<std::string>{"output/s.effective.toml", "output/s.mp4", "s.toml", "stats.json"}));

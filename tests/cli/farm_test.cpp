@@ -1,4 +1,4 @@
-// weft farm without a scheduler: its scripts, one task after the other. tests/farm/farm_test.py has a Slurm.
+// weft farm without a scheduler: its scripts run one task after the other. tests/farm/farm_test.py uses a Slurm.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -25,7 +25,7 @@ class Farms : public CachedRun {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return farm(arguments);
   }
-  /// All tasks that `farm/tasks.tsv` lists, in their order; returns the exit codes that are not 0.
+  /// Runs all tasks of `farm/tasks.tsv`, in order; returns the exit codes that are not 0.
   std::vector<int> do_tasks(const std::string& environment = "") const {
     std::vector<int> codes;
     std::ifstream in(folder_ / "a b/farm/tasks.tsv");
@@ -66,7 +66,7 @@ TEST_F(Farms, TasksMakeWhatOneSweepMakes) {
   EXPECT_NE(partly.out.find("--array=0\n"), std::string::npos) << "only what is missing: " << partly.out;
 }
 
-// A program that is killed once works at the second try; one that finds a mistake is not tried again.
+// A program that is killed once succeeds on the second try; one that finds a mistake is not tried again.
 TEST_F(Farms, TasksThatWereKilledAreTriedAgain) {
   ASSERT_EQ(submit().exit_code, 0);
   support::write_bytes(folder_ / "killed",

@@ -1,4 +1,4 @@
-// A film of made-up stages: what is kept, what is stopped, whichever stage fails.
+// A film with made-up stages: what is kept and what is stopped if any stage fails.
 #include "cli/film.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kNever = std::numeric_limits<int>::max();
 
-// What happened during a run, and where it is to fail.
+// Records a run, and defines where it fails.
 struct Script {
   int simulation_fails_at = kNever, drawing_fails_at = kNever, writing_fails_at = kNever;
   bool painter_missing = false, source_missing = false, finish_fails = false;
@@ -24,7 +24,7 @@ struct Script {
 
   bool motion = false;
   std::vector<int> simulated, drawn, written;
-  std::vector<int> before;  // of each that is drawn: the frame before it, -1 where there is none
+  std::vector<int> before;  // for each drawn frame: the frame before it, -1 if there is none
   int finished = 0, alive = 0, writers_made = 0;
   std::mutex mutex;
 };
@@ -195,7 +195,7 @@ TEST(Film, EndsWithTheLastWantedFrame) {
   EXPECT_EQ(script.simulated, up_to(9));
   script.simulated.clear();
   script.written.clear();
-  play(script, {0, 8, 4});  // 4 is the last one wanted
+  play(script, {0, 8, 4});  // frame 4 is the last requested one
   EXPECT_EQ(script.simulated, up_to(5));
 }
 
@@ -235,7 +235,7 @@ TEST(Film, StopsAllStagesWhenTheOutputFails) {
 TEST(Film, TellsThatTheOutputCouldNotBeFinished) {
   Script script;
   script.finish_fails = true;
-  script.simulation_fails_at = 3;  // the output is nearer to the user: its failure counts
+  script.simulation_fails_at = 3;  // the failure of the output stage is the one reported
   const FilmResult result = play(script, {0, 10, 1});
   EXPECT_FALSE(result.finished_output);
   EXPECT_EQ(describe_failure(result.failure).text, "no space for the index");

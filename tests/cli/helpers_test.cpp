@@ -1,4 +1,4 @@
-// What helps those who write scenes and commands: templates, watching, completion, the manual, the estimate.
+// Helpers for authors of scenes and commands: templates, watching, completion, the manual, the estimate.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -59,12 +59,12 @@ TEST_F(Helpers, TemplateOfARepositoryAddsToOneThatIsThere) {
   EXPECT_TRUE(fs::exists(folder_ / "pictures.sh"));
   EXPECT_NE(made.err.find("limits.toml: kept as it is"), std::string::npos) << made.err;
   EXPECT_NE(made.err.find("PICTURES.md says how to go on"), std::string::npos) << made.err;
-  // And once more, what it has written itself.
+  // A second call accepts the files that the first call wrote.
   EXPECT_EQ(run_weft({"new", ".", "--template", "ci"}, folder_).exit_code, 0);
   EXPECT_EQ(read(".gitignore"), "/build/\n/out/\n/report/\n/caches/\n/.weft/\n/.ccache/\n");
 }
 
-// A camera that is found from the cloth moves with it: then all pixels differ.
+// Computed cameras follow the cloth, so that every pixel would differ.
 TEST_F(Helpers, ScenesOfTheTemplateOfARepositoryHaveFixedCameras) {
   EXPECT_EQ(run_weft({"new", "repo", "--template", "ci"}, folder_).exit_code, 0);
   int scenes = 0;
@@ -94,7 +94,7 @@ TEST_F(Helpers, WatchDrawsAgainWhenTheSceneChanges) {
   EXPECT_NE(support::read_bytes(folder_ / "first.png"), support::read_bytes(folder_ / "s.png"));
 }
 
-// The other end of descriptor 9 is closed before the first byte, as `weft man | head` closes it before the last.
+// The reading end of descriptor 9 is closed before the first byte, as `weft man | head` closes it before the last.
 TEST_F(Helpers, EndsQuietlyWhereNobodyReadsWhatItPrints) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);

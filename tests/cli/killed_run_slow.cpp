@@ -1,4 +1,4 @@
-// Runs that are killed at any moment, and go on.
+// Runs that are killed at any moment and then resumed.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -21,7 +21,7 @@ class KilledAnywhere : public CachedRun {
             "--size", "320x180", "--quality", "preview", "--progress", "none"};
   }
 
-  // Every file under a final name is one of the uninterrupted run.
+  // Every file under a final name equals that of the uninterrupted run.
   void expect_no_half_file(const std::map<std::string, std::string>& whole_meshes) const {
     if (fs::exists(folder_ / "a.mp4")) {
       EXPECT_EQ(decoded("a.mp4"), whole_video_);
@@ -48,7 +48,7 @@ TEST_F(KilledAnywhere, RunGoesOnToTheSameFramesAndMeshes) {
   std::uniform_real_distribution<double> moment(0, 1.1 * seconds);
   int killed_twice = 0;
   for (int round = 0; round < 20; ++round) {
-    // Some are killed again while they go on.
+    // Some runs are killed again while they resume.
     for (int attempt = 0; attempt <= round % 3; ++attempt) {
       Arguments arguments = run("a.mp4", "m");
       if (attempt > 0) arguments.push_back("--resume");

@@ -1,5 +1,5 @@
-// What the rules call not simulated: the simulation is bit for bit the same whatever it is, and a kept frame that is
-// dressed anew is the frame that the changed scene shows.
+// Keys that the rules mark as not simulated: the simulation is bitwise independent of them, and a cached frame with a
+// new appearance equals the frame of the changed scene.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ target = [0, 0, 0]
 name = "l"
 )";
 
-/// Changes of every key that is not simulated, by their paths.
+/// Visits every key that is not simulated, by its path.
 void each_change(const scene::Table& table, const std::string& path, bool simulated,
                  const std::function<void(const std::string&, const scene::Rule&, bool)>& visit) {
   const auto visit_rules = [&](const std::vector<scene::Rule>& rules) {
@@ -57,7 +57,7 @@ void each_change(const scene::Table& table, const std::string& path, bool simula
   if (const scene::Variant* variant = table.variant_of(start.get())) visit_rules(variant->rules);
 }
 
-/// Another value than that of kSceneWithLooks.
+/// A value different from that in kSceneWithLooks.
 std::string other_value(const std::string& path, const scene::Rule& rule) {
   if (path == "render.camera") return "w";
   if (path == "time.duration") return "0.4";
@@ -102,14 +102,14 @@ frame::SnapshotPtr third_frame(const scene::Scene& scene) {
   return simulation.snapshot();
 }
 
-/// All that is drawn of a frame.
+/// Serialises all that is drawn of a frame.
 std::string bytes_of(const frame::FrameSnapshot& snapshot) {
   const cache::Surfaces surfaces = cache::surfaces_of(snapshot);
   return cache::encode_surfaces(surfaces) + cache::encode_frame(snapshot, {}, surfaces);
 }
 
 void expect_not_simulated(const std::string& change, const scene::Scene& before, const frame::FrameSnapshot& kept) {
-  // Some keys need another one.
+  // Some keys require another key.
   std::vector<std::string> changes{change};
   if (change.find("sensor_width") != std::string::npos) changes.emplace_back("camera.w.focal_length=40");
   if (change.find("follow_rotation") != std::string::npos) changes.emplace_back("camera.w.follow=o");
@@ -131,7 +131,7 @@ TEST(Looks, AreAllThatTheRulesCallNotSimulatedAndNothingElse) {
       return expect_not_simulated(change, before, *kept);
     }
     const scene::LoadResult after = scene::load_text(kSceneWithLooks, "s.toml", {change});
-    if (!after.ok() || after.scene.hash == before.hash) return;  // scene rules' own tests see to those
+    if (!after.ok() || after.scene.hash == before.hash) return;  // the tests of the scene rules cover these
     ++others;
     EXPECT_NE(after.scene.simulation_hash, before.simulation_hash) << change;
   };

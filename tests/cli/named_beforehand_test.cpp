@@ -1,4 +1,4 @@
-// What ends a run, or may end it, is named beforehand.
+// Anything that ends a run, or may end it, is reported before the run.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 class UnevenCells : public support::TestFolder {};
 
 TEST_F(UnevenCells, AreNamedByCheckAndRunWhereObstaclesAreMet) {
-  // Two rows of squares of 0.1 m with one of needles between them, of this height.
+  // Two rows of 0.1 m squares with a row of needle triangles of this height between them.
   const auto needles = [](double height) {
     std::string text;
     for (const double y : {0.0, 0.1, 0.1 + height, 0.2 + height})
@@ -48,7 +48,7 @@ TEST_F(UnevenCells, AreNamedByCheckAndRunWhereObstaclesAreMet) {
 class EnclosedCloth : public support::TestFolder {};
 
 TEST_F(EnclosedCloth, IsNamedByCheckAndByTheRun) {
-  const auto said = [&](const std::string& change) {
+  const auto is_reported = [&](const std::string& change) {
     support::write_bytes(folder_ / "s.toml",
                          "time = { duration = 0.1, fps = 10, step = 0.1 }\n[[cloth]]\nname = 'c'\nsize = 0.2\n"
                          "particles = 4\n[[obstacle]]\nname = 'b'\n" +
@@ -60,12 +60,12 @@ TEST_F(EnclosedCloth, IsNamedByCheckAndByTheRun) {
     EXPECT_EQ(contains(check.out, words), contains(run.err, words)) << change;
     return contains(check.out, words);
   };
-  EXPECT_TRUE(said("shape = 'sphere'\nradius = 0.5"));
-  EXPECT_TRUE(said("shape = 'box'\nsize = [1, 1, 1]"));
-  EXPECT_FALSE(said("shape = 'sphere'\nradius = 0.5\nposition = [0, 0, -0.6]"));
-  EXPECT_FALSE(said("shape = 'sphere'\nradius = 0.5\ncollide = false"));
-  EXPECT_FALSE(said("shape = 'plane'\nposition = [0, 0, -0.1]"));
-  EXPECT_FALSE(said("shape = 'half_pipe'\nradius = 0.5")) << "open";
+  EXPECT_TRUE(is_reported("shape = 'sphere'\nradius = 0.5"));
+  EXPECT_TRUE(is_reported("shape = 'box'\nsize = [1, 1, 1]"));
+  EXPECT_FALSE(is_reported("shape = 'sphere'\nradius = 0.5\nposition = [0, 0, -0.6]"));
+  EXPECT_FALSE(is_reported("shape = 'sphere'\nradius = 0.5\ncollide = false"));
+  EXPECT_FALSE(is_reported("shape = 'plane'\nposition = [0, 0, -0.1]"));
+  EXPECT_FALSE(is_reported("shape = 'half_pipe'\nradius = 0.5")) << "open";
 }
 
 class MidpointContact : public support::TestFolder {};

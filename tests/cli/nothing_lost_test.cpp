@@ -1,5 +1,5 @@
-// Whatever stands in the way of a command, or is put there while it works: nothing of somebody else is lost, nothing
-// crashes, nothing hangs, and no input is called our own fault.
+// If files are in the way of a command, or are put there while it works, no foreign file is lost, nothing crashes or
+// hangs, and no input is reported as an internal error.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -29,7 +29,7 @@ class NothingLost : public CachedRun {
     return arguments;
   }
 
-  /// Starts the command, does something to its folder while it works, and lets it end.
+  /// Starts the command, calls `disturb` while it works, and waits for its end.
   Outcome disturbed(const Arguments& arguments, const std::function<void()>& disturb) const {
     Subprocess process(with(arguments), folder_);
     EXPECT_TRUE(process.wait_for_output("\"frame\":3,"));
@@ -127,7 +127,7 @@ class AnyInput : public NothingLost {
     image::write_png(folder_ / "a.png", image::Image(16, 16));
     expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":3"});
   }
-  /// Exit code 0 is well, 1 our own fault, more than 128 a crash.
+  /// Exit code 0 is success, 1 an internal error, more than 128 a crash.
   void expect_refused(const Arguments& arguments, const std::string& about = "") const {
     const Outcome outcome = run_weft(arguments, folder_);
     EXPECT_TRUE(outcome.exit_code > 1 && outcome.exit_code < 128)
@@ -194,7 +194,7 @@ TEST_F(AnyInput, ThatNestsTooDeepIsRefused) {
   expect_refused({"check", "g.toml"}, "128 levels");
   write("c/manifest.json", "{\"format\": " + list);
   expect_refused({"render", "c", "-o", "x.mp4"}, "128 levels");
-  // A page shows what it can.
+  // A page shows what it can read.
   for (const char* file : {"r/b.json", "r/sweep.json", "r/review.json"}) write(file, "{\"scene\": " + list);
   image::write_png(folder_ / "r/p_1.png", image::Image(16, 16));
   image::write_png(folder_ / "r/p_2.png", image::Image(16, 16));
@@ -301,8 +301,7 @@ TEST_F(AnyInput, DoctorWithoutAPlaceForTemporaryFilesSaysSo) {
       << outcome.out;
 }
 
-// Right checksums, wrong content: eight bytes of a frame, one place after another, replaced by numbers that break
-// something, in turn.
+// Valid checksums, invalid content: eight bytes, at one place after another, become numbers that break something.
 TEST_F(AnyInput, AFrameWithWildContentUnderARightChecksumIsDrawnOrNamed) {
   const std::string whole = support::read_bytes(folder_ / "c/frame_00001.weft");
   const cache::Content content = cache::unpack(whole);

@@ -20,7 +20,7 @@ RunOptions parse_run(Arguments arguments) {
   return std::get<RunOptions>(parse_command_line(arguments));
 }
 
-// The message of the usage error that these arguments must give.
+// Returns the message of the usage error that these arguments must cause.
 std::string refusal(const Arguments& arguments) {
   try {
     parse_command_line(arguments);
@@ -35,7 +35,7 @@ TEST(Options, MayStandInAnyOrderAndMixWithTheScene) {
   std::vector<Arguments> groups{{"a.toml"},        {"-o", "b.mp4"},      {"--frames", "2:9:3"}, {"--size", "64x36"},
                                 {"--set", "k=1"},  {"--quality=draft"},  {"--threads", "3"},    {"--overwrite"},
                                 {"--fps", "12.5"}, {"--backend", "egl"}, {"--set", "l=2"}};
-  // Every rotation, forward and backward: each option comes first, last and next to each kind of neighbour.
+  // Every rotation, forward and backward: each option is once first, once last, and beside each kind of neighbour.
   for (std::size_t shift = 0; shift < groups.size(); ++shift) {
     std::rotate(groups.begin(), groups.begin() + 1, groups.end());
     for (const bool backward : {false, true}) {
@@ -103,7 +103,7 @@ TEST(Options, WordsLongerThanAnyPathAreNotRepeatedWhole) {
   };
   EXPECT_EQ(message(std::string(4096, 'a')).size(), 4096 + 16);
   EXPECT_EQ(message(std::string(60000, 'a')), "--set: got " + std::string(200, 'a') + "... (60000 bytes) here");
-  // The 200th byte is the first half of a letter.
+  // The 200th byte is the first half of a two-byte character.
   EXPECT_EQ(message(std::string(199, 'a') + std::string(60000, '\xC3')),
             "--set: got " + std::string(199, 'a') + "... (60199 bytes) here");
 }

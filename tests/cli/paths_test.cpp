@@ -1,5 +1,5 @@
-// No file is ever lost: every command, with every option that names a path pointed at its inputs, at another of its
-// outputs, at a file that exists, at a link to one, at a folder. WEFT_PATHS_TABLE=FILE writes the table as Markdown.
+// No file is ever lost. Every option of every command that names a path is pointed at an input, at another output, at
+// an existing file, at a link to one, and at a folder. WEFT_PATHS_TABLE=FILE writes the table as Markdown.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
-// Two frames, nothing to hit, and a file that the scene names.
+// Two frames without contact, and a file that the scene references.
 constexpr const char* kSceneWithFile = R"(
 time = { duration = 0.1, fps = 10, step = 0.1 }
 cloth = [{ name = "cloth", size = 0.2, particles = 3 }]
@@ -25,15 +25,15 @@ obstacle = [{ name = "o", shape = "mesh", file = "o.obj", collide = false }]
 )";
 constexpr const char* kMesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// A command with one option that names a path, and what else it writes.
+/// A command with one option that names a path, and its other outputs.
 struct Command {
   const char* name;
   Arguments arguments;  ///< `@` stands for the path
   const char* option;
-  const char* free;  ///< a path that is well
+  const char* free;  ///< an acceptable path
   const char* input;
   const char* other;            ///< another of its outputs; nullptr: it has none
-  int exists_code = 6;          ///< where a file is there
+  int exists_code = 6;          ///< exit code if the file exists
   bool is_folder = false;       ///< the option names a folder
   const char* clash = nullptr;  ///< in that folder, a file that would be written; nullptr: the folder itself is refused
 };
@@ -135,14 +135,14 @@ class Paths : public support::TestFolder {
       image::write_png(folder_ / name, image);
     image.rgb.assign(image.rgb.size(), 200);
     for (const char* name : {"b.png", "out/a.png"}) image::write_png(folder_ / name, image);
-    // Outputs that are inputs by another name.
+    // Outputs that are hard links to inputs.
     for (const char* name : {"s.mp4", "in.png", "i/1.png", "in/cloth_00001.ply"})
       fs::create_hard_link(folder_ / "o.obj", folder_ / name);
     Arguments simulate{"simulate", "s.toml", "--cache", "c", "--progress", "none"};
     ASSERT_EQ(run_weft(simulate, folder_).exit_code, 0);
   }
 
-  /// Every file and link below the folder with what it holds. Empty folders hold nothing that could be lost.
+  /// Content of every file and link below the folder, by name. Empty folders do not count: they hold nothing to lose.
   std::map<std::string, std::string> all() const {
     std::map<std::string, std::string> found;
     for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
@@ -155,7 +155,7 @@ class Paths : public support::TestFolder {
     return found;
   }
 
-  /// Runs the command with this path; expects the exit code and that all that was there is there still.
+  /// Runs the command with this path; expects the exit code and that all existing files are unchanged.
   void expect(const Command& command, const std::string& kind, const std::string& path, int code) {
     Arguments arguments = command.arguments;
     std::replace(arguments.begin(), arguments.end(), std::string("@"), path);
@@ -183,7 +183,7 @@ class Paths : public support::TestFolder {
                                                        command.option, kind, path, outcome.exit_code, left);
   }
 
-  /// What the option has to be given so that `file` would be written.
+  /// Value of the option with which `file` would be written.
   static std::string given(const Command& command, const std::string& folder) {
     return std::string(command.free).find('{') == std::string::npos ? folder : folder + "/{frame}.png";
   }
@@ -200,7 +200,7 @@ TEST_P(PathOption, LosesNothing) {
   expect(overwriting, "input, with --overwrite", command.input, 2);
   const bool in_folder = command.clash != nullptr;
   const bool replaces = command.exists_code == 0;
-  // By a detour, and through links to the input or to the folder it is in.
+  // A path with "..", and paths through links to the input or to its folder.
   expect(command, "input, by a detour", "in/../" + std::string(command.input), 2);
   fs::create_directory_symlink(".", folder_ / "here");
   expect(command, "input, through a link", "here/" + std::string(command.input), 2);
@@ -212,7 +212,7 @@ TEST_P(PathOption, LosesNothing) {
     expect(command, "nothing there", command.free, 0);
     return;
   }
-  // A file that exists, a link to it, a link to nothing.
+  // An existing file, a link to it, a dangling link.
   const std::string file = in_folder ? "old/" + std::string(command.clash) : "old" + ending;
   if (in_folder) fs::create_directories(folder_ / "old");
   support::write_bytes(folder_ / file, "precious");
@@ -225,7 +225,7 @@ TEST_P(PathOption, LosesNothing) {
   fs::remove(folder_ / link);
   fs::create_symlink("nothing", folder_ / link);
   expect(command, "link to nothing", in_folder ? given(command, "linked") : link, command.exists_code);
-  // A folder that holds something, in the place of a file.
+  // A folder with content in place of a file.
   const std::string place = in_folder ? "holder/" + std::string(command.clash) : "folder" + ending;
   fs::create_directories(folder_ / place);
   support::write_bytes(folder_ / place / "x.txt", "precious");

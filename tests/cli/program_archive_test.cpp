@@ -1,4 +1,4 @@
-// Archives of the program for farms: what is taken, what is refused, and tasks that unpack and run one.
+// Archives of the program for farms: what is accepted, what is refused, and tasks that unpack and run one.
 #include "cli/program_archive.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 struct Entry {
   std::string name, content;
-  char type = '0';  // of ustar: file
+  char type = '0';  // ustar type flag: regular file
 };
 
 std::string tar_of(const std::vector<Entry>& entries) {
@@ -50,9 +50,9 @@ std::string compressed(const std::string& bytes) {
   return out;
 }
 
-/// One whose program says so and becomes the built one.
-std::vector<Entry> program(const std::string& said) {
-  const std::string script = "#!/bin/sh\necho '" + said + "' >&2\nexec '" WEFT_PROGRAM "' \"$@\"\n";
+/// An archive whose program prints `said` and then executes the built program.
+std::vector<Entry> program(const std::string& message) {
+  const std::string script = "#!/bin/sh\necho '" + message + "' >&2\nexec '" WEFT_PROGRAM "' \"$@\"\n";
   return {{"weft/", "", '5'},
           {"weft/bin/weft", script},
           {"weft/bin/weft-tools", script},
@@ -123,7 +123,7 @@ TEST_F(ProgramArchives, AreUnpackedOnceAndRunByAllTasks) {
   ASSERT_EQ(programs().size(), 1u);
   const fs::path tar = programs()[0], unpacked = fs::path(tar).replace_extension();
   EXPECT_EQ(tar.extension(), ".tar");
-  // What two others that unpack at once have left: one was killed, the other is about to be faster.
+  // Leftovers of two other tasks that unpacked at the same time: one was killed, the other is about to finish first.
   fs::create_directories(unpacked.string() + ".new.node.1/weft");
 
   std::ifstream in(folder_ / "a b/farm/tasks.tsv");

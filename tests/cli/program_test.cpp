@@ -1,4 +1,4 @@
-// The program as its users meet it: exit codes, messages, and the files that are there afterwards.
+// The program as its users run it: exit codes, messages, and the files that exist afterwards.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using Arguments = std::vector<std::string>;
 
-// Five frames of a handkerchief that falls past a ball and a floor; they are there to be seen, not to be hit.
+// Five frames of a handkerchief that falls past a ball and a floor; both are visible but do not collide.
 constexpr const char* kFallPastBall = R"(
 [time]
 duration = 0.4
@@ -62,7 +62,7 @@ class Program : public support::TestFolder {
     support::write_bytes(folder_ / "s.toml", kFallPastBall);
   }
 
-  // Small and quick, whatever else is asked for.
+  // Small and quick settings, followed by the options `more`.
   Arguments run_arguments(const Arguments& more = {}) const {
     Arguments arguments{"run", "s.toml", "--size", "64x36", "--quality", "draft", "--progress", "none"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -70,7 +70,7 @@ class Program : public support::TestFolder {
   }
   Outcome run(const Arguments& more = {}) const { return run_weft(run_arguments(more), folder_); }
 
-  // All files below the folder, relative to it; of a working cache only the folder.
+  // All files below the folder, relative to it; for a working cache only the folder itself.
   std::set<std::string> tree() const {
     std::set<std::string> names;
     for (auto entry = fs::recursive_directory_iterator(folder_); entry != fs::recursive_directory_iterator(); ++entry) {
@@ -329,7 +329,7 @@ TEST_F(Program, CheckReadsPatternsAndTheirDrawings) {
   const auto damaged = [](std::string text, const std::string& good, const std::string& bad) {
     return text.replace(text.find(good), good.size(), bad);
   };
-  // Two panels of 5 by 4 points, and the 4 of each side are one.
+  // Two panels of 5 by 4 points; the 4 points of each sewn side are shared.
   put(cloth, kSack, kDrawing);
   for (const bool plan : {false, true}) {
     const Outcome good =
@@ -347,10 +347,10 @@ TEST_F(Program, CheckReadsPatternsAndTheirDrawings) {
   EXPECT_TRUE(contains(bad.err, "sack.toml:20:8: hem.0.mass")) << bad.err;
   EXPECT_TRUE(contains(bad.err, "back.svg:2:2: path \"back\": ")) << bad.err;
   EXPECT_EQ(bad.out, "");
-  // With panels that can be drawn, names of edges are looked at too.
+  // If the panels can be drawn, the names of edges are checked too.
   put(cloth, pattern, kDrawing);
   EXPECT_TRUE(contains(run_weft({"check", "dressed.toml"}, folder_).err, "sack.toml:13:5: seam.0.a: expected an edge"));
-  // A drawing alone is an asset; what shows only in sewing is told too.
+  // A mistake in the drawing alone is an asset error; mistakes that appear only in sewing are reported too.
   put(cloth, kSack, damaged(kDrawing, "'back'", "'bck'"));
   EXPECT_EQ(run_weft({"check", "dressed.toml"}, folder_).exit_code, 4);
   put(cloth, damaged(kSack, "side = \"back\"", "rotation = 180"), kDrawing);
@@ -419,7 +419,7 @@ TEST_F(Program, DoctorTriesThisMachineAndLeavesNothingBehind) {
 }
 
 TEST_F(Program, FailedSimulationKeepsAllFramesBefore) {
-  // One Newton iteration and no smaller steps: enough in free fall, too little once the cloth meets the ball.
+  // One Newton iteration and no smaller steps suffice in free fall, but not when the cloth touches the ball.
   const Outcome outcome = run({"-o", "a.mp4", "--stats", "s.json", "--set", "solver.newton_iterations=1", "--set",
                                "solver.halvings=0", "--set", "obstacle.ball.collide=true", "--set",
                                "solver.newton_tolerance=1e-9", "--set", "solver.linear_tolerance=1e-12"});
@@ -477,7 +477,7 @@ TEST_F(Interrupted, ByCtrlCKeepsWholePictures) {
 }
 
 TEST_F(Interrupted, TwiceQuitsAtOnceAndRemovesWhatIsHalfWritten) {
-  // Ten million steps for the first frame: it will not be finished in time.
+  // Ten million steps for the first frame: it cannot finish during the test.
   Subprocess weft(endless({"-o", "a.mp4", "--set", "time.step=1e-7", "--set", "time.fps=1"}), folder_);
   ASSERT_TRUE(weft.wait_for_output("\"frame\":0,"));
   weft.send(SIGINT);

@@ -1,4 +1,4 @@
-// What statistics and summary say of made-up runs.
+// Statistics and summary of made-up runs.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Frame 0, and a frame that took 20 ms to simulate, 5 of them for collisions.
+// Frame 0, and a frame that took 20 ms to simulate, of which 5 ms for collisions.
 std::vector<FrameRecord> two_frames() {
   std::vector<FrameRecord> frames(2);
   frames[0].report.min_distance = kInfinity;
@@ -62,7 +62,7 @@ TEST(StatsJson, SumsUpSteps) {
   EXPECT_DOUBLE_EQ(totals.at("solver_error_m"), 0.0004);
 }
 
-// The keys in the first column of a table that follows this line of the page.
+// Returns the keys in the first column of the table that follows this line of the page.
 std::set<std::string> documented_keys(const std::string& page, const std::string& before) {
   std::set<std::string> keys;
   const std::size_t begin = page.find(before);
@@ -117,7 +117,7 @@ TEST(Summary, NamesTheFramesOfTheExtremes) {
   }
 }
 
-// The sum over all frames is no error of anything: 120 mm for a band of a metre.
+// The summary gives the error of the worst frame, not the sum over all frames: 120 mm for a band of a metre.
 TEST(Summary, SaysByWhatTheWorstFrameIsOffAndWhatLessensIt) {
   RunReport report;
   report.frames = two_frames();
@@ -159,13 +159,13 @@ TEST(Summary, SaysWhatCompanionsHaveMeasured) {
 TEST(Summary, OfARunWithoutFramesSaysSo) {
   RunReport report;
   report.output = "a.mp4";
-  report.width = 64;  // without a size nothing was to be drawn
+  report.width = 64;  // without a size no picture was requested
   EXPECT_EQ(summary(report).substr(0, 31), "a.mp4: no frame was written\n   ");
 }
 
 TEST(Warnings, ComeOnlyWithFiguresThatLookWrong) {
   auto frames = two_frames();
-  EXPECT_TRUE(find_warnings(frames).empty());  // one rejected step for four good ones is well
+  EXPECT_TRUE(find_warnings(frames).empty());  // one rejected step for four accepted ones is no reason to warn
   frames[1].report.rejected_steps = 2;
   ASSERT_EQ(find_warnings(frames).size(), 1u);
   EXPECT_EQ(find_warnings(frames)[0], "2 of 6 steps were rejected: a smaller time.step would be faster");

@@ -1,4 +1,4 @@
-// What machines nobody watches do to a run: full and read-only disks, kills, missing parts.
+// Runs on unattended machines: full and read-only disks, kills, missing parts.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <signal.h>
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 class Robustness : public CachedRun {
  protected:
-  /// Expects every file under a final name to be whole, and returns how many there are.
+  /// Expects every file under a final name to be complete; returns their number.
   int expect_whole_files() const {
     int count = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
@@ -49,7 +49,7 @@ class Robustness : public CachedRun {
     return count;
   }
 
-  /// Temporary files and the working cache of a run.
+  /// True for temporary files and the working cache of a run.
   bool is_hidden(const fs::path& file) const {
     for (const fs::path& part : fs::relative(file, folder_))
       if (part.string().starts_with(".")) return true;
@@ -82,7 +82,7 @@ TEST_F(Robustness, KilledAtAnyMomentNoFileUnderAFinalNameIsHalf) {
   }
 }
 
-/// A file system of 64 MB in memory, in a mount name space of this process: it goes away with it.
+/// A file system of 64 MB in memory, in a mount namespace of this process; it disappears with the process.
 class SmallDisk : public Robustness {
  protected:
   void SetUp() override {
@@ -99,7 +99,7 @@ class SmallDisk : public Robustness {
     CachedRun::TearDown();
   }
 
-  /// Fills the disk but for about so many bytes.
+  /// Fills the disk except for about this number of bytes.
   void leave(std::size_t bytes) const {
     const fs::space_info space = fs::space(folder_);
     ASSERT_GT(space.available, bytes);

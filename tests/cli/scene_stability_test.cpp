@@ -1,4 +1,4 @@
-// Where a user's scene breaks: its own values varied, and its margin in a sentence.
+// Stability limits of a user's scene: its own values are varied, and one sentence states the margin.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 namespace weft::bench {
 namespace {
 
-/// A strip that swings from one edge, of undamped threads, by the midpoint rule: long steps and stiff threads break it.
+/// A strip of undamped threads that swings from one edge by the midpoint rule: long steps or stiff threads break it.
 const std::string kStrip =
     "[time]\nduration = 0.8\nfps = 10\nstep = 0.00625\nintegrator = \"implicit_midpoint\"\n[physics]\nair_density = 0\n"
     "[contact]\nself = false\nobstacles = false\n[[cloth]]\nname = \"strip\"\nsize = [0.3, 0.3]\nparticles = [5, 5]\n"
     "position = [0, 0, 1]\nmaterial = { density = 0.2, stretch = 1000, shear = 100, bend = 1e-5, bend_viscosity = 0, "
     "bend_friction = 0, drag = 0, max_stretch = 0 }\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, 1]\n";
 
-Factors with(Varied value, double factor) {
+Factors with(VariedParameter value, double factor) {
   Factors factors{1, 1, 1, 1, 1, 1};
   factors[static_cast<std::size_t>(value)] = factor;
   return factors;
@@ -32,27 +32,28 @@ const SceneStability& strip() {
 TEST(SceneStability, TriesEachValueThatTheSceneHas) {
   EXPECT_EQ(strip().as_is.verdict, TrialVerdict::holds) << strip().as_is.reason;
   EXPECT_EQ(strip().frames, 8);
-  for (const Varied value : {Varied::stiffness, Varied::step, Varied::mass, Varied::mesh})
+  for (const VariedParameter value :
+       {VariedParameter::stiffness, VariedParameter::step, VariedParameter::mass, VariedParameter::mesh})
     for (const double factor : factors_of(value))
       EXPECT_NE(strip().find(with(value, factor)), nullptr) << name_of(value) << " " << factor;
-  // It has neither contact nor anything that damps, so there is nothing to vary.
-  for (const Varied value : {Varied::friction, Varied::damping})
+  // The strip has neither contact nor damping, so neither is varied.
+  for (const VariedParameter value : {VariedParameter::friction, VariedParameter::damping})
     EXPECT_EQ(strip().find(with(value, 2)), nullptr) << name_of(value);
   for (const double stiffness : kMapStiffness)
     for (const double step : kMapSteps) EXPECT_NE(strip().find({stiffness, step, 1, 1, 1, 1}), nullptr);
-  const Trial* fine = strip().find(with(Varied::mesh, 2));
+  const Trial* fine = strip().find(with(VariedParameter::mesh, 2));
   EXPECT_GT(fine->cpu_s, 0);
-  EXPECT_DOUBLE_EQ(strip().find(with(Varied::step, 4))->step, 0.025);
-  EXPECT_DOUBLE_EQ(strip().find(with(Varied::step, 8))->step, 0.05);
+  EXPECT_DOUBLE_EQ(strip().find(with(VariedParameter::step, 4))->step, 0.025);
+  EXPECT_DOUBLE_EQ(strip().find(with(VariedParameter::step, 8))->step, 0.05);
 }
 
 TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
   const auto margins = margins_of(strip());
   const auto stiffer = std::ranges::find_if(margins, [](const Margin& margin) {
-    return margin.axis == Varied::stiffness && margin.breaks != nullptr && margin.breaks->factors[0] > 1;
+    return margin.axis == VariedParameter::stiffness && margin.breaks != nullptr && margin.breaks->factors[0] > 1;
   });
   ASSERT_NE(stiffer, margins.end());
-  // The run itself, with that factor, is told of in the same way.
+  // A run with that factor ends with the same message.
   scene::Scene scene = support::scene_of_text(kStrip);
   scene::Material& material = scene.cloths[0].material;
   for (double* stiffness : {&material.stretch_weft, &material.stretch_warp, &material.shear, &material.bend})
@@ -75,21 +76,23 @@ TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
 TEST(SceneStability, ASceneThatBreaksSaysWhatHolds) {
   SceneStability stability;
   stability.as_is = {.verdict = TrialVerdict::refused, .reason = "why", .step = 0.01};
-  stability.trials.push_back({.factors = with(Varied::step, 0.125), .mends = true});
-  stability.trials.push_back({.factors = with(Varied::step, 0.5), .mends = true});
-  stability.trials.push_back({.factors = with(Varied::mass, 10), .verdict = TrialVerdict::warned});
-  stability.trials.push_back({.factors = with(Varied::friction, 1.5)});  // breaks as the scene does
+  stability.trials.push_back({.factors = with(VariedParameter::step, 0.125), .mends = true});
+  stability.trials.push_back({.factors = with(VariedParameter::step, 0.5), .mends = true});
+  stability.trials.push_back({.factors = with(VariedParameter::mass, 10), .verdict = TrialVerdict::warned});
+  stability.trials.push_back({.factors = with(VariedParameter::friction, 1.5)});  // unstable, as the scene itself
   EXPECT_EQ(margin_sentence(stability), "The scene as it is breaks (refused: why); it goes through with step at 5 ms.");
 }
 
 TEST(SceneStability, MarginIsUpToTheFirstThatBreaks) {
   SceneStability stability;
   stability.as_is.step = 0.01;
-  stability.trials.push_back({.factors = with(Varied::step, 2)});
+  stability.trials.push_back({.factors = with(VariedParameter::step, 2)});
+  stability.trials.push_back({.factors = with(VariedParameter::step, 4),
+                              .verdict = TrialVerdict::warned,
+                              .broken = {"energy comes from nowhere"}});
+  stability.trials.push_back({.factors = with(VariedParameter::step, 8)});
   stability.trials.push_back(
-      {.factors = with(Varied::step, 4), .verdict = TrialVerdict::warned, .broken = {"energy comes from nowhere"}});
-  stability.trials.push_back({.factors = with(Varied::step, 8)});
-  stability.trials.push_back({.factors = with(Varied::mass, 100), .verdict = TrialVerdict::refused, .reason = "why"});
+      {.factors = with(VariedParameter::mass, 100), .verdict = TrialVerdict::refused, .reason = "why"});
   EXPECT_EQ(
       margin_sentence(stability),
       "The scene as it is runs without anything broken, and its nearest limit is step: it holds at 20 ms and breaks "
@@ -116,7 +119,7 @@ TEST_F(BenchStability, ReportsASceneOfTheUser) {
   const std::string csv = support::read_bytes(folder_ / "b/stability_s.csv");
   EXPECT_TRUE(csv.starts_with("stiffness,step,mass,friction,damping,mesh,step_s,verdict,")) << csv;
   EXPECT_TRUE(support::read_bytes(folder_ / "b/stability_s.svg").starts_with("<svg "));
-  // What is there stays.
+  // Existing files are kept.
   EXPECT_EQ(cli::run_weft({"bench", "stability", "s.toml", "-o", "b"}, folder_).exit_code, 6);
 }
 

@@ -1,4 +1,4 @@
-"""Whether real shells complete each command, option and choice that --help knows, and what mandoc says of the manual.
+"""Real shells complete each command, option and choice of --help, and mandoc accepts the manual.
 
 shells_test.py WEFT    ends with 77 where zsh, fish or mandoc is not installed.
 """
@@ -20,7 +20,7 @@ def output(*words):
 
 
 class Zsh:
-    """An interactive one at a terminal of its own, for there is no other way to ask it."""
+    """An interactive shell at a terminal of its own: completion works only interactively."""
     MARK = "all that there is"
 
     def __init__(self):
@@ -28,7 +28,7 @@ class Zsh:
         if process == 0:
             os.environ.update(TERM="dumb", COLUMNS="250", LINES="200", PS1="> ")
             os.execvp("zsh", ["zsh", "-f", "-i"])
-        # Lists at once and whole, and never goes on to choose from them.
+        # Lists all completions at once, without a menu.
         self.ask("stty cols 250 rows 200; autoload -Uz compinit && compinit -u -D; unsetopt auto_menu list_ambiguous\n"
                  "LISTMAX=10000; source <(weft completion zsh); echo all that there i''s\n", until=self.MARK)
 
@@ -60,7 +60,7 @@ def bash(line):
 
 
 def expected():
-    """Lines, and the words that must be offered for them."""
+    """Lines, and the words that must be offered as completions."""
     commands = re.findall(r"^  ([a-z]+)[ ,]", output("weft", "--help").split("Subcommands:")[1].split("Examples:")[0], re.M)
     yield "weft ", set(commands)
     for command in commands:
@@ -96,7 +96,7 @@ def main(weft):
         with open("weft.1", "w", encoding="utf-8") as file:
             file.write(output("weft", "man"))
         lint = subprocess.run(["mandoc", "-Tlint", "weft.1"], capture_output=True, text=True, check=False).stdout
-        # Lines of the page are those of --help, however long.
+        # The page keeps the lines of --help, whatever their length.
         problems += [told for told in lint.splitlines() if "longer than 80 bytes" not in told]
     print("\n".join(problems) or f"{lines} lines are completed by {', '.join(PROGRAMS[:3])}")
     return 1 if problems else 0

@@ -1,4 +1,4 @@
-// What runs take: settings, exponents and sentences from rows, and the command.
+// Cost of runs: settings, exponents and sentences from rows, and the command.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 using cli::contains;
 
-// Costs that follow powers of the particles: forces n, the linear solver n^1.5, in 4 frames.
+// Made-up costs that follow powers of the particle count n: forces n, the linear solver n^1.5, in 4 frames.
 SpeedRun run_with(double size, int threads, double step) {
   SpeedRun run{.setting = {size, threads, step}};
   run.particles = std::lround(10'000 * size * size);
@@ -52,7 +52,7 @@ std::vector<std::string> fields_of(const std::string& line) {
   return fields;
 }
 
-// By the names of the header.
+// Reads the rows, keyed by the names of the header.
 std::vector<std::map<std::string, std::string>> records_of(const std::string& csv) {
   std::istringstream text(csv);
   std::string line;
@@ -118,7 +118,7 @@ TEST(SpeedReport, ExponentsAreSlopesBetweenSizes) {
   EXPECT_FALSE(exponent(large, small, 3, 96));
   EXPECT_FALSE(exponent(small, large, 0, 96));
   const std::string text = speed_markdown({"t", "m", {}, rows()}, "p.svg");
-  // 2 n^1 and 2 n^1.5 at once: 40,000 particles, of which 0.4 CPU s are forces and 8 the linear solver, in 4 frames.
+  // Costs of 2 n^1 and 2 n^1.5 together: 40,000 particles, 0.4 CPU s of forces and 8 of the linear solver, in 4 frames.
   EXPECT_TRUE(contains(text, "| 40,000 | 16 | 0 | 3.00 | 20.0 (0.50) | 100 (1.00) | 2,000 (1.50) | 2,100 (1.47) |"))
       << text;
 }
@@ -126,7 +126,7 @@ TEST(SpeedReport, ExponentsAreSlopesBetweenSizes) {
 TEST(SpeedReport, ConclusionIsComputedFromTheRows) {
   auto runs = rows();
   const std::string text = conclusion(runs);
-  // 2.1 s a frame with 40,000, 37.5 ms with 2,500; log 56 / log 16, and log 7.64 / log 4 from 10,000 on.
+  // 2.1 s a frame with 40,000 particles, 37.5 ms with 2,500: log 56 / log 16, and log 7.64 / log 4 from 10,000 on.
   EXPECT_TRUE(contains(text,
                        "A frame takes 2,100 CPU ms with 40,000 particles. The largest part of that is linear "
                        "solver, 95 %. From 2,500 particles, with 37.5 CPU ms, it grows with the power 1.45 of "
@@ -141,20 +141,21 @@ TEST(SpeedReport, ConclusionIsComputedFromTheRows) {
   EXPECT_TRUE(contains(conclusion(runs), "A frame takes 275 CPU ms with 10,000 particles. The largest"))
       << conclusion(runs);
   runs = {{.setting = {1, 1, 1}, .failure = "why"}};
-  EXPECT_EQ(conclusion(runs), "No run went well.\n");
+  EXPECT_EQ(conclusion(runs), "No run succeeded.\n");
 }
 
 TEST(SpeedReport, BoundIsWhatMovesOverTheBandwidth) {
   SpeedRun run = run_with(1, 1, 1);
-  // By hand: blocks of 9 numbers and a column, 4 bytes each; a number and a column; 16 quads of 16 bytes.
+  // Counted by hand: full blocks of 9 numbers and a column, 4 bytes each; isotropic blocks of a number and a column; 16
+  // padded vectors of 16 bytes.
   EXPECT_EQ(bytes_of_linear_iteration(run), 10'000 * (9 * 40 + 4 * 8 + 16 * 16));
-  // Three times in double, once in single; three evaluations of three vectors.
+  // Each number is moved three times in double and once in single precision; three evaluations move three vectors each.
   EXPECT_EQ(bytes_of_newton_iteration(run), 10'000 * (9 * 9 * 28 + 4 * 28 + 9 * 24));
   EXPECT_NEAR(memory_bound_s(run), (480 * 6.48e6 + 48 * 2.596e7) / 1e10, 1e-12);
   EXPECT_EQ(run.bytes_a_particle(), 2000);
   run.bandwidth = 0;
   EXPECT_EQ(memory_bound_s(run), 0) << "not known";
-  // No memory reads faster than registers do, nor slower than a disk.
+  // The bandwidth is below that of registers and above that of a disk.
   EXPECT_GT(read_bandwidth(1e5), 1e8);
   EXPECT_LT(read_bandwidth(1e5), 1e13);
 }
@@ -186,7 +187,7 @@ TEST(SpeedReport, StagesOfARunAddUpToIt) {
   EXPECT_LT(run.all().wall_s, all);
   EXPECT_GE(run.newton_iterations, run.steps);
   EXPECT_GT(run.peak_memory, run.memory_before);
-  stages_have_all_threads = false;
+  charge_all_threads = false;
   set_thread_count(0);
 }
 
@@ -203,14 +204,14 @@ TEST_F(BenchSpeed, WritesReportTableAndPlot) {
   const auto records = records_of(support::read_bytes(folder_ / "b" / "speed_sphere_drape.csv"));
   ASSERT_EQ(records.size(), 5u);
   for (auto record : records) {
-    const int particles = record["size"] == "0.1" ? 36 : 169;  // 64 times it, rounded
+    const int particles = record["size"] == "0.1" ? 36 : 169;  // 64 particles per unit of size, rounded
     EXPECT_EQ(record["particles"], std::to_string(particles));
     EXPECT_EQ(record["frames"], "1");
     EXPECT_EQ(record["steps"], record["step"] == "2" ? "2" : "4");
     double sum = 0;
     for (const char* stage : {"forces", "preconditioner", "linear_solver", "collisions", "rest", "drawing"})
       sum += std::stod(record[std::string(stage) + "_wall_ms"]);
-    // Six figures are printed.
+    // The file has six significant digits.
     EXPECT_NEAR(sum, std::stod(record["all_wall_ms"]), 1e-4 * sum);
     EXPECT_GT(std::stod(record["bandwidth_bytes_a_s"]), 0);
     EXPECT_GT(std::stod(record["peak_memory_bytes"]), 1e6);
@@ -244,7 +245,7 @@ TEST_F(BenchSpeed, ARunThatFailsIsARow) {
   const cli::Outcome outcome = cli::run_weft({"bench", "speed", "s.toml", "--threads", "1", "--steps", "1"}, folder_);
   EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
   EXPECT_TRUE(contains(outcome.err, "measured at its own size")) << outcome.err;
-  EXPECT_TRUE(contains(outcome.out, "No run went well.")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "No run succeeded.")) << outcome.out;
   const auto csv = support::read_bytes(folder_ / "output" / "bench" / "speed_s.csv");
   EXPECT_TRUE(contains(csv, "c.obj")) << csv;
 }

@@ -51,7 +51,7 @@ TEST_F(Stills, OneCallDrawsAPictureOfEachSceneAndGoesOnAfterBrokenOnes) {
   for (const char* picture : {"stills/s.png", "stills/b.png", "stills/c.png"})
     EXPECT_EQ(pixels(picture), pixels("one.png")) << picture;
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "stills"), {}), 3);
-  // One scene, which a pattern of the shell may come to, and a cache.
+  // One scene (a shell pattern may match a single file), and a cache.
   expect_well({"thumbnail", "s.toml", "--frame", "2", "-o", "more/of"});
   EXPECT_EQ(pixels("more/of/s.png"), pixels("one.png"));
   expect_well({"thumbnail", "b.toml", "cache_of_s", "--frame", "2"});
@@ -87,7 +87,7 @@ TEST_F(Stills, FromACacheAreThoseFromTheScene) {
     expect_well({"sheet", input, "-o", name + "_sheet.png", "--count", "4"});
     expect_well({"thumbnail", input, "-o", name + "_chosen.png"});
   }
-  // The camera has all frames in view that there are: those up to the one that is asked for.
+  // The camera frames all frames up to the requested one.
   expect_well({"simulate", "s.toml", "--cache", "c_to_7", "--frames", ":8"});
   expect_well({"thumbnail", "s.toml", "-o", "s_7.png", "--frame", "7"});
   expect_well({"thumbnail", "c_to_7", "-o", "c_7.png", "--frame", "7"});
@@ -106,10 +106,10 @@ TEST_F(Stills, OfAnUnfinishedCacheShowWhatIsThere) {
   EXPECT_EQ(weft({"thumbnail", "c", "-o", "t.png", "--frame", "7"}).exit_code, 0);
   const Outcome missing = weft({"thumbnail", "c", "-o", "x.png", "--frame", "3"});
   EXPECT_EQ(missing.exit_code, 9);
-  EXPECT_NE(missing.err.find("frame 3 is not there"), std::string::npos) << missing.err;
+  EXPECT_NE(missing.err.find("frame 3 is missing"), std::string::npos) << missing.err;
 }
 
-// The cloth falls flat at first and lies on the ball in the end; in between it wraps round it.
+// The cloth is flat at first, wraps round the ball, and lies on it at the end.
 TEST_F(Stills, ThumbnailShowsTheClothAtWorkNotFlatInTheAir) {
   const Outcome outcome = weft({"thumbnail", "s.toml", "-o", "t.png"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -124,7 +124,7 @@ TEST_F(Stills, SceneWhoseClothIsNeverSeenIsDrawnWithAWarning) {
   EXPECT_NE(outcome.err.find("no frame shows any cloth"), std::string::npos) << outcome.err;
 }
 
-// The sheet goes through the ball: no run begins so, `check` says what `run` says, and the picture shows where.
+// The sheet intersects the ball, which no run accepts: `check` and `run` print the same, the picture shows the place.
 TEST_F(Stills, OfAStartThatIsRefusedShowInRedWhatMeets) {
   const Arguments low{"--set", "cloth.cloth.position=[0,0,0.02]"};
   const auto with = [&](Arguments arguments) {

@@ -20,7 +20,7 @@
 namespace weft::cli {
 namespace {
 
-// In the child: standard input is empty, the outputs are the pipes.
+// Called in the child process: standard input is empty, the outputs are the pipes.
 void prepare(const std::filesystem::path& folder, int out, int err, std::size_t file_size_limit) {
   const int in = ::open("/dev/null", O_RDONLY);
   if (in < 0 || ::dup2(in, 0) < 0 || ::dup2(out, 1) < 0 || ::dup2(err, 2) < 0 || ::chdir(folder.c_str()) != 0) {
@@ -30,8 +30,8 @@ void prepare(const std::filesystem::path& folder, int out, int err, std::size_t 
   if (file_size_limit > 0 && ::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
 }
 
-// If this process has more threads than the one that forks, the child may wait for a lock of one that it does not have.
-// The sanitizers report leaks only when a program ends by itself.
+// If this process has several threads, the child may wait for a lock that a thread holds which does not exist in it.
+// The sanitizers report leaks only if a program ends by itself.
 bool can_run_in_fork() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return false;
@@ -58,7 +58,7 @@ Subprocess::Subprocess(const std::vector<std::string>& arguments, const std::fil
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const bool in_fork = start == Start::fork && can_run_in_fork();
-  std::fflush(nullptr);  // else the child would write it once more
+  std::fflush(nullptr);  // else the child would write the buffers again
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("fork");
   if (pid_ == 0) {

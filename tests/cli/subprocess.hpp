@@ -1,4 +1,4 @@
-// The real program in a process of its own, as a shell would start it.
+// Starts the real program in a process of its own, as a shell does.
 #pragma once
 
 #include <sys/types.h>
@@ -10,7 +10,7 @@
 namespace weft::cli {
 
 struct Outcome {
-  int exit_code = -1;  ///< 128 + signal if a signal ended it, as shells say
+  int exit_code = -1;  ///< 128 + signal if a signal ended the process, as in shells
   std::string out, err;
 };
 
@@ -22,10 +22,10 @@ class Subprocess {
     fork,     ///< see run_weft()
   };
 
-  /// `file_size_limit`: bytes that any file may have, as on a full disk; 0 for no limit.
+  /// `file_size_limit`: maximum size of each file [bytes], which simulates a full disk; 0 for no limit.
   Subprocess(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
              std::size_t file_size_limit = 0, Start start = Start::program);
-  ~Subprocess();  ///< kills what still runs
+  ~Subprocess();  ///< kills the process if it still runs
   Subprocess(const Subprocess&) = delete;
   Subprocess& operator=(const Subprocess&) = delete;
 
@@ -35,19 +35,19 @@ class Subprocess {
   Outcome wait();
 
  private:
-  bool read_some(int timeout_ms);  // false once both pipes are at their end
+  bool read_some(int timeout_ms);  // false once both pipes have ended
 
   pid_t pid_ = -1;
   int out_ = -1, err_ = -1;
   Outcome outcome_;
 };
 
-/// Whether what was said holds this part.
+/// True if `text` contains `part`.
 inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// One command. If the test has one thread, a fork of it calls what main() calls, which saves loading the program and
+/// Runs one command. If the test has one thread, a fork calls what main() calls, which saves loading the program and
 /// its libraries: 0.15 to 0.3 CPU s. Builds with sanitizers always execute WEFT_PROGRAM.
 Outcome run_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
 

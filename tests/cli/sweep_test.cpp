@@ -1,4 +1,4 @@
-// weft sweep: which runs there are, and what becomes of them.
+// weft sweep: the list of runs, and their results.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(SweepPlan, NamesHaveNothingOfAPathFromAKey) {
   EXPECT_EQ(names(plan_sweep({}, {{"../a/b", {"1", "2"}}})), (std::vector<std::string>{"-a-b=1", "-a-b=2"}));
 }
 
-// As many as there may be, alike as far as a name goes: each is counted on from the one before.
+// The maximum number of values, all equal in the part of the text that names keep: each name gets the next number.
 TEST(SweepPlan, NamesThatAreCutAlikeAreNumbered) {
   Axis axis{"k", {}};
   for (int i = 0; i < 10'000; ++i) axis.values.push_back(std::string(200, 'x') + std::to_string(i));
@@ -160,7 +160,7 @@ TEST(SweepTable, KeepsWhetherAnErrorIsComparableAndSumsUpNoErrorsOfSteps) {
 TEST(SweepTable, EachColumnIsDocumented) {
   const std::string page = support::read_bytes(WEFT_SOURCE_DIR "/scenes/data.md");
   std::vector<std::string> columns = sweep_table({made_up_result()}).front();
-  columns.erase(columns.begin());  // the key that is varied
+  columns.erase(columns.begin());  // the varied key
   const std::size_t begin = page.find("## Columns of a sweep"), table = page.find("|---|", begin);
   ASSERT_NE(begin, std::string::npos);
   std::istringstream lines(page.substr(table, page.find("\n\n", table) - table));
@@ -229,7 +229,7 @@ TEST_F(Sweeps, GoOnWithWhatIsNotDoneAndPassOverTheRest) {
 }
 
 TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
-  // A camera that one of the scenes has.
+  // A camera that one of the scenes already has.
   const std::string cameras =
       "camera=[{name='v',position=[1,-1,1],target=[0,0,0.2]}],"
       "[{name='w',position=[1,-1,1],target=[0,0,0.2]}]";
@@ -272,7 +272,7 @@ TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
   EXPECT_EQ(decoded("w/radius=0.1/s.mp4"), decoded("one.mp4"));
 }
 
-/// True once no process writes this cache; waits for it for five seconds.
+/// Waits up to five seconds until no process writes this cache; true if so.
 bool is_left(const fs::path& cache) {
   const int lock = ::open((cache / "lock").c_str(), O_RDONLY);
   bool left = false;
@@ -285,7 +285,7 @@ bool is_left(const fs::path& cache) {
 }
 
 TEST_F(Sweeps, ThatAreKilledTakeTheirRunsWithThem) {
-  // Half a minute, were it not for the signal.
+  // Would take half a minute without the signal.
   Subprocess process(with_sweep({"--set", "time.step=0.0001,0.01"}), folder_);
   const fs::path cache = folder_ / "w/step=0.0001/.s.weft-cache";
   for (int i = 0; i < 3000 && !fs::exists(cache / "frame_00000.weft"); ++i) usleep(20'000);

@@ -1,5 +1,5 @@
-// The program as an archive brings it: started with a loader and from a folder of its own. tests/packaging/ makes a
-// whole archive and runs it where nothing else is; here the libraries are those of the system.
+// The program as unpacked from an archive: started with a loader, from a folder of its own. tests/packaging/ makes a
+// whole archive and runs it in an otherwise empty root; here the libraries are those of the system.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -25,7 +25,7 @@ class UnpackedProgram : public CachedRun {
     fs::copy_file(kLoader, loader_);
   }
 
-  // In the folder of the test, without anything in the environment.
+  // Runs the program in the folder of the test, with an empty environment.
   Outcome unpacked(const std::string& arguments) const {
     const std::string command = "cd '" + folder_.string() + "' && exec env -i '" + (top_ / "bin/weft").string() + "' " +
                                 arguments + " >out 2>err";
@@ -35,7 +35,7 @@ class UnpackedProgram : public CachedRun {
   }
 
   static constexpr const char* kLoader = "/lib64/ld-linux-x86-64.so.2";
-  // Signs that lists of folders and the loader's own names are written with.
+  // The name contains characters that are special in lists of folders and to the loader.
   const fs::path top_ = fs::path(::testing::TempDir()) / fmt::format("weft $ORIGIN:{}", ::getpid());
   const fs::path loader_ = top_ / "lib/ld-linux-x86-64.so.2";
 

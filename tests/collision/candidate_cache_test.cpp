@@ -1,4 +1,4 @@
-// Which pairs are collected, and that "covered" means what it says: held against brute force.
+// Compares the collected candidate pairs, and the meaning of "covered", with brute force.
 #include "collision/candidate_cache.hpp"
 
 #include <gtest/gtest.h>
@@ -44,9 +44,9 @@ struct Layers {
     bodies.add(std::vector<Triangle>{{0, 1, 2}}, 3, {});
   }
 
-  std::vector<Vec3> moved_by(std::mt19937& generator, double most) const {
+  std::vector<Vec3> moved_by(std::mt19937& generator, double max_distance) const {
     std::vector<Vec3> moved = x;
-    for (Vec3& place : moved) place += random_in_ball(generator, most);
+    for (Vec3& place : moved) place += random_in_ball(generator, max_distance);
     return moved;
   }
 };
@@ -57,7 +57,7 @@ std::set<std::pair<Index, Index>> set_of(const PairList& pairs) {
   return set;
 }
 
-/// Pairs of triangles without a common vertex of which a vertex and a face are closer than `reach`.
+/// Pairs of triangles without a common vertex that have a vertex of one closer than `reach` to a face of the other.
 std::set<std::pair<Index, Index>> near(std::span<const Triangle> triangles, std::span<const Vec3> x, double reach) {
   std::set<std::pair<Index, Index>> found;
   for (std::size_t a = 0; a < triangles.size(); ++a)
@@ -84,10 +84,10 @@ TEST(CandidateCache, EveryPairWithinReachAtACoveredEndWasCollected) {
     ++covered;
     for (const auto& pair : near(layers.bodies.triangles(), end, kReach)) EXPECT_TRUE(collected.contains(pair));
   }
-  EXPECT_GE(covered, 100);  // of the short ones all
+  EXPECT_GE(covered, 100);  // all short trials are covered
 }
 
-// Folded, a sheet is near itself.
+// A folded sheet is near itself.
 TEST(CandidateCache, ASheetMeetsItself) {
   Layers layers(4, 0.5 * kReach);
   for (int j = 0; j <= 4; ++j)
@@ -112,7 +112,8 @@ TEST(CandidateCache, FeaturesWithinReachAtACoveredStartWereWithinTheRadius) {
   }
 }
 
-// Cloth at rest has a skin of half the reach; without reuse, or in a fast step, only the very same start is covered.
+// If the cloth rests, the Verlet margin is half the detection distance. Without reuse, or in a fast step, the cache
+// covers only exactly the same start positions.
 TEST(CandidateCache, TheSkinIsHalfTheReachWhereNothingMovesFast) {
   const Layers layers(2, kReach);
   std::vector<Vec3> inside = layers.x, outside = layers.x, fast = layers.x;
@@ -121,7 +122,7 @@ TEST(CandidateCache, TheSkinIsHalfTheReachWhereNothingMovesFast) {
   fast[5].x() += 0.6 * kReach;
 
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);
-  EXPECT_FALSE(cache.covers_start(layers.x));  // nothing was collected
+  EXPECT_FALSE(cache.covers_start(layers.x));  // no pairs were collected yet
   cache.collect(layers.x, layers.x);
   EXPECT_TRUE(cache.covers_start(inside));
   EXPECT_FALSE(cache.covers_start(outside));
@@ -139,7 +140,7 @@ TEST(CandidateCache, TheSkinIsHalfTheReachWhereNothingMovesFast) {
 TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundThatOfTheWay) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;
-  to[4].x() += 3 * kReach;  // fast: the margin is half the reach
+  to[4].x() += 3 * kReach;  // fast: the margin is half the detection distance
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);
   cache.collect(layers.x, to);
   std::vector<Vec3> end = to;
@@ -153,7 +154,8 @@ TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundThatOfTheWay) {
   EXPECT_FALSE(cache.covers_end(to));
 }
 
-// What pushing apart has carried off may be taken back, all the way, and what was covered stays so.
+// If the response pushes particles away from their end positions, any position between the two is covered, and what was
+// covered before stays covered.
 TEST(CandidateCache, EndsBetweenStartAndEndAreCoveredOfWhatWasCarriedOff) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;
@@ -172,7 +174,7 @@ TEST(CandidateCache, EndsBetweenStartAndEndAreCoveredOfWhatWasCarriedOff) {
   EXPECT_TRUE(cache.covers_end(layers.x));
 }
 
-// Pairs of all ends between, held against brute force.
+// Compares with brute force the pairs for all end positions between the two corners.
 TEST(CandidateCache, EveryPairWithinReachAtAnEndBetweenIsCollectedThen) {
   const Layers layers(4, 0.5 * kReach);
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);
@@ -181,11 +183,11 @@ TEST(CandidateCache, EveryPairWithinReachAtAnEndBetweenIsCollectedThen) {
   for (std::size_t v = 0; v < 25; ++v) far[v] += Vec3(0.05, -0.03, 0.02);  // the lower sheet, through the other one
   cache.collect(layers.x, far);
   const std::set<std::pair<Index, Index>> collected = set_of(cache.collect_more(layers.x, far, true).apart);
-  std::uniform_real_distribution<double> share(0, 1);
+  std::uniform_real_distribution<double> fraction(0, 1);
   for (int trial = 0; trial < 50; ++trial) {
     std::vector<Vec3> end = layers.x;
     for (std::size_t v = 0; v < end.size(); ++v)
-      end[v] += share(generator) * (far[v] - layers.x[v]) + random_in_ball(generator, 0.49 * kReach);
+      end[v] += fraction(generator) * (far[v] - layers.x[v]) + random_in_ball(generator, 0.49 * kReach);
     ASSERT_TRUE(cache.covers_end(end));
     for (const auto& pair : near(layers.bodies.triangles(), end, kReach)) EXPECT_TRUE(collected.contains(pair));
   }
@@ -206,7 +208,7 @@ TEST(CandidateCache, WhatIsNotWantedIsLeftOut) {
   EXPECT_TRUE(collected(false, false).empty());
 }
 
-// The bounds of a still obstacle stay as they are only while it is where they were fitted.
+// The bounds of a still obstacle are valid only while it stays where they were fitted.
 TEST(CandidateCache, AnObstacleBeyondTheClothChangesNothingUntilItComesNear) {
   Layers layers(4, 0.5 * kReach);
   CandidateCache alone(layers.bodies, {}, layers.x, kReach);
@@ -219,14 +221,14 @@ TEST(CandidateCache, AnObstacleBeyondTheClothChangesNothingUntilItComesNear) {
     for (std::size_t corner = moved.size() - 3; corner < moved.size(); ++corner) moved[corner].x() = x;
     return moved;
   };
-  // Fast as it is, it takes no skin from the others.
+  // The fast obstacle does not reduce the Verlet margin of the other surfaces.
   EXPECT_EQ(set_of(cache.collect(layers.x, with_obstacle_at(1)).apart), pairs);
   EXPECT_EQ(cache.radius(), alone.radius());
   EXPECT_TRUE(cache.is_clear(3));
   EXPECT_FALSE(cache.is_clear(2));
   EXPECT_TRUE(cache.covers_start(with_obstacle_at(0.2)));
   EXPECT_TRUE(cache.covers_end(with_obstacle_at(500)));
-  // The cloth ends at 0.12 m: two reaches from it, and on its other side.
+  // The cloth ends at 0.12 m. The obstacle may come as near as two detection distances, and may not change sides.
   EXPECT_TRUE(cache.covers_end(with_obstacle_at(0.12 + 2.001 * kReach)));
   EXPECT_FALSE(cache.covers_end(with_obstacle_at(0.12 + 1.999 * kReach)));
   EXPECT_FALSE(cache.covers_start(with_obstacle_at(-1)));
@@ -255,7 +257,7 @@ TEST(Bodies, TrianglesAreNumberedThroughAllBodies) {
   EXPECT_EQ(layers.bodies.surfaces()[2].first_triangle, 4);
   EXPECT_EQ(layers.bodies.surfaces()[2].triangles[0], (Triangle{8, 9, 10}));
   EXPECT_EQ(layers.bodies.body_of(7), 1U);
-  EXPECT_EQ(layers.bodies.triangle_of({7, 6, 4}), 1);  // of the second sheet
+  EXPECT_EQ(layers.bodies.triangle_of({7, 6, 4}), 1);  // a triangle of the second sheet
   EXPECT_EQ(layers.bodies.triangle_of({5, 7, 7}), 0);  // an edge
 }
 

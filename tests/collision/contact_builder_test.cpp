@@ -1,4 +1,4 @@
-// From features to contacts: each number of a contact against the formula that it comes from.
+// Compares each number of a contact with its formula.
 #include "collision/contact_builder.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kBuilderStep = 0.01;  // [s]
 
-/// Two cloths of a triangle each, 1 mm apart, and an obstacle of one, 1 mm below.
+/// Two cloths of one triangle each, 1 mm apart, and an obstacle of one triangle, 1 mm below.
 struct Scene {
   Bodies bodies;
   std::vector<double> masses{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};  // [kg]
@@ -41,7 +41,7 @@ struct Scene {
   }
 };
 
-/// Vertex `v` against a face.
+/// Near pair of vertex `v` and a face.
 Proximity vertex_face(Index v, const Triangle& face) {
   return {{{v, face[0], face[1], face[2]}, {1, -0.5, -0.3, -0.2}, Vec3::UnitZ(), 0.001, ProximityKind::vertex_face},
           {0, 0}};
@@ -52,7 +52,7 @@ Proximity edges(double outside_a, double outside_b, double along_a) {
           {outside_a, outside_b}};
 }
 
-// With 0.2 and 0.8 the geometric mean, 0.4, is none of arithmetic (0.5), harmonic (0.32), least and largest.
+// For 0.2 and 0.8 the geometric mean, 0.4, is not the arithmetic (0.5) or harmonic mean (0.32) or an extreme.
 TEST(ContactBuilder, FrictionOfAPairIsTheGeometricMean) {
   const Scene scene;
   const ContactBuilder builder(scene.bodies, {}, scene.masses);
@@ -72,7 +72,7 @@ TEST(ContactBuilder, APairMayHaveFrictionOfItsOwnInEitherOrder) {
   EXPECT_DOUBLE_EQ(builder.friction_of(0, 1).sliding, 0.4);
 }
 
-// Vertices 1 and 2 of the obstacle are padded and rough; friction of a pair of bodies holds for all of both.
+// Vertices 1 and 2 of the obstacle are padded and rough. Friction of a pair of bodies applies to all of both.
 TEST(ContactBuilder, APatchHasThicknessAndFrictionOfItsOwn) {
   Scene scene;
   const std::vector<Triangle> one{{0, 1, 2}};
@@ -107,35 +107,35 @@ TEST(ContactBuilder, FrictionReachesTheContact) {
   EXPECT_DOUBLE_EQ(contacts[1].static_friction, 0.3);
 }
 
-// The share of an edge pair: all of it well inside of both wedges and away from the ends, and linear in between.
+// An edge pair has its full stiffness inside both wedges and away from the ends of the edges; towards the limits the
+// ratio falls linearly.
 TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
-  EXPECT_EQ(stiffness_share(vertex_face(0, {3, 4, 5})), 1);
-  EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0.5)), 1);
-  // Flat: the sum of the sines from 0.05 to 0.2.
-  EXPECT_EQ(stiffness_share(edges(-0.025, -0.025, 0.5)), 0);
-  EXPECT_NEAR(stiffness_share(edges(0, -0.125, 0.5)), 0.5, 1e-12);
-  EXPECT_NEAR(stiffness_share(edges(-0.1, -0.1, 0.5)), 1, 1e-12);
-  // Outside of a wedge: down from 0 to 0.1, of either edge.
-  EXPECT_EQ(stiffness_share(edges(0, -0.5, 0.5)), 1);
-  EXPECT_NEAR(stiffness_share(edges(0.05, -0.5, 0.5)), 0.5, 1e-12);
-  EXPECT_NEAR(stiffness_share(edges(-0.5, 0.05, 0.5)), 0.5, 1e-12);
-  EXPECT_EQ(stiffness_share(edges(-0.5, 0.1, 0.5)), 0);
-  // Both at once.
-  EXPECT_NEAR(stiffness_share(edges(0.05, -0.175, 0.5)), 0.5 * 0.5, 1e-12);
-  // Within a tenth of an end, of either.
-  EXPECT_NEAR(stiffness_share(edges(-0.5, -0.5, 0.05)), 0.5, 1e-12);
-  EXPECT_NEAR(stiffness_share(edges(-0.5, -0.5, 0.975)), 0.25, 1e-12);
-  EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0.1)), 1);
-  EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0)), 0);
+  EXPECT_EQ(stiffness_fraction(vertex_face(0, {3, 4, 5})), 1);
+  EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0.5)), 1);
+  // Flat: the sum of the sines decides, from 0.05 to 0.2.
+  EXPECT_EQ(stiffness_fraction(edges(-0.025, -0.025, 0.5)), 0);
+  EXPECT_NEAR(stiffness_fraction(edges(0, -0.125, 0.5)), 0.5, 1e-12);
+  EXPECT_NEAR(stiffness_fraction(edges(-0.1, -0.1, 0.5)), 1, 1e-12);
+  // Outside the wedge of either edge the ratio falls to 0 between 0 and 0.1.
+  EXPECT_EQ(stiffness_fraction(edges(0, -0.5, 0.5)), 1);
+  EXPECT_NEAR(stiffness_fraction(edges(0.05, -0.5, 0.5)), 0.5, 1e-12);
+  EXPECT_NEAR(stiffness_fraction(edges(-0.5, 0.05, 0.5)), 0.5, 1e-12);
+  EXPECT_EQ(stiffness_fraction(edges(-0.5, 0.1, 0.5)), 0);
+  // Both limits at once.
+  EXPECT_NEAR(stiffness_fraction(edges(0.05, -0.175, 0.5)), 0.5 * 0.5, 1e-12);
+  // The ratio falls within a tenth of an end of either edge.
+  EXPECT_NEAR(stiffness_fraction(edges(-0.5, -0.5, 0.05)), 0.5, 1e-12);
+  EXPECT_NEAR(stiffness_fraction(edges(-0.5, -0.5, 0.975)), 0.25, 1e-12);
+  EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0.1)), 1);
+  EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0)), 0);
 }
 
-// Faces of two blocks touch where their rims cross, at a corner too, and along no other direction than that of the
-// faces.
+// Faces of two blocks touch where their rims cross, also at a corner, and only along the normal of the faces.
 TEST(StiffnessShare, OfBlocksFadesOutsideOfAWedgeOnly) {
-  EXPECT_EQ(stiffness_share(edges(0, 0, 0.01), false), 1);
-  EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0), false), 1);
-  EXPECT_NEAR(stiffness_share(edges(0.05, -0.5, 0.5), false), 0.5, 1e-12);
-  EXPECT_EQ(stiffness_share(edges(0.1, 0, 0.5), false), 0);
+  EXPECT_EQ(stiffness_fraction(edges(0, 0, 0.01), false), 1);
+  EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0), false), 1);
+  EXPECT_NEAR(stiffness_fraction(edges(0.05, -0.5, 0.5), false), 0.5, 1e-12);
+  EXPECT_EQ(stiffness_fraction(edges(0.1, 0, 0.5), false), 0);
 }
 
 TEST(ContactBuilder, TheShareScalesTheStiffnessAndNoneMakesNoContact) {
@@ -147,15 +147,15 @@ TEST(ContactBuilder, TheShareScalesTheStiffnessAndNoneMakesNoContact) {
   EXPECT_NEAR(contacts[1].stiffness, 0.5e9, 1);
 }
 
-// 100 m / h² with the mean mass of what is pushed, by weight; at least what the scene says.
+// The stiffness is 100 m / h², m the weighted mean mass of the pushed particles, and at least the scene's value.
 TEST(ContactBuilder, StiffnessFollowsTheMassOfWhatIsPushed) {
   Scene scene;
-  constexpr double kSceneStep = 3 * kBuilderStep;  // of the scene; the law does not hang on the step that is taken
+  constexpr double kSceneStep = 3 * kBuilderStep;  // the scene's step; the law ignores the actual step
   const auto contacts =
       scene.contacts_of({vertex_face(0, {3, 4, 5}), vertex_face(1, {6, 7, 8})}, {.stiffness = 10, .step = kSceneStep});
   const double mass = (1e-3 + 0.5 * 4e-3 + 0.3 * 5e-3 + 0.2 * 6e-3) / 2;
   EXPECT_NEAR(contacts[0].stiffness, 100 * mass / (kSceneStep * kSceneStep), 1e-9);
-  EXPECT_NEAR(contacts[1].stiffness, 100 * 2e-3 / (kSceneStep * kSceneStep), 1e-9);  // the obstacle has none
+  EXPECT_NEAR(contacts[1].stiffness, 100 * 2e-3 / (kSceneStep * kSceneStep), 1e-9);  // the obstacle adds no mass
   EXPECT_EQ(scene.contacts_of({vertex_face(1, {6, 7, 8})}, {.stiffness = 1e6})[0].stiffness, 1e6);
 }
 
@@ -170,7 +170,7 @@ TEST(ContactBuilder, TheRangeIsHalfOfBothThicknesses) {
 TEST(ContactBuilder, AnObstacleActsByWhereItIsAtBothEndsOfTheStep) {
   Scene scene;
   const auto contacts = scene.contacts_of({vertex_face(1, {6, 7, 8}), vertex_face(0, {3, 4, 5})}, {});
-  const Vec3 point_t0(0.03, 0.02, -0.001);  // by the weights 0.5, 0.3, 0.2
+  const Vec3 point_t0(0.03, 0.02, -0.001);  // the point with weights 0.5, 0.3, 0.2
   EXPECT_TRUE(contacts[0].against_obstacle);
   EXPECT_LT((contacts[0].obstacle_start + point_t0).norm(), 1e-15);
   EXPECT_LT((contacts[0].obstacle_end + point_t0 + Vec3(0, 0, 0.0004)).norm(), 1e-15);
@@ -189,7 +189,7 @@ TEST(ContactBuilder, PinchedClothAndItsObstacleAreLeftOut) {
   EXPECT_EQ(contacts[0].particles[0], 3);
 }
 
-// A pinched particle 2 mm deep is pushed out at 0.2 m/s, with a twentieth of the stiffness where there is no room.
+// A pinched particle 2 mm deep is pushed out at 0.2 m/s, with a twentieth of the stiffness if it has no clearance.
 TEST(ContactBuilder, PinchedClothIsPushedBackSlowlyAndWithoutRoomSoftly) {
   const Scene scene;
   const ContactBuilder builder(scene.bodies, {.stiffness = 1e6}, scene.masses);
@@ -220,7 +220,7 @@ TEST(ContactBuilder, WhatWouldMeetBecomesAContactOnceAtTheDistanceThatItHas) {
   EXPECT_FALSE(builder.add_failing(pair, closest_features(pair, scene.x_t0), scene.motion(), response));
   ASSERT_EQ(response.springs().size(), 1U);
   const Contact& contact = response.springs()[0];
-  EXPECT_DOUBLE_EQ(contact.range, 0.001);  // no less than it is, though the full range is more
+  EXPECT_DOUBLE_EQ(contact.range, 0.001);  // at least the present value, though the full range is larger
   EXPECT_DOUBLE_EQ(contact.full_range, 0.0025);
   EXPECT_NEAR((contact.normal - Vec3::UnitZ()).norm(), 0, 1e-12);
 }
@@ -231,7 +231,7 @@ TEST(ContactBuilder, WhatIsInContactAlreadyIsNoNewContact) {
   ContactResponse response(ResponseForm::springs, scene.masses);
   response.begin_step(kBuilderStep);
   builder.begin_step();
-  // The closest features of both triangles are the vertex 3 and the face below, or a pair as near.
+  // The closest features are vertex 3 and the face below, or a pair equally near.
   const CornerPair pair{{3, 4, 5}, {0, 1, 2}};
   Proximity known;
   known.vertices = closest_features(pair, scene.x_t0).vertices;
@@ -241,7 +241,7 @@ TEST(ContactBuilder, WhatIsInContactAlreadyIsNoNewContact) {
   EXPECT_EQ(response.springs().size(), 1U);
 }
 
-// With velocity constraints all corners of the triangle of cloth are kept beyond the obstacle's plane.
+// With velocity constraints, every corner of the cloth triangle is kept beyond the obstacle's plane.
 TEST(ContactBuilder, EachCornerThatWouldMeetAnObstacleGetsAWall) {
   Scene scene;
   for (std::size_t v = 0; v < 3; ++v) scene.x_t1[v].z() -= 0.01;
@@ -255,7 +255,7 @@ TEST(ContactBuilder, EachCornerThatWouldMeetAnObstacleGetsAWall) {
     EXPECT_TRUE(response.springs().empty());
     ASSERT_EQ(response.prescribed().size(), 3U);
     for (const PrescribedParticle& held : response.prescribed()) {
-      // 1 mm above, which is the range: it stops there, and the obstacle rises by 0.4 mm.
+      // It starts 1 mm above, which equals the range: it stops there, and the obstacle rises by 0.4 mm.
       EXPECT_NEAR(held.x_end.z(), 0.0004, 1e-9) << held.constraint.particle;
     }
   }

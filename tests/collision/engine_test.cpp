@@ -1,4 +1,4 @@
-// The parts of collision put together, on a square of cloth over a floor.
+// All parts of collision handling together, on a square of cloth over a floor.
 #include "collision/engine.hpp"
 
 #include <gtest/gtest.h>
@@ -12,9 +12,7 @@ namespace weft::collision {
 namespace {
 
 constexpr double kEngineStep = 0.01;  // [s]
-constexpr double kThickness = 0.002;  // of cloth: it touches a floor at half of that, and is near at 1.5 mm
-
-/// A sheet of n × n squares of 2 cm at `height` [m] over a floor, and perhaps a ceiling.
+constexpr double kThickness = 0.002;  // of the cloth [m]: contact with a floor at half of this, detection at 1.5 mm
 struct Sheet {
   int n;
   std::vector<double> planes{0};  // heights of the floor and the ceiling [m]
@@ -54,7 +52,7 @@ struct Sheet {
   Engine engine(const EngineParameters& parameters = {}) const { return {bodies(), parameters, x, masses}; }
 };
 
-// No vertex may be moved.
+// Begins a step in which the engine may not move any vertex.
 void begin_step(Engine& engine, const std::vector<Vec3>& from, std::vector<Vec3> to) {
   engine.begin_step(from, to, {}, kEngineStep);
 }
@@ -71,7 +69,8 @@ TEST(Engine, EachParticleNearAFloorIsAProximityAndAContact) {
   EXPECT_TRUE(std::isinf(of_far.min_distance()));
 }
 
-// Candidates hold while nothing leaves the skin of 1.5 mm, and with them all features that come near inside of it.
+// Candidate pairs stay valid while no particle moves farther than the Verlet margin of 1.5 mm; they hold every pair of
+// features that comes near within it.
 TEST(Engine, WhatSinksWithinTheSkinIsFoundNear) {
   Sheet sheet(3, 0.0044);
   Engine engine = sheet.engine();
@@ -82,7 +81,7 @@ TEST(Engine, WhatSinksWithinTheSkinIsFoundNear) {
   EXPECT_EQ(engine.proximities(), 16);
 }
 
-// By velocity cones the same are found; here nothing moves, so that all are kept.
+// With velocity cones the engine finds the same pairs; nothing moves here, so that all are kept.
 TEST(Engine, KeptClosestPointsAreThoseOfTheSearch) {
   Sheet sheet(3, 0.0029);
   EngineParameters parameters;
@@ -92,8 +91,8 @@ TEST(Engine, KeptClosestPointsAreThoseOfTheSearch) {
     begin_step(engine, sheet.x, sheet.x);
     EXPECT_EQ(engine.proximities(), 16);
     EXPECT_EQ(engine.response().springs().size(), 16U);
-    EXPECT_TRUE(engine.apart(sheet.x, sheet.falling(0.0028)));
-    EXPECT_FALSE(engine.apart(sheet.x, sheet.falling(0.0030)));
+    EXPECT_TRUE(engine.is_separated(sheet.x, sheet.falling(0.0028)));
+    EXPECT_FALSE(engine.is_separated(sheet.x, sheet.falling(0.0030)));
   }
   engine.forget();
   begin_step(engine, sheet.x, sheet.x);
@@ -104,10 +103,10 @@ TEST(Engine, WhatWouldMeetIsFoundAtTheEndOfTheWay) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   begin_step(engine, sheet.x, sheet.x);
-  EXPECT_TRUE(engine.apart(sheet.x, sheet.falling(0.0499)));
-  EXPECT_FALSE(engine.apart(sheet.x, sheet.falling(0.0501)));
-  // Through the floor and out on the other side is no way either.
-  EXPECT_FALSE(engine.apart(sheet.x, sheet.falling(0.1)));
+  EXPECT_TRUE(engine.is_separated(sheet.x, sheet.falling(0.0499)));
+  EXPECT_FALSE(engine.is_separated(sheet.x, sheet.falling(0.0501)));
+  // Passing through the floor and out on the other side is refused too.
+  EXPECT_FALSE(engine.is_separated(sheet.x, sheet.falling(0.1)));
 }
 
 TEST(Engine, WhatWouldMeetBecomesContactsOnce) {
@@ -116,11 +115,11 @@ TEST(Engine, WhatWouldMeetBecomesContactsOnce) {
   const std::vector<Vec3> end = sheet.falling(0.06);
   begin_step(engine, sheet.x, sheet.x);
   EXPECT_TRUE(engine.response().springs().empty());
-  ASSERT_FALSE(engine.apart(sheet.x, end));
-  const int fresh = engine.adopt_failing(sheet.x, end);
+  ASSERT_FALSE(engine.is_separated(sheet.x, end));
+  const int fresh = engine.add_failing_contacts(sheet.x, end);
   EXPECT_GT(fresh, 0);
   EXPECT_EQ(static_cast<int>(engine.response().springs().size()), fresh);
-  EXPECT_EQ(engine.adopt_failing(sheet.x, end), 0);
+  EXPECT_EQ(engine.add_failing_contacts(sheet.x, end), 0);
 }
 
 TEST(Engine, AGuessThatMeetsTheFloorIsPushedApart) {
@@ -132,12 +131,12 @@ TEST(Engine, AGuessThatMeetsTheFloorIsPushedApart) {
   std::vector<Vec3> guess = through, kept = above;
   EXPECT_TRUE(engine.begin_step(sheet.x, guess, movable, kEngineStep));
   EXPECT_NE(guess, through);
-  EXPECT_TRUE(engine.apart(sheet.x, guess));
+  EXPECT_TRUE(engine.is_separated(sheet.x, guess));
   EXPECT_FALSE(engine.begin_step(sheet.x, kept, movable, kEngineStep));
   EXPECT_EQ(kept, above);
 }
 
-// A guess that runs into the floor has its contacts before the first solve.
+// If the predicted end runs into the floor, its contacts exist before the first solve.
 TEST(Engine, AnExpectedEndThatMeetsGivesContactsAtOnce) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
@@ -152,16 +151,17 @@ TEST(Engine, PushingApartLeavesAWayWithoutMeeting) {
   std::vector<std::uint8_t> movable(sheet.x.size(), 0);
   std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
   begin_step(engine, sheet.x, sheet.x);
-  ASSERT_FALSE(engine.apart(sheet.x, end));
+  ASSERT_FALSE(engine.is_separated(sheet.x, end));
   const SeparationReport report = engine.push_apart(sheet.x, end, movable);
   EXPECT_TRUE(report.separated);
   EXPECT_GT(report.corrected_pairs, 0);
-  EXPECT_TRUE(engine.apart(sheet.x, end));
+  EXPECT_TRUE(engine.is_separated(sheet.x, end));
   for (std::size_t i = 0; i < sheet.particles(); ++i) EXPECT_GT(end[i].z(), 0);
 }
 
-// Where the way bends the contacts are those of the bend: none of the start, but all that was pushed apart, which slips
-// from where the step began. Corners are kept behind the plane of their pair without friction.
+// If the step restarts from an intermediate state, its contacts are those of that state: none from the start, and one
+// for each pair that was pushed apart, with slip measured from the start of the step. Corners stay behind the plane of
+// their pair without friction.
 TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
@@ -169,9 +169,9 @@ TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
   std::vector<std::uint8_t> movable(sheet.x.size(), 0);
   std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
   begin_step(engine, sheet.x, sheet.x);
-  ASSERT_FALSE(engine.apart(sheet.x, bend));
+  ASSERT_FALSE(engine.is_separated(sheet.x, bend));
   ASSERT_TRUE(engine.push_apart(sheet.x, bend, movable).separated);
-  engine.go_on_from(bend);
+  engine.continue_from(bend);
 
   const auto contacts = engine.response().springs();
   ASSERT_FALSE(contacts.empty());
@@ -186,20 +186,20 @@ TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
     EXPECT_NEAR(contact.depth, contact.range - contact.normal.dot(end), 1e-15);
     smooth += contact.friction == 0;
     if (contact.friction == 0) {
-      EXPECT_LT(contact.depth, 1e-15);  // pushes nothing away that has not moved
+      EXPECT_LT(contact.depth, 1e-15);  // no force on what has not moved
     }
   }
   EXPECT_GT(smooth, 0);
   EXPECT_LT(smooth, static_cast<int>(contacts.size()));
 
-  // From here on the way is another: down through the floor no more than from the start, but back up over all of it.
+  // From here the trajectory is another: through the floor it is refused as from the start, but back up it is free.
   std::vector<Vec3> through = bend, up = bend;
   for (std::size_t i = 0; i < sheet.particles(); ++i) through[i].z() -= 0.01, up[i].z() += 1;
-  EXPECT_FALSE(engine.apart(bend, through));
-  EXPECT_TRUE(engine.apart(bend, up));
+  EXPECT_FALSE(engine.is_separated(bend, through));
+  EXPECT_TRUE(engine.is_separated(bend, up));
 }
 
-// A ceiling that comes down to 0.1 mm below the floor: with `may_pinch` the cloth between is exempted, else refused.
+// A ceiling comes down to 0.1 mm below the floor. With `may_pinch` the cloth between is exempt, else refused.
 TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   Sheet sheet(2, 0.005, 0.01);
   std::vector<Vec3> end = sheet.x;
@@ -214,10 +214,10 @@ TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   EXPECT_EQ(engine.pinched_pairs(), 0);
   EXPECT_TRUE(engine.push_apart(sheet.x, pinched, movable, true).separated);
   EXPECT_GT(engine.pinched_pairs(), 0);
-  EXPECT_TRUE(engine.apart(sheet.x, pinched));  // but for what is pinched
+  EXPECT_TRUE(engine.is_separated(sheet.x, pinched));  // apart from the pinched pairs
 }
 
-// A ceiling comes down on one side first, and pinches cloth there.
+// A ceiling comes down on one side first and pinches the cloth there.
 TEST(Engine, NothingIsExemptedForAGuess) {
   Sheet sheet(6, 0.005, 0.01);
   std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
@@ -244,8 +244,8 @@ TEST(Engine, ASheetThroughTheFloorMeetsItAtTheStart) {
   Sheet apart(2, 0.001), through(2, 0.001);
   through.x[4].z() = -0.001;
   Engine of_apart = apart.engine(), of_through = through.engine();
-  EXPECT_TRUE(of_apart.find_meetings(apart.x).empty());
-  const auto meetings = of_through.find_meetings(through.x);
+  EXPECT_TRUE(of_apart.find_intersections(apart.x).empty());
+  const auto meetings = of_through.find_intersections(through.x);
   ASSERT_FALSE(meetings.empty());
   for (const CornerPair& pair : meetings) {
     EXPECT_EQ(of_through.bodies().body_of(pair.a[0]), 0U);
@@ -253,8 +253,8 @@ TEST(Engine, ASheetThroughTheFloorMeetsItAtTheStart) {
   }
 }
 
-// Saved after a step that began where the candidates still hold, and read by an engine at the start. A folded and
-// crumpled sheet, so that some planes of the start do not separate in the step.
+// The state is saved after a step that began while the candidate pairs were valid, and restored into a new engine. The
+// sheet is folded and crumpled, so that some planes of the start do not separate during the step.
 TEST(Engine, ARestoredEngineGoesOnAsTheSavedOne) {
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -271,7 +271,7 @@ TEST(Engine, ARestoredEngineGoesOnAsTheSavedOne) {
   Engine saved = sheet.engine(), restored = sheet.engine(), fresh = sheet.engine();
   const std::vector<Vec3> lower = shaken(sheet, 0.0008);
   begin_step(saved, sheet.x, lower);
-  ASSERT_TRUE(saved.apart(sheet.x, lower));
+  ASSERT_TRUE(saved.is_separated(sheet.x, lower));
   begin_step(fresh, sheet.x, sheet.x);
   ByteWriter writer;
   saved.serialize(writer, lower);
@@ -280,7 +280,7 @@ TEST(Engine, ARestoredEngineGoesOnAsTheSavedOne) {
   EXPECT_TRUE(reader.bytes.empty());
   ByteWriter of_fresh;
   fresh.serialize(of_fresh, lower);
-  EXPECT_GT(writer.bytes.size(), of_fresh.bytes.size());  // planes that are others now
+  EXPECT_GT(writer.bytes.size(), of_fresh.bytes.size());  // some planes have changed
 
   for (Engine* engine : {&saved, &restored}) begin_step(*engine, lower, lower);
   ASSERT_EQ(saved.response().springs().size(), restored.response().springs().size());

@@ -28,16 +28,16 @@ TEST(Compare, CountsPixelsOnceAndNamesTheFirstOfTheLargest) {
   const image::Image a = plain(20, 10, 100, 100, 100);
   image::Image b = a;
   b.pixel(3, 2)[0] = 104;  // at the tolerance
-  b.pixel(5, 2)[1] = 95;   // past it
+  b.pixel(5, 2)[1] = 95;   // beyond it
   for (int c = 0; c < 3; ++c) b.pixel(7, 4)[c] = 90;
-  b.pixel(9, 4)[2] = 110;  // as large, but later
+  b.pixel(9, 4)[2] = 110;  // equally large, but later
   const Figures figures = compare(a, b, 4).figures;
   EXPECT_EQ(figures.pixels_changed, 4);
   EXPECT_EQ(figures.pixels_over, 3);
   EXPECT_EQ(figures.largest, 10);
   EXPECT_EQ(figures.largest_x, 7);
   EXPECT_EQ(figures.largest_y, 4);
-  EXPECT_EQ(figures.share_over(), 3 / 200.0);
+  EXPECT_EQ(figures.fraction_over(), 3 / 200.0);
 }
 
 TEST(Compare, EachLimitDecidesByItself) {
@@ -94,7 +94,7 @@ TEST(Compare, DefaultsPassOneSampleOfOnePixelAndNoSpeckOfSeveral) {
   EXPECT_EQ(verdict_of_speck(1, 120), Verdict::differs);
 }
 
-/// Blue cloth before a light floor, with an edge at (x + 0.3 y) = `at`, four samples a pixel.
+/// Blue cloth in front of a light floor, with an edge at (x + 0.3 y) = `at`, four samples per pixel.
 image::Image edge_at(double at, int width = 480, int height = 270) {
   image::Image image = plain(width, height, 200, 190, 180);
   for (int y = 0; y < height; ++y) {
@@ -108,18 +108,18 @@ image::Image edge_at(double at, int width = 480, int height = 270) {
   return image;
 }
 
-/// One of four samples on the other side of the edge, in `count` pixels of it, `apart` rows from one to the next.
+/// Flips one of four samples across the edge, in `count` pixels of the edge, `apart` rows from each other.
 image::Image with_flipped_samples(const image::Image& image, int count, int apart) {
   image::Image flipped = image;
   for (int i = 0, y = 2; i < count; ++i, y += apart) {
-    int x = 0;  // the first pixel that is part cloth, part floor
+    int x = 0;  // the first pixel with both cloth and floor
     while (image.pixel(x, y)[0] < 80) ++x;
     for (int c = 0; c < 3; ++c) flipped.pixel(x, y)[c] = static_cast<std::uint8_t>(image.pixel(x, y)[c] - 10 + 3 * c);
   }
   return flipped;
 }
 
-// Another CPU type changes up to 27 pixels of 129,600 at edges, in groups of up to 3, in our scenes.
+// In our scenes another CPU type changes up to 27 of 129,600 pixels at edges, in groups of up to 3.
 TEST(Compare, DefaultsPassSingleSamplesOfAnEdge) {
   const image::Image edge = edge_at(150.3);
   const Figures figures = compare(edge, with_flipped_samples(edge, 27, 8), 4).figures;
@@ -141,7 +141,7 @@ TEST(Compare, DefaultsCatchAnEdgeThatMoves) {
   EXPECT_EQ(verdict(run, {}), Verdict::differs);
 }
 
-/// How many pixels count in full if a square spot on the cloth of `edge_at` appears, or disappears.
+/// Number of pixels that count fully if a square spot on the cloth of `edge_at` appears or disappears.
 std::int64_t full_pixels_of_spot(bool is_missing, int size, int levels) {
   const image::Image without = edge_at(150.3);
   image::Image with = without;
@@ -168,19 +168,19 @@ TEST(Compare, OnlyTheDefaultMeanIsWiderInSmallPictures) {
   EXPECT_EQ(for_size({}, figures).flip, Limits{}.flip);
 }
 
-// What another CPU type changed in four pictures of our scenes.
+// The changes that another CPU type made in four pictures of our scenes.
 TEST(Compare, DefaultsPassTheNoiseOfProcessors) {
   const image::Image picture = textured(320, 180, 1);
   EXPECT_EQ(verdict(compare(picture, with_noise(picture, 60, 1, 5), 4).figures, {}), Verdict::within);
 }
 
-// One level is not seen by itself, but it is a changed light, and the mean tells it from noise.
+// One level is invisible, but it is a change of light; the mean distinguishes it from noise.
 TEST(Compare, DefaultsCatchOneLevelEverywhere) {
   EXPECT_EQ(verdict(compare(plain(320, 180, 150, 150, 150), plain(320, 180, 151, 151, 151), 4).figures, {}),
             Verdict::differs);
 }
 
-/// Of a frame that differs a little everywhere.
+/// Figures of a frame that differs a little everywhere.
 Figures mild(double flip) {
   Figures figures;
   figures.pixels = 1000, figures.pixels_changed = 900, figures.pixels_over = 10;
@@ -223,7 +223,8 @@ TEST(Compare, HeatMapShowsTheSquareRootOfTheMapOnTheHeatScale) {
   const std::array<double, 3> positions = {0, 0.5, 1};
   for (int x = 0; x < 3; ++x) {
     const Vec3 expected = 255 * image::srgb_from_linear(image::heat_color(positions[x]));
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.pixel(x, 0)[c], expected[c], 1.5) << x;  // 256 steps of colour
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(picture.pixel(x, 0)[c], expected[c], 1.5) << x;  // the colour map has 256 steps
   }
 }
 

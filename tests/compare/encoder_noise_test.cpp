@@ -9,7 +9,7 @@ namespace {
 
 using EncoderNoiseTest = support::TestFolder;
 
-/// A soft gradient, with noise of a level or two: what encoders make most of.
+/// A soft gradient with noise of a level or two, which encoders change most.
 image::Image gradient(std::uint32_t seed, int brighter) {
   image::Image image(320, 192);
   for (int y = 0; y < image.height; ++y) {

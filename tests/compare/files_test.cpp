@@ -61,7 +61,7 @@ TEST_F(Files, UnreadablePictureIsNamed) {
   EXPECT_NE(result.problem.find("b.png: cannot be read as PNG"), std::string::npos) << result.problem;
 }
 
-// Twelve waves that wander; `changed` shows a square that the others do not have.
+// Twelve frames of moving waves; frame `changed` shows an additional square.
 std::vector<image::Image> film(int changed = -1) {
   std::vector<image::Image> images;
   for (int frame = 0; frame < 12; ++frame) {
@@ -88,7 +88,7 @@ TEST_F(Files, VideosAreComparedFrameByFrameAndTheWorstIsNamed) {
   EXPECT_EQ(result.frames, 12);
   EXPECT_EQ(result.worst_frame, 7);
   EXPECT_GT(result.worst.figures.largest, 60);
-  // What the encoder makes of it in other frames is told apart.
+  // The encoder's effect on other frames is distinguished from the change.
   const FileComparison lenient = compare_files(folder_ / "a.mp4", folder_ / "b.mp4", with_encoder_noise({}));
   EXPECT_EQ(lenient.first_differing, 7);
   EXPECT_EQ(lenient.frames_differing, 1);

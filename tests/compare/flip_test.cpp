@@ -1,4 +1,4 @@
-// Each stage of FLIP against what its formula gives on paper.
+// Compares each stage of FLIP with its formula, computed by hand.
 #include "compare/flip.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,8 @@ TEST(Flip, OpponentSpaceInverts) {
   }
 }
 
-// L*a*b* of the primaries of sRGB as tables print them, a* and b* times L*/100. 0.02: their last digit, times 1.
+// L*a*b* of the sRGB primaries from published tables, a* and b* times L*/100. Tolerance 0.02: the last digit of the
+// tables, times 1.
 TEST(Flip, PrimariesHaveTheirLabShrunkByLightness) {
   const auto expect = [](const Color& linear, double lightness, double a, double b) {
     const Color lab = flip::hunt_lab(linear);
@@ -47,7 +48,7 @@ TEST(Flip, DistanceAddsLightnessAndChroma) {
   EXPECT_FLOAT_EQ(flip::hyab({50, 3, 0}, {40, 0, 4}), 10 + 5);
 }
 
-// The curve is two straight lines over distance^0.7; green to blue is the far end.
+// The curve consists of two straight lines over distance^0.7; green to blue is the largest distance.
 TEST(Flip, RemappedDistancesMeetTheirThreePoints) {
   const float largest = flip::hyab(flip::hunt_lab({0, 1, 0}), flip::hunt_lab({0, 0, 1}));
   EXPECT_NEAR(flip::remapped(0), 0, 1e-6);
@@ -56,7 +57,7 @@ TEST(Flip, RemappedDistancesMeetTheirThreePoints) {
   EXPECT_NEAR(flip::remapped(largest), 1, 1e-6);
 }
 
-// Mean over the middle of a plane with one grating, divided by its amplitude.
+// Mean over the middle of a plane with one grating, divided by the amplitude.
 double gain(int channel, double cycles_per_degree) {
   const auto wave = [&](int x) { return std::cos(2 * std::numbers::pi * cycles_per_degree * x / kPixelsPerDegree); };
   Plane<float> plane(401, 9);
@@ -66,8 +67,8 @@ double gain(int channel, double cycles_per_degree) {
   return static_cast<double>(flip::as_seen(plane, channel).row(4)[200]);
 }
 
-// What the Gaussians of Table 1 do to a grating, continuous: exp(-b f²), and for two of them the mean weighted with
-// a sqrt(b). 0.01: kernels end at three sigmas of the widest, which leaves out 0.3 %, and are sampled at pixels.
+// Continuous effect of the Gaussians of Table 1 on a grating: exp(-b f²), and for two Gaussians the mean weighted with
+// a sqrt(b). Tolerance 0.01: kernels end at three sigmas of the widest, which omits 0.3 %, and are sampled at pixels.
 TEST(Flip, GratingsAreDampedByTheContrastSensitivity) {
   for (const double f : {0.5, 2.0, 5.0, 10.0, 20.0}) {
     EXPECT_NEAR(gain(0, f), std::exp(-0.0047 * f * f), 0.01) << f;
@@ -86,8 +87,8 @@ TEST(Flip, FlatPlanesPassTheFilterUnchanged) {
   }
 }
 
-// The positive half of the edge filter adds up to 1 and lies on one side, so beside a step from 0 to 1 it answers 1,
-// and the difference to nothing is (1/sqrt 2)^(1/2).
+// The positive half of the edge filter has the sum 1 and lies on one side. Its response to a step from 0 to 1 is 1, and
+// the difference from an empty plane is (1/sqrt 2)^(1/2).
 TEST(Flip, StepAgainstNothingIsTheLargestFeatureOfOneDirection) {
   Plane<float> step(81, 41), nothing(81, 41);
   for (int y = 0; y < step.height; ++y) {
@@ -99,7 +100,7 @@ TEST(Flip, StepAgainstNothingIsTheLargestFeatureOfOneDirection) {
   EXPECT_NEAR(difference.row(20)[5], 0, 1e-3);
 }
 
-// Without edges the map is the remapped distance. Black to white: HyAB 100, and 100^0.7 = 25.12 lies past the bend.
+// Without edges the map is the remapped distance. Black to white: HyAB 100, and 100^0.7 = 25.12 is beyond the bend.
 TEST(Flip, BlackAgainstWhiteIsTheDistanceOfItsColours) {
   const Plane<float> map = flip_map(plain(40, 30, 0, 0, 0), plain(40, 30, 255, 255, 255));
   const double largest = std::pow(203.3, 0.7), bend = 0.4 * largest;  // green to blue, from the table above
@@ -107,8 +108,8 @@ TEST(Flip, BlackAgainstWhiteIsTheDistanceOfItsColours) {
   for (const float value : map.values) ASSERT_NEAR(value, expected, 1e-4);
 }
 
-// The rest of the paper once more, straight from its formulas: kernels over the plane, in double, pixel by pixel. All
-// constants stand here again.
+// A second implementation of the rest of the paper, directly from its formulas: kernels over the whole plane, in double
+// precision, pixel by pixel. All constants are repeated here.
 namespace paper {
 
 constexpr double kPi = std::numbers::pi;
@@ -119,7 +120,7 @@ struct Picture {
   double at(const Map& map, int x, int y) const {
     return map[std::clamp(y, 0, height - 1) * width + std::clamp(x, 0, width - 1)];
   }
-  /// Convolution with a kernel whose positive values add up to 1, and the negative ones, if any, to -1.
+  /// Convolution with a kernel whose positive values are normalised to the sum 1, and negative ones, if any, to -1.
   template <class Kernel>
   Map filtered(const Map& map, int radius, const Kernel& kernel) const {
     double positive = 0, negative = 0;
@@ -152,8 +153,8 @@ Map as_seen(const Picture& picture, const Map& map, int channel) {
                           kernel);
 }
 
-// Section 4.2: the standard deviation is half of 0.082 degrees; ((|dF|) / sqrt 2)^(1/2), the larger of edges and
-// points.
+// Section 4.2: the standard deviation is half of 0.082 degrees; ((|dF|) / sqrt 2)^(1/2), the larger of the values for
+// edges and points.
 Map feature_difference(const Picture& picture, const Map& a, const Map& b) {
   const double sigma = 0.5 * 0.082 * kPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
@@ -177,8 +178,8 @@ Map feature_difference(const Picture& picture, const Map& a, const Map& b) {
 
 }  // namespace paper
 
-// 1e-3: ten times what sums of a thousand terms in float, below a square root, are expected to leave; the residual was
-// not measured. A constant of the kernels that is 10 % off moves values by more.
+// Tolerance 1e-3: ten times the expected error of float sums of a thousand terms under a square root (not measured). A
+// kernel constant that is 10 % off changes values by more.
 TEST(Flip, FeaturesAreThoseOfThePapersKernels) {
   const paper::Picture size{40, 32};
   Plane<float> planes[] = {{size.width, size.height}, {size.width, size.height}};
@@ -219,7 +220,7 @@ TEST(Flip, ExchangingTheImagesChangesNothing) {
   EXPECT_EQ(flip_map(a, b).values, flip_map(b, a).values);
 }
 
-// Sums to 1 by construction; a small bright spot on black is blurred to less, and still stands out as a point.
+// The filter has the sum 1 by construction. A small bright spot is blurred, and still counts as a point feature.
 TEST(Flip, SpotIsSeenWhereItIsAndNotFarFromIt) {
   const image::Image black = plain(81, 81, 0, 0, 0);
   image::Image spot = black;

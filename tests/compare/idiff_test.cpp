@@ -1,4 +1,4 @@
-// OpenImageIO's idiff as an independent judge: the same counts of pixels and the same verdicts.
+// OpenImageIO's idiff as independent reference: the same pixel counts and the same verdicts.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -22,12 +22,12 @@ class Idiff : public support::TestFolder {
  protected:
   void SetUp() override {
     TestFolder::SetUp();
-    // The shell says 127 for what it does not find.
+    // The shell returns 127 if it does not find the program.
     const int status = std::system("idiff --version >/dev/null 2>&1");
     if (WEXITSTATUS(status) == 127) GTEST_SKIP() << "idiff is not here: apt-get install openimageio-tools";
   }
 
-  // Half a level above the tolerance, so that rounding of floating point decides nothing; no warnings.
+  // Half a level above the tolerance, so that floating-point rounding does not matter; no warnings.
   Judgement ask(int tolerance, double budget) const {
     const std::string command =
         fmt::format("idiff -warn 2 -fail {:.9f} -failpercent {:.9f} '{}' '{}' 2>&1", (tolerance + 0.5) / 255,
@@ -38,14 +38,14 @@ class Idiff : public support::TestFolder {
     EXPECT_NE(pipe, nullptr);
     for (int c; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
     judgement.passed = WEXITSTATUS(::pclose(pipe)) == 0;
-    // "  34811 pixels (60.4%) over 0.0177", after a line like it for the warnings, and only where it fails.
+    // "  34811 pixels (60.4%) over 0.0177" follows a similar line for warnings; printed only if the comparison fails.
     const std::regex line(R"((\d+) pixels \()");
     std::smatch match;
     for (; std::regex_search(text, match, line); text = match.suffix()) judgement.pixels_over = std::stoll(match[1]);
     return judgement;
   }
 
-  // Each question to idiff takes about 0.5 CPU s.
+  // Each call of idiff takes about 0.5 CPU s.
   void expect_same(const image::Image& a, const image::Image& b, std::initializer_list<int> tolerances = {4}) const {
     image::write_png(folder_ / "a.png", a);
     image::write_png(folder_ / "b.png", b);
@@ -71,7 +71,7 @@ TEST_F(Idiff, AgreesOnNoiseOfEveryAmount) {
 TEST_F(Idiff, AgreesAtTheToleranceAndAtTheBudget) {
   const image::Image picture = plain(80, 60, 100, 100, 100);
   image::Image changed = picture;
-  // 60 of 4800 pixels, just the budget above; one half by the tolerance, the other by one more.
+  // 60 of 4800 pixels, just above the budget; half of them at the tolerance, the others one level beyond it.
   for (int x = 0; x < 60; ++x) changed.pixel(x, 7)[x % 3] = static_cast<std::uint8_t>(x < 30 ? 104 : 95);
   expect_same(picture, changed);
   for (int x = 0; x < 60; ++x) changed.pixel(x, 7)[x % 3] = 95;

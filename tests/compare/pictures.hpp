@@ -1,4 +1,4 @@
-// Made pictures for the tests of comparison.
+// Synthetic pictures for the tests of comparison.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ inline image::Image plain(int width, int height, std::uint8_t red, std::uint8_t 
   return image;
 }
 
-/// The same pseudo-random numbers everywhere (xorshift, Marsaglia 2003).
+/// Pseudo-random numbers that are the same on all machines (xorshift, Marsaglia 2003).
 class Noise {
  public:
   explicit Noise(std::uint32_t seed) : state_(seed) {}
@@ -35,7 +35,7 @@ class Noise {
   std::uint32_t state_;
 };
 
-/// Waves, an edge and some grain: what a rendered picture consists of.
+/// Waves, an edge and some grain, the ingredients of a rendered picture.
 inline image::Image textured(int width, int height, std::uint32_t seed) {
   image::Image image(width, height);
   Noise noise(seed);
@@ -51,7 +51,7 @@ inline image::Image textured(int width, int height, std::uint32_t seed) {
   return image;
 }
 
-/// Adds -`levels` to `levels` to `count` channels chosen by chance.
+/// Adds random values from -`levels` to `levels` to `count` randomly chosen channels.
 inline image::Image with_noise(image::Image image, int count, int levels, std::uint32_t seed) {
   Noise noise(seed);
   for (int i = 0; i < count; ++i) {

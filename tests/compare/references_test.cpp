@@ -128,7 +128,7 @@ TEST_F(References, NewPictureGoesToDefaultWhereThatIsUsedElseIntoTheFolder) {
   EXPECT_EQ(level("other/name.png"), 30);
 }
 
-// The two hashes by the coreutils; the difference as diff prints it: all 256 pixels by 10 levels.
+// The two hashes were computed with the coreutils; the difference has the format of diff: all 256 pixels by 10 levels.
 TEST_F(References, EachChangeIsALineOfTheLogWithHashesDifferenceAndReason) {
   write("ref/a.png", 10);
   write("out/a.png", 20);

@@ -15,7 +15,7 @@ double luma(const std::uint8_t* p) {
   return 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
 }
 
-// The definition, window by window, with deviations from the mean instead of differences of squares.
+// The definition, window by window, with squared deviations from the mean.
 double window_similarity(const image::Image& a, const image::Image& b, int left, int top) {
   double total = 0, mean_a = 0, mean_b = 0, var_a = 0, var_b = 0, cov = 0;
   const auto each = [&](const auto& body) {
@@ -60,13 +60,13 @@ TEST(Ssim, EqualImagesHaveOne) {
   EXPECT_NEAR(structural_similarity(a, a), 1, 1e-12);
 }
 
-// Without structure only the first factor of Eq. (13) is left.
+// Without structure only the first factor of Eq. (13) remains.
 TEST(Ssim, FlatImagesDifferByTheirMeansAlone) {
   const double expected = (2 * 100.0 * 120 + kC1) / (100.0 * 100 + 120.0 * 120 + kC1);
   EXPECT_NEAR(structural_similarity(plain(20, 20, 100, 100, 100), plain(20, 20, 120, 120, 120)), expected, 1e-12);
 }
 
-// No window lies inside; the value is still one of an SSIM.
+// No window fits into the image; the result is still a valid SSIM.
 TEST(Ssim, ImagesSmallerThanAWindowAreCompared) {
   EXPECT_NEAR(structural_similarity(textured(7, 5, 1), textured(7, 5, 1)), 1, 1e-12);
   EXPECT_LT(structural_similarity(plain(7, 5, 0, 0, 0), plain(7, 5, 255, 255, 255)), 0.01);

@@ -26,20 +26,20 @@ TEST(BoundedQueue, HandsItemsOnInOrderAcrossThreads) {
 
 TEST(BoundedQueue, NeverHoldsMoreThanItsCapacity) {
   BoundedQueue<int> queue(2);
-  std::atomic<int> inside{0}, most{0};
+  std::atomic<int> inside{0}, max_inside{0};
   std::thread producer([&] {
     for (int i = 0; i < 500; ++i) {
       const int now = ++inside;
-      if (now > most) most = now;
+      if (now > max_inside) max_inside = now;
       ASSERT_TRUE(queue.push(i));
     }
     queue.close();
   });
   while (queue.pop()) --inside;
   producer.join();
-  // Two more than the capacity: an item is counted as in before push() has room, as out after pop() has returned.
-  EXPECT_LE(most, 4);
-  EXPECT_GE(most, 1);
+  // Two more than the capacity: an item is in before push() has a place for it, and out after pop() has returned.
+  EXPECT_LE(max_inside, 4);
+  EXPECT_GE(max_inside, 1);
 }
 
 TEST(BoundedQueue, KeepsFinishedItemsWhenTheProducerFailsAndThenThrowsItsFailure) {

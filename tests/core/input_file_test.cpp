@@ -25,7 +25,7 @@ TEST_F(InputFileTest, GivesAllBytesOfARegularFileAndOfALinkToOne) {
   EXPECT_NO_THROW(check_is_file(folder_ / "link"));
 }
 
-// Each would wait for ever, or never end.
+// Reading any of these would wait for ever or never end.
 TEST_F(InputFileTest, WhatIsNoRegularFileIsRefusedAtOnceByName) {
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0666), 0);
   fs::create_symlink("pipe", folder_ / "link");
@@ -44,8 +44,8 @@ TEST_F(InputFileTest, WhatCannotBeReadSaysWhy) {
                [&] { read_file(folder_ / "no"); });
   expect_error(ExitCode::asset_unreadable, "expected at most 4 bytes, got 5", [&] { read_file(folder_ / "a", 4); });
   expect_error(ExitCode::asset_unreadable, "File name too long", [&] { read_file(folder_ / std::string(5000, 'x')); });
-#ifndef __SANITIZE_ADDRESS__                                // which ends the process instead
-  fs::resize_file(folder_ / "a", std::uintmax_t{1} << 42);  // without a block on the disk
+#ifndef __SANITIZE_ADDRESS__                                // the sanitizer ends the process instead
+  fs::resize_file(folder_ / "a", std::uintmax_t{1} << 42);  // a sparse file: no disk blocks
   expect_error(ExitCode::asset_unreadable, "bytes are too many for the memory", [&] { read_file(folder_ / "a"); });
 #endif
 }

@@ -25,7 +25,7 @@ std::string reason(const std::function<std::string()>& work, unsigned cpu_second
 }
 
 TEST(Isolated, WorkReturnsItsBytesWhateverTheyAre) {
-  std::string bytes(3'000'000, '\0');  // more than a pipe holds at once
+  std::string bytes(3'000'000, '\0');  // more than a pipe buffers
   for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = static_cast<char>(k * k % 251);
   EXPECT_EQ(run_isolated([&] { return bytes; }, {}), bytes);
   EXPECT_EQ(run_isolated([] { return std::string(); }, {}), "");
@@ -39,8 +39,8 @@ TEST(Isolated, WorkChangesNothingInThisProcess) {
 
 TEST(Isolated, WorkThatThrowsIsReportedInItsWords) {
   EXPECT_EQ(reason([]() -> std::string { throw std::runtime_error("line 7 is odd"); }), "line 7 is odd");
-  EXPECT_EQ(reason([]() -> std::string { throw 7; }), "an exception without words");
-  EXPECT_EQ(reason([]() -> std::string { throw std::bad_alloc(); }), "the reader takes more memory than it may");
+  EXPECT_EQ(reason([]() -> std::string { throw 7; }), "an exception without a message");
+  EXPECT_EQ(reason([]() -> std::string { throw std::bad_alloc(); }), "the reader exceeds its memory limit");
 }
 
 TEST(Isolated, WorkThatCrashesIsReportedBySignal) {
@@ -50,7 +50,7 @@ TEST(Isolated, WorkThatCrashesIsReportedBySignal) {
             }),
             "the reader crashed: Segmentation fault");
   EXPECT_EQ(reason([]() -> std::string { std::abort(); }), "the reader crashed: Aborted");
-  EXPECT_EQ(reason([]() -> std::string { std::_Exit(3); }), "the reader ended without a word");
+  EXPECT_EQ(reason([]() -> std::string { std::_Exit(3); }), "the reader ended without a result");
 }
 
 TEST(Isolated, WorkWithoutEndIsStopped) {
@@ -96,10 +96,10 @@ TEST(Isolated, WorkIsKilledOnceItIsToStop) {
 TEST(Isolated, WorkThatWantsTooMuchMemoryIsRefused) {
   const auto greedy = [] {
     std::vector<std::string> hoard(17);
-    for (std::string& gigabyte : hoard) gigabyte.reserve(std::size_t{1} << 30);  // addresses only, no memory
+    for (std::string& gigabyte : hoard) gigabyte.reserve(std::size_t{1} << 30);  // reserves addresses only, no memory
     return std::to_string(hoard.size());
   };
-  EXPECT_EQ(reason(greedy), "the reader takes more memory than it may");
+  EXPECT_EQ(reason(greedy), "the reader exceeds its memory limit");
 }
 #endif
 

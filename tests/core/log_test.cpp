@@ -1,4 +1,4 @@
-// Who takes warnings over.
+// Handlers of warnings.
 #include "core/log.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace weft::log {
 namespace {
 
-// A handler that waits for a lock whose holder logs would else wait for ever; one that logs is such a case.
+// A handler may log, or wait for a lock whose holder logs: neither may deadlock.
 TEST(Log, HandlerMayLogItself) {
   std::vector<std::string> texts;
   set_handler([&](std::string_view text) {

@@ -10,10 +10,10 @@ namespace {
 
 TEST(EditDistance, CountsEachKindOfSlipOnce) {
   EXPECT_EQ(edit_distance("render", "render"), 0);
-  EXPECT_EQ(edit_distance("rendr", "render"), 1);    // left out
-  EXPECT_EQ(edit_distance("rrender", "render"), 1);  // doubled
-  EXPECT_EQ(edit_distance("rander", "render"), 1);   // wrong
-  EXPECT_EQ(edit_distance("redner", "render"), 1);   // swapped
+  EXPECT_EQ(edit_distance("rendr", "render"), 1);    // missing letter
+  EXPECT_EQ(edit_distance("rrender", "render"), 1);  // doubled letter
+  EXPECT_EQ(edit_distance("rander", "render"), 1);   // wrong letter
+  EXPECT_EQ(edit_distance("redner", "render"), 1);   // swapped letters
   EXPECT_EQ(edit_distance("", "abc"), 3);
   EXPECT_EQ(edit_distance("abc", ""), 3);
 }

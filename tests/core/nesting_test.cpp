@@ -20,7 +20,7 @@ std::string repeated(const std::string& text, int count) {
   return all;
 }
 
-/// Levels below a node, as the parser has made them.
+/// Nesting depth below a node, as parsed.
 int depth_of(const toml::node& node) {
   int deepest = 0;
   if (const auto* table = node.as_table()) {
@@ -31,7 +31,7 @@ int depth_of(const toml::node& node) {
   return deepest;
 }
 
-/// Ways to nest so many levels.
+/// Texts that nest this many levels, by kind of nesting.
 std::map<std::string, std::string> nested(int levels) {
   const int more = levels - 1;
   return {{"dotted", "a" + repeated(".a", more) + " = 1"},
@@ -53,13 +53,13 @@ std::map<std::string, std::string> nested(int levels) {
 }
 
 TEST(Nesting, IsRefusedFromTheFirstLevelTooManyInWhateverWayItIsWritten) {
-  for (const auto& [way, text] : nested(kMaxDepth / 2)) EXPECT_NO_THROW(parse_toml(text)) << way;
-  for (const auto& [way, text] : nested(2 * kMaxDepth)) {
-    EXPECT_TRUE(nests_too_deep(text)) << way;
-    EXPECT_THROW(parse_toml(text), toml::parse_error) << way;
+  for (const auto& [kind, text] : nested(kMaxDepth / 2)) EXPECT_NO_THROW(parse_toml(text)) << kind;
+  for (const auto& [kind, text] : nested(2 * kMaxDepth)) {
+    EXPECT_TRUE(nests_too_deep(text)) << kind;
+    EXPECT_THROW(parse_toml(text), toml::parse_error) << kind;
   }
-  // Neither a parser nor a destructor would come back from these.
-  for (const auto& [way, text] : nested(200'000)) EXPECT_TRUE(nests_too_deep(text)) << way;
+  // A parser or a destructor would overflow the stack with these.
+  for (const auto& [kind, text] : nested(200'000)) EXPECT_TRUE(nests_too_deep(text)) << kind;
 }
 
 TEST(Nesting, CountsDotsInTextsAndCommentsForNothing) {
@@ -70,8 +70,8 @@ TEST(Nesting, CountsDotsInTextsAndCommentsForNothing) {
     EXPECT_FALSE(nests_too_deep(text)) << text.substr(0, 40);
 }
 
-// Text put together at random from all that the grammar turns on: where the parser takes it, it is no deeper than what
-// was allowed, headers and keys below them counting apart.
+// Random text of all characters that matter to the grammar: if the parser accepts it, its depth is at most what is
+// allowed, where headers and the keys below them count separately.
 TEST(Nesting, NoTextThatTheParserTakesIsDeeperThanTwiceTheLimit) {
   const std::vector<std::string> pieces{
       "a", ".",  ".",  "\"",   "'",       "\"\"\"",           "'''",    "#", "=", "[", "]", "{", "}",
@@ -82,7 +82,7 @@ TEST(Nesting, NoTextThatTheParserTakesIsDeeperThanTwiceTheLimit) {
     std::string text;
     for (int k = std::uniform_int_distribution(1, 12)(random); k > 0; --k)
       text += pieces[std::uniform_int_distribution<std::size_t>(0, pieces.size() - 1)(random)];
-    // Each part of a key twenty times, so that short texts reach the limit.
+    // Repeats each part of a key twenty times, so that short texts reach the limit.
     for (std::size_t at = 0; (at = text.find("a.", at)) != std::string::npos; at += 40)
       text.replace(at, 2, repeated("a.", 20));
     try {
@@ -113,7 +113,7 @@ TEST(Nesting, ObjectsOfMoreKeysThanCanBeComparedAreRefused) {
   };
   EXPECT_EQ(parse_json(object(2000)).size(), 2000u);
   EXPECT_THROW(parse_json(object(50'000)), std::runtime_error);
-  // Many small ones are no trouble.
+  // Many small objects are accepted.
   EXPECT_EQ(parse_json("[" + repeated(object(27) + ",", 10'000) + "0]").size(), 10'001u);
 }
 

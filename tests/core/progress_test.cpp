@@ -25,18 +25,18 @@ TEST(RemainingTime, IsUnknownUntilThereIsAPace) {
 TEST(RemainingTime, FollowsTheSlowestStage) {
   RemainingTime remaining({100, 100, 100});
   remaining.sample(0, {0, 0, 0});
-  remaining.sample(10, {40, 20, 20});  // 4 a second, 2 a second
+  remaining.sample(10, {40, 20, 20});  // 4 per second, then 2 per second
   ASSERT_TRUE(remaining.seconds());
-  EXPECT_DOUBLE_EQ(*remaining.seconds(), 40);  // 80 frames at 2 a second
+  EXPECT_DOUBLE_EQ(*remaining.seconds(), 40);  // 80 frames at 2 per second
 }
 
 TEST(RemainingTime, ForgetsThePaceOfLongAgo) {
   RemainingTime remaining({1000, 0, 0});
   remaining.sample(0, {0, 0, 0});
-  remaining.sample(10, {500, 0, 0});                                               // a quick start: 50 a second
-  for (int t = 20; t <= 60; t += 10) remaining.sample(t, {500 + (t - 10), 0, 0});  // then 1 a second
+  remaining.sample(10, {500, 0, 0});                                               // a fast start: 50 per second
+  for (int t = 20; t <= 60; t += 10) remaining.sample(t, {500 + (t - 10), 0, 0});  // then 1 per second
   ASSERT_TRUE(remaining.seconds());
-  EXPECT_DOUBLE_EQ(*remaining.seconds(), 450);  // 450 frames left at 1 a second
+  EXPECT_DOUBLE_EQ(*remaining.seconds(), 450);  // 450 frames left at 1 per second
 }
 
 TEST(RemainingTime, IgnoresAStageThatHasNotBegun) {

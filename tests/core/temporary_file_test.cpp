@@ -123,7 +123,7 @@ TEST_F(TemporaryFileTest, AFileThatSomebodyMakesMeanwhileStays) {
   EXPECT_THROW(write_file(file, "new"), Error);
   EXPECT_NO_THROW(write_file(file, "precious")) << "nothing is lost where it holds the same";
   fs::remove(file);
-  // What this process has written is its own.
+  // A process may replace the files that it has written itself.
   write_file(file, "first");
   write_file(file, "second");
   EXPECT_EQ(content(file), "second");
@@ -160,15 +160,15 @@ TEST_F(TemporaryFileTest, SaysWhyADiskCannotTakeTheData) {
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const rlimit none{0, before.rlim_max};
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
-  std::string told;
+  std::string message;
   try {
     write_file(folder_ / "a.txt", "x");
   } catch (const Error& error) {
-    told = error.what();
+    message = error.what();
   }
   ::setrlimit(RLIMIT_FSIZE, &before);
   ::signal(SIGXFSZ, handler);
-  EXPECT_EQ(told, (folder_ / "a.txt").string() + ": cannot be written: File too large");
+  EXPECT_EQ(message, (folder_ / "a.txt").string() + ": cannot be written: File too large");
   EXPECT_EQ(entries(), 0u);
 }
 

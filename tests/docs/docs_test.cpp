@@ -1,5 +1,4 @@
-// Holds the documentation against the sources, after showing on small made-up pages that each check sees what it is
-// for.
+// Checks the documentation against the sources. Small made-up pages first show that each check detects its mistakes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +22,7 @@ namespace fs = std::filesystem;
 
 const fs::path kRoot = WEFT_SOURCE_DIR;
 
-// "page: target" for each link to a file or heading that is not there.
+// Returns "page: target" for each link to a missing file or heading.
 std::string broken_links(const fs::path& root, const fs::path& file) {
   std::string broken;
   for (const std::string& link : read_page(read_file(root / file)).links) {
@@ -118,7 +117,7 @@ TEST_F(MeasuredTables, HaveTheirCommandVersionMachineAndDateAbove) {
   }
 }
 
-// "12: what stands there" for each table that no measured file prints.
+// Returns "12: first row" for each table that is not printed from a measured file.
 std::string written_tables(const std::string& text) {
   std::string found;
   std::istringstream lines(text);
@@ -145,7 +144,7 @@ TEST(MeasuredPage, HasTablesOfNamedCommandsAlone) {
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 350);
 }
 
-// Measured files without a place on the page would age unseen.
+// Measured files that no page shows would become outdated unnoticed.
 TEST(MeasuredPage, ShowsOrLinksEachMeasuredFile) {
   const std::string text = read_file(kRoot / "tests/bench/README.md");
   for (const auto& entry : fs::directory_iterator(kRoot / "tests/bench/measured")) {
@@ -191,7 +190,7 @@ TEST(Documentation, OfEachRoomIsLinkedFromTheReadme) {
   }
 }
 
-// Collision has three rooms in one.
+// Collision consists of three modules in one.
 TEST(Documentation, OfARoomFitsAScreen) {
   for (const architecture::Module& module : architecture::read_modules(kRoot)) {
     const fs::path page = kRoot / "src" / module.name / "README.md";

@@ -26,7 +26,7 @@ void write(const fs::path& file, const std::string& text) {
   if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 
-// Runs `commands` by the shell, which stops at the first that fails. Both outputs together.
+// Runs `commands` in a shell, which stops at the first failure. `output` receives both outputs.
 int run(const std::string& commands, const fs::path& folder, std::string& output) {
   write(folder / "commands.sh", commands);
   FILE* pipe = ::popen(
@@ -41,7 +41,7 @@ int run(const std::string& commands, const fs::path& folder, std::string& output
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-// The first line of `expected` that `output` does not hold, in order; empty if it holds all.
+// The first line of `expected` that is missing in `output`, in order; empty if all are there.
 std::string missing_line(const std::string& expected, const std::string& output) {
   std::istringstream lines(expected);
   std::size_t from = 0;
@@ -86,7 +86,7 @@ std::string wrong_blocks(const std::string& page) {
 std::string run_section(const std::string& page, const std::string& section, const fs::path& folder) {
   fs::create_symlink(WEFT_PROGRAM, folder / "weft");
   fs::create_directory(folder / ".bin");
-  fs::create_symlink(WEFT_PYTHON_PROGRAM, folder / ".bin/python3");  // that of the module
+  fs::create_symlink(WEFT_PYTHON_PROGRAM, folder / ".bin/python3");  // the interpreter for which the module is built
   fs::create_symlink(fs::path(WEFT_SOURCE_DIR) / "scenes", folder / "scenes");
   std::string output;
   for (const Fence& fence : read_page(page).fences) {

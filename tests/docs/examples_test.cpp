@@ -1,4 +1,4 @@
-// Every example of scenes/README.md, run as it stands there, one test for each section.
+// Runs every example of scenes/README.md unchanged, one test for each section.
 #include "docs/examples.hpp"
 
 #include <gtest/gtest.h>
@@ -105,7 +105,7 @@ std::string test_name(const ::testing::TestParamInfo<std::string>& section) {
   return name;
 }
 
-// The sections that have commands.
+// The sections that contain commands.
 std::vector<std::string> sections() {
   std::vector<std::string> sections;
   for (const Fence& fence : read_page(guide()).fences) {

@@ -22,12 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Bars would end the cell, and what is between < and > would not be seen.
+// Escapes a cell: bars would end it, and text between < and > would be invisible.
 std::string in_cell(const std::string& text) {
   return std::regex_replace(std::regex_replace(text, std::regex(R"(\|)"), R"(\|)"), std::regex("<"), "&lt;");
 }
 
-// --- The command line, as its help says it.
+// --- The command line, as printed by its help.
 
 std::vector<std::string> help(const std::vector<std::string>& words) {
   std::vector<std::string> arguments = words;
@@ -42,7 +42,7 @@ struct Entry {
   std::string name, meaning;
 };
 
-// The entries below `heading`, up to an empty line. A name that is too long for its column has its meaning below it.
+// The entries below `heading`, up to an empty line. The meaning of a long name is on the next line.
 std::vector<Entry> section(const std::vector<std::string>& lines, const std::string& heading) {
   std::vector<Entry> entries;
   auto line = std::find(lines.begin(), lines.end(), heading);
@@ -62,7 +62,7 @@ std::vector<Entry> section(const std::vector<std::string>& lines, const std::str
 std::vector<Entry> commands_of_help() {
   std::vector<Entry> commands = section(help({}), "Subcommands:");
   for (Entry& command : commands)
-    command.name = command.name.substr(0, command.name.find(','));  // others mean the same
+    command.name = command.name.substr(0, command.name.find(','));  // the other names are aliases
   return commands;
 }
 
@@ -79,7 +79,7 @@ std::string commands() {
   return table;
 }
 
-// One row for each option and meaning, in order of the names, with the commands that have it.
+// One row for each option and meaning, sorted by name, with the commands that accept it.
 std::string options() {
   std::vector<std::pair<std::string, std::vector<std::string>>> rows;
   for (const Entry& command : commands_of_help()) {
@@ -126,7 +126,7 @@ std::string fabrics() {
   return table;
 }
 
-// What is estimated has a ~.
+// Estimates are marked with ~.
 std::string fabric_measurements() {
   std::string table =
       "| fabric | g/m² | extension at 490 N/m, weft, warp % | shear G N/m | B weft, warp µN·m | HB/B 1/m | mm | drape "
@@ -159,7 +159,7 @@ std::string modules(const fs::path& root) {
   return table;
 }
 
-// --- What was measured: tables as the programs of tests/bench printed them.
+// --- Measurements: tables as the programs of tests/bench printed them.
 
 std::vector<std::vector<std::string>> printed_table(const fs::path& file) {
   std::istringstream text(read_file(file));
@@ -177,7 +177,7 @@ std::vector<std::vector<std::string>> printed_table(const fs::path& file) {
   return rows;
 }
 
-// The cells of a row that stand in the named columns.
+// The cells of a row in the named columns.
 std::vector<std::string> chosen(const std::vector<std::string>& row, const std::vector<std::string>& head,
                                 const std::vector<std::string>& columns) {
   std::vector<std::string> cells;
@@ -189,7 +189,7 @@ std::vector<std::string> chosen(const std::vector<std::string>& row, const std::
   return cells;
 }
 
-// Of a measured file: its first line, a heading with the command, and the line that names program, machine and date.
+// Origin of a measured file: its first line (a heading with the command) and the line with program, machine and date.
 std::string origin(const fs::path& file) {
   static const std::regex kOrigin(
       R"(^# (`[^`]+`[^\n]*)\n\nweft ([0-9.]+) of commit ([0-9a-f]{7,40}), ([^\n]+), (20\d\d-\d\d-\d\d)\n\n)");
@@ -209,8 +209,8 @@ std::string origin(const fs::path& file) {
 
 std::string side_by_side(const fs::path& folder, const std::string& arguments);
 
-// "FILE FILE ...[: COLUMN, COLUMN]": where the tables come from, then side by side the rows that the first tables of
-// all these files have in common; without columns the first table of one file.
+// Arguments: "FILE FILE ...[: COLUMN, COLUMN]". Prints the origin of the tables, then side by side the rows that the
+// first tables of all these files have in common; without columns the first table of one file.
 std::string measured(const fs::path& folder, const std::string& arguments) {
   std::istringstream files(arguments.substr(0, arguments.find(": ")));
   std::string text;

@@ -1,5 +1,5 @@
-// The parts of the documentation that are printed from the program's own tables. In a page they stand between
-// `<!-- generated: NAME -->` and `<!-- end -->`; `ninja docs` writes them anew.
+// The parts of the documentation that are printed from tables of the program. In a page they are between `<!--
+// generated: NAME -->` and `<!-- end -->`; `ninja docs` rewrites them.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace weft::docs {
 
-/// The page `file` (relative to root) with every generated part as it should be now. Throws std::runtime_error for a
-/// name that is not known, and where the end is missing.
+/// Returns the page `file` (relative to root) with every generated part up to date. Throws std::runtime_error if a name
+/// is unknown or an end is missing.
 std::string regenerated(const std::filesystem::path& root, const std::filesystem::path& file, const std::string& text);
 
 }  // namespace weft::docs

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// GitHub's rule: small letters, punctuation left out, spaces as hyphens.
+// GitHub's rule: lower case, no punctuation, hyphens for spaces.
 std::string anchor_of(const std::string& heading) {
   std::string anchor;
   for (const char c : heading) {
@@ -29,7 +29,7 @@ std::string anchor_of(const std::string& heading) {
   return anchor;
 }
 
-// Cells of a row such as `| a | b \| c |`.
+// Number of cells of a row such as `| a | b \| c |`.
 int cells(const std::string& row) {
   int bars = 0;
   for (std::size_t i = 0; i < row.size(); ++i) bars += row[i] == '|' && (i == 0 || row[i - 1] != '\\');
@@ -98,7 +98,7 @@ class Reader {
   }
 
   Page& page_;
-  std::string prose_;  // all but the fences
+  std::string prose_;  // everything outside fences
   int number_ = 0, table_rows_ = 0, columns_ = 0;
   bool in_fence_ = false, blank_before_ = true;
 };

@@ -23,7 +23,7 @@ void add_words(const std::string& text, std::set<std::string>& words) {
     words.insert(match->str());
 }
 
-// The names of the tests of all files: those with parameters or types stand for the first of them.
+// Collects the names of the tests of all files; parameterised and typed tests are represented by their first instance.
 class Tests {
  public:
   void read(const std::string& text) {
@@ -41,7 +41,7 @@ class Tests {
       if (kind == "TEST" || kind == "TEST_F") names.insert(suite + "." + name);
       if (kind == "TYPED_TEST") names.insert(suite + "/0." + name);
       if (!prefixes_.contains(suite)) continue;
-      if (kind == "TEST_P") names.insert(suite + "." + name);  // as tests/run -R takes it
+      if (kind == "TEST_P") names.insert(suite + "." + name);  // form for tests/run -R
       for (const std::string& prefix : prefixes_.at(suite))
         names.insert(kind == "TEST_P" ? fmt::format("{}/{}.{}/0", prefix, suite, name)
                                       : fmt::format("{}/{}/0.{}", prefix, suite, name));
@@ -73,7 +73,7 @@ bool is_file(const std::string& name, const fs::path& root, const fs::path& page
                      [&](const fs::path& folder) { return fs::exists(root / folder / name); });
 }
 
-// Each part of a::b. Plain words may be of any kind; what is written as only programs are must be in them.
+// Checks each part of a::b. Plain words may be any word; text that only programs contain must be an identifier.
 bool is_name(const std::string& name, const Known& known) {
   static const std::regex kPart(R"(\w+)");
   const std::vector<std::string> parts(std::sregex_token_iterator(name.begin(), name.end(), kPart), {});
@@ -83,7 +83,7 @@ bool is_name(const std::string& name, const Known& known) {
   });
 }
 
-// test_mesh is that of tests/mesh, test_mesh_slow of its slow files.
+// test_mesh is the program of tests/mesh, test_mesh_slow that of its slow files.
 bool is_test_program(const std::string& name, const fs::path& root) {
   static const std::regex kProgram(R"(test_(\w+?)(?:_slow)?)");
   std::smatch match;

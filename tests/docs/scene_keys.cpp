@@ -34,7 +34,7 @@ std::string default_text(const Rule& rule, void* defaults) {
   return fmt::format("[{}]", fmt::join(*numbers, ", "));
 }
 
-// Prints a table, then those inside of it.
+// Prints a table, then the tables inside it.
 class Printer {
  public:
   std::string text;

@@ -7,7 +7,7 @@ namespace weft::docs {
 
 /// A section with a table for each table of the format.
 std::string scene_keys();
-/// Likewise of sewing patterns.
+/// The same for sewing patterns.
 std::string pattern_keys();
 
 }  // namespace weft::docs

@@ -1,4 +1,4 @@
-// Characters of a scene, from small files made here.
+// Characters of a scene, from small files that are made here.
 #include "environment/acting.hpp"
 
 #include <fmt/format.h>
@@ -15,10 +15,10 @@
 namespace weft::environment {
 namespace {
 
-// Files hold single precision; figures here are of some metres.
+// Rounding of single-precision files, for coordinates of a few metres.
 constexpr double kSingle = 1e-6;
 
-/// Its ends at x = -0.1. The reader turns faces round and with them the order of vertices.
+/// Vertices at the ends of the rod, at x = -0.1. The reader reverses faces and with them the order of vertices.
 constexpr std::size_t kLow = 2, kHigh = 3;
 
 class Acting : public support::TestFolder {
@@ -71,7 +71,7 @@ TEST_F(Acting, TurnsTheFileUpScalesItAndPutsItInItsPlace) {
 
 TEST_F(Acting, PlaysTheClipThatItsSceneNamesAfterDressing) {
   character_.dressing = 0.5;
-  // The reader turns left-handed X files by mirroring z; with y up, what was z is now -y, mirrored +y.
+  // The reader converts left-handed X files by mirroring z. With y up, z became -y; mirrored, it becomes +y.
   const Actor walking = make();
   EXPECT_LT((at(walking, 0.4)[0] - at(walking, 0)[0]).norm(), kSingle);
   EXPECT_NEAR((at(walking, 1.5)[0] - at(walking, 0)[0]).norm(), 2, 1e-5);
@@ -87,11 +87,11 @@ TEST_F(Acting, GrowsFromItsBonesWhileItIsDressedAndThenMoves) {
   const Actor whole = make();
   character_.grow = 0.5;
   const Actor growing = make();
-  // Its bone is from the hips, at the origin, along y of the file to the spine, and beyond.
+  // The bone runs from the hips, at the origin, along y of the file to the spine and beyond.
   const Vec3 low = at(whole, -1)[kLow], on_bone(0, 0, 0);
   EXPECT_LT((at(growing, -1)[kLow] - (on_bone + 0.1 * (low - on_bone))).norm(), kSingle);
   EXPECT_LT((at(growing, -0.75)[kLow] - (on_bone + 0.55 * (low - on_bone))).norm(), 1e-4) << "half, between keys";
-  // The keys of both are elsewhere: splines through a start of 2 m/s.
+  // The keys of the two motions are at different times: splines through a start at 2 m/s.
   for (const double t : {-0.5, -0.2, 0.5, 1.7})
     EXPECT_LT((at(growing, t)[kLow] - at(whole, t)[kLow]).norm(), 0.02) << t;
   for (const double t : {-0.5, -0.3}) EXPECT_LT((at(growing, t)[kLow] - low).norm(), 1e-3) << t;
@@ -123,7 +123,7 @@ TEST_F(Acting, WarnsOfALoopThatDoesNotClose) {
 TEST_F(Acting, StoresAsManyKeysAsThePlanSays) {
   character_.source = file_;
   character_.keys_per_second = 30;
-  // 0, 1/30, ..., 2 s, and one more.
+  // Keys at 0, 1/30, ..., 2 s, and one more.
   const KeyFrameCount count = count_key_frames(scene_, (make(), character_));
   EXPECT_EQ(count.keys, 62u);
   EXPECT_EQ(count.vertices, 5u);
@@ -156,7 +156,7 @@ TEST_F(Acting, KnowsPartsByJointsAndBones) {
   EXPECT_TRUE(actor.parts[3].collide);
 }
 
-/// The rod with its upper end as a hand of three fingers.
+/// The rod, with its upper end as a hand of three fingers.
 std::string hand_file() {
   std::string text = support::rod_file();
   const auto replace = [&](const std::string& from, const std::string& to) {
@@ -201,7 +201,7 @@ TEST_F(Acting, LeavesHandsWithFingersOutUnlessTheSceneHasItsOwnSay) {
   EXPECT_TRUE(make().parts.empty()) << "nothing of it meets cloth";
 }
 
-// "Wave" moves Spine by 1 m within the first second and Hips not at all.
+// "Wave" moves Spine by 1 m within the first second, and does not move Hips.
 TEST_F(Acting, CarriesWhatFollowsAPart) {
   file_.clip = "Wave";
   character_.pose.position = {10, 0, 0};
@@ -238,7 +238,7 @@ TEST_F(Acting, LeavesPartsOutOfContactAndClosesWhatIsLeft) {
       low = std::min(low, body.mesh.positions[v].x());
       high = std::max(high, body.mesh.positions[v].x());
     }
-  // Its right shoulder ends 0.25 m off the middle; of the left arm, hanging at 45 degrees, the upper part is there.
+  // The right shoulder ends 0.25 m from the middle; of the left arm, hanging at 45 degrees, the upper part is kept.
   EXPECT_GT(low, -0.25);
   EXPECT_GT(high, 0.3);
   EXPECT_LT(high, 0.45);
@@ -298,7 +298,7 @@ TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
   const Actor actor = make();
   EXPECT_TRUE(actor.warnings.empty());
   EXPECT_LT((at(actor, 0)[4] - Vec3(0.1, 0, 2)).norm(), kSingle);
-  // 3 forward, which is -y where z is up; the rod above its middle bends by 90° about that way.
+  // 3 m forward, which is -y with z up; the rod above its middle bends by 90° about the forward axis.
   const auto x = at(actor, 1);
   EXPECT_LT((x[1] - Vec3(0.1, -3, 0)).norm(), kSingle);
   EXPECT_LT((x[4] - Vec3(-1, -3, 1.1)).norm(), kSingle);
@@ -396,7 +396,7 @@ TEST_F(Acting, DoubtsABodyThatMissesTheFloor) {
   const std::string above =
       "scenes/a.toml:7:1: character.rod: it comes no nearer to the floor than 0.3 m; position puts it lower";
   EXPECT_EQ(warning(0.3), above);
-  // There may be something that it stands on, and below a floor that moves there may be anything.
+  // No warning: the character may stand on an obstacle, and below a moving floor there may be anything.
   scene_.obstacles.emplace_back();
   scene_.obstacles[1].shape = scene::BoxShape{};
   EXPECT_EQ(warning(0.3), "");
@@ -436,7 +436,8 @@ TEST_F(Acting, DressingBeginsWithThePreroll) {
   scene_.time.preroll = 0.48;  // twelve frames
   const Actor shown = make();
   for (const double t : {0.2, 0.5, 0.9, 1.3})
-    EXPECT_LT((at(shown, t)[kHigh] - at(late, t + 0.48)[kHigh]).norm(), 1e-3) << t;  // keys at other times
+    EXPECT_LT((at(shown, t)[kHigh] - at(late, t + 0.48)[kHigh]).norm(), 1e-3)
+        << t;  // their keys are at different times
   EXPECT_EQ(at(shown, -0.48), at(shown, 0.2));
   EXPECT_GT((at(shown, 1.3)[kHigh] - at(shown, 0)[kHigh]).norm(), 0.5);
 }
@@ -456,7 +457,7 @@ TEST_F(Acting, MannequinWalksAndStandsUprightWhicheverAxisIsUp) {
     const std::vector<Vec3> x = at(z_up, t);
     return *std::ranges::max_element(x, {}, [](const Vec3& p) { return p.z(); });
   };
-  EXPECT_NEAR(top(0).z(), 1.7, 0.06);  // standing, knees a little bent
+  EXPECT_NEAR(top(0).z(), 1.7, 0.06);  // standing, with slightly bent knees
   EXPECT_NEAR(top(3).y() - top(0).y(), -1.5, 0.05);
 }
 

@@ -1,4 +1,4 @@
-// Which particles pins and weights take: by rows, pictures, colours and groups of vertices, and what fades around them.
+// Selection of particles for pins and weights: by rows, pictures, colours and vertex groups, and the fade around them.
 #include "environment/chosen_particles.hpp"
 
 #include <fmt/format.h>
@@ -23,11 +23,11 @@ std::map<Index, double> shares_of(const std::vector<Chosen>& chosen) {
 
 class ChosenParticles : public support::TestFolder {
  protected:
-  /// The first cloth of a scene; `cloth` goes on in its table.
+  /// The first cloth of a scene; `cloth` is appended to its table.
   ClothObject cloth_of(const std::string& cloth) const {
     return std::move(Environment(support::scene_of_text("[[cloth]]\nname = 'c'\n" + cloth)).cloths[0]);
   }
-  /// A picture of one row of greys.
+  /// Writes a picture with one row of grey pixels; returns its file.
   std::string row_of(const std::vector<int>& greys) const {
     image::Image picture(static_cast<int>(greys.size()), 1);
     for (std::size_t i = 0; i < greys.size(); ++i)
@@ -36,7 +36,7 @@ class ChosenParticles : public support::TestFolder {
     image::write_png(folder_ / "mask.png", picture, {});
     return (folder_ / "mask.png").string();
   }
-  /// A strip of two squares along x, 1 m each, with UVs that run against x, red growing along x, blue where y is 1.
+  /// A strip of two squares of 1 m along x. Its UVs run against x, red grows along x, blue is set at y = 1.
   std::string strip() const {
     std::string text = "o strip\n";
     for (int y = 0; y < 2; ++y)
@@ -52,7 +52,7 @@ class ChosenParticles : public support::TestFolder {
   }
 };
 
-// Distances of a grid of 0.1 m, of the row at warp 0 and of what is up to 0.25 m from it.
+// A grid of 0.1 m: distances from the row at warp 0, up to 0.25 m.
 TEST_F(ChosenParticles, FadeWithTheDistanceAlongTheClothAtRest) {
   for (const char* shape : {"quads", "aligned_triangles"}) {
     const ClothObject cloth =
@@ -61,15 +61,15 @@ TEST_F(ChosenParticles, FadeWithTheDistanceAlongTheClothAtRest) {
                              shape));
     const auto shares = shares_of(cloth.pins[0]);
     ASSERT_EQ(shares.size(), 15u) << shape;
-    for (const auto& [particle, share] : shares) {
+    for (const auto& [particle, fraction] : shares) {
       const double s = 1 - 0.1 * (particle / 5) / 0.25;
-      EXPECT_NEAR(share, s * s * (3 - 2 * s), 1e-12) << shape << " " << particle;
+      EXPECT_NEAR(fraction, s * s * (3 - 2 * s), 1e-12) << shape << " " << particle;
     }
     for (std::size_t k = 0; k < cloth.pins[0].size(); ++k) EXPECT_EQ(cloth.pins[0][k].faded, k >= 5) << shape;
   }
 }
 
-// From a corner, of quads also across: 0.141 m along the diagonal.
+// Distances from a corner also cross quads: 0.141 m along the diagonal.
 TEST_F(ChosenParticles, FadeAcrossQuadsToo) {
   const ClothObject cloth =
       cloth_of("size = [0.4, 0.4]\nparticles = 5\npin = [{ high = [0, 0], strength = 10, fade = 0.2 }]\n");
@@ -79,7 +79,7 @@ TEST_F(ChosenParticles, FadeAcrossQuadsToo) {
   EXPECT_NEAR(shares.at(6), s * s * (3 - 2 * s), 1e-12);
 }
 
-// White, a third, black over five columns: the greys of a picture lie in the middles of its pixels.
+// A mask of white, a third, and black over five columns: the grey values lie at the middles of the pixels.
 TEST_F(ChosenParticles, HaveTheGreyOfAMaskAsTheirShare) {
   const std::string mask = row_of({255, 85, 0});
   const auto pinned = [&](const std::string& more) {
@@ -88,14 +88,15 @@ TEST_F(ChosenParticles, HaveTheGreyOfAMaskAsTheirShare) {
   const auto soft = shares_of(pinned(", strength = 3").pins[0]);
   ASSERT_EQ(soft.size(), 20u);
   EXPECT_EQ(soft.at(0), 1);
-  EXPECT_NEAR(soft.at(1), 0.25 * 1 / 3.0 + 0.75, 1e-12);  // at 0.75 pixels from the left, 0.25 behind a middle
+  EXPECT_NEAR(soft.at(1), 0.25 * 1 / 3.0 + 0.75,
+              1e-12);  // at 0.75 pixels from the left, 0.25 past the middle of a pixel
   EXPECT_NEAR(soft.at(2), 1 / 3.0, 1e-12);
   EXPECT_FALSE(soft.contains(4));
   const auto held = pinned(", high = [1, 0.5]");
   EXPECT_EQ(shares_of(held.pins[0]).size(), 6u) << "two columns of three rows: a third is not held";
 }
 
-// A mask stands as it is seen: its foot at low warp.
+// A mask is upright: its bottom edge is at low warp.
 TEST_F(ChosenParticles, AreTakenByMasksThatStandUpright) {
   image::Image picture(1, 2);
   picture.rgb = {255, 255, 255, 0, 0, 0};
@@ -116,19 +117,19 @@ TEST_F(ChosenParticles, OfMeshesAreTakenByUvsColoursAndGroups) {
                           "weight = [{ vertex_color = 'red', mass = 3 }]\n"));
   const auto x_of = [&](Index i) { return cloth.start[static_cast<std::size_t>(i)].x(); };
   const auto y_of = [&](Index i) { return cloth.start[static_cast<std::size_t>(i)].y(); };
-  for (const auto& [particle, share] : shares_of(cloth.pins[0])) EXPECT_GE(x_of(particle), 1) << "UVs run against x";
+  for (const auto& [particle, fraction] : shares_of(cloth.pins[0])) EXPECT_GE(x_of(particle), 1) << "UVs run against x";
   const auto red = shares_of(cloth.pins[1]);
   ASSERT_EQ(red.size(), 4u);
-  for (const auto& [particle, share] : red) EXPECT_NEAR(share, 0.5 * x_of(particle), 1e-6);
+  for (const auto& [particle, fraction] : red) EXPECT_NEAR(fraction, 0.5 * x_of(particle), 1e-6);
   const auto blue = shares_of(cloth.pins[2]);
   ASSERT_EQ(blue.size(), 3u);
-  for (const auto& [particle, share] : blue) EXPECT_EQ(y_of(particle), 1);
-  for (const auto& [particle, share] : shares_of(cloth.pins[3]))
-    EXPECT_NEAR(share, (0.5 * x_of(particle) + 0.25 + 1) / 3, 1e-6);
+  for (const auto& [particle, fraction] : blue) EXPECT_EQ(y_of(particle), 1);
+  for (const auto& [particle, fraction] : shares_of(cloth.pins[3]))
+    EXPECT_NEAR(fraction, (0.5 * x_of(particle) + 0.25 + 1) / 3, 1e-6);
   EXPECT_EQ(shares_of(cloth.weights[0]), red);
 }
 
-// Front and back lie behind each other: what one image of both would take of the back as well.
+// Front and back lie one behind the other: one picture over both would select particles of the back as well.
 TEST_F(ChosenParticles, OfOnePanelAreTakenInItsOwnFractions) {
   std::string pattern;
   for (const char* side : {"front", "back"})
@@ -145,16 +146,16 @@ TEST_F(ChosenParticles, OfOnePanelAreTakenInItsOwnFractions) {
   std::map<Index, double> expected;
   for (std::size_t t = 0; t < cloth.panel_of.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      // Greys are 1 up to the middle of the left pixel, 0 from that of the right one.
+      // The grey value is 1 up to the middle of the left pixel, and 0 from that of the right one.
       const Vec2 at = (cloth.paint_uv[t][k] + Vec2(0.2, 0)) / 0.4;
-      const double share = std::clamp(1.5 - 2 * at.x(), 0.0, 1.0);
-      if (cloth.panel_of[t] == 0 && at.y() < 0.5 + 1e-9 && share > 0.5 / 255)
-        expected.emplace(cloth.mesh.topology.triangles[t][k], share);
+      const double fraction = std::clamp(1.5 - 2 * at.x(), 0.0, 1.0);
+      if (cloth.panel_of[t] == 0 && at.y() < 0.5 + 1e-9 && fraction > 0.5 / 255)
+        expected.emplace(cloth.mesh.topology.triangles[t][k], fraction);
     }
   const auto shares = shares_of(cloth.pins[0]);
   ASSERT_EQ(shares.size(), expected.size());
   ASSERT_GT(expected.size(), 10U);
-  for (const auto& [particle, share] : expected) EXPECT_NEAR(shares.at(particle), share, 1e-9) << particle;
+  for (const auto& [particle, fraction] : expected) EXPECT_NEAR(shares.at(particle), fraction, 1e-9) << particle;
   support::expect_error(
       ExitCode::scene_invalid,
       "cloth.c.pin.0.panel: expected a panel of its pattern, such as front, got \"frnt\"; did you mean "

@@ -1,4 +1,4 @@
-// Where skin has to leave cloth room.
+// Places where skin must leave clearance for cloth.
 #include "environment/clearance.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace weft::environment {
 namespace {
 
-// One triangle of a metre: its corners are far from where it is asked for.
+// One triangle of a metre: the queried places are far from its corners.
 TEST(Clearance, NearnessIsThatToTheSurfaceNotToItsParticles) {
   const std::vector<Vec3> cloth{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   const std::vector<mesh::Triangle> triangles{{0, 1, 2}};
@@ -16,7 +16,7 @@ TEST(Clearance, NearnessIsThatToTheSurfaceNotToItsParticles) {
   const std::vector<float> near_cloth = nearness_of_cloth(skin, {cloth, triangles, 0});
   EXPECT_EQ(near_cloth[0], 1);
   EXPECT_EQ(near_cloth[1], 1) << "up to half of 5 cm";
-  // Samples are 2 cm apart: a distance of 40 mm is found as up to 42.
+  // Samples are 2 cm apart: a distance of 40 mm may be found as up to 42 mm.
   EXPECT_NEAR(near_cloth[2], 0.4, 0.08);
   EXPECT_EQ(near_cloth[3], 0) << "6 cm";
   EXPECT_EQ(near_cloth[4], 0);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A few roundings of coordinates of some metres.
+// A few rounding errors of coordinates of some metres.
 constexpr double kRounding = 1e-13;
 
 scene::Scene scene_with(const scene::Shape& shape, scene::UpAxis up = scene::UpAxis::z) {
@@ -33,7 +33,7 @@ scene::Scene scene_with(const scene::Shape& shape, scene::UpAxis up = scene::UpA
   return scene;
 }
 
-/// Where the vertices of the first body are.
+/// Positions of the vertices of a body at time t.
 std::vector<Vec3> placed(const Environment& environment, double t = 0, std::size_t body = 0) {
   std::vector<Vec3> positions(environment.bodies[body].mesh.positions.size());
   environment.place(body, t, positions);
@@ -51,7 +51,7 @@ TEST(Cloth, IsGradedAsTheSceneSaysWithFractionsToMatch) {
   cloth.name = "sheet";
   cloth.size = {3, 2};
   cloth.particles_weft = cloth.particles_warp = 3;
-  cloth.grading = {2, 0.25};  // 1 and 2 m, 1.6 and 0.4 m
+  cloth.grading = {2, 0.25};  // cells of 1 and 2 m along weft, 1.6 and 0.4 m along warp
   for (const auto shape : {scene::ClothShape::quads, scene::ClothShape::aligned_triangles}) {
     cloth.shape = shape;
     const Environment environment(scene);
@@ -71,9 +71,9 @@ TEST(Cloth, LiesInThePlaneOfItsPoseWithWeftAlongXAndWarpAlongY) {
   cloth.size = {2, 3};
   cloth.particles_weft = 5;
   cloth.particles_warp = 7;
-  cloth.pose = {{10, 20, 30}, about({1, 0, 0}, 90 * kDegree)};  // y turns up
+  cloth.pose = {{10, 20, 30}, about({1, 0, 0}, 90 * kDegree)};  // y is turned upward
   cloth.velocity = {1, 2, 3};
-  // The pose says all; the up axis does not turn cloth.
+  // Only the pose orients cloth; the up axis does not.
   for (const auto up : {scene::UpAxis::z, scene::UpAxis::y}) {
     scene.up = up;
     const Environment environment(scene);
@@ -102,7 +102,7 @@ TEST(Shapes, TurnTheirAxisUpWhereYIsUp) {
   const Environment z_up(scene_with(cone)), y_up(scene_with(cone, scene::UpAxis::y));
   EXPECT_LT((bounds_of(z_up).sizes() - Vec3(1, 1, 3)).norm(), kRounding);
   EXPECT_LT((bounds_of(y_up).sizes() - Vec3(1, 3, 1)).norm(), kRounding);
-  // The tip: alone at the top.
+  // The tip is the only vertex at the top.
   const auto& body = y_up.bodies[0].mesh.positions;
   EXPECT_EQ(std::count_if(body.begin(), body.end(), [](const Vec3& x) { return x.y() > 1.499; }), 1);
   EXPECT_GT(support::enclosed_volume(y_up.bodies[0].mesh.topology.triangles, body), 0);
@@ -111,11 +111,11 @@ TEST(Shapes, TurnTheirAxisUpWhereYIsUp) {
 TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {
   struct Case {
     scene::Shape shape;
-    Vec3 z_up, y_up;  // sizes of the box around it
+    Vec3 z_up, y_up;  // sizes of the bounding box
   };
   const std::vector<Case> cases{
       {scene::Sphere{.radius = 0.5}, {1, 1, 1}, {1, 1, 1}},
-      {scene::BoxShape{.size = {1, 2, 3}, .bevel = 0.1}, {1, 2, 3}, {1, 2, 3}},  // sizes along the scene's axes
+      {scene::BoxShape{.size = {1, 2, 3}, .bevel = 0.1}, {1, 2, 3}, {1, 2, 3}},  // sizes along the axes of the scene
       {scene::Cylinder{.radius = 1, .height = 5}, {2, 2, 5}, {2, 5, 2}},
       {scene::Torus{.radius = 1, .tube_radius = 0.25}, {2.5, 2.5, 0.5}, {2.5, 0.5, 2.5}},
       {scene::HalfPipe{.radius = 1, .length = 4, .thickness = 0.5}, {4, 3, 1.5}, {4, 1.5, 3}},
@@ -179,17 +179,17 @@ TEST(Body, IsPassedThroughWhereAPartIsLeftOut) {
   const BodyObject man = man_with("part = [{ name = 'hands', collide = false }]\n");
   const auto& triangles = man.mesh.topology.triangles;
   ASSERT_EQ(man.passed_through.size(), triangles.size());
-  std::size_t met = 0;
+  std::size_t colliding_on_hand = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto& hand = man.parts[0].vertices;
     const bool of_a_hand = hand[triangles[t][0]] + hand[triangles[t][1]] + hand[triangles[t][2]] >= 2;
     EXPECT_EQ(man.passed_through[t] != 0, of_a_hand);
     if (of_a_hand) continue;
-    ASSERT_LT(met, man.colliding.size());
-    EXPECT_EQ(man.colliding[met++], triangles[t]);
+    ASSERT_LT(colliding_on_hand, man.colliding.size());
+    EXPECT_EQ(man.colliding[colliding_on_hand++], triangles[t]);
   }
-  EXPECT_LT(met, triangles.size());
-  EXPECT_GT(man.colliding.size(), met) << "the cuts are closed";
+  EXPECT_LT(colliding_on_hand, triangles.size());
+  EXPECT_GT(man.colliding.size(), colliding_on_hand) << "the cuts are closed";
 }
 
 scene::Scene scene_with_tumbling_torus() {
@@ -225,7 +225,7 @@ TEST(Obstacle, InMotionHasTheVelocityAndAccelerationOfEachVertex) {
       const Vec3 arm = now[i] - pose.position;
       const Vec3 velocity = (after[i] - before[i]) / (2 * h);
       const Vec3 acceleration = (after[i] - 2 * now[i] + before[i]) / (h * h);
-      // h²/6 and h²/12 times derivatives below 500, and rounding 4e-16 / h² of the second difference.
+      // Error h²/6 and h²/12 times derivatives below 500, plus rounding 4e-16 / h² of the second difference.
       EXPECT_LT((pose.velocity_at(arm) - velocity).norm(), 1e-6);
       EXPECT_LT((pose.acceleration_at(arm) - acceleration).norm(), 1e-6);
     }

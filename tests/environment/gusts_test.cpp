@@ -1,4 +1,4 @@
-// Gusts of wind: their strength, that nothing is made or lost in them, how large and how lasting they are.
+// Gusts of wind: strength, zero divergence, length scale and duration.
 #include "environment/gusts.hpp"
 
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@ namespace {
 const scene::Gusts kGusts{.speed = 2, .size = 1.5, .seed = 7};
 const Vec3 kWind(6, 1, 0);
 
-// Means of 14 shells of three waves each over 8,000 places that are some sizes apart: relative error 1/√8000 of what
-// one place says, times a few.
+// Tolerance of means of 14 shells of three waves each over 8,000 places that are several length scales apart: a few
+// times the relative error 1/√8000 of one place.
 constexpr double kOfMeans = 0.05;
 
-/// body(x) for places on a lattice that no wave length divides.
+/// Calls body(x) for places on a lattice that is no multiple of any wave length.
 template <class Body>
 void for_places(const Body& body) {
   for (int i = 0; i < 20; ++i)
@@ -39,7 +39,7 @@ TEST(Gusts, AreAsStrongAsIsSaidInEveryDirectionAndNothingOnTheWhole) {
 
 TEST(Gusts, HaveNoDivergence) {
   const Gusts gusts(kGusts, kWind);
-  // Central differences: h²/6 times third derivatives of some speed k³, with k up to 30 1/m, and rounding 1e-15 / h.
+  // Central differences: h²/6 times third derivatives of about speed k³, with k up to 30 1/m, plus rounding 1e-15 / h.
   const double h = 1e-5;
   double largest = 0;
   for_places([&](const Vec3& x) {
@@ -54,7 +54,7 @@ TEST(Gusts, HaveNoDivergence) {
   EXPECT_GT(largest, 1) << "there is something to cancel";
 }
 
-// The integral of the correlation of each component along its own direction, to where it has died away.
+// Integral length scale: the correlation of each component along its own direction, integrated until it vanishes.
 TEST(Gusts, AreOfTheSizeThatIsSaid) {
   constexpr int kFields = 10, kPlaces = 400, kSteps = 40;
   const double d = 0.15 * kGusts.size;
@@ -71,14 +71,14 @@ TEST(Gusts, AreOfTheSizeThatIsSaid) {
       }
   }
   const double length = sum / (kFields * 3 * kPlaces) / (kGusts.speed * kGusts.speed);
-  // Ten fields of three directions each; shells are a third apart.
+  // Ten fields of three directions each; wave lengths of neighbouring shells differ by a third.
   EXPECT_NEAR(length, kGusts.size, 0.2 * kGusts.size);
 }
 
 TEST(Gusts, AreCarriedAlongByTheWind) {
   const Gusts gusts(kGusts, kWind);
   double carried = 0, left = 0;
-  const double later = 0.05;  // much shorter than an eddy of that size lasts, 0.75 s
+  const double later = 0.05;  // much shorter than the lifetime of an eddy of that size, 0.75 s
   for_places([&](const Vec3& x) {
     carried += (gusts.at(x + later * kWind, later) - gusts.at(x, 0)).squaredNorm();
     left += (gusts.at(x, later) - gusts.at(x, 0)).squaredNorm();

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kFirst = 0.7, kInterval = 0.04;  // [s]
 
-/// Keys of some vertices on wild ways [m].
-std::vector<std::vector<Vec3>> wild_keys(std::size_t count, std::size_t vertices) {
+/// Random key positions of some vertices [m].
+std::vector<std::vector<Vec3>> random_keys(std::size_t count, std::size_t vertices) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> number(-1, 1);
   std::vector<std::vector<Vec3>> keys(count);
@@ -39,7 +39,7 @@ Motion at(const KeyFrames& keys, std::size_t vertices, double t) {
   return motion;
 }
 
-/// The natural cubic spline itself, which Spline keeps to only where it stays between its keys.
+/// The unlimited natural cubic spline, which Spline follows only where it stays between its keys.
 Spline<3>::Sample natural_at(const std::vector<double>& times, const std::vector<Vec3>& values, double t) {
   std::vector<double> lengths;
   std::vector<Vec3> chords;
@@ -56,7 +56,7 @@ Spline<3>::Sample natural_at(const std::vector<double>& times, const std::vector
 }
 
 TEST(KeyFrames, AreTheNaturalSplineOfEachVertex) {
-  const auto keys = wild_keys(12, 5);
+  const auto keys = random_keys(12, 5);
   for (const auto interpolation : {scene::Interpolation::linear, scene::Interpolation::cubic}) {
     const bool cubic = interpolation == scene::Interpolation::cubic;
     const KeyFrames frames(interpolation, kFirst, kInterval, keys, false);
@@ -71,7 +71,7 @@ TEST(KeyFrames, AreTheNaturalSplineOfEachVertex) {
       for (double t = 0.6; t < 1.3; t += 0.0173) {
         const Motion motion = at(frames, 5, t);
         const auto expected = cubic ? natural_at(times, values, t) : straight.at(t);
-        // Velocities are of size 50 and accelerations of size 5000 here; what is left is rounding of them.
+        // Velocities are about 50 and accelerations about 5000 here; the rest is rounding.
         EXPECT_LT((motion.positions[v] - expected.value).norm(), 1e-12) << t;
         EXPECT_LT((motion.velocities[v] - expected.first_derivative).norm(), 1e-10) << t;
         EXPECT_LT((motion.accelerations[v] - expected.second_derivative).norm(), 1e-8) << t;
@@ -81,14 +81,14 @@ TEST(KeyFrames, AreTheNaturalSplineOfEachVertex) {
 }
 
 TEST(KeyFrames, HaveTheVelocityAndAccelerationOfCentralDifferences) {
-  const auto keys = wild_keys(12, 3);
+  const auto keys = random_keys(12, 3);
   constexpr double kStep = 1e-5;
   for (const bool from_rest : {false, true}) {
     const KeyFrames frames(scene::Interpolation::cubic, kFirst, kInterval, keys, from_rest);
     for (double t = kFirst + 0.003; t < kFirst + 10.9 * kInterval; t += 0.0131) {
       const Motion now = at(frames, 3, t), before = at(frames, 3, t - kStep), after = at(frames, 3, t + kStep);
       for (std::size_t v = 0; v < 3; ++v) {
-        // Of a cubic the error is the third derivative, some 1e5 here, by step² / 6.
+        // The error for a cubic is the third derivative, about 1e5 here, times step² / 6.
         EXPECT_LT((now.velocities[v] - (after.positions[v] - before.positions[v]) / (2 * kStep)).norm(), 1e-4);
         EXPECT_LT((now.accelerations[v] - (after.velocities[v] - before.velocities[v]) / (2 * kStep)).norm(), 10);
       }
@@ -97,7 +97,7 @@ TEST(KeyFrames, HaveTheVelocityAndAccelerationOfCentralDifferences) {
 }
 
 TEST(KeyFrames, FromRestBeginWithoutVelocityAndAreTwiceDifferentiable) {
-  const auto keys = wild_keys(6, 2);
+  const auto keys = random_keys(6, 2);
   const KeyFrames frames(scene::Interpolation::cubic, kFirst, kInterval, keys, true);
   EXPECT_LT(at(frames, 2, kFirst).velocities[0].norm(), 1e-12);
   for (int k = 1; k < 5; ++k) {
@@ -109,7 +109,7 @@ TEST(KeyFrames, FromRestBeginWithoutVelocityAndAreTwiceDifferentiable) {
 }
 
 TEST(KeyFrames, StandBeforeTheFirstAndAfterTheLast) {
-  const auto keys = wild_keys(4, 2);
+  const auto keys = random_keys(4, 2);
   const KeyFrames frames(scene::Interpolation::cubic, kFirst, kInterval, keys, false);
   for (const auto& [t, key] : {std::pair{0.0, 0}, {5.0, 3}}) {
     const Motion motion = at(frames, 2, t);
@@ -120,7 +120,7 @@ TEST(KeyFrames, StandBeforeTheFirstAndAfterTheLast) {
 }
 
 TEST(KeyFrames, HaveTheSameBitsForAnyNumberOfThreads) {
-  const auto keys = wild_keys(5, 9000);
+  const auto keys = random_keys(5, 9000);
   const auto run = [&](int threads) {
     set_thread_count(threads);
     return at(KeyFrames(scene::Interpolation::cubic, kFirst, kInterval, keys, true), 9000, kFirst + 0.055);
@@ -129,9 +129,9 @@ TEST(KeyFrames, HaveTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(KeyFrames, TakeTwiceTheirPositionsWhereCubic) {
-  EXPECT_EQ(KeyFrames(scene::Interpolation::linear, 0, 1, wild_keys(4, 10), false).bytes(), 4u * 10 * 24);
-  EXPECT_EQ(KeyFrames(scene::Interpolation::cubic, 0, 1, wild_keys(4, 10), false).bytes(), 2u * 4 * 10 * 24);
-  EXPECT_FALSE(KeyFrames(scene::Interpolation::cubic, 0, 1, wild_keys(1, 10), false).moving());
+  EXPECT_EQ(KeyFrames(scene::Interpolation::linear, 0, 1, random_keys(4, 10), false).bytes(), 4u * 10 * 24);
+  EXPECT_EQ(KeyFrames(scene::Interpolation::cubic, 0, 1, random_keys(4, 10), false).bytes(), 2u * 4 * 10 * 24);
+  EXPECT_FALSE(KeyFrames(scene::Interpolation::cubic, 0, 1, random_keys(1, 10), false).moving());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Obstacles that take part in the motion of others, and of characters.
+// Obstacles that follow the motion of other obstacles and of characters.
 #include "environment/parents.hpp"
 
 #include <gtest/gtest.h>
@@ -12,9 +12,9 @@
 namespace weft::environment {
 namespace {
 
-constexpr double kRounding = 1e-13;  // some roundings of coordinates of a few metres
+constexpr double kRounding = 1e-13;  // a few rounding errors of coordinates of some metres
 
-/// An arm that goes up and turns about z by a quarter in a second, a hand that goes along it, and a ring in the hand.
+/// An arm rises and turns about z by a quarter in a second, a hand slides along it, and the hand holds a ring.
 const char* const kRobot = R"(
 [[obstacle]]
 name = "ring"
@@ -47,11 +47,11 @@ TEST(Parent, LeavesWhatFollowsWhereItsOwnPoseSaysUntilItMoves) {
 
 TEST(Parent, CarriesTheOwnMotionOfWhatFollowsThroughAChain) {
   const Environment environment(support::scene_of_text(kRobot));
-  // The hand has gone 1.5 m along the arm, which then points to +y, and has turned about the arm.
+  // The hand slid 1.5 m along the arm, which now points to +y, and turned about the arm.
   const PoseSample hand = environment.pose(2, 1);
   EXPECT_LT((hand.position - Vec3(1, 1.5, 2)).norm(), kRounding);
   EXPECT_LT(hand.rotation.angularDistance(about({0, 0, 1}, 90 * kDegree) * about({1, 0, 0}, 90 * kDegree)), 1e-7);
-  // The ring was 1 m before the hand and 1 m above it; the turn of the hand has put above to +x.
+  // The ring was 1 m before the hand and 1 m above it; the turn of the hand maps up to +x.
   const PoseSample ring = environment.pose(0, 1);
   EXPECT_LT((hand.rotation * Vec3(0, 0, 1) - Vec3(1, 0, 0)).norm(), 1e-7);
   EXPECT_LT((ring.position - Vec3(2, 2.5, 2)).norm(), 1e-7);
@@ -73,7 +73,7 @@ TEST(Parent, GivesExactDerivatives) {
   for (const double t : {0.25, 0.8}) {
     const PoseSample pose = environment.pose(0, t);
     const Vec3 before = place(t - h), now = place(t), after = place(t + h), lever = now - pose.position;
-    // As in Obstacle.InMotionHasTheVelocityAndAccelerationOfEachVertex.
+    // Tolerances as in Obstacle.InMotionHasTheVelocityAndAccelerationOfEachVertex.
     EXPECT_LT((pose.velocity_at(lever) - (after - before) / (2 * h)).norm(), 1e-6);
     EXPECT_LT((pose.acceleration_at(lever) - (after - 2 * now + before) / (h * h)).norm(), 1e-6);
   }
@@ -83,7 +83,7 @@ TEST(Parent, ThatAnotherProgramMovesTakesWhatFollowsAlong) {
   Environment environment(support::scene_of_text(kRobot));
   const Quat half = about({0, 0, 1}, 180 * kDegree);
   environment.set_motion(1, {scene::Interpolation::linear, {{0, {{1, 0, 0}}}, {1, {{0, 0, 0}, half}}}});
-  // The hand is 1.5 m from the middle of the arm, which points to -x now.
+  // The hand is 1.5 m from the middle of the arm, which now points to -x.
   EXPECT_LT((environment.pose(2, 1).position - Vec3(-1.5, 0, 0)).norm(), kRounding);
   environment.set_motion(2, {scene::Interpolation::linear, {{0, {{2, 0, 0}}}, {1, {{7, 0, 0}}}}});
   EXPECT_LT((environment.pose(2, 1).position - Vec3(7, 0, 0)).norm(), kRounding) << "it follows nothing any more";
@@ -130,13 +130,14 @@ follow = "man.head"
     return hat.rotation.conjugate() * (environment.vertex(1, top, t).position - hat.position);
   };
   const Vec3 start = seen_from_hat(0);
-  double most = 0, way = 0;
+  double max_change = 0, max_displacement = 0;
   for (int k = 0; k <= 100; ++k) {
-    most = std::max(most, (seen_from_hat(0.02 * k) - start).norm());
-    way = std::max(way, (environment.pose(0, 0.02 * k).position - environment.pose(0, 0).position).norm());
+    max_change = std::max(max_change, (seen_from_hat(0.02 * k) - start).norm());
+    max_displacement =
+        std::max(max_displacement, (environment.pose(0, 0.02 * k).position - environment.pose(0, 0).position).norm());
   }
-  EXPECT_GT(way, 0.5);
-  EXPECT_LT(most, 1e-3);
+  EXPECT_GT(max_displacement, 0.5);
+  EXPECT_LT(max_change, 1e-3);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace weft::environment {
 namespace {
 
 TEST(Plausibility, DoubtsABodyWhoseBonesHoldNoSkin) {
-  // Hips and below them five bones, all of which the clip turns; the mesh hangs on the hips.
+  // Hips with five child bones, all of which the clip turns; the mesh is bound to the hips.
   character::Character body;
   body.nodes.push_back({"hips", -1, character::Affine::Identity()});
   character::Clip clip;
@@ -20,20 +20,20 @@ TEST(Plausibility, DoubtsABodyWhoseBonesHoldNoSkin) {
   body.bones = {{0, character::Affine::Identity()}, {3, character::Affine::Identity()}};
   body.influences = {{0, 1}, {0, 1}};
   EXPECT_EQ(
-      doubt_of_skin(body, clip),
+      warn_of_missing_skin(body, clip),
       "has no skin on its bones: node \"hips\" holds all of it, and 5 nodes that the motion turns move nothing of "
       "it; bind the mesh to the skeleton in the program that it is from");
   body.influences[1].bone = 1;
-  EXPECT_EQ(doubt_of_skin(body, clip), std::nullopt) << "one limb has a skin";
+  EXPECT_EQ(warn_of_missing_skin(body, clip), std::nullopt) << "one limb has a skin";
   body.influences[1].bone = 0;
   clip.channels.resize(3);
-  EXPECT_EQ(doubt_of_skin(body, clip), std::nullopt) << "what turns may be something else";
+  EXPECT_EQ(warn_of_missing_skin(body, clip), std::nullopt) << "what turns may be something else";
 }
 
-// Who jumps is in the air for most of its motion, who rolls in the floor for a part of it.
+// A jumping body is in the air for most of its motion, a rolling one inside the floor for a part of it.
 TEST(Plausibility, DoubtsTheFloorByHalfOfTheMotionOrAllOfIt) {
   const auto doubts = [](std::vector<double> lowest, bool alone = true) {
-    return doubt_of_floor(std::move(lowest), alone).value_or("");
+    return warn_of_floor_distance(std::move(lowest), alone).value_or("");
   };
   EXPECT_EQ(doubts({}), "");
   EXPECT_EQ(doubts({-0.3, 0, 0.6, -0.3, 0.6}), "") << "two of five below";
@@ -42,7 +42,7 @@ TEST(Plausibility, DoubtsTheFloorByHalfOfTheMotionOrAllOfIt) {
   EXPECT_EQ(doubts({0.6, 0.04, 0.6}), "") << "on it once";
   EXPECT_EQ(doubts({0.6, 0.06, 0.6}), "it comes no nearer to the floor than 0.06 m; position puts it lower");
   EXPECT_EQ(doubts({0.6, 0.06, 0.6}, false), "") << "it may stand on something else";
-  // What is seen: 5 cm.
+  // Visible depth: 5 cm.
   EXPECT_EQ(doubts({-0.049}), "");
   EXPECT_NE(doubts({-0.051}), "");
 }

@@ -12,7 +12,7 @@
 namespace weft::environment {
 namespace {
 
-// Files hold single precision; figures here are of some metres.
+// Rounding of single-precision files, for coordinates of a few metres.
 constexpr double kSingle = 1e-6;
 
 class SameFile : public support::TestFolder {

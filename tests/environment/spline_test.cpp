@@ -11,7 +11,7 @@ using scene::Interpolation;
 using Spline1 = Spline<1>;
 using Value = Spline1::Value;
 
-// A few roundings of numbers up to ten.
+// A few rounding errors of numbers up to ten.
 constexpr double kRoundingOfNumbers = 1e-13;
 
 const std::vector<double> kTimes{-0.5, 0.1, 1.7, 2.0, 4.5};
@@ -97,8 +97,8 @@ TEST(CubicSpline, StandsBetweenEqualKeysAndStaysBetweenOthers) {
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {
     const auto [low, high] = std::minmax(numbers[i], numbers[i + 1]);
     EXPECT_NEAR(spline.at(times[i]).first_derivative[0], slope_before, 10 * kRoundingOfNumbers) << "at key " << i;
-    for (double share = 0; share < 1; share += 0.01) {
-      const Spline1::Sample at = spline.at(times[i] + share * (times[i + 1] - times[i]));
+    for (double fraction = 0; fraction < 1; fraction += 0.01) {
+      const Spline1::Sample at = spline.at(times[i] + fraction * (times[i + 1] - times[i]));
       EXPECT_GE(at.value[0], low - kRoundingOfNumbers) << "after key " << i;
       EXPECT_LE(at.value[0], high + kRoundingOfNumbers) << "after key " << i;
       EXPECT_GE(at.first_derivative[0] * (numbers[i + 1] - numbers[i]), -10 * kRoundingOfNumbers)

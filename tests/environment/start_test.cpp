@@ -1,4 +1,4 @@
-// Starts that are scaled or shaken.
+// Start shapes that are scaled or randomly perturbed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ TEST(Start, NoiseIsBoundedDifferentForEachParticleAndTheSameInEveryRun) {
     }
   EXPECT_EQ(offsets.size(), 3 * x.size());
   EXPECT_LE(most, 0.01);
-  EXPECT_GT(most, 0.009);  // of 135 numbers even in ±0.01, all below 0.009 has a chance of 7e-7
+  EXPECT_GT(most, 0.009);  // probability of less, for 135 numbers uniform in ±0.01: 7e-7
 }
 
 }  // namespace

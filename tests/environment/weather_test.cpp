@@ -1,4 +1,4 @@
-// Gravity and air with keys, and the jet of a fan.
+// Key-framed gravity and air, and the jet of a fan.
 #include "environment/weather.hpp"
 
 #include <gtest/gtest.h>
@@ -17,10 +17,10 @@ Weather weather_of(const std::string& text) {
 
 TEST(Weather, OfASceneThatNamesNothingIsItsGravityAndWindEverywhere) {
   const Weather weather = weather_of("[physics]\ngravity = [1, 2, 3]\nwind = [4, 5, 6]");
-  EXPECT_FALSE(weather.is_local());
+  EXPECT_FALSE(weather.varies_in_space());
   EXPECT_EQ(weather.gravity(7), Vec3(1, 2, 3));
   EXPECT_EQ(weather.air({8, 9, 10}, 7), Vec3(4, 5, 6));
-  EXPECT_TRUE(weather.stays(0, 7));
+  EXPECT_TRUE(weather.is_constant_between(0, 7));
 }
 
 TEST(Weather, GoesByItsKeysAndKeepsWhatTheyLeaveOut) {
@@ -32,8 +32,8 @@ TEST(Weather, GoesByItsKeysAndKeepsWhatTheyLeaveOut) {
   EXPECT_EQ(weather.gravity(2.5), Vec3(0, 0, -2));
   EXPECT_EQ(weather.air(Vec3::Zero(), 1.5), Vec3(4, 0, 0));
   EXPECT_EQ(weather.air(Vec3::Zero(), 9), Vec3(6, 0, 0));
-  EXPECT_TRUE(weather.stays(3, 4));
-  EXPECT_FALSE(weather.stays(2, 2.1));
+  EXPECT_TRUE(weather.is_constant_between(3, 4));
+  EXPECT_FALSE(weather.is_constant_between(2, 2.1));
 }
 
 constexpr const char* kFan =
@@ -44,8 +44,8 @@ TEST(Weather, OfAFanIsAJetInItsConeAndNothingElsewhere) {
   const Weather weather = weather_of(kFan);
   const double slope = std::tan(12 * std::numbers::pi / 180), apex = 0.2 / slope;
   const auto jet = [&](const Vec3& x) { return Vec3(weather.air(x, 0) - Vec3(0, 0, 1)); };
-  EXPECT_LT((jet({1, 0, 0}) - Vec3(0, 6, 0)).norm(), 1e-12);                      // at its disc
-  EXPECT_LT((jet({1, 3, 0}) - Vec3(0, 6 * apex / (apex + 3), 0)).norm(), 1e-12);  // as 1 / s
+  EXPECT_LT((jet({1, 0, 0}) - Vec3(0, 6, 0)).norm(), 1e-12);                      // at the disc
+  EXPECT_LT((jet({1, 3, 0}) - Vec3(0, 6 * apex / (apex + 3), 0)).norm(), 1e-12);  // decays as 1 / s
   const double halfway = 0.5 * slope * (apex + 3);                                // q = 1/2
   EXPECT_NEAR(jet({1 + halfway, 3, 0}).norm(), 6 * apex / (apex + 3) * 0.5625, 1e-12);
   EXPECT_NEAR(jet({1 + halfway, 3, 0}).x() / jet({1 + halfway, 3, 0}).y(), 0.5 * slope, 1e-12);  // away from the apex
@@ -55,7 +55,7 @@ TEST(Weather, OfAFanIsAJetInItsConeAndNothingElsewhere) {
 
 TEST(Weather, OfAFreeJetKeepsItsMomentum) {
   const Weather weather = weather_of(kFan);
-  // ∫ u_y |u| dA over a sphere about the apex, u radial, per density.
+  // Momentum flux per density: ∫ u_y |u| dA over a sphere about the apex, u radial.
   const double slope = std::tan(12 * std::numbers::pi / 180), apex = 0.2 / slope;
   const auto momentum = [&](double s) {
     constexpr int kRings = 2000;
@@ -84,7 +84,7 @@ TEST(Weather, OfAFanWithKeysTurnsAndStopsWithThem) {
 
 TEST(Weather, BlowsOnNothingWithoutAirOrDrag) {
   EXPECT_FALSE(Weather(support::scene_of_text(std::string(kFan) + "[[cloth]]\nname = \"sheet\"\nmaterial.drag = 0\n"))
-                   .is_local());
+                   .varies_in_space());
 }
 
 }  // namespace

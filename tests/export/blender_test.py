@@ -1,7 +1,7 @@
-"""Blender runs the script of `weft export --format blender` and shows every frame where the PLY files say, with its print
-where the keys of the scene say; what it reads in the PLY, OBJ and glTF files is the same.
+"""Runs the script of `weft export --format blender` in Blender: every frame has the positions of the PLY files, and the
+print has the place of the scene keys. The imported PLY, OBJ and glTF files give the same.
 
-blender_test.py WEFT    ends with 77 where Blender is not installed. Run inside Blender, it measures instead.
+blender_test.py WEFT    exits with 77 if Blender is not installed. Inside Blender, the script does the measurements instead.
 """
 import math
 import os
@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-LIMIT = 1e-6  # metres, or widths of the picture; files for it are in single precision
+LIMIT = 1e-6  # metres, or widths of the picture; the files have single precision
 
 SCENE = """
 up = "{up}"
@@ -47,7 +47,7 @@ PICTURE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scenes
 
 
 def vertices(ply):
-    """x, y, z and, of cloth, weft and warp."""
+    """x, y, z of each vertex and, for cloth, weft and warp."""
     with open(ply, "rb") as file:
         content = file.read()
     end = content.index(b"end_header\n") + 11
@@ -58,14 +58,14 @@ def vertices(ply):
 
 
 def laid(uv):
-    """The place in the picture, which is square, by the meaning of the keys: turned to the left about its corner."""
+    """Texture coordinates in the square picture, as the keys define them: turned to the left about its corner."""
     angle = math.radians(ROTATION)
     x, y = uv[0] - 0.1, uv[1] - 0.05
     return ((math.cos(angle) * x + math.sin(angle) * y) / 0.2, (math.cos(angle) * y - math.sin(angle) * x) / 0.2)
 
 
 def farthest(mesh, matrix, expected, turned, layers):
-    """Of the corners of faces, in space and in their texture coordinates."""
+    """Largest error over the corners of faces, in space and in texture coordinates."""
     from mathutils import Vector
     worst = 0
     for loop in mesh.loops:
@@ -79,7 +79,7 @@ def farthest(mesh, matrix, expected, turned, layers):
 
 
 def read_others(folder, turned):
-    """What else Blender reads, of frame 2."""
+    """Checks the other formats that Blender imports, in frame 2."""
     import bpy
     expected, metres = vertices(os.path.join(folder, "ply/cloth_00002.ply")), {"UVMap": lambda uv: uv}
     read = {"OBJ": (lambda: bpy.ops.wm.obj_import(filepath=os.path.join(folder, "b/cloth.obj")), turned, metres),
@@ -87,7 +87,7 @@ def read_others(folder, turned):
                     metres)}
     try:
         import numpy
-        numpy.bool = bool  # Debian's importer asks for an older one
+        numpy.bool = bool  # Debian's importer uses a removed alias
         read["glTF"] = (lambda: bpy.ops.import_scene.gltf(filepath=os.path.join(folder, "g/s.glb")), turned,
                         {"UVMap": metres["UVMap"], "UVMap.001": laid})
     except ImportError:
@@ -160,7 +160,7 @@ def main(weft):
             subprocess.run([blender, "-b", "--factory-startup", "--python-exit-code", "1", "-P",
                             os.path.join(folder, "b/s.py"), "-P", os.path.abspath(__file__), "--",
                             os.path.join(folder, "film.blend"), folder, up], check=True,
-                           env={**os.environ, "PATH": os.defpath})  # else it takes the modules of the first python3
+                           env={**os.environ, "PATH": os.defpath})  # otherwise Blender uses the modules of the first python3
     return 0
 
 

@@ -1,5 +1,5 @@
-// What other programs read in exported files is what the frames show: assimp for meshes and animations, a small reader
-// of its own for point caches.
+// Exported files, read by other programs, contain what the frames show: assimp reads meshes and animations, a small
+// reader in this file point caches.
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace weft::exporter {
 namespace {
 
-// A sheet of two quads that flutters, a still floor, and something that is not to be seen; z is up.
+// A moving sheet of two quads, a static floor, and an invisible surface; z is up.
 class Exported : public MadeFrames {
  protected:
   void SetUp() override {
@@ -39,7 +39,7 @@ class Exported : public MadeFrames {
     request_.fps = 20;
   }
 
-  // In frame 4 all is as in frame 2.
+  // Frame 4 equals frame 2.
   std::vector<std::vector<Vec3>> positions(int k) const override {
     std::vector<Vec3> cloth;
     const int phase = k == 4 ? 2 : k;
@@ -106,13 +106,13 @@ TEST_F(Exported, ObjFilesHoldQuadsAndWeftAndWarpWithEveryDigit) {
     ASSERT_EQ(mesh.mFaces[f].mNumIndices, 4u);
     for (unsigned c = 0; c < 4; ++c) {
       const auto vertex = static_cast<std::size_t>(cloth.quads[f][c]);
-      const unsigned there = mesh.mFaces[f].mIndices[c];  // the reader numbers corners anew
+      const unsigned there = mesh.mFaces[f].mIndices[c];  // the reader renumbers corners
       expect_points({positions[vertex]}, mesh.mVertices + there, false);
       EXPECT_NEAR(mesh.mTextureCoords[0][there].x, cloth.uv[vertex].x(), kSingle);
       EXPECT_NEAR(mesh.mTextureCoords[0][there].y, cloth.uv[vertex].y(), kSingle);
     }
   }
-  // assimp reads single precision; the text itself gives back the doubles.
+  // assimp reads single precision; the text itself contains the doubles.
   std::ifstream in(file("cloth_00003.obj"));
   std::size_t vertex = 0;
   for (std::string line; std::getline(in, line);) {
@@ -123,7 +123,7 @@ TEST_F(Exported, ObjFilesHoldQuadsAndWeftAndWarpWithEveryDigit) {
   EXPECT_EQ(vertex, positions.size());
 }
 
-// Two panels that are sewn along their common edge; the right one is drawn elsewhere, on its own.
+// Two panels sewn along their common edge; the right one is placed separately in the drawing.
 TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
   frame::Surface garment = *surfaces_[0];
   garment.quads.clear();
@@ -147,7 +147,7 @@ TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
   }
 }
 
-// Two pixels, the right one of which lets the colour through by a half; laid once, turned by 90 degrees, 0.1 m wide.
+// A picture of two pixels, the right one half transparent, used once, turned by 90 degrees, 0.1 m wide.
 TEST_F(Exported, PicturesLieAndLookAsOurs) {
   frame::Surface printed = *surfaces_[0];
   frame::Paint& paint = printed.appearance.paint;
@@ -164,7 +164,7 @@ TEST_F(Exported, PicturesLieAndLookAsOurs) {
   ASSERT_TRUE(mesh.HasTextureCoords(1));
   for (std::size_t v = 0; v < 6; ++v) {
     const Vec2& uv = printed.uv[v];
-    // A pixel more on every side: 4 by 3 of them.
+    // The exported picture has one pixel more on every side: 4 by 3.
     EXPECT_NEAR(mesh.mTextureCoords[1][v].x, (2 * 10 * uv.y() + 1) / 4, 4 * kSingle);
     EXPECT_NEAR(mesh.mTextureCoords[1][v].y, (1 - 20 * uv.x() + 1) / 3, 4 * kSingle);
     EXPECT_NEAR(mesh.mTextureCoords[0][v].x, uv.x(), kSingle);
@@ -188,7 +188,7 @@ TEST_F(Exported, PicturesLieAndLookAsOurs) {
   EXPECT_NE(support::read_bytes(file("cloth.mtl")).find("laid turned"), std::string::npos);
 }
 
-// A picture that is neither turned nor laid once is said in MTL too; holes are cut by its alpha.
+// A picture that is repeated and not turned is named in MTL too; its alpha makes holes.
 TEST_F(Exported, MaterialFilesNameThePicture) {
   frame::Surface lace = *surfaces_[0];
   frame::Paint& paint = lace.appearance.paint;
@@ -212,8 +212,7 @@ T take(std::string_view& bytes) {
   return value;
 }
 
-// What a program that counts samples, as Blender does, shows in frame k is frame k; axes are those that it takes OBJ
-// for.
+// A program that counts samples, as Blender does, shows frame k in frame k; the axes are those that it assumes for OBJ.
 TEST_F(Exported, PointCachesHaveASampleForEachFrameAndMoveTheObjFilesBesideThem) {
   write(Format::pc2, {1, 4, 7});
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
@@ -238,7 +237,7 @@ TEST_F(Exported, PointCachesHaveASampleForEachFrameAndMoveTheObjFilesBesideThem)
       }
     }
     EXPECT_TRUE(bytes.empty());
-    // The points of the cache are the vertices of the mesh, in their order.
+    // Points of the cache and vertices of the mesh are in the same order.
     std::ifstream mesh(file(surfaces_[s]->name + ".obj"));
     std::size_t vertex = 0;
     for (std::string line; std::getline(mesh, line);) {
@@ -250,7 +249,7 @@ TEST_F(Exported, PointCachesHaveASampleForEachFrameAndMoveTheObjFilesBesideThem)
   }
 }
 
-// Normals of a sheet, from the triangles around each vertex.
+// Normal of a sheet at a vertex, from the triangles around it.
 Vec3 normal_at(const frame::Surface& surface, const std::vector<Vec3>& x, Index vertex) {
   Vec3 sum = Vec3::Zero();
   for (const auto& t : surface.triangles)
@@ -260,7 +259,7 @@ Vec3 normal_at(const frame::Surface& surface, const std::vector<Vec3>& x, Index 
 
 void make_smooth(std::shared_ptr<const frame::Surface>& surface) {
   frame::Surface smooth = *surface;
-  smooth.crease_angle = 180;  // as cloth is drawn
+  smooth.crease_angle = 180;  // as for drawn cloth
   surface = std::make_shared<frame::Surface>(smooth);
 }
 
@@ -321,22 +320,22 @@ TEST_F(Exported, SharpEdgesHaveANormalOnEitherSide) {
   EXPECT_NE(folded.of_corner[0][1], folded.of_corner[2][0]);
 }
 
-// The weights of an animated node at a time, by linear interpolation of its keys, as the file says.
+// The weights of an animated node at a time, by linear interpolation between keys, as the file specifies.
 std::vector<double> weights_at(const aiMeshMorphAnim& channel, double time, std::size_t count) {
   std::vector<double> weights(count, 0.0);
   for (unsigned k = 0; k < channel.mNumKeys; ++k) {
     const double here = channel.mKeys[k].mTime;
     const double before = k > 0 ? channel.mKeys[k - 1].mTime : here - 1;
     const double after = k + 1 < channel.mNumKeys ? channel.mKeys[k + 1].mTime : here + 1;
-    const double share =
+    const double fraction =
         std::max(0.0, time <= here ? 1 - (here - time) / (here - before) : 1 - (time - here) / (after - here));
     for (unsigned v = 0; v < channel.mKeys[k].mNumValuesAndWeights; ++v)
-      weights[channel.mKeys[k].mValues[v]] += share * channel.mKeys[k].mWeights[v];
+      weights[channel.mKeys[k].mValues[v]] += fraction * channel.mKeys[k].mWeights[v];
   }
   return weights;
 }
 
-// Positions that a reader comes to at a time.
+// Positions that a reader computes from morph weights.
 std::vector<Vec3> morphed(const aiMesh& mesh, const std::vector<double>& weights) {
   std::vector<Vec3> x;
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
@@ -376,7 +375,7 @@ TEST_F(Exported, GltfAnimationGoesThroughEveryFrameAtItsTime) {
     const auto shown = snapshot(k)->states[0].positions, next = snapshot(std::min(k + 1, 5))->states[0].positions;
     for (std::size_t i = 0; i < shown.size(); ++i) {
       const auto turned = [](const Vec3& x) { return Vec3(x.x(), x.z(), -x.y()); };
-      // Three single-precision figures of half a metre and less.
+      // Three single-precision numbers of at most half a metre.
       EXPECT_LT((here[i] - turned(shown[i])).norm(), 3 * kSingle) << "frame " << k;
       if (k < 5) {
         EXPECT_LT((half[i] - turned(0.5 * (shown[i] + next[i]))).norm(), 3 * kSingle) << "after frame " << k;

@@ -1,4 +1,4 @@
-// Frames of a few surfaces, as a cache would give them to an export.
+// Frames of a few surfaces, in the form in which a cache passes them to an export.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace weft::exporter {
 
-/// To the last bit of single precision at a metre.
+/// Rounding of single precision at a metre.
 inline constexpr double kSingle = 1.2e-7;
 
 class MadeFrames : public support::TestFolder {
@@ -20,10 +20,10 @@ class MadeFrames : public support::TestFolder {
     request_.folder = folder_ / "out";
   }
 
-  /// Where the vertices of each surface are in frame k.
+  /// Positions of the vertices of each surface in frame k.
   virtual std::vector<std::vector<Vec3>> positions(int k) const = 0;
 
-  /// And the last surface once more, which is not to be seen.
+  /// Adds the surfaces, and a copy of the last one that is invisible.
   void add_surfaces(std::vector<frame::Surface> surfaces) {
     surfaces.push_back(surfaces.back());
     surfaces.back().name = "hidden";

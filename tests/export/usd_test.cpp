@@ -1,5 +1,5 @@
-// What stands in USD files and scripts for Blender, by small readers of the tests' own. tests/export/blender_test.py
-// has Blender itself load the script.
+// Content of USD files and of scripts for Blender, parsed by small readers in this file. tests/export/blender_test.py
+// runs the script in Blender itself.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@
 namespace weft::exporter {
 namespace {
 
-// Two panels of one triangle each, sewn along their common edge, that flutter from frame 3 on; a bent sheet that stands
-// still; something that is not to be seen.
+// Two triangular panels, sewn along their common edge, that move from frame 3 on; a static bent sheet; a hidden
+// surface.
 class Staged : public MadeFrames {
  protected:
   void SetUp() override {
@@ -33,7 +33,7 @@ class Staged : public MadeFrames {
     dress.parts = {{"front", dress.appearance}, {"back", {}}};
     dress.part_of_triangle = {0, 1};
     frame::Surface body;
-    body.name = "red_dress";  // the same name, as USD writes it
+    body.name = "red_dress";  // the same name after conversion for USD
     body.kind = frame::ObjectKind::character;
     body.triangles = {{0, 1, 2}, {0, 2, 3}};
     add_surfaces({dress, body});
@@ -63,7 +63,7 @@ class Staged : public MadeFrames {
   }
 };
 
-/// What stands between the braces after `head`.
+/// The text between the braces after `head`.
 std::string block(const std::string& text, const std::string& head) {
   const auto start = text.find(head);
   if (start == std::string::npos) return "";
@@ -84,7 +84,7 @@ std::vector<double> numbers(const std::string& text) {
   return found;
 }
 
-/// Of `name = ...` up to the end of the line.
+/// The numbers of `name = ...` up to the end of the line.
 std::vector<double> value(const std::string& text, const std::string& name) {
   const auto start = text.find(name + " = ");
   EXPECT_NE(start, std::string::npos) << name;
@@ -122,7 +122,7 @@ TEST_F(Staged, UsdFilesHavePanelsNormalsAndMaterials) {
     const auto place = static_cast<std::size_t>(at[c]);
     EXPECT_EQ(Vec2(st[2 * place], st[2 * place + 1]), uv) << c;
   }
-  // One normal a vertex for cloth; a bent sheet whose crease is sharp has them by corner, those of its triangles.
+  // Cloth has one normal per vertex. A bent sheet with a sharp crease has normals per corner, those of its triangles.
   EXPECT_EQ(value(dress, "normal3f[] normals").size(), 12U);
   const std::vector<double> normals = value(body, "normal3f[] normals");
   ASSERT_EQ(normals.size(), 18U);
@@ -152,7 +152,7 @@ TEST_F(Staged, UsdMaterialsShowThePictureOfAPart) {
   EXPECT_NE(back.find("diffuseColor.connect = </_1st_film/materials/red_dress_1_back/picture.outputs:rgb>"),
             std::string::npos);
   EXPECT_EQ(image::read_picture(request_.folder / "red-dress.png").rgba, (std::vector<std::uint8_t>{10, 20, 30, 255}));
-  // Where the picture lies, and beside that weft and warp.
+  // Texture coordinates of the picture, and beside them weft and warp.
   const std::string mesh = block(text, "def Mesh \"red_dress\"");
   const std::vector<double> st = value(mesh, "primvars:st"), at = value(mesh, "primvars:st:indices");
   const std::vector<double> pattern = value(mesh, "primvars:weft_warp");
@@ -167,7 +167,7 @@ TEST_F(Staged, UsdMaterialsShowThePictureOfAPart) {
 }
 
 TEST_F(Staged, PackedUsdFilesHoldTheTextAsItIsAtAMultipleOf64Bytes) {
-  // With names of all lengths, so that the field that fills up has all of its lengths too.
+  // Names of all lengths give the padding field all of its lengths.
   for (request_.name = "a"; request_.name.size() < 68; request_.name += 'a') {
     const std::string inner = request_.name + ".usda", name = request_.name + ".usdz";
     const std::string bytes = written(Format::usdz, name);
@@ -193,7 +193,7 @@ TEST_F(Staged, PackedUsdFilesHoldTheTextAsItIsAtAMultipleOf64Bytes) {
   }
 }
 
-// The check value of this sum (CRC-32, as of Ethernet) is that of the digits 1 to 9: 0xcbf43926.
+// The check value of CRC-32 (as in Ethernet), for the digits 1 to 9, is 0xcbf43926.
 TEST_F(Staged, PackedFilesHaveTheSumThatArchivesCheck) {
   write_stored(folder_ / "a.zip", {{"digits", "123456789"}});
   EXPECT_EQ(support::read_bytes(folder_ / "a.zip").substr(14, 4), "\x26\x39\xf4\xcb");
@@ -208,7 +208,7 @@ TEST_F(Staged, UsdCamerasStandAndSeeAsTheFramesDo) {
   ASSERT_EQ(samples.size(), 3U * 17);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(samples[17 * k], 2.0 + static_cast<double>(k));
-    // The last row is where it stands.
+    // The last row is the position.
     EXPECT_EQ(Vec3(samples[17 * k + 13], samples[17 * k + 14], samples[17 * k + 15]), Vec3(samples[17 * k], 2, 3));
   }
 }
@@ -224,7 +224,7 @@ TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
   EXPECT_EQ(film["objects"][2],
             nlohmann::json({{"name", "hidden"}, {"visible", false}, {"pictures", none}, {"backs", none}}));
   nlohmann::json& backs = film["objects"][0]["backs"];
-  EXPECT_EQ(backs.size(), 1u);  // the other part's is as its front
+  EXPECT_EQ(backs.size(), 1u);  // the back of the other part equals its front
   EXPECT_NEAR(backs["red-dress"][1].get<double>(), std::pow((0.5 + 0.055) / 1.055, 2.4), 1e-9);
   EXPECT_EQ(film["cameras"][0]["frames"][1], nlohmann::json({90, {1, 0, 0, 3}, {0, 1, 0, 2}, {0, 0, 1, 3}}));
   EXPECT_NEAR(film["lights"][0]["strength"].get<double>(), 2 * (1 - request_.lighting.sky_share), 1e-12);

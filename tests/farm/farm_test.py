@@ -1,7 +1,7 @@
-"""A sweep of 24 runs on a Slurm of three nodes that die, a task that is killed, a cancelled farm: in the end there is, to
-the bit, what one process makes.
+"""A sweep of 24 runs on a Slurm of three nodes, with killed nodes, a killed task and a cancelled farm. The final results
+equal those of one process to the bit.
 
-farm_test.py WEFT    ends with 77 where Slurm is not installed.
+farm_test.py WEFT    exits with 77 if Slurm is not installed.
 """
 import csv
 import os
@@ -39,7 +39,7 @@ RETRY = b"exit code 137: try 1 of 3"
 ELSEWHERE = b"goes on from here in a new place in the queue"
 SWEEP = ("s.toml", "--quality", "draft", "--set", "obstacle.ball.radius=0.1,0.11,0.12,0.13", "--set",
          "cloth.cloth.material.density=0.1,0.2,0.3", "--set", "obstacle.ball.position=[0,0,0],[0.1,0,0]")
-# Some of these runs, for a disk that is full.
+# A subset of these runs for the test of a full disk.
 FILLING = 8
 FILLING_SWEEP = ("s.toml", "--quality", "draft", "--set", "obstacle.ball.radius=0.1,0.11", "--set",
                  "cloth.cloth.material.density=0.1,0.2", "--set", "obstacle.ball.position=[0,0,0],[0.1,0,0]")
@@ -47,7 +47,7 @@ FILLING_SWEEP = ("s.toml", "--quality", "draft", "--set", "obstacle.ball.radius=
 
 class Test:
     def __init__(self, weft, folder):
-        self.weft, self.folder, self.told = weft, folder, 0
+        self.weft, self.folder, self.last_signal = weft, folder, 0
         os.environ["WEFT_PAUSE"] = "1"
         with open(os.path.join(folder, "s.toml"), "w", encoding="utf-8") as file:
             file.write(SCENE)
@@ -70,7 +70,7 @@ class Test:
             return file.read()
 
     def table(self, sweep):
-        """What came of the runs, without what they cost."""
+        """The result table of the runs, without the columns of cost."""
         rows = list(csv.DictReader(self.read(sweep, "table.csv").decode().splitlines()))
         return [{key: value for key, value in row.items() if not key.startswith("CPU")} for row in rows]
 
@@ -85,12 +85,12 @@ class Test:
         return b"".join(self.read(folder, log) for log in os.listdir(folder))
 
     def one_goes_on_elsewhere(self, slurm):
-        """Tells a script on n1, unless the last one was told just now."""
+        """Signals a script on n1, unless one was signalled in the last 5 s; true once a task continues elsewhere."""
         if ELSEWHERE in self.logs():
             return True
         programs = slurm.tasks("n1", " simulate /")
-        if programs and time.monotonic() > self.told + 5:
-            self.told = time.monotonic()
+        if programs and time.monotonic() > self.last_signal + 5:
+            self.last_signal = time.monotonic()
             with open(f"/proc/{programs[-1]}/stat", encoding="utf-8") as file:
                 os.kill(int(file.read().rsplit(")", 1)[1].split()[1]), signal.SIGUSR1)
         return False
@@ -103,13 +103,13 @@ class Test:
             self.submit()
             assert "weft farm cancel" in self.submit(code=6), "jobs that run already are told"
 
-            # A process is killed: its task tries again.
+            # A process is killed: its task retries.
             slurm.wait(lambda: slurm.tasks("n1", " simulate /"), "a simulation on n1")
             os.kill(slurm.tasks("n1", " simulate /")[-1], signal.SIGKILL)
             slurm.wait(lambda: RETRY in self.logs(), "another try")
-            # Its time is nearly over, which Slurm tells the script (--signal=B:USR1@60), and the task goes on in a new place in the queue.
+            # The time limit is near: Slurm signals the script (--signal=B:USR1@60), and the task is queued again.
             slurm.wait(lambda: self.one_goes_on_elsewhere(slurm), "a task that goes on in a new place")
-            # A daemon dies and its tasks work on, until they are given to another node as well.
+            # A daemon dies while its tasks continue, until they are assigned to another node as well.
             slurm.wait(lambda: slurm.tasks("n2", " simulate /"), "a simulation on n2")
             slurm.kill_node("n2", with_tasks=False)
             # A machine dies.
@@ -135,13 +135,13 @@ class Test:
         self.compare()
 
     def fill_disk(self, slurm):
-        """A shared folder with room for half of the simulations, then for half of the pictures, and then for all."""
+        """Runs on a shared folder with space for half of the simulations, then half of the pictures, then everything."""
         names = [row["run"] for row in self.table("one")
                  if row["run"].startswith(("radius=0.1_density=0.1_", "radius=0.1_density=0.2_",
                                            "radius=0.11_density=0.1_", "radius=0.11_density=0.2_"))]
         assert len(names) == FILLING, names
         def size(*folder):
-            """In the pages of a disk in memory."""
+            """Size on a disk in memory, in whole pages [bytes]."""
             return sum(-(-os.path.getsize(os.path.join(place, file)) // 4096) * 4096 for name in names
                        for place, _, files in os.walk(os.path.join(self.folder, "farm", name, *folder)) for file in files)
 
@@ -174,7 +174,7 @@ class Test:
             subprocess.run(["umount", "-l", disk], check=True)
 
     def whole_files(self, names):
-        """Pictures and videos on the disk, with their times; each is that of the other farm, to the bit."""
+        """Pictures and videos on the disk, with their times; expects each to equal that of the other farm."""
         found = {}
         for name in names:
             for folder, _, files in os.walk(os.path.join(self.folder, "disk/farm", name)):

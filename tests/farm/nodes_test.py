@@ -1,7 +1,7 @@
-"""A sweep on a Slurm whose nodes have nothing of Weft: neither the program nor its libraries. They unpack and run the
-archive that `weft farm submit --program` was given; what they make is, to the bit, what one process makes.
+"""A sweep on a Slurm whose nodes have neither Weft nor its libraries. They unpack and run the archive of
+`weft farm submit --program`; the results equal those of one process to the bit.
 
-nodes_test.py SOURCE WEFT START    ends with 77 where Slurm is not installed, or no archive can be made.
+nodes_test.py SOURCE WEFT START    exits with 77 if Slurm is not installed or no archive can be made.
 """
 import glob
 import os
@@ -36,19 +36,19 @@ segments = 8
 """
 SWEEP = ("s.toml", "--quality", "draft", "--set", "obstacle.ball.radius=0.1,0.11")
 RUNS = ("radius=0.1", "radius=0.11")
-# For a command: an empty file or folder in place of each path, in a mount namespace of its own.
+# Runs a command in a mount namespace in which each given path is replaced by an empty file or folder.
 HIDE = 'while [ "$1" != -- ]; do if [ -d "$1" ]; then mount --bind "$0/folder" "$1"; else mount --bind "$0/file" "$1"; fi; ' \
        'shift; done; shift; exec "$@"'
 
 
 def libraries(*programs):
-    """Those that the loader finds, by name."""
+    """Libraries that the loader finds, by name."""
     listed = subprocess.run(["ldd", *programs], capture_output=True, text=True, check=False).stdout
     return dict(re.findall(r"(\S+) => (/\S+) ", listed))
 
 
 def only_of_weft(weft):
-    """The folder of the program, and what it names or opens itself and nothing needs which a node of Slurm runs."""
+    """The folder of the program, and its direct or opened libraries, except those that programs of a Slurm node need."""
     named = subprocess.run(["readelf", "-dW", weft], capture_output=True, text=True, check=True).stdout
     found = {path for name, path in libraries(weft).items() if f"[{name}]" in named}
     for name in ("libOSMesa.so.8", "libEGL.so.1"):
@@ -74,7 +74,7 @@ def check(source, weft, start, folder):
     with open(os.path.join(folder, "file"), "w", encoding="utf-8"):
         pass
     bare = ["unshare", "--mount", "--propagation", "private", "sh", "-c", HIDE, folder, *only_of_weft(weft), "--"]
-    # Neither the program, nor a copy of it, runs on such a node.
+    # Neither the program nor a copy of it runs on such a node.
     run(*bare, weft, "--version", code=127)
     shutil.copy(weft, os.path.join(folder, "copy"))
     assert "error while loading shared libraries" in run(*bare, os.path.join(folder, "copy"), "--version", code=127)

@@ -1,4 +1,4 @@
-"""A Slurm of its own on this machine: one controller and several nodes, in a folder that goes with it."""
+"""A private Slurm on this machine: one controller and several nodes, in a folder of their own."""
 import os
 import pwd
 import shutil
@@ -44,7 +44,7 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 
 
 def missing():
-    """What is not installed, or why it cannot work here; empty where all is well."""
+    """Missing packages or privileges; empty if Slurm can run here."""
     os.environ["PATH"] += ":/usr/sbin:/sbin"
     programs = [program for program in PROGRAMS if not shutil.which(program)]
     if programs:
@@ -62,7 +62,7 @@ def free_port():
 
 class Slurm:
     def __init__(self, folder, nodes, before=()):
-        """`before`: words before the command that starts a node."""
+        """`before`: words that precede the command that starts a node."""
         self.folder, self.nodes, self.before, self.processes = folder, nodes, before, {}
         lines = [f"NodeName={node} NodeHostname={socket.gethostname()} NodeAddr=127.0.0.1 Port={free_port()} CPUs=2 "
                  "RealMemory=8000" for node in nodes]
@@ -105,7 +105,7 @@ class Slurm:
             time.sleep(0.2)
 
     def tasks(self, node, program=""):
-        """Processes of jobs on a node, by their environment."""
+        """Processes of jobs on a node, found by their environment."""
         found = []
         for name in os.listdir("/proc"):
             if not name.isdigit():
@@ -123,7 +123,7 @@ class Slurm:
         return found
 
     def kill_node(self, node, with_tasks):
-        """As a machine dies, or only the daemon on it."""
+        """Kills the daemon of a node, and with `with_tasks` its jobs too, as if the machine failed."""
         self.processes[node].kill()
         self.processes[node].wait()
         if with_tasks:

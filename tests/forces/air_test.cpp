@@ -57,7 +57,7 @@ TEST(Air, OnlyTheMotionAgainstTheAirCounts) {
   const Positions still = drag_on(x, testing::zeros(x), wind);
   const Positions moving = drag_on(x, Positions(x.size(), -wind));
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((still[i] - moving[i]).norm(), 1e-15);
-  // Wind pushes the way it blows.
+  // Wind pushes in its own direction.
   EXPECT_GT(sum(still).dot(wind), 0);
 }
 
@@ -84,7 +84,7 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
   const auto force_at = [&](const Positions& velocities) { return testing::force_of(air, x, velocities); };
   constexpr double kEpsilon = 1e-6;
   for (unsigned trial = 0; trial < 6; ++trial) {
-    // Of all particles together, or of each by itself.
+    // Moves all particles together, or each by itself.
     Positions change = testing::random_vectors(x.size(), 1, 2 + trial);
     if (trial < 3) change.assign(x.size(), change[0]);
     Positions after = v, before = v, product(x.size(), Vec3::Zero());
@@ -96,7 +96,7 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
       of_matrix += change[i].dot(product[i]);
       of_force -= rate * change[i].dot(f_after[i] - f_before[i]) / (2 * kEpsilon);
     }
-    // The law has a kink in its second derivative only: ε² and rounding over ε.
+    // The law has a kink only in its second derivative: errors are ε² and rounding over ε.
     if (trial < 3)
       EXPECT_NEAR(of_matrix, of_force, 1e-6 * of_matrix);
     else

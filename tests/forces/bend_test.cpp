@@ -16,7 +16,7 @@ using testing::Positions;
 
 constexpr double kRadius = 0.2;  // [m]
 
-/// A sheet of 0.2 m by 0.15 m bent on a cylinder whose axis is at `angle` from the warp.
+/// A sheet of 0.2 m by 0.15 m bent to a cylinder; its axis is at `angle` to the warp.
 Positions cylinder(const mesh::Grid& grid, double angle) {
   return testing::shaped(grid, [=](double u, double v) {
     const double along = u * std::cos(angle) + v * std::sin(angle);
@@ -30,7 +30,7 @@ mesh::Grid grid_of(int cells) {
 }
 
 TEST(Bend, PlaneHasNoBendForceHoweverItsParticlesLie) {
-  // A regular plane, stretched and sheared in itself.
+  // A plane, stretched and sheared within itself.
   const mesh::Grid grid = grid_of(2);
   const Bend bend(grid, 0, {kRigidity, 1e-5});
   const Positions x = testing::moved_rigidly(
@@ -42,8 +42,7 @@ TEST(Bend, PlaneHasNoBendForceHoweverItsParticlesLie) {
 }
 
 TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
-  // The curvature is that of the inner particles: along weft the energy is that of all but half a spacing at either
-  // end.
+  // Only inner particles have curvature: along weft the energy covers all but half a spacing at either end.
   for (double angle : {0.0, std::numbers::pi / 4, std::numbers::pi / 2}) {
     const auto error_at = [&](int cells) {
       const mesh::Grid grid = grid_of(cells);
@@ -55,8 +54,8 @@ TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
       return std::abs(Bend(grid, 0, {kRigidity, 0}).energy(cylinder(grid, angle)) / expected - 1);
     };
     for (int cells : {2, 4}) {
-      // A second difference of a circle is short by l² / 12 R² of itself, the energy by twice that; less where the
-      // differences go across.
+      // A second difference of a circle is too small by l² / 12 R² of itself, the energy by twice that; by less if the
+      // differences are oblique.
       const double l = grid_of(cells).lu;
       EXPECT_LT(error_at(cells), 1.01 * l * l / (6 * kRadius * kRadius));
       EXPECT_NEAR(std::log2(error_at(cells) / error_at(2 * cells)), 2, 0.02) << "angle " << angle;
@@ -65,8 +64,8 @@ TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
 }
 
 TEST(Bend, ParabolaHasTheEnergyOfThePlateOnAGradedGridToRounding) {
-  // Second differences of parabolas are exact, however their places are spaced: all of the plate but half a spacing at
-  // either end bends with the one curvature, in the cells all of it twists.
+  // Second differences of parabolas are exact for any spacing. All of the plate but half a spacing at either end has
+  // the same curvature; the twist, measured in the cells, covers all of it.
   mesh::Grid grid = grid_of(2);
   grid.weft_grading = 5, grid.warp_grading = 0.5;
   const double width = grid.u(grid.nu - 1), height = grid.v(grid.nv - 1);
@@ -86,7 +85,7 @@ TEST(Bend, CylinderApproachesHalfBAOverRSquaredAsTheGridIsRefined) {
     const double expected = 0.5 * kRigidity * 0.2 * 0.15 / (kRadius * kRadius);
     return 1 - Bend(grid, 0, {kRigidity, 0}).energy(cylinder(grid, 0)) / expected;
   };
-  // First order: half a spacing at either free end carries no curvature, 1/8 and 1/64 of the length.
+  // First order: half a spacing at either free end has no curvature, 1/8 and 1/64 of the length.
   EXPECT_NEAR(error_at(2), 1.0 / 8, 0.005);
   EXPECT_NEAR(error_at(16), 1.0 / 64, 0.0005);
 }
@@ -100,7 +99,7 @@ TEST(Bend, RestoresTowardsThePlane) {
   const Positions f = testing::force_of(bend, x, testing::zeros(x));
   EXPECT_LT(f[middle].z(), 0);
   EXPECT_NEAR(f[middle].x(), 0, 1e-16);
-  // −B Δ² of a spike on an inner particle, 13-point stencil for its centre: −20 / l⁴ times the area l².
+  // −B Δ² of a spike at an inner particle; the 13-point stencil has −20 / l⁴ at its centre, times the area l².
   const mesh::Grid large = grid_of(3);
   Positions spike = testing::flat(large);
   const auto centre = static_cast<std::size_t>(large.index(6, 4));
@@ -113,7 +112,7 @@ TEST(Bend, RestoresTowardsThePlane) {
 }
 
 TEST(Bend, FrictionIsAMomentOfConstantSizeAgainstTheChangeOfCurvature) {
-  // A cylinder that closes at a rate far above and far below the one at which friction has its size.
+  // The curvature of a cylinder grows at rates far above and far below the one at which friction reaches its full size.
   constexpr double kFriction = 3e-3;
   const Bend bend(testing::kGrid, 0, BendParameters{0, 0, kFriction});
   const double curvature = 2;
@@ -133,14 +132,14 @@ TEST(Bend, FrictionIsAMomentOfConstantSizeAgainstTheChangeOfCurvature) {
     for (std::size_t i = 0; i < v.size(); ++i) sum += f[i].dot(v[i]);
     return sum;
   };
-  // Second differences are taken where there is a neighbour on either side: one cell less than the sheet along weft.
+  // Second differences need a neighbour on either side, so the area is one cell shorter than the sheet along weft.
   const mesh::Grid& grid = testing::kGrid;
   const double area = grid.lu * (grid.nu - 2) * grid.lv * (grid.nv - 1);
   for (double rate : {50.0, -50.0}) {
-    // Smooth size at 50 1/(m·s): 1 − (0.5 / 50)² / 2; flat curvature 0.1 against 2: 1 − (0.1 / 2)² / 2.
+    // Smoothing at 50 1/(m·s): 1 − (0.5 / 50)² / 2; flat curvature 0.1 against 2: 1 − (0.1 / 2)² / 2.
     EXPECT_NEAR(power(rate), -kFriction * area * std::abs(rate), 2e-3 * kFriction * area * std::abs(rate)) << rate;
   }
-  // Far below, a hundredth of the rate takes a ten-thousandth of the power.
+  // Far below, the power is quadratic in the rate.
   EXPECT_NEAR(power(0.005) / power(0.0005), 100, 0.1);
 }
 

@@ -1,4 +1,4 @@
-// The membrane of crossed cells: exact where it must be, and that of its triangles in flat parallelograms.
+// The membrane of crossed cells: exact for affine states, and equal to that of its triangles in flat parallelograms.
 #include "forces/crossed_membrane.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using testing::kStiffness;
 using testing::Positions;
 
 mesh::Sheet crossed_sheet() {
-  return mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::crossed));
+  return mesh::make_sheet_from_mesh(mesh::make_triangle_sheet(kGrid, mesh::Pattern::crossed));
 }
 
 StretchParameters stretch(double viscosity) {
@@ -27,7 +27,7 @@ bool is_middle(std::size_t i) {
   return i >= static_cast<std::size_t>(kGrid.nu * kGrid.nv);
 }
 
-/// Off their places by up to `size` [m].
+/// Moves each particle by up to `size` [m].
 Positions crumpled(const mesh::Sheet& sheet, double size) {
   Positions x = sheet.rest;
   const Positions noise = testing::random_vectors(x.size(), size, 5);
@@ -35,7 +35,7 @@ Positions crumpled(const mesh::Sheet& sheet, double size) {
   return x;
 }
 
-/// Corners sheared and stretched to parallelograms, and middles anywhere in their plane.
+/// Cells become parallelograms; their middles are anywhere in the plane.
 Positions parallelograms(const mesh::Sheet& sheet, double size) {
   Positions x = sheet.rest;
   const Positions noise = testing::random_vectors(x.size(), size, 5);
@@ -47,12 +47,12 @@ Positions parallelograms(const mesh::Sheet& sheet, double size) {
   return x;
 }
 
-/// Each cell sheared until its corners span `share` of their area.
-Positions folded_up(const mesh::Sheet& sheet, double share) {
+/// Shears each cell until its corners span `area_ratio` of their area.
+Positions fold_up(const mesh::Sheet& sheet, double area_ratio) {
   Positions x = crumpled(sheet, 0.001);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3& at = sheet.rest[i];
-    x[i] += Vec3(std::sqrt(1 - share * share) * at.y(), (share - 1) * at.y(), 0);
+    x[i] += Vec3(std::sqrt(1 - area_ratio * area_ratio) * at.y(), (area_ratio - 1) * at.y(), 0);
   }
   return x;
 }
@@ -60,7 +60,7 @@ Positions folded_up(const mesh::Sheet& sheet, double share) {
 TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
   const mesh::Sheet sheet = crossed_sheet();
   const CrossedMembrane membrane(sheet, 0, stretch(0), shear(0));
-  for (const Positions& x : {crumpled(sheet, 0.006), folded_up(sheet, 0.6), folded_up(sheet, 0.2)}) {
+  for (const Positions& x : {crumpled(sheet, 0.006), fold_up(sheet, 0.6), fold_up(sheet, 0.2)}) {
     const Positions f = testing::force_of(membrane, x, testing::zeros(x));
     double largest = 0;
     for (const Vec3& force : f) largest = std::max(largest, force.norm());
@@ -71,7 +71,7 @@ TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
       for (int axis = 0; axis < 3; ++axis) {
         Positions more = x, less = x;
         more[i][axis] += kStep, less[i][axis] -= kStep;
-        // Third derivatives times kStep², and energies of 1e-2 J rounded, over kStep: 1e-9.
+        // Third derivatives times kStep², and the rounding of energies of 1e-2 J over kStep: 1e-9.
         EXPECT_NEAR(f[i][axis], (membrane.energy(less) - membrane.energy(more)) / (2 * kStep), 1e-7 * largest);
       }
     }
@@ -80,8 +80,8 @@ TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
   }
 }
 
-// Whose diagonals are parallel but for 1e-6 of the area that they span: their normal tells nothing. It counts by twice
-// that share of a half, so that forces differ by a few times 1e-6 of k over the side of a cell.
+// The diagonals of each cell span only 1e-6 of its area, so their normal is undefined. Its weight is twice that
+// fraction of a half, so forces differ by a few times 1e-6 of k over the side of a cell.
 TEST(CrossedMembrane, IsThatOfItsTrianglesWhereCellsAreFoldedUp) {
   const mesh::Sheet sheet = crossed_sheet();
   const CrossedMembrane crossed(sheet, 0, stretch(0), shear(0));
@@ -98,13 +98,14 @@ TEST(CrossedMembrane, IsThatOfItsTrianglesWhereCellsAreFoldedUp) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((a[i] - b[i]).norm(), 1e-5 * largest);
 }
 
-// Threads of a cell that is folded about a diagonal, or of one of a saddle, keep their lengths.
+// Threads of a cell folded about a diagonal, or of a saddle, keep their lengths.
 TEST(CrossedMembrane, LetsThreadsAtOppositeSidesOfACellBeSkew) {
-  const mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet({2, 2, 0.02, 0.02}, mesh::Pattern::crossed));
+  const mesh::Sheet sheet =
+      mesh::make_sheet_from_mesh(mesh::make_triangle_sheet({2, 2, 0.02, 0.02}, mesh::Pattern::crossed));
   const CrossedMembrane crossed(sheet, 0, stretch(0), shear(0));
   Positions x = sheet.rest;
   const double angle = 0.8, half = 0.02 * std::sqrt(0.5);
-  // Corners in the order of the grid: (0, 0), (1, 0), (0, 1), (1, 1); the fold runs from the second to the third.
+  // Corners in grid order: (0, 0), (1, 0), (0, 1), (1, 1); the fold runs from the second to the third.
   x[0] = {-half * std::cos(angle), 0, half * std::sin(angle)},
   x[3] = {half * std::cos(angle), 0, half * std::sin(angle)};
   x[1] = {0, -half, 0}, x[2] = {0, half, 0};
@@ -145,7 +146,7 @@ TEST(CrossedMembrane, MatrixIsTheJacobianWhereNothingIsStressedAndNeverIndefinit
   const mesh::Sheet sheet = crossed_sheet();
   CrossedMembrane membrane(sheet, 0, stretch(0), shear(0));
   const Positions flat = sheet.rest, v = testing::zeros(flat);
-  const Eigen::MatrixXd k = testing::stiffness_of(membrane, flat, v, 0, Linearisation::definite);
+  const Eigen::MatrixXd k = testing::stiffness_of(membrane, flat, v, 0, Linearisation::clamped);
   constexpr double kStep = 1e-7;
   for (std::size_t i = 0; i < flat.size(); ++i)
     for (int axis = 0; axis < 3; ++axis) {
@@ -155,10 +156,10 @@ TEST(CrossedMembrane, MatrixIsTheJacobianWhereNothingIsStressedAndNeverIndefinit
       for (std::size_t j = 0; j < flat.size(); ++j) {
         const Vec3 difference = (f_less[j] - f_more[j]) / (2 * kStep);
         const auto row = 3 * static_cast<Eigen::Index>(j), column = 3 * static_cast<Eigen::Index>(i) + axis;
-        EXPECT_LT((k.block<3, 1>(row, column) - difference).norm(), 1e-4 * kStiffness);  // lateral stress of kStep
+        EXPECT_LT((k.block<3, 1>(row, column) - difference).norm(), 1e-4 * kStiffness);  // lateral stress by kStep
       }
     }
-  for (const Linearisation form : {Linearisation::definite, Linearisation::abs_projected}) {
+  for (const Linearisation form : {Linearisation::clamped, Linearisation::absolute_value}) {
     const Eigen::MatrixXd m = testing::stiffness_of(membrane, crumpled(sheet, 0.006), v, 0, form);
     EXPECT_LT((m - m.transpose()).norm(), 1e-12 * m.norm());
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(m).eigenvalues().minCoeff(), -1e-12 * m.norm());

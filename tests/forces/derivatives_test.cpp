@@ -1,4 +1,4 @@
-// Energy, force and Jacobian of each material force against one another.
+// Compares energy, force and Jacobian of each material force with one another.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -26,7 +26,7 @@ const mesh::Grid kGraded{5, 4, 0.02, 0.03, 3, 0.45};
 struct Case {
   std::string name;
   std::function<std::unique_ptr<Force>(double elastic, double viscous)> make;
-  mesh::Grid grid = kGrid;  // that it is made on
+  mesh::Grid grid = kGrid;  // grid of the force
   friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 };
 
@@ -43,7 +43,7 @@ const Case kCases[] = {
      [](double elastic, double viscous) {
        return std::make_unique<Bend>(kGrid, 0, BendParameters{elastic, viscous, 0});
      }},
-    // The rates of curvature of these velocities are around 1e4 1/(m·s): there friction has its full size.
+    // These velocities change the curvature at about 1e4 1/(m·s), where friction has its full size.
     {"bend_with_friction",
      [](double elastic, double viscous) {
        return std::make_unique<Bend>(kGrid, 0, BendParameters{elastic, viscous, 1000 * viscous});
@@ -65,37 +65,37 @@ const Case kCases[] = {
      kGraded},
     {"membrane_of_triangles",
      [](double elastic, double viscous) {
-       const mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
+       const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
        return std::make_unique<TriangleMembrane>(sheet, 0, StretchParameters{elastic, 0.7 * elastic, viscous},
                                                  ShearParameters{0.3 * elastic, 0.5 * viscous});
      }},
     {"bend_of_triangles",
      [](double elastic, double viscous) {
-       const mesh::Sheet sheet = mesh::make_sheet_of(testing::delaunay_sheet(kGrid, 0.3, 3));
+       const mesh::Sheet sheet = mesh::make_sheet_from_mesh(testing::delaunay_sheet(kGrid, 0.3, 3));
        return std::make_unique<TriangleBend>(sheet, 0, BendParameters{elastic, viscous, 1000 * viscous});
      }},
     {"membrane_of_triangles_while_sewn",
      [](double elastic, double viscous) {
-       mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
+       mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
        sheet.sewn = true;
        sheet.rest = testing::crumpled(kGrid, 0.008, 11);
        auto membrane = std::make_unique<TriangleMembrane>(sheet, 0, StretchParameters{elastic, 0.7 * elastic, viscous},
                                                           ShearParameters{0.3 * elastic, 0.5 * viscous});
-       membrane->rest_between_start_and_pattern(0.4);
+       membrane->interpolate_rest_shape(0.4);
        return membrane;
      }},
-    // Some of the crumpled threads are below the onset, some lock, some are beyond the limit.
+    // Of the crumpled threads some are below the onset, some lock, some exceed the limit.
     {"stretch_limit",
      [](double, double) { return std::make_unique<StretchLimit>(kGrid, 0, StretchParameters{}, 0.1, 0.1); }},
     {"stretch_limit_of_triangles",
      [](double, double) {
-       const mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
+       const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
        const TriangleMembrane membrane(sheet, 0, StretchParameters{kStiffness, kStiffness, 0}, ShearParameters{});
        return std::make_unique<StretchLimit>(membrane, StretchParameters{}, 0.1, 0.1);
      }},
     {"elastic_band_and_hem",
      [](double elastic, double) {
-       mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
+       mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
        sheet.bands.push_back({{0, 1, 2, 3, 4}, {0.02, 0.02, 0.02, 0.02}, 0.8, elastic, 0, 1e-6 * elastic, 0});
        return std::make_unique<Bands>(sheet, 0, 0);
      }},
@@ -119,8 +119,9 @@ const Case kCases[] = {
 
 class Derivatives : public ::testing::TestWithParam<Case> {};
 
-// Differences at ε = 4e-7 m and half of it, put together so that the error of order ε² cancels: the direction of a
-// slight curvature κ turns by ε / (l² κ), and 1e-3 squared would be too much. What is left is below 1e-10.
+// Central differences at ε = 4e-7 m and at half of it, extrapolated so that the error of order ε² cancels: the
+// direction of a slight curvature κ turns by ε / (l² κ), and an error of 1e-3 squared would be too large. The remaining
+// error is below 1e-10.
 constexpr double kDifference = 4e-7;
 constexpr double kRelative = 5e-8;
 
@@ -173,7 +174,7 @@ TEST_P(Derivatives, DefiniteJacobianIsSymmetricAndPositiveSemidefinite) {
     const auto force = GetParam().make(kStiffness, 5);
     const Positions x = testing::crumpled(GetParam().grid, 0.006, seed);
     const Positions v = testing::random_vectors(x.size(), 1, seed + 10);
-    const Eigen::MatrixXd k = testing::stiffness_of(*force, x, v, kRate, Linearisation::definite);
+    const Eigen::MatrixXd k = testing::stiffness_of(*force, x, v, kRate, Linearisation::clamped);
     const double scale = k.cwiseAbs().maxCoeff();
     EXPECT_LT((k - k.transpose()).cwiseAbs().maxCoeff(), 1e-14 * scale);
     // A few dozen roundings in each of 60 rows.
@@ -183,32 +184,32 @@ TEST_P(Derivatives, DefiniteJacobianIsSymmetricAndPositiveSemidefinite) {
 
 TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothingIsSheared) {
   if (GetParam().name == "membrane_of_triangles_while_sewn") GTEST_SKIP() << "its threads are not those of the grid";
-  // A cylinder: weft and warp stay at right angles, and both are longer than at rest.
+  // On a cylinder weft and warp stay orthogonal, and both are longer than at rest.
   const double radius = 0.05;
   const Positions x = testing::moved_rigidly(testing::shaped(GetParam().grid, [&](double u, double v) {
     const double angle = 1.2 * u / radius;
     return Vec3(radius * std::sin(angle), 1.1 * v, radius * (1 - std::cos(angle)));
   }));
   const auto force = GetParam().make(kStiffness, 5);
-  const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::definite);
+  const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::clamped);
   const Eigen::MatrixXd exact = testing::jacobian_of(*force, x, testing::zeros(x), kRate);
   if (GetParam().name.starts_with("bend")) {
-    // Its damping is as stiff across the curvature as along it: it only adds.
+    // The projected damping is as stiff across the curvature as along it: it only adds stiffness.
     const Eigen::MatrixXd added = definite - exact;
     EXPECT_GT(added.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * added.cwiseAbs().maxCoeff());
     return;
   }
-  // The shear is a rounding away from zero.
+  // The shear is zero up to rounding.
   EXPECT_LT((definite - exact).cwiseAbs().maxCoeff(), 1e-13 * exact.cwiseAbs().maxCoeff());
 }
 
 TEST(DefiniteJacobian, OfTriangleBendingIsTheExactOneAlongTheNormal) {
-  // Over a plane all curvature points up; what damps it there is the same in both.
-  const mesh::Sheet sheet = mesh::make_sheet_of(testing::delaunay_sheet(kGrid, 0.3, 3));
+  // Over a plane all curvature vectors point up; the damping along them is the same in both forms.
+  const mesh::Sheet sheet = mesh::make_sheet_from_mesh(testing::delaunay_sheet(kGrid, 0.3, 3));
   Positions x = sheet.rest;
   for (Vec3& point : x) point.z() = 3 * point.x() * point.x() - 5 * point.x() * point.y();
   TriangleBend force(sheet, 0, BendParameters{kStiffness, 5, 5000});
-  const Eigen::MatrixXd definite = testing::stiffness_of(force, x, testing::zeros(x), kRate, Linearisation::definite);
+  const Eigen::MatrixXd definite = testing::stiffness_of(force, x, testing::zeros(x), kRate, Linearisation::clamped);
   const Eigen::MatrixXd exact = testing::jacobian_of(force, x, testing::zeros(x), kRate);
   double largest = 0, off = 0;
   for (Eigen::Index i = 2; i < exact.rows(); i += 3)
@@ -217,28 +218,28 @@ TEST(DefiniteJacobian, OfTriangleBendingIsTheExactOneAlongTheNormal) {
       off = std::max(off, std::abs(definite(i, j) - exact(i, j)));
     }
   EXPECT_GT(largest, 0);
-  EXPECT_LT(off, 1e-12 * largest);  // sums of a few dozen roundings
+  EXPECT_LT(off, 1e-12 * largest);  // sums of a few dozen rounded terms
 }
 
 TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
   const auto force = GetParam().make(kStiffness, 0);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 4), still = testing::zeros(x);
   const Eigen::MatrixXd exact = testing::jacobian_of(*force, x, still, kRate);
-  const Eigen::MatrixXd added = testing::stiffness_of(*force, x, still, kRate, Linearisation::definite) - exact;
+  const Eigen::MatrixXd added = testing::stiffness_of(*force, x, still, kRate, Linearisation::clamped) - exact;
   const double scale = exact.cwiseAbs().maxCoeff();
   EXPECT_GT(added.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * scale);
 }
 
 TEST_P(Derivatives, ExactJacobianOfCompressedOrShearedClothIsIndefinite) {
-  // Why there is a definite form at all; bending alone needs none.
+  // Shows why a projected Hessian is needed; bending alone needs none.
   const auto force = GetParam().make(kStiffness, 0);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 3);
   const Eigen::MatrixXd k = testing::jacobian_of(*force, x, testing::zeros(x), kRate);
-  const double least = k.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() / k.cwiseAbs().maxCoeff();
+  const double min_eigenvalue = k.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() / k.cwiseAbs().maxCoeff();
   if (GetParam().name.starts_with("bend"))
-    EXPECT_GT(least, -1e-13);
+    EXPECT_GT(min_eigenvalue, -1e-13);
   else
-    EXPECT_LT(least, -1e-3);
+    EXPECT_LT(min_eigenvalue, -1e-3);
 }
 
 TEST_P(Derivatives, ForceWithoutMatrixIsTheForceWithIt) {

@@ -1,4 +1,4 @@
-// The volume inside a surface, open or closed, and its derivative.
+// Volume inside an open or closed surface, and its derivative.
 #include "forces/enclosed_volume.hpp"
 
 #include <gtest/gtest.h>
@@ -16,13 +16,13 @@ double volume_of(const mesh::Mesh& mesh) {
   return EnclosedVolume(mesh.topology.triangles, mesh.positions).evaluate(mesh.positions, gradient);
 }
 
-/// A sphere without its cap above height z; its rim is not plane.
+/// A sphere without its cap above height z; its rim is not planar.
 mesh::Mesh bowl(double z) {
   mesh::Mesh mesh = mesh::make_sphere(0.2, 24);
   std::erase_if(mesh.topology.triangles, [&](const mesh::Triangle& t) {
     return (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]).z() / 3 > z;
   });
-  // Vertices that are left without a triangle belong to nothing.
+  // Drops vertices that no triangle uses.
   std::vector<Index> number(mesh.positions.size(), -1);
   std::vector<Vec3> kept;
   for (mesh::Triangle& t : mesh.topology.triangles)
@@ -69,7 +69,7 @@ TEST(EnclosedVolume, OfAnOpenTubeCountsAsClosedByFlatLids) {
 
 TEST(EnclosedVolume, HasAsDerivativeForcesThatBalanceAndAreItsCentralDifferences) {
   mesh::Mesh mesh = bowl(0.07);
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i)  // no symmetry
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)  // breaks the symmetry
     mesh.positions[i] += 0.02 * Vec3(std::sin(3.0 * i), std::sin(5.0 * i + 1), std::sin(7.0 * i + 2));
   const EnclosedVolume volume(mesh.topology.triangles, mesh.positions);
   ASSERT_EQ(volume.openings(), 1u);

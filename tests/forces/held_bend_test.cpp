@@ -1,4 +1,4 @@
-// Bending in front of held particles: clamps, hinges, and what is let go again.
+// Bending in front of held particles: clamps, hinges, and release.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,14 +15,14 @@ using testing::Positions;
 constexpr double kCurvature = 4;  // [1/m]
 const Vec2 kHeldSize(0.2, 0.1);
 
-/// Particles up to here along weft.
+/// Holds the particles up to `clamp` along weft.
 std::vector<char> held_up_to(const std::vector<Vec2>& uv, double clamp) {
   std::vector<char> held;
   for (const Vec2& place : uv) held.push_back(place.x() < clamp + 1e-9);
   return held;
 }
 
-// Where a clamp ends at `clamp` and the sheet has one curvature in front of it.
+// Height of a sheet that is clamped up to `clamp` and has constant curvature in front of it.
 double in_front(double u, double clamp) {
   return 0.5 * kCurvature * std::pow(std::max(0.0, u - clamp), 2);
 }
@@ -42,7 +42,7 @@ TEST(HeldBend, QuadsBendWithTheirOwnCurvatureFromTheClampOn) {
       return Vec3(u, v, in_front(s, clamp));
     });
     bend.hold(held);
-    // All that is free but half a spacing at the end, which is flat.
+    // All of the free sheet but half a spacing at its end, which is flat.
     const double area = (end - clamp - (along_weft ? grid.width_u(8) : grid.width_v(8))) * across;
     const double expected = 0.5 * kRigidity * kCurvature * kCurvature * area;
     EXPECT_NEAR(bend.energy(x), expected, 1e-12 * expected);
@@ -50,9 +50,9 @@ TEST(HeldBend, QuadsBendWithTheirOwnCurvatureFromTheClampOn) {
 }
 
 TEST(HeldBend, TrianglesBendWithTheirOwnCurvatureFromTheClampOn) {
-  for (const std::size_t meshing : {0, 1, 3}) {  // those with straight columns
+  for (const std::size_t meshing : {0, 1, 3}) {  // meshes with straight columns
     const mesh::Mesh mesh = testing::kMeshings[meshing].make(kHeldSize, 8);
-    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
     const double clamp = mesh.uv[2].x();
     const std::vector<char> held = held_up_to(mesh.uv, clamp);
     const auto stencils = curvature_stencils(sheet, held, held);
@@ -63,17 +63,17 @@ TEST(HeldBend, TrianglesBendWithTheirOwnCurvatureFromTheClampOn) {
       for (std::size_t k = 0; k < stencils[t].vertices.size(); ++k)
         curvature += stencils[t].weights[k] * in_front(mesh.uv[stencils[t].vertices[k]].x(), clamp);
       const bool clamped = std::ranges::all_of(sheet.triangles[t], [&](Index v) { return held[v] != 0; });
-      // Weights of 1/l², 1e4 to 1e6, times values of 0.1 at most, rounded.
+      // Rounding of weights 1/l², 1e4 to 1e6, times values of 0.1 at most.
       EXPECT_LT((curvature - Vec3(clamped ? 0 : kCurvature, 0, 0)).norm(), 1e-9)
           << testing::kMeshings[meshing].name << ", triangle " << t;
     }
   }
 }
 
-/// A crumpled Delaunay mesh, its first quarter held: what is held is a ragged clamp.
+/// A crumpled Delaunay mesh with its first quarter held: a ragged clamp.
 struct RaggedClamp {
   mesh::Mesh mesh = testing::delaunay_sheet(testing::grid_of_squares(kHeldSize, 5), 0.35, 3);
-  mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+  mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
   std::vector<char> held = held_up_to(mesh.uv, 0.05), none = std::vector<char>(mesh.uv.size());
   TriangleBend bend{sheet, 0, {kRigidity, 1e-5}, held};
   Positions x, v;
@@ -89,12 +89,12 @@ TEST(HeldBend, RaggedClampHasTheJacobianOfItsForceAndIsDefinite) {
   RaggedClamp clamp;
   const Eigen::MatrixXd jacobian = testing::jacobian_of(clamp.bend, clamp.x, clamp.v, 50);
   const Eigen::MatrixXd differences = testing::stiffness_by_differences(clamp.bend, clamp.x, clamp.v, 50, 1e-6);
-  // Measured: 2e-9 of the largest.
+  // Measured: 2e-9 of the largest entry.
   EXPECT_LT((jacobian - differences).cwiseAbs().maxCoeff(), 1e-7 * jacobian.cwiseAbs().maxCoeff());
-  const Eigen::MatrixXd definite = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 50, Linearisation::definite);
+  const Eigen::MatrixXd definite = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 50, Linearisation::clamped);
   const Eigen::VectorXd values = definite.selfadjointView<Eigen::Lower>().eigenvalues();
   EXPECT_GT(values.minCoeff(), -1e-12 * values.maxCoeff());
-  // Rigid motions cost nothing.
+  // Rigid motions need no energy.
   EXPECT_LT(clamp.bend.energy(testing::moved_rigidly(clamp.sheet.rest)), 1e-24);
 }
 
@@ -102,14 +102,14 @@ TEST(HeldBend, WhatIsLetGoBendsAsIfItHadNeverBeenHeld) {
   RaggedClamp clamp;
   const TriangleBend never(clamp.sheet, 0, {kRigidity, 1e-5});
   const double held = clamp.bend.energy(clamp.x);
-  const Eigen::MatrixXd stiff = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0, Linearisation::definite);
+  const Eigen::MatrixXd stiff = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0, Linearisation::clamped);
   clamp.bend.hold(clamp.none);
   EXPECT_GT(held, 1.05 * clamp.bend.energy(clamp.x));
-  // But for weights that are rounding, which only stencils away from pins leave out.
+  // Equal up to weights of rounding size, which only stencils away from pins drop.
   EXPECT_NEAR(clamp.bend.energy(clamp.x), never.energy(clamp.x), 1e-12 * held);
   clamp.bend.hold(clamp.held);
   EXPECT_EQ(clamp.bend.energy(clamp.x), held);
-  EXPECT_EQ(testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0, Linearisation::definite), stiff);
+  EXPECT_EQ(testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0, Linearisation::clamped), stiff);
 
   const mesh::Grid grid = testing::kGrid;
   const Positions x = testing::crumpled(grid, 0.005, 4);
@@ -139,7 +139,7 @@ TEST(HeldBend, OneRowOrOneCornerIsAHinge) {
 
     std::vector<char> of_crossed;
     for (const Vec2& uv : crossed.uv) of_crossed.push_back(uv.x() < 1e-9 && (uv.y() < 1e-9 || !corner));
-    const mesh::Sheet sheet = mesh::make_sheet_of(crossed);
+    const mesh::Sheet sheet = mesh::make_sheet_from_mesh(crossed);
     const Positions noise = testing::random_vectors(sheet.rest.size(), 0.004, 11);
     EXPECT_EQ(TriangleBend(sheet, 0, {kRigidity, 0}, of_crossed).energy(noise),
               TriangleBend(sheet, 0, {kRigidity, 0}).energy(noise));
@@ -152,7 +152,7 @@ TEST(HeldBend, CurvedRestShapeHasNoForceWhereItIsClamped) {
     const double angle = kCurvature * mesh.uv[k].x();
     mesh.positions[k] = {std::sin(angle) / kCurvature, mesh.uv[k].y(), (1 - std::cos(angle)) / kCurvature};
   }
-  const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+  const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
   TriangleBend bend(sheet, 0, {kRigidity, 0}, held_up_to(mesh.uv, 0.05));
   for (const bool let_go : {false, true}) {
     if (let_go) bend.hold(std::vector<char>(sheet.rest.size()));

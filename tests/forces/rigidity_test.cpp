@@ -1,4 +1,4 @@
-// What keeps rigid bodies in shape: force against energy, stiffness against force, and that motion is free.
+// The stiffness of rigid bodies: force against energy, stiffness against force, no force on rigid motion.
 #include "forces/rigidity.hpp"
 
 #include <gtest/gtest.h>
@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kMass = 2, kStiffness = 1e6;  // [kg], [1/s²]
 
-/// A plate of 300 × 200 × 10 mm, whose smallest deviation is a thirtieth of its largest.
+/// A plate of 300 × 200 × 10 mm; its smallest standard deviation of mass is a thirtieth of its largest.
 mesh::RigidFrame plate() {
   const mesh::Mesh mesh = mesh::make_box(Vec3(0.3, 0.2, 0.01), 0, 8);
   return {mesh.topology.triangles, mesh.positions};
 }
 
-using Quads = std::vector<solver::Quad<double>>;
+using PaddedVec3s = std::vector<solver::PaddedVec3<double>>;
 using Frame = std::array<Vec3, 4>;
 
 Frame moved(const mesh::RigidFrame& frame, const Mat3& by) {
@@ -30,16 +30,16 @@ Frame moved(const mesh::RigidFrame& frame, const Mat3& by) {
   return x;
 }
 
-Quads quads_of(const Frame& frame) {
-  Quads result;
-  for (const Vec3& x : frame) result.push_back(solver::quad_of<double>(x));
+PaddedVec3s quads_of(const Frame& frame) {
+  PaddedVec3s result;
+  for (const Vec3& x : frame) result.push_back(solver::padded<double>(x));
   return result;
 }
 
 Frame forces_at(const Rigidity& rigidity, const Frame& x,
                 const Frame& v = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, double rate = 0) {
-  const Quads positions = quads_of(x), velocities = quads_of(v);
-  Quads force(4, solver::Quad<double>{});
+  const PaddedVec3s positions = quads_of(x), velocities = quads_of(v);
+  PaddedVec3s force(4, solver::PaddedVec3<double>{});
   Evaluation at{positions, velocities, force};
   at.rate = rate;
   rigidity.add(at);
@@ -101,15 +101,15 @@ TEST(Rigidity, HasOneFrequencyForStretchesOfThinAndThick) {
     Mat3 stretch = Mat3::Identity();
     stretch(axis, axis) += kStrain;
     const Frame x = moved(frame, stretch), start = moved(frame, Mat3::Identity());
-    double moved_sq = 0;  // of the mass
+    double moved_sq = 0;  // mass-weighted mean square of the displacement [m²]
     for (std::size_t k = 0; k < 4; ++k) moved_sq += 0.25 * (x[k] - start[k]).squaredNorm();
-    // ½ κ m times the mean square of the displacement; the strain has a part in ε².
+    // ½ κ m times the mean square of the displacement; the strain has a term of order ε².
     EXPECT_NEAR(rigidity.energy(x) / (0.5 * kStiffness * kMass * moved_sq), 1, 2 * kStrain);
   }
 }
 
 TEST(Rigidity, TakesItsStrainFromTheEndOfAMidpointStep) {
-  // Half a turn of 0.4 rad: in its middle the chord has shrunk the body, at its end it has its shape.
+  // A turn of 0.4 rad: halfway, the straight paths have shrunk the body; at the end it has its shape again.
   const mesh::RigidFrame frame = plate();
   const Rigidity rigidity(frame, 0, kMass, kStiffness);
   const Frame from = moved(frame, Mat3::Identity()),
@@ -122,7 +122,7 @@ TEST(Rigidity, TakesItsStrainFromTheEndOfAMidpointStep) {
   }
   for (const Vec3& force : forces_at(rigidity, middle, v, 2 / kStepLength))
     EXPECT_LT(force.norm(), 1e-12 * kMass * kStiffness);
-  EXPECT_GT(forces_at(rigidity, middle)[0].norm(), 1e-4 * kMass * kStiffness);  // seen from the middle
+  EXPECT_GT(forces_at(rigidity, middle)[0].norm(), 1e-4 * kMass * kStiffness);  // halfway along straight paths
 }
 
 TEST(Rigidity, IsLinearisedAsItChanges) {
@@ -136,14 +136,14 @@ TEST(Rigidity, IsLinearisedAsItChanges) {
   assembly.clear();
   assembly.keep_constant();
   const Frame x = moved(frame, kTurn);
-  const Quads positions = quads_of(x), velocities(4, solver::Quad<double>{});
-  Quads force(4, solver::Quad<double>{});
+  const PaddedVec3s positions = quads_of(x), velocities(4, solver::PaddedVec3<double>{});
+  PaddedVec3s force(4, solver::PaddedVec3<double>{});
   Evaluation at{positions, velocities, force};
   assembly.start(0, 4);
   at.assembly = solver::AssemblyRows(assembly);
   rigidity.add(at);
   assembly.write_rows(0, 4, matrix);
-  // Where there is no strain the tangent is exact.
+  // Without strain the tangent is exact.
   for (std::size_t k = 0; k < 4; ++k)
     for (int axis = 0; axis < 3; ++axis) {
       constexpr double kStep = 1e-7;

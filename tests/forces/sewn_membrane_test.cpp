@@ -1,4 +1,4 @@
-// Rest shapes of sewn sheets between start and pattern, and bands along their edges.
+// Rest shapes of sewn sheets between start and pattern, and elastic bands along their edges.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -13,7 +13,7 @@ using testing::kGrid;
 using testing::Positions;
 
 mesh::Sheet flat_sheet() {
-  return mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
+  return mesh::make_sheet_from_mesh(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
 }
 
 TEST(SewnMembranes, HaveNoStressAtTheStartAndThatOfThePatternAtTheEnd) {
@@ -24,15 +24,15 @@ TEST(SewnMembranes, HaveNoStressAtTheStartAndThatOfThePatternAtTheEnd) {
   TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0});
 
   const double full = pattern.energy(sheet.rest);
-  sewn.rest_between_start_and_pattern(0);
-  // Rounding of strains of 1e-16.
+  sewn.interpolate_rest_shape(0);
+  // Rounding errors of 1e-16 in the strains.
   EXPECT_LT(sewn.energy(sheet.rest), 1e-25 * full);
   EXPECT_LT(testing::largest(testing::force_of(sewn, sheet.rest, testing::zeros(sheet.rest))), 1e-9);
   EXPECT_LT(sewn.max_strain(sheet.rest), 1e-12);
 
   double before = 0;
-  for (double share : {0.2, 0.4, 0.6, 0.8, 1.0}) {
-    sewn.rest_between_start_and_pattern(share);
+  for (double fraction : {0.2, 0.4, 0.6, 0.8, 1.0}) {
+    sewn.interpolate_rest_shape(fraction);
     EXPECT_GT(sewn.energy(sheet.rest), before);
     before = sewn.energy(sheet.rest);
   }
@@ -41,17 +41,17 @@ TEST(SewnMembranes, HaveNoStressAtTheStartAndThatOfThePatternAtTheEnd) {
   EXPECT_EQ(testing::force_of(sewn, x, testing::zeros(x)), testing::force_of(pattern, x, testing::zeros(x)));
 }
 
-// A start twice as long along weft and half as long along warp is, at a share s, strained as 2 / (2 − s) and
-// 0.5 / (0.5 + s / 2).
+// The start is twice as long along weft and half as long along warp as the pattern. At the fraction s the strains are 2
+// / (2 − s) and 0.5 / (0.5 + s / 2), each less 1.
 TEST(SewnMembranes, AreStrainedByTheShareOfTheWay) {
   mesh::Sheet sheet = flat_sheet();
   sheet.sewn = true;
   for (Vec3& x : sheet.rest) x = {2 * x.x(), 0.5 * x.y(), 0};
   TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0});
   const double area = 4 * 0.02 * 3 * 0.03;
-  for (double share : {0.25, 0.5, 1.0}) {
-    sewn.rest_between_start_and_pattern(share);
-    const double weft = 2 / (2 - share) - 1, warp = 0.5 / (0.5 + 0.5 * share) - 1;
+  for (double fraction : {0.25, 0.5, 1.0}) {
+    sewn.interpolate_rest_shape(fraction);
+    const double weft = 2 / (2 - fraction) - 1, warp = 0.5 / (0.5 + 0.5 * fraction) - 1;
     const double energy = area * (500 * weft * weft + 350 * warp * warp);
     EXPECT_NEAR(sewn.energy(sheet.rest), energy, 1e-12 * energy);
   }
@@ -62,7 +62,7 @@ TEST(ElasticBands, PullWithTheirStiffnessTimesStrain) {
   sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0, 0});
   const Bands bands(sheet, 0, 1000);
   const Positions f = testing::force_of(bands, sheet.rest, testing::zeros(sheet.rest));
-  // 20 mm where 16 would be at rest: 50 N · 0.25.
+  // The band is 20 mm long and 16 mm at rest: 50 N · 0.25.
   EXPECT_NEAR(f[0].x(), 12.5, 1e-12);
   EXPECT_NEAR(f[1].norm(), 0, 1e-12);
   EXPECT_NEAR(f[2].x(), -12.5, 1e-12);
@@ -85,14 +85,14 @@ TEST(ElasticBands, OfSewnSheetsPullNothingAtTheStart) {
   sheet.sewn = true;
   for (Vec3& x : sheet.rest) x *= 1.7;
   Bands bands(sheet, 0, 1000);
-  bands.rest_between_start_and_pattern(0);
+  bands.interpolate_rest_shape(0);
   EXPECT_EQ(bands.energy(sheet.rest), 0);
-  bands.rest_between_start_and_pattern(1);
+  bands.interpolate_rest_shape(1);
   const double strain = 1.7 / 0.8 - 1;
   EXPECT_NEAR(bands.energy(sheet.rest), 2 * 0.5 * 50 * 0.016 * strain * strain, 1e-12);
 }
 
-// A hem bent to a circle of radius R has the energy ½ E length / R².
+// A hem bent to a circle of radius R has the energy ½ E L / R², L its length.
 TEST(Hems, ResistBendingAsRods) {
   mesh::Sheet sheet = flat_sheet();
   const int pieces = 40;
@@ -108,7 +108,7 @@ TEST(Hems, ResistBendingAsRods) {
   band.bend = stiffness;
   sheet.bands.push_back(band);
   const Bands bands(sheet, 0, 1000);
-  const double inner = length * (pieces - 1) / pieces;  // a hinge at each inner particle
+  const double inner = length * (pieces - 1) / pieces;  // each inner particle is a hinge
   EXPECT_NEAR(bands.energy(x), 0.5 * stiffness * inner / (radius * radius), 1e-3 * bands.energy(x));
 }
 

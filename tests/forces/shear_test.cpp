@@ -25,7 +25,7 @@ TEST(Shear, UniformShearHasTheEnergyOfTheContinuum) {
 }
 
 TEST(Shear, StressOfASmoothSurfaceConvergesWithSlopeTwo) {
-  // A curved, sheared surface about the point (0.3, 0.2), with ⟨s_u, s_v⟩ there from its derivatives.
+  // A curved, sheared surface around the point (0.3, 0.2), and ⟨s_u, s_v⟩ there from its derivatives.
   const auto surface = [](double u, double v) {
     return Vec3(u + 0.2 * std::sin(2 * v + u), v + 0.1 * u * v * v, 0.3 * std::cos(3 * u) * std::sin(2 * v));
   };
@@ -35,7 +35,7 @@ TEST(Shear, StressOfASmoothSurfaceConvergesWithSlopeTwo) {
   const Vec3 sv(0.4 * c, 1 + 0.2 * u * v, 0.6 * std::cos(3 * u) * std::cos(2 * v));
   const double exact = 0.5 * kModulus * su.dot(sv);
 
-  // One cell around the point; its stress ½ μ ⟨s_u, s_v⟩ from its energy ¼ μ ⟨s_u, s_v⟩² A.
+  // One cell around the point; its stress ½ μ ⟨s_u, s_v⟩ follows from its energy ¼ μ ⟨s_u, s_v⟩² A.
   const auto error_at = [&](double l) {
     const mesh::Grid cell{2, 2, l, l};
     const Positions x =
@@ -44,7 +44,7 @@ TEST(Shear, StressOfASmoothSurfaceConvergesWithSlopeTwo) {
     return std::abs(stress - std::abs(exact));
   };
   for (double l : {0.04, 0.02, 0.01})
-    // The next term of the error is of order l⁴: below 1 % of the first here.
+    // The next term of the error is of order l⁴: here below 1 % of the first.
     EXPECT_NEAR(std::log2(error_at(l) / error_at(l / 2)), 2, 0.02) << "l = " << l;
 }
 
@@ -64,7 +64,7 @@ TEST(Shear, StripesThatDifferencesOverTwoEdgesMissAreSheared) {
   Positions x = testing::flat(kGrid);
   for (int j = 0; j < kGrid.nv; ++j)
     for (int i = 0; i < kGrid.nu; ++i) x[kGrid.index(i, j)].y() += i % 2 ? 1e-3 : -1e-3;
-  // Along weft each edge climbs by 2e-3 m: ⟨s_u, s_v⟩ = ±0.1 in every cell.
+  // Each edge along weft rises by 2e-3 m: ⟨s_u, s_v⟩ = ±0.1 in every cell.
   const double area = (kGrid.nu - 1) * kGrid.lu * (kGrid.nv - 1) * kGrid.lv;
   EXPECT_NEAR(Shear(kGrid, 0, {kModulus, 0}).energy(x), 0.25 * kModulus * 0.01 * area, 1e-12);
 }
@@ -79,7 +79,7 @@ TEST(Shear, NoPatternInThePlaneEscapesStretchAndShearTogether) {
   for (Eigen::Index a = 0; a < count; ++a)
     for (Eigen::Index b = 0; b < count; ++b) plane.block<2, 2>(2 * a, 2 * b) = k.block<2, 2>(3 * a, 3 * b);
   const Eigen::VectorXd values = plane.selfadjointView<Eigen::Lower>().eigenvalues();  // ascending
-  // Two translations and a turn, and nothing else.
+  // Only two translations and a rotation have no stiffness.
   EXPECT_LT(values.head<3>().cwiseAbs().maxCoeff(), 1e-12 * values.maxCoeff());
   EXPECT_GT(values[3], 1e-3 * values.maxCoeff());
 }

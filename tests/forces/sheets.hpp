@@ -1,4 +1,4 @@
-// Small sheets, flat, curved and crumpled, and forces on them as dense vectors and matrices.
+// Small sheets (flat, curved and crumpled) and forces on them as dense vectors and matrices.
 #pragma once
 
 #include <Eigen/Dense>
@@ -18,14 +18,14 @@ namespace weft::forces::testing {
 
 using Positions = std::vector<Vec3>;
 
-/// Five by four particles, 20 mm by 30 mm apart: nothing about it is the same along weft and warp.
+/// Five by four particles, 20 mm by 30 mm apart: weft and warp differ in every respect.
 inline const mesh::Grid kGrid{5, 4, 0.02, 0.03};
-inline const double kWidth = (kGrid.nu - 1) * kGrid.lu, kHeight = (kGrid.nv - 1) * kGrid.lv;  ///< of it [m]
+inline const double kWidth = (kGrid.nu - 1) * kGrid.lu, kHeight = (kGrid.nv - 1) * kGrid.lv;  ///< size of kGrid [m]
 
 inline constexpr double kStiffness = 1000;  ///< of stretch [N/m]
 inline constexpr double kRigidity = 3e-4;   ///< [N·m]
 
-/// Particles at surface(u, v), u and v from 0 to the size of the sheet [m].
+/// Particles at surface(u, v); u and v run from 0 to the size of the sheet [m].
 inline Positions shaped(const mesh::Grid& grid, const std::function<Vec3(double, double)>& surface) {
   Positions x;
   for (int j = 0; j < grid.nv; ++j)
@@ -37,7 +37,7 @@ inline Positions flat(const mesh::Grid& grid) {
   return shaped(grid, [](double u, double v) { return Vec3(u, v, 0); });
 }
 
-/// Vectors with entries from −size to size, the same on every run.
+/// Vectors with entries from −size to size, the same in every run.
 inline Positions random_vectors(std::size_t count, double size, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> number(-size, size);
@@ -46,7 +46,7 @@ inline Positions random_vectors(std::size_t count, double size, unsigned seed) {
   return vectors;
 }
 
-/// Every particle off its place by up to `size` [m] along each axis.
+/// Moves every particle by up to `size` [m] along each axis.
 inline Positions crumpled(const mesh::Grid& grid, double size, unsigned seed) {
   Positions x = flat(grid);
   const Positions noise = random_vectors(x.size(), size, seed);
@@ -54,14 +54,14 @@ inline Positions crumpled(const mesh::Grid& grid, double size, unsigned seed) {
   return x;
 }
 
-/// Turned about an oblique axis and carried away.
+/// Rotates about an oblique axis and translates.
 inline Positions moved_rigidly(Positions x) {
   const Eigen::AngleAxisd turn(1.1, Vec3(1, 2, -3).normalized());
   for (Vec3& point : x) point = turn * point + Vec3(0.7, -1.2, 2);
   return x;
 }
 
-/// Velocities of a body that turns and travels.
+/// Velocities of a body that rotates and translates.
 inline Positions rigid_velocities(const Positions& x) {
   Positions v;
   for (const Vec3& point : x) v.push_back(Vec3(3, -2, 1).cross(point) + Vec3(0.4, 0.1, -2));
@@ -72,13 +72,13 @@ inline Positions zeros(const Positions& like) {
   return Positions(like.size(), Vec3::Zero());
 }
 
-/// Where forces are evaluated, and what they are there.
+/// The point of evaluation, and the forces there.
 struct Place {
-  std::vector<solver::Quad<double>> x, v, force;
+  std::vector<solver::PaddedVec3<double>> x, v, force;
 
   Place(const Positions& positions, const Positions& velocities) : force(positions.size()) {
-    for (const Vec3& point : positions) x.push_back(solver::quad_of<double>(point));
-    for (const Vec3& velocity : velocities) v.push_back(solver::quad_of<double>(velocity));
+    for (const Vec3& point : positions) x.push_back(solver::padded<double>(point));
+    for (const Vec3& velocity : velocities) v.push_back(solver::padded<double>(velocity));
   }
   Evaluation evaluation(double rate = 0) {
     Evaluation at{x, v, force};
@@ -102,7 +102,7 @@ inline Eigen::MatrixXd dense(const solver::BlockMatrix& matrix) {
   return dense;
 }
 
-/// −(∂f/∂x + rate ∂f/∂v) as the force adds it to an assembly, its constant part included.
+/// −(∂f/∂x + rate ∂f/∂v) as the force adds it to an assembly, including its constant part.
 inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Positions& v, double rate,
                                     Linearisation linearisation) {
   std::vector<std::pair<Index, Index>> pairs;
@@ -120,8 +120,8 @@ inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Posi
   return dense(matrix);
 }
 
-/// That ranges of particles, one after the other from the last, get the forces and blocks that all get in one go, each
-/// range its own and no others.
+/// Expects that evaluating ranges of particles, from the last to the first, gives the same forces and blocks as
+/// evaluating all at once, and that each range writes only its own.
 inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
   force.couple(pairs);
@@ -154,7 +154,7 @@ inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const P
   EXPECT_EQ(dense(in_ranges), dense(at_once));
 }
 
-/// The same as it is, not made definite.
+/// The exact Jacobian of the same quantity, without projection.
 inline Eigen::MatrixXd jacobian_of(const Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
   force.couple(pairs);
@@ -171,7 +171,7 @@ inline double largest(const Positions& x) {
   return dense(x).cwiseAbs().maxCoeff();
 }
 
-/// −(∂f/∂x + rate ∂f/∂v) by central differences at ε and half of it, put together so that the error of order ε²
+/// −(∂f/∂x + rate ∂f/∂v) by central differences at ε and at half of it, extrapolated so that the error of order ε²
 /// cancels.
 inline Eigen::MatrixXd stiffness_by_differences(const Force& force, const Positions& x, const Positions& v, double rate,
                                                 double epsilon) {

@@ -1,4 +1,4 @@
-// Where woven threads lock.
+// The limit at which woven threads lock.
 #include "forces/stretch_limit.hpp"
 
 #include <gtest/gtest.h>
@@ -21,23 +21,23 @@ const double kSine = std::sin(0.5);
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr StretchParameters kBelow{2000, 1000};
 
-// Threads along weft and warp of these lengths, the warp off square by an angle of this sine.
+// A sheet with these thread lengths along weft and warp; `sine` is that of the deviation from the right angle.
 Positions drawn(double weft, double warp, double sine = 0) {
   const double cosine = std::sqrt(1 - sine * sine);
   return testing::shaped(kGrid,
                          [=](double u, double v) { return Vec3(weft * u + sine * warp * v, cosine * warp * v, 0); });
 }
 
-// Of quads and of triangles.
+// The limit for quads and for triangles.
 std::vector<std::unique_ptr<StretchLimit>> both(double stretch, double shear) {
   std::vector<std::unique_ptr<StretchLimit>> limits;
   limits.push_back(std::make_unique<StretchLimit>(kGrid, 0, kBelow, stretch, shear));
-  const mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
+  const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
   limits.push_back(std::make_unique<StretchLimit>(TriangleMembrane(sheet, 0, {}, {}), kBelow, stretch, shear));
   return limits;
 }
 
-// Midpoint rule; the law is smooth but for its third derivative.
+// Integrates the stress by the midpoint rule; only the third derivative of the law is not continuous.
 double integral(const Lock& lock, double to) {
   constexpr int kPieces = 10000;
   double sum = 0;
@@ -68,7 +68,7 @@ TEST(StretchLimit, IsNothingBelowItsOnsetToTheBit) {
     for (const Positions& x : {drawn(below, 0.3), drawn(0.3, below), drawn(below, below, square)}) {
       for (const Vec3& f : testing::force_of(*limit, x, testing::zeros(x))) EXPECT_EQ(f, Vec3::Zero());
       EXPECT_EQ(limit->energy(x), 0);
-      EXPECT_TRUE(testing::stiffness_of(*limit, x, testing::zeros(x), 100, Linearisation::definite).isZero(0));
+      EXPECT_TRUE(testing::stiffness_of(*limit, x, testing::zeros(x), 100, Linearisation::clamped).isZero(0));
     }
 }
 
@@ -89,8 +89,8 @@ TEST(StretchLimit, OfShearAloneOrOfStretchAloneLeavesTheOther) {
   for (const auto& limit : both(kNone, kSine)) EXPECT_EQ(limit->energy(drawn(1.5, 1.5)), 0);
 }
 
-/// The force [N], and with it what its linearisation adds.
-Positions linear_force(const StretchLimit& limit, const Positions& x, const LockLag& lag) {
+/// The force plus what its linearisation adds [N].
+Positions linear_force(const StretchLimit& limit, const Positions& x, const LockLinearisation& lag) {
   Positions force = testing::force_of(limit, x, testing::zeros(x));
   limit.add_lag(x, lag, force);
   return force;
@@ -100,7 +100,7 @@ TEST(StretchLimit, IsLinearisedWhereItsThreadsHaveTheTensionForeseen) {
   const Lock lock(kLimit);
   for (const auto& limit : both(kLimit, kNone)) {
     const Positions start = drawn(1.08, 1.02), far = drawn(1.2, 1.02);
-    LockLag lag;
+    LockLinearisation lag;
     limit->begin(start, lag);
     limit->update(far, true, lag);
     const Positions itself = testing::force_of(*limit, far, testing::zeros(far));
@@ -114,7 +114,7 @@ TEST(StretchLimit, IsLinearisedWhereItsThreadsHaveTheTensionForeseen) {
     for (const std::uint32_t t : lag.near) {
       const double e = lag.extensions[t];
       EXPECT_LT(e, 0.2);
-      EXPECT_NEAR(kBelow.weft * e + lock.stress(e), tension, 2e-3 * tension);  // twice what the search leaves
+      EXPECT_NEAR(kBelow.weft * e + lock.stress(e), tension, 2e-3 * tension);  // twice the tolerance of the search
     }
     EXPECT_TRUE(std::ranges::all_of(linear_force(*limit, drawn(0, 1.02), lag), [](const Vec3& f) {
       return f.isZero(0);
@@ -126,7 +126,7 @@ TEST(StretchLimit, IsItselfWhereItIsLinearisedAndBelowTheOnset) {
   for (const auto& limit : both(kLimit, kNone))
     for (const double weft : {1.02, 1.09, 1.3}) {
       const Positions x = drawn(weft, 1.01);
-      LockLag lag;
+      LockLinearisation lag;
       limit->begin(x, lag);
       limit->update(x, true, lag);
       EXPECT_EQ(lag.near.empty(), weft < 1.05);

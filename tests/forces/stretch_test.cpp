@@ -34,7 +34,7 @@ TEST(Stretch, BorderOfAUniformlyStrainedSheetPullsWithTheStressTimesItsWidth) {
   for (int i = 0; i < kGrid.nu; ++i) low += f[kGrid.index(i, 0)];
   EXPECT_NEAR(left.x(), 1000 * 0.03 * kHeight, 1e-12);
   EXPECT_NEAR(low.y(), -700 * 0.02 * kWidth, 1e-12);
-  // Inside, the pull of both sides cancels.
+  // Inside the sheet, the forces of both sides cancel.
   EXPECT_LT(f[kGrid.index(2, 1)].norm(), 1e-12);
 }
 
@@ -57,7 +57,7 @@ TEST(Stretch, CollapsedEdgePullsNowhereAndStaysFinite) {
   const Positions v = testing::random_vectors(x.size(), 1, 1);
   EXPECT_TRUE(testing::dense(testing::force_of(stretch, x, v)).allFinite());
   EXPECT_TRUE(testing::jacobian_of(stretch, x, v, 100).allFinite());
-  EXPECT_TRUE(testing::stiffness_of(stretch, x, v, 100, Linearisation::definite).allFinite());
+  EXPECT_TRUE(testing::stiffness_of(stretch, x, v, 100, Linearisation::clamped).allFinite());
 }
 
 TEST(Stretch, LargestStrainIsFoundInTensionAndInCompression) {
@@ -72,7 +72,7 @@ TEST(Stretch, StrainOfAParticleIsTheLargestOfItsOwnEdges) {
   Positions x(3, Vec3::Zero());
   const Positions sheet = testing::flat(kGrid);
   x.insert(x.end(), sheet.begin(), sheet.end());
-  // The corner (0, 0) goes out by half an edge along weft.
+  // Moves the corner (0, 0) outward by half an edge along weft.
   x[3].x() -= 0.5 * kGrid.lu;
   std::vector<float> heat(sheet.size(), 0);
   stretch.strain_per_particle(x, heat);
@@ -98,10 +98,10 @@ TEST(Stretch, CautiousFormStiffensAShortEdgeByWhatCompressionSoftens) {
   };
   const double along = 500;  // k A / l², half a spacing wide [N/m]
   EXPECT_NEAR(exactly_across(0.08), -0.25 * along, 1e-9);
-  EXPECT_NEAR(across(0.08, Linearisation::abs_projected), 0.25 * along, 1e-9);
-  EXPECT_NEAR(across(0.08, Linearisation::definite), 0, 1e-9);
+  EXPECT_NEAR(across(0.08, Linearisation::absolute_value), 0.25 * along, 1e-9);
+  EXPECT_NEAR(across(0.08, Linearisation::clamped), 0, 1e-9);
   EXPECT_NEAR(exactly_across(0.01), -9 * along, 1e-9);
-  EXPECT_NEAR(across(0.01, Linearisation::abs_projected), along, 1e-9);
+  EXPECT_NEAR(across(0.01, Linearisation::absolute_value), along, 1e-9);
 }
 
 }  // namespace

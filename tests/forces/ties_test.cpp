@@ -16,8 +16,8 @@ Ties tie_of(double open, double closed) {
   sheet.ties.push_back({.a = 0, .b = 1, .strength = kPull, .open = open, .closed = closed});
   return {sheet, 0};
 }
-// Pull between two particles a distance apart [N], by the gradient of the energy. Differences over 1e-8 m of energies
-// around 1e-3 J are right to 1e-10 N.
+// Force between two particles at this distance [N], from the gradient of the energy. Differences over 1e-8 m of
+// energies around 1e-3 J are accurate to 1e-10 N.
 double pull(const Ties& ties, double distance) {
   constexpr double kStep = 1e-8;
   const auto energy = [&](double x) { return ties.energy(std::vector<Vec3>{Vec3(0, 0, 0), Vec3(0, x, 0)}); };
@@ -30,7 +30,7 @@ TEST(Ties, PullUpToTheirStrengthAndDoNotPush) {
   EXPECT_EQ(pull(ties, 0.5 * Ties::kRest), 0);
   EXPECT_NEAR(pull(ties, 1.5 * Ties::kRest), 0.5 * kPull, 1e-6);
   EXPECT_NEAR(pull(ties, 5 * Ties::kRest), kPull, 1e-6);
-  ties.use(0, 0.25);  // while sewing
+  ties.use(0, 0.25);  // during sewing
   EXPECT_NEAR(pull(ties, 5 * Ties::kRest), 0.25 * kPull, 1e-6);
 }
 
@@ -38,9 +38,9 @@ TEST(Ties, ForceIsMinusTheGradientOfTheEnergy) {
   Ties ties = tie_of(kNever, kNever);
   ties.use(0, 1);
   for (const double distance : {0.5, 1.5, 5.0}) {
-    std::vector<solver::Quad<double>> x{solver::quad_of<double>(Vec3(0, 0, 0)),
-                                        solver::quad_of<double>(Vec3(0, distance * Ties::kRest, 0))};
-    std::vector<solver::Quad<double>> v(2), force(2);
+    std::vector<solver::PaddedVec3<double>> x{solver::padded<double>(Vec3(0, 0, 0)),
+                                              solver::padded<double>(Vec3(0, distance * Ties::kRest, 0))};
+    std::vector<solver::PaddedVec3<double>> v(2), force(2);
     ties.add({.x = x, .v = v, .force = force});
     EXPECT_NEAR(force[0][1], pull(ties, distance * Ties::kRest), 1e-6);
     EXPECT_EQ(force[0][1], -force[1][1]);
@@ -53,14 +53,14 @@ TEST(Ties, AreOpenAndClosedAtTheirTimes) {
     ties.use(t, 1);
     return pull(ties, 1);
   };
-  constexpr double kAfter = 1 + Ties::kClosing;  // when what closes at 1 s has its strength
+  constexpr double kAfter = 1 + Ties::kClosing;  // time when a tie that closes at 1 s has its full strength [s]
   EXPECT_NEAR(held(kNever, kNever, -5), kPull, 1e-6);
   EXPECT_NEAR(held(1, kNever, 0.99), kPull, 1e-6);
   EXPECT_EQ(held(1, kNever, 1), 0);
   EXPECT_EQ(held(kNever, 1, 0.99), 0);
   EXPECT_NEAR(held(kNever, 1, 1 + 0.5 * Ties::kClosing), 0.5 * kPull, 1e-6);
   EXPECT_NEAR(held(kNever, 1, kAfter), kPull, 1e-6);
-  // Closed and opened again; opened and closed again.
+  // First closed, then opened again; then opened and closed again.
   EXPECT_EQ(held(3, 1, 0), 0);
   EXPECT_NEAR(held(3, 1, kAfter), kPull, 1e-6);
   EXPECT_EQ(held(3, 1, 3), 0);

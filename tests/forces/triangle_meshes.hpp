@@ -9,7 +9,8 @@
 
 namespace weft::forces::testing {
 
-/// Positive if d lies inside the circle through a, b, c (counter-clockwise), relative to the fourth power of size one.
+/// Positive if d lies inside the circle through a, b, c (counter-clockwise); relative to the fourth power of the size,
+/// which is about one.
 inline double in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   Mat3 m;
   int row = 0;
@@ -17,7 +18,7 @@ inline double in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2&
   return m.determinant();
 }
 
-/// Turns the edges of a triangulation until it is Delaunay in the coordinates `p` (Lawson, "Software for C1 Surface
+/// Flips edges of a triangulation until it is Delaunay in the coordinates `p` (Lawson, "Software for C1 Surface
 /// Interpolation", 1977).
 inline void make_delaunay(std::vector<mesh::Triangle>& triangles, const std::vector<Vec2>& p) {
   const auto at = [&](Index i) -> const Vec2& { return p[i]; };
@@ -44,9 +45,8 @@ inline void make_delaunay(std::vector<mesh::Triangle>& triangles, const std::vec
   }
 }
 
-/// The particles of a grid, each off its place by up to `jitter` cells (those of the border along it), with the
-/// Delaunay triangles of the grid's own coordinates (i, j): where its cells are no squares, the triangles are as
-/// stretched as they.
+/// The particles of a grid, each moved by up to `jitter` cells (border particles only along the border), with the
+/// Delaunay triangles in grid coordinates (i, j): if the cells are not square, the triangles are stretched likewise.
 inline mesh::Mesh delaunay_sheet(const mesh::Grid& grid, double jitter, unsigned seed) {
   mesh::Mesh sheet = mesh::make_triangle_sheet(grid, mesh::Pattern::aligned);
   std::mt19937 engine(seed);
@@ -69,7 +69,7 @@ inline mesh::Mesh delaunay_sheet(const mesh::Grid& grid, double jitter, unsigned
   return sheet;
 }
 
-/// A mesh of a sheet of `size` metres, `cells` along its shorter side or as many particles.
+/// A kind of mesh for a sheet of `size` metres, with `cells` cells along its shorter side or as many particles.
 struct Meshing {
   const char* name;
   mesh::Mesh (*make)(const Vec2& size, int cells);
@@ -83,7 +83,7 @@ inline mesh::Grid grid_of_squares(const Vec2& size, double cells) {
   return grid_with(size, static_cast<int>(size.x() / l + 0.5), static_cast<int>(size.y() / l + 0.5));
 }
 
-/// Twice as many cells along warp as along weft per length squared: aspect 4.
+/// Twice as many cells along warp and half as many along weft: aspect ratio 4.
 inline mesh::Grid grid_of_aspect_4(const Vec2& size, int cells) {
   const double l = size.minCoeff() / cells;
   return grid_with(size, static_cast<int>(size.x() / (2 * l) + 0.5), static_cast<int>(size.y() / (0.5 * l) + 0.5));
@@ -94,7 +94,7 @@ inline const std::array<Meshing, 6> kMeshings{{
      [](const Vec2& size, int cells) {
        return mesh::make_triangle_sheet(grid_of_squares(size, cells), mesh::Pattern::aligned);
      }},
-    {"crossed",  // half as many cells give the same number of particles
+    {"crossed",  // half as many cells have as many particles
      [](const Vec2& size, int cells) {
        return mesh::make_triangle_sheet(grid_of_squares(size, 0.75 * cells), mesh::Pattern::crossed);
      }},
@@ -105,12 +105,12 @@ inline const std::array<Meshing, 6> kMeshings{{
      }},
     {"stretched delaunay",
      [](const Vec2& size, int cells) { return delaunay_sheet(grid_of_aspect_4(size, cells), 0.3, 7); }},
-    {"graded delaunay",  // cells four times as large at one end as at the other
+    {"graded delaunay",  // cells are four times as large at one end as at the other
      [](const Vec2& size, int cells) {
        mesh::Mesh sheet = delaunay_sheet(grid_of_squares(size, cells), 0.35, 7);
        for (std::size_t k = 0; k < sheet.uv.size(); ++k) {
-         const Vec2 share = sheet.uv[k].cwiseQuotient(size);
-         sheet.uv[k] = size.cwiseProduct(Vec2(0.4 * share + 0.6 * share.cwiseProduct(share)));
+         const Vec2 fraction = sheet.uv[k].cwiseQuotient(size);
+         sheet.uv[k] = size.cwiseProduct(Vec2(0.4 * fraction + 0.6 * fraction.cwiseProduct(fraction)));
          sheet.positions[k] = Vec3(sheet.uv[k].x() - 0.5 * size.x(), sheet.uv[k].y() - 0.5 * size.y(), 0);
        }
        return sheet;

@@ -1,4 +1,4 @@
-// Cloth of triangles: exact where the continuum is simple, whatever the mesh.
+// Triangle cloth is exact on any mesh if the continuum solution is simple.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,8 +40,8 @@ std::vector<char> inside(const mesh::Sheet& sheet, int rings) {
 
 TEST(TriangleMembrane, CautiousFormStiffensAShortThreadByWhatCompressionSoftens) {
   const mesh::Mesh mesh = mesh::make_triangle_sheet(mesh::Grid{3, 3, 0.1, 0.1}, mesh::Pattern::aligned);
-  TriangleMembrane membrane(mesh::make_sheet_of(mesh), 0, {1000, 0, 0}, {0, 0});
-  // Of a turn of the weft out of the plane, s_u = (stretch, 0, θ).
+  TriangleMembrane membrane(mesh::make_sheet_from_mesh(mesh), 0, {1000, 0, 0}, {0, 0});
+  // Energy when the weft turns out of the plane, s_u = (stretch, 0, θ).
   const auto stretched = [&](double stretch) {
     return mapped(mesh, [&](double u, double v) { return Vec3(stretch * u, v, 0); });
   };
@@ -63,10 +63,10 @@ TEST(TriangleMembrane, CautiousFormStiffensAShortThreadByWhatCompressionSoftens)
   };
   const double along = 1000 * 0.2 * 0.2;  // k A [N·m]
   EXPECT_NEAR(exactly_across(0.8), -0.25 * along, 1e-12 * along);
-  EXPECT_NEAR(across(0.8, Linearisation::abs_projected), 0.25 * along, 1e-12 * along);
-  EXPECT_NEAR(across(0.8, Linearisation::definite), 0, 1e-12 * along);
+  EXPECT_NEAR(across(0.8, Linearisation::absolute_value), 0.25 * along, 1e-12 * along);
+  EXPECT_NEAR(across(0.8, Linearisation::clamped), 0, 1e-12 * along);
   EXPECT_NEAR(exactly_across(0.1), -9 * along, 1e-12 * along);
-  EXPECT_NEAR(across(0.1, Linearisation::abs_projected), along, 1e-12 * along);
+  EXPECT_NEAR(across(0.1, Linearisation::absolute_value), along, 1e-12 * along);
 }
 
 TEST(TriangleMembrane, LinearMapHasTheEnergyAndTheStressOfTheContinuum) {
@@ -75,17 +75,17 @@ TEST(TriangleMembrane, LinearMapHasTheEnergyAndTheStressOfTheContinuum) {
   const double c = su.dot(sv);
   const double density =
       0.5 * weft * std::pow(su.norm() - 1, 2) + 0.5 * warp * std::pow(sv.norm() - 1, 2) + 0.25 * shear * c * c;
-  const Vec3 traction_u = weft * (su.norm() - 1) * su.normalized() + 0.5 * shear * c * sv;  // on a cut across weft
+  const Vec3 traction_u = weft * (su.norm() - 1) * su.normalized() + 0.5 * shear * c * sv;  // on a cut across the weft
   for (const testing::Meshing& meshing : kMeshings) {
     const mesh::Mesh mesh = meshing.make(kSize, 8);
-    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
     const TriangleMembrane membrane(sheet, 0, {weft, warp, 0}, {shear, 0});
     const Positions x = mapped(mesh, [&](double u, double v) -> Vec3 { return su * u + sv * v; });
     const double area = kSize.prod();
     EXPECT_NEAR(membrane.energy(x), density * area, 1e-12 * density * area) << meshing.name;
     const Positions f = testing::force_of(membrane, x, testing::zeros(x));
     const std::vector<char> inner = inside(sheet, 1);
-    Vec3 work = Vec3::Zero();  // of the virtual displacement that stretches the weft uniformly
+    Vec3 work = Vec3::Zero();  // done along the virtual displacement that stretches the weft uniformly
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (inner[i]) {
         EXPECT_LT(f[i].norm(), 1e-11) << meshing.name;
@@ -99,7 +99,7 @@ TEST(TriangleMembrane, LinearMapHasTheEnergyAndTheStressOfTheContinuum) {
 TEST(TriangleCurvature, IsExactForEveryQuadraticWhereNoSideIsFree) {
   for (const testing::Meshing& meshing : kMeshings) {
     const mesh::Mesh mesh = meshing.make(kSize, 8);
-    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
     const auto stencils = curvature_stencils(sheet);
     const mesh::EdgeSet edges = mesh::collect_edges(sheet.triangles);
     int exact = 0;
@@ -114,7 +114,7 @@ TEST(TriangleCurvature, IsExactForEveryQuadraticWhereNoSideIsFree) {
       for (Index e : edges.of_triangle[t]) free = free || edges.edges[e].triangles[1] < 0;
       if (free) continue;
       ++exact;
-      // Weights of 1/l², 1e4 to 1e6, times values of one, rounded.
+      // Rounding of weights 1/l², 1e4 to 1e6, times values of one.
       EXPECT_LT((curvature - Vec3(1.4, 0.8, -1.1)).norm(), 2e-9) << meshing.name << ", triangle " << t;
     }
     EXPECT_GT(exact, static_cast<int>(stencils.size()) / 2);
@@ -124,7 +124,7 @@ TEST(TriangleCurvature, IsExactForEveryQuadraticWhereNoSideIsFree) {
 TEST(TriangleBend, ConstantMomentLeavesNoForceInside) {
   for (const testing::Meshing& meshing : kMeshings) {
     const mesh::Mesh mesh = meshing.make(kSize, 16);
-    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
     const TriangleBend bend(sheet, 0, {1, 0});
     const Positions x = mapped(mesh, [](double u, double v) { return Vec3(u, v, u * u - 0.6 * u * v + 0.3 * v * v); });
     const Positions f = testing::force_of(bend, x, testing::zeros(x));
@@ -132,20 +132,20 @@ TEST(TriangleBend, ConstantMomentLeavesNoForceInside) {
     double largest = 0;
     for (std::size_t i = 0; i < f.size(); ++i)
       if (inner[i]) largest = std::max(largest, f[i].norm());
-    // Against the forces at the border.
+    // Relative to the forces at the border.
     EXPECT_LT(largest, 1e-9 * testing::largest(f)) << meshing.name;
   }
 }
 
 TEST(TriangleBend, OnlyRigidMotionsAndStretchCostNothing) {
-  // Lowest frequency of a free square plate (ν = 0): 15.57 √(B/ρ)/L², to which these meshes converge when refined;
-  // what matters is that no mesh has a softer mode.
+  // Lowest frequency of a free square plate (ν = 0): 15.57 √(B/ρ)/L², to which these meshes converge under refinement;
+  // no mesh may have a softer mode.
   for (const testing::Meshing& meshing : kMeshings) {
     const mesh::Mesh mesh = meshing.make({1, 1}, 10);
-    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
     TriangleBend bend(sheet, 0, {1, 0});
     const Eigen::MatrixXd full =
-        testing::stiffness_of(bend, sheet.rest, testing::zeros(sheet.rest), 0, Linearisation::definite);
+        testing::stiffness_of(bend, sheet.rest, testing::zeros(sheet.rest), 0, Linearisation::clamped);
     const auto masses = lumped_masses(sheet, 1);
     const auto count = static_cast<Eigen::Index>(masses.size());
     Eigen::MatrixXd scaled(count, count);
@@ -161,7 +161,7 @@ TEST(TriangleBend, OnlyRigidMotionsAndStretchCostNothing) {
 TEST(TriangleMasses, AddUpToTheSheets) {
   for (const testing::Meshing& meshing : kMeshings) {
     double sum = 0;
-    for (double mass : lumped_masses(mesh::make_sheet_of(meshing.make(kSize, 8)), 0.2)) sum += mass;
+    for (double mass : lumped_masses(mesh::make_sheet_from_mesh(meshing.make(kSize, 8)), 0.2)) sum += mass;
     EXPECT_NEAR(sum, 0.2 * kSize.prod(), 1e-15) << meshing.name;
   }
 }

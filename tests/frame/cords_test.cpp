@@ -1,4 +1,4 @@
-// Tubes that are drawn for ropes.
+// Tubes that represent ropes in pictures.
 #include "frame/cords.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDiameter = 0.01, kPiece = 0.03;
 
-// `count` particles on a helix, or on a circle.
+// A rope of `count` particles on a helix, or on a circle if `closed`.
 FrameSnapshot rope_of(int count, bool closed, double lay) {
   auto surface = std::make_shared<Surface>();
   surface->name = "rope";
@@ -65,9 +65,9 @@ TEST(Cords, AreClosedSurfacesOfTheDiameterAroundTheChain) {
         }
         farthest = std::max(farthest, nearest);
       }
-      // The spline lies outside of the chords by kPiece² / 8 R, 1 mm.
+      // The spline is outside the chords by kPiece² / 8 R, 1 mm.
       EXPECT_NEAR(farthest, 0.5 * kDiameter, 1.1e-3);
-      // Faces look outward. Furrows take a fifth of the area of the circle, ten sides a sixteenth, twisted ones more.
+      // Faces point outward. Furrows remove a fifth of the circle's area, ten sides a sixteenth, twisted strands more.
       const double length = kPiece * (closed ? 24 : 23);
       EXPECT_GT(volume, 0.65 * length * std::numbers::pi / 4 * kDiameter * kDiameter);
       EXPECT_LT(volume, 1.3 * length * std::numbers::pi / 4 * kDiameter * kDiameter);

@@ -1,4 +1,4 @@
-// What fuzzing found worth keeping, read by every build. tests/fuzz/run looks for more.
+// Inputs that fuzzing found and kept, read in every build. tests/fuzz/run searches for more.
 #include <gtest/gtest.h>
 
 #include <filesystem>

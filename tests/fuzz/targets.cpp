@@ -55,7 +55,7 @@ std::string_view text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// A file in memory only, for readers that take a name: a million files a minute would wear a disk.
+/// A file in memory, for readers that need a name: a million files a minute would wear out a disk.
 class MemoryFile {
  public:
   explicit MemoryFile(Bytes bytes) : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {
@@ -76,7 +76,7 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// Refusing is well where it is one of `codes`.
+/// Calls `read`; an error is accepted if its exit code is one of `codes`.
 template <class Read>
 void may_refuse(std::initializer_list<ExitCode> codes, const Read& read) {
   try {
@@ -88,7 +88,7 @@ void may_refuse(std::initializer_list<ExitCode> codes, const Read& read) {
   }
 }
 
-// Beside the files that the scenes of the corpus refer to.
+// In the folder of the files that the scenes of the corpus reference.
 constexpr const char* kSceneFile = WEFT_SOURCE_DIR "/tests/scene/fuzz.toml";
 
 void read_scene(Bytes bytes) {
@@ -104,7 +104,7 @@ void read_pattern(Bytes bytes) {
              [&] { (void)garment::load_pattern(MemoryFile(bytes).path(), "fuzz"); });
 }
 
-/// Patterns of GarmentCode.
+/// Reads patterns of GarmentCode.
 void read_specification(Bytes bytes) {
   may_refuse({ExitCode::scene_invalid, ExitCode::asset_unreadable}, [&] {
     scene::Findings findings;
@@ -133,7 +133,7 @@ int depth_of(const nlohmann::ordered_json& json) {
   return deepest;
 }
 
-// Headers and the keys below them are counted apart, and each header of a list of tables is two levels.
+// Headers and the keys below them nest separately; each header of an array of tables adds two levels.
 void read_toml(Bytes bytes) {
   try {
     require(depth_of(parse_toml(text_of(bytes))) <= 3 * kMaxDepth + 3, "TOML nests as deep as it may");
@@ -153,7 +153,7 @@ void read_json(Bytes bytes) {
   }
 }
 
-/// What a page is told about a run, whatever its statistics are.
+/// Reads run data for a review page from arbitrary statistics.
 void read_statistics(Bytes bytes) {
   review::RunFiles run;
   run.stats = "s.json";
@@ -169,7 +169,7 @@ void read_statistics(Bytes bytes) {
   (void)review::script_json(data);
 }
 
-/// Lists of runs in both forms, and the values of one key.
+/// Reads lists of runs in both formats, and the values of one key.
 void read_list(Bytes bytes) {
   const std::string text(text_of(bytes));
   for (const char* file : {"fuzz.toml", "fuzz.csv"}) {
@@ -184,7 +184,7 @@ void read_list(Bytes bytes) {
   may_refuse({ExitCode::usage}, [&] { (void)cli::plan_sweep({}, {cli::parse_axis(text)}); });
 }
 
-/// Limits of single pictures, as `weft diff --limits` takes them.
+/// Reads limits of single pictures, as in `weft diff --limits`.
 void read_limits(Bytes bytes) {
   may_refuse({ExitCode::asset_unreadable}, [&] {
     const compare::Limits limits = cli::DiffLimits({}, MemoryFile(bytes).path()).of("front/a.png").limits;
@@ -201,7 +201,7 @@ void check_outline(const garment::Outline& outline) {
   }
 }
 
-// The element has the name that all drawings of the corpus give it.
+// All drawings of the corpus use this name for the element.
 void read_svg(Bytes bytes) {
   may_refuse({ExitCode::asset_unreadable},
              [&] { check_outline(garment::load_svg_panel(MemoryFile(bytes).path(), "front").outline); });
@@ -214,7 +214,7 @@ void read_outline(Bytes bytes) {
   require(garment::Arclength(parsed.outline).length() >= 0, "a length is no less than zero");
 }
 
-/// A PNG file whose check sums are right, so that damage is met by more than the check.
+/// Corrects the checksums of a PNG file, so that damage reaches the code behind the check.
 std::vector<std::uint8_t> with_right_sums(Bytes bytes) {
   std::vector<std::uint8_t> mended(bytes.begin(), bytes.end());
   for (std::size_t chunk = 8; chunk + 12 <= mended.size();) {
@@ -235,7 +235,7 @@ void read_image(Bytes bytes) {
   });
 }
 
-/// Pictures of all kinds that cloth can have.
+/// Reads pictures of all formats that cloth accepts.
 void read_picture(Bytes bytes) {
   try {
     const image::Picture picture = image::decode_picture(text_of(bytes));
@@ -253,7 +253,7 @@ void read_layers(Bytes bytes) {
   });
 }
 
-// What a process of our own sends back after it has read a file; it may have been damaged by that file.
+// Reads the answer of a Weft child process that has read a file, which may have corrupted it.
 template <auto decode>
 void read_answer(Bytes bytes) {
   try {
@@ -262,7 +262,7 @@ void read_answer(Bytes bytes) {
   }
 }
 
-// Sizes and check sum of the header are made right, so that damage is met by more than the check.
+// Corrects the sizes and the checksum of the header, so that damage reaches the code behind the check.
 void read_container(Bytes bytes) {
   constexpr std::size_t kStoredSizeAt = 40, kSumAt = 48, kHeaderSize = 56;
   std::string file(text_of(bytes));

@@ -1,4 +1,4 @@
-// The readers of what comes from outside, each as a function of bytes, for the fuzzer and for the test of its corpus.
+// All readers of external input, each as a function of bytes, for the fuzzer and for the test of its corpus.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace weft::fuzz {
 
-/// Reads the bytes. Whatever they are, they are understood or refused as the reader's header says; anything else, also
-/// a result that breaks what the reader promises, is thrown as std::logic_error or found by a sanitizer.
+/// Reads any bytes, which are accepted or refused as the reader's header states. Anything else, including a result that
+/// breaks a promise of the reader, is thrown as std::logic_error or found by a sanitizer.
 struct Target {
   std::string_view name;  ///< its corpus is the folder corpus/<name>
   void (*read)(std::span<const std::uint8_t> bytes);

@@ -1,4 +1,4 @@
-// A pattern for one body on another: what is measured, and what follows from that.
+// A pattern for one body on another: measurements, and the resulting scale.
 #include "garment/fit.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace weft::garment {
 namespace {
 
-// Radii of a body of 1.7 m that is round everywhere: knees, hips, waist, chest, shoulders, neck [m].
+// Radii of a rotationally symmetric body of 1.7 m: knees, hips, waist, chest, shoulders, neck [m].
 double radius(double z) {
   const std::vector<std::pair<double, double>> places{{0, 0.08},    {0.5, 0.09}, {0.9, 0.16}, {1.1, 0.11}, {1.28, 0.15},
                                                       {1.34, 0.15}, {1.42, 0.2}, {1.5, 0.06}, {1.7, 0.06}};
@@ -45,8 +45,8 @@ Wearer round_wearer() {
   return wearer;
 }
 
-// The shoulders are wider than the chest. Sections are 10 mm apart, over which the girth of a slope of 0.3 changes by
-// 19 mm; polygons of 96 corners are shorter than circles by 0.02 %.
+// The shoulders are wider than the chest. Sections are 10 mm apart, which changes the girth by 19 mm where the radius
+// has a slope of 0.3; polygons of 96 corners are shorter than circles by 0.02 %.
 TEST(Fit, MeasuresGirthsOfHipsWaistAndChestAndTheHeight) {
   const Measures measures = measure(round_wearer());
   EXPECT_NEAR(*measures.hip, 2 * std::numbers::pi * 0.16, 0.02);
@@ -70,17 +70,17 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheHeights) {
                         [&] { fit_factors(pattern, wearer, "cloth.c"); });
 }
 
-// As a skirt for the waist of a hoodie, which fell to the feet. What hangs from the shoulders too does not fall.
+// A skirt for the waist of a hoodie fell to the feet. Garments that also hang from the shoulders do not fall.
 TEST(Fit, TellsOfHipsThatHoldNothingUp) {
   const Wearer wearer = round_wearer();
   const double hip = *measure(wearer).hip;
   Pattern pattern;
   pattern.measures.waist = hip / 1.15;
-  EXPECT_EQ(doubt_that_hips_hold(pattern, Vec2(1, 1), wearer), "");
-  EXPECT_EQ(doubt_that_hips_hold(pattern, Vec2(1.1, 2), wearer).substr(0, 50),
+  EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1, 1), wearer), "");
+  EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1.1, 2), wearer).substr(0, 50),
             "its waist is 0.96 m around and the hips of its wea");
   pattern.measures.chest = 1;
-  EXPECT_EQ(doubt_that_hips_hold(pattern, Vec2(1.1, 2), wearer), "");
+  EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1.1, 2), wearer), "");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Flat meshes of panels: exact outlines, good angles, Delaunay.
+// Flat meshes of panels: exact outlines, large minimum angles, Delaunay property.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace weft::garment {
 namespace {
 
-// A polygon with sides cut into pieces of about `spacing`.
-std::vector<Vec2> cut(const std::vector<Vec2>& corners, double spacing) {
+// Returns the polygon with its sides cut into pieces of about `spacing`.
+std::vector<Vec2> cut_sides(const std::vector<Vec2>& corners, double spacing) {
   std::vector<Vec2> points;
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const Vec2 &a = corners[k], &b = corners[(k + 1) % corners.size()];
@@ -42,7 +42,7 @@ TEST(PanelMeshes, FillTheirOutlineExactly) {
   for (const auto& corners : {kL, kNotched})
     for (double spacing : {0.1, 0.03, 0.011})
       for (double grain : {0.0, 0.4}) {
-        const std::vector<Vec2> outline = cut(corners, spacing);
+        const std::vector<Vec2> outline = cut_sides(corners, spacing);
         const FlatMesh mesh = mesh_panel(outline, {-std::sin(grain), std::cos(grain)}, spacing);
         // Sums of some thousand areas, rounded to 1e-16 each.
         EXPECT_NEAR(area_of(mesh), polygon_area(corners), 1e-12);
@@ -59,30 +59,30 @@ TEST(PanelMeshes, FillTheirOutlineExactly) {
       }
 }
 
-// The circle around each triangle holds no other point that can be seen from it: for a convex outline, none at all.
+// The circumcircle of each triangle contains no point that is visible from it; for a convex outline, no point at all.
 TEST(PanelMeshes, AreDelaunay) {
-  const std::vector<Vec2> outline = cut({{0, 0}, {1, 0.1}, {0.9, 0.7}, {0.2, 0.8}}, 0.05);
+  const std::vector<Vec2> outline = cut_sides({{0, 0}, {1, 0.1}, {0.9, 0.7}, {0.2, 0.8}}, 0.05);
   const FlatMesh mesh = mesh_panel(outline, {0, 1}, 0.05);
   for (const mesh::Triangle& t : mesh.triangles) {
     const Vec2 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
     Eigen::Matrix2d sides;
     sides << 2 * (b - a).transpose(), 2 * (c - a).transpose();
     const Vec2 centre = sides.inverse() * Vec2(b.squaredNorm() - a.squaredNorm(), c.squaredNorm() - a.squaredNorm());
-    // Rows are shifted by less than 1e-4 spacings in all where diagonals are chosen.
+    // Where diagonals are chosen, rows are shifted by less than 1e-4 spacings in total.
     const double radius = (a - centre).norm() - 1e-4 * 0.05;
     for (const Vec2& p : mesh.points) EXPECT_GT((p - centre).norm(), radius - 1e-9);
   }
 }
 
-// 0.3 / 0.1 is less than 3 in floating point; a row less would leave strips of one and a half spacings.
+// 0.3 / 0.1 is less than 3 in floating point. One row too few would leave strips of one and a half spacings.
 TEST(PanelMeshes, OfWholeSquaresAreSquaresUpToTheOutline) {
-  const FlatMesh mesh = mesh_panel(cut({{-0.2, 0}, {0.2, 0}, {0.2, 0.3}, {-0.2, 0.3}}, 0.1), {0, 1}, 0.1);
+  const FlatMesh mesh = mesh_panel(cut_sides({{-0.2, 0}, {0.2, 0}, {0.2, 0.3}, {-0.2, 0.3}}, 0.1), {0, 1}, 0.1);
   EXPECT_EQ(mesh.points.size(), 5U * 4U);
   for (const mesh::Triangle& t : mesh.triangles) EXPECT_NEAR(support::smallest_angle(t, mesh.points), 45, 1e-9);
 }
 
 TEST(PanelMeshes, InnerLatticePointsHaveSixNeighbours) {
-  const FlatMesh mesh = mesh_panel(cut({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05), {0, 1}, 0.05);
+  const FlatMesh mesh = mesh_panel(cut_sides({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05), {0, 1}, 0.05);
   std::map<Index, int> degree;
   for (const mesh::Edge& edge : mesh::collect_edges(mesh.triangles).edges)
     for (Index v : edge.vertices) ++degree[v];
@@ -96,12 +96,12 @@ TEST(PanelMeshes, InnerLatticePointsHaveSixNeighbours) {
   EXPECT_GT(inner, 150);
 }
 
-// Sharp corners of the outline keep their own angles; all others are as good as the strip along the outline allows.
+// Sharp corners of the outline keep their angles; all others are as large as the strip along the outline allows.
 TEST(PanelMeshes, AnglesOfThePatternsThatShipAreAtLeast23Degrees) {
   for (const char* name : {"dress", "skirt", "tshirt"}) {
     const Pattern pattern = load_pattern(std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + name + ".toml", "a test");
     for (double spacing : {0.03, 0.02, 0.0128}) {
-      double least = 180, mean = 0;
+      double min_angle = 180, mean = 0;
       std::size_t count = 0;
       for (const Panel& panel : pattern.panels) {
         std::vector<int> segments;
@@ -116,22 +116,22 @@ TEST(PanelMeshes, AnglesOfThePatternsThatShipAreAtLeast23Degrees) {
           mean += angle, ++count;
           const bool at_corner =
               std::ranges::any_of(t, [&](Index v) { return std::ranges::find(corners, v) != corners.end(); });
-          if (!at_corner) least = std::min(least, angle);
+          if (!at_corner) min_angle = std::min(min_angle, angle);
           EXPECT_GT(angle, 14) << name << ", " << panel.name << ", " << spacing;
         }
       }
-      EXPECT_GT(least, 23) << name << " at " << spacing;
+      EXPECT_GT(min_angle, 23) << name << " at " << spacing;
       std::printf("%s at %g m: %zu triangles, least angle %.1f away from corners, mean of the least %.1f degrees\n",
-                  name, spacing, count, least, mean / static_cast<double>(count));
+                  name, spacing, count, min_angle, mean / static_cast<double>(count));
     }
   }
 }
 
 TEST(PanelMeshes, OutlinesThatCrossThemselvesAreFound) {
   EXPECT_FALSE(self_crossing(kL));
-  EXPECT_FALSE(self_crossing(cut(kNotched, 0.01)));
+  EXPECT_FALSE(self_crossing(cut_sides(kNotched, 0.01)));
   EXPECT_TRUE(self_crossing(std::vector<Vec2>{{0, 0}, {1, 1}, {1, 0}, {0, 1}}));
-  EXPECT_TRUE(self_crossing(std::vector<Vec2>{{0, 0}, {1, 0}, {1, 1}, {0.5, 0}, {0, 1}}));  // touches
+  EXPECT_TRUE(self_crossing(std::vector<Vec2>{{0, 0}, {1, 0}, {1, 1}, {0.5, 0}, {0, 1}}));  // touches itself
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Path data as outlines: every command, and everything that is none.
+// Path data as outlines: every command, and invalid text.
 #include "garment/outline.hpp"
 
 #include <gtest/gtest.h>
@@ -36,13 +36,13 @@ TEST(Outlines, LinesInEveryFormGiveTheSamePolygon) {
 }
 
 TEST(Outlines, ArcsAreCircles) {
-  // A quarter circle as one cubic is off by 2.7e-4 of its radius at most; its area by less.
+  // A cubic that approximates a quarter circle is off by 2.7e-4 of the radius at most; the area by less.
   const double disc = std::numbers::pi * 0.25;
   EXPECT_NEAR(area_of("M -0.5 0 A 0.5 0.5 0 0 1 0.5 0 A 0.5 0.5 0 0 1 -0.5 0 Z"), disc, 3e-4 * disc);
   EXPECT_NEAR(area_of("M -0.5 0 A 0.5 0.5 0 1 0 0.5 0 A 0.5 0.5 0 1 0 -0.5 0 Z"), -disc, 3e-4 * disc);
-  // Three quarters of it, then the corner: the larger arc.
+  // Three quarters of the disc, then the corner: the larger arc.
   EXPECT_NEAR(area_of("M 0.5 0 A 0.5 0.5 0 1 0 0 0.5 L 0 0 Z"), -0.75 * disc, 3e-4 * disc);
-  // An ellipse turned by 30 degrees; radii too small for the way are scaled up.
+  // An ellipse turned by 30 degrees; radii that are too small for the distance are scaled up.
   EXPECT_NEAR(std::abs(area_of("M 0.433012701892 0.25 A 0.5 0.2 30 0 1 -0.433012701892 -0.25 A 0.5 0.2 30 0 1 "
                                "0.433012701892 0.25 Z")),
               std::numbers::pi * 0.1, 3e-4);
@@ -52,7 +52,7 @@ TEST(Outlines, ArcsAreCircles) {
 TEST(Outlines, SmoothCommandsReflectTheHandleBefore) {
   EXPECT_NEAR(area_of("M0 0C1 1 2 1 3 0S5-1 6 0L6 2L0 2Z"), area_of("M0 0C1 1 2 1 3 0C4-1 5-1 6 0L6 2L0 2Z"), 1e-12);
   EXPECT_NEAR(area_of("M0 0Q1 1 2 0T4 0L4 2L0 2Z"), area_of("M0 0Q1 1 2 0Q3-1 4 0L4 2L0 2Z"), 1e-12);
-  // Of area ∫ 2 s(1−s) 1 ds · 2: a quadratic's hump is two thirds of its triangle.
+  // Area ∫ 2 s(1−s) 1 ds · 2: the area under a quadratic is two thirds of its control triangle.
   EXPECT_NEAR(area_of("M0 0Q1 1 2 0Z"), -2.0 / 3, 1e-4);
 }
 
@@ -102,7 +102,7 @@ TEST(Outlines, EqualSharesOfTheLengthAreEquallyFarApart) {
   const ParsedPath quarter = parse_path("M1 0A1 1 0 0 1 0 1L0 0Z");
   ASSERT_EQ(quarter.mistake, "");
   const Arclength along({quarter.outline[0]});
-  // The cubic's error of 2.7e-4 in radius counts in length likewise.
+  // The cubic's radius error of 2.7e-4 affects the length in the same ratio.
   EXPECT_NEAR(along.length(), 0.5 * std::numbers::pi, 3e-4);
   for (int k = 0; k <= 10; ++k) {
     const double angle = 0.05 * std::numbers::pi * k;

@@ -1,4 +1,4 @@
-// Patterns sewn into one mesh around the wearer: topology, measures, start shape.
+// Patterns sewn into one mesh around the wearer: topology, dimensions, start shape.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ long euler_characteristic(const mesh::Sheet& sheet) {
          static_cast<long>(sheet.triangles.size());
 }
 
-// Rims of openings: closed chains of border edges.
+// Counts openings: closed chains of border edges.
 std::size_t openings(const mesh::Sheet& sheet) {
   const auto border = mesh::inspect(sheet.triangles, sheet.rest.size()).border;
   std::vector<Index> group(sheet.rest.size());
@@ -44,7 +44,7 @@ std::size_t openings(const mesh::Sheet& sheet) {
   return rims.size();
 }
 
-// A sphere with k holes has the characteristic 2 − k.
+// A sphere with k holes has the Euler characteristic 2 − k.
 TEST(Garments, AreSurfacesWithTheOpeningsOfWhatTheyAre) {
   for (double spacing : {0.03, 0.02}) {
     for (const auto& [name, count] : {std::pair("dress", 4L), {"tshirt", 4L}, {"skirt", 2L}}) {
@@ -64,9 +64,8 @@ TEST(Garments, KeepAreaAndMeasuresOfTheirPanels) {
     EXPECT_GT(mesh::rest_area(garment.sheet, t), 0);
     area += mesh::rest_area(garment.sheet, t);
   }
-  // Two quarter rings. Chords of 10 mm cut (10 mm)² / (8 R) off an arc of radius R at the hem and as much on at the
-  // waist, relative to 0.45 m: below 1e-4. The curves are off
-  // their arcs by 2.7e-4 of a radius at most.
+  // Two quarter rings. Chords of 10 mm remove (10 mm)² / (8 R) from an arc of radius R at the hem and add as much at
+  // the waist, relative to 0.45 m: below 1e-4. The curves are off their arcs by 2.7e-4 of a radius at most.
   const double inner = 0.72 / std::numbers::pi, outer = inner + 0.45;
   EXPECT_NEAR(area, 0.5 * std::numbers::pi * (outer * outer - inner * inner), 3e-4 * area);
   ASSERT_EQ(garment.seams.size(), 2U);
@@ -102,7 +101,7 @@ TEST(Garments, AreTheSameInEveryRun) {
   EXPECT_EQ(a.sheet.rest, b.sheet.rest);
 }
 
-// Written by hand: a panel with a dart, and a longer edge eased into a shorter one.
+// A hand-written pattern: a panel with a dart, and a longer edge eased into a shorter one.
 const std::string kDart = R"(
 [[panel]]
 name = "front"
@@ -152,7 +151,7 @@ TEST_F(SewingText, ADartClosesAndALongerSideIsEasedIn) {
   EXPECT_NEAR(area, 0.4 * 0.3 - 0.02 * 0.15 + 0.4 * 0.34, 1e-12);
 }
 
-// The back's warp runs across it.
+// The warp of the back runs across it.
 TEST_F(SewingText, TheGrainTurnsTheWarp) {
   const Garment garment = sew_text(kDart + kDartSeams);
   for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
@@ -166,7 +165,7 @@ TEST_F(SewingText, TheGrainTurnsTheWarp) {
 TEST_F(SewingText, BandsFollowTheirEdges) {
   const Garment garment =
       sew_text(kDart + kDartSeams + "[[elastic]]\nedge = 'front.top'\nratio = 0.8\n[[hem]]\nedge = 'back.low'\n");
-  ASSERT_EQ(garment.sheet.bands.size(), 5U);  // allowances of three seams, and these
+  ASSERT_EQ(garment.sheet.bands.size(), 5U);  // the allowances of three seams, and the bands above
   EXPECT_NEAR(garment.sheet.bands[2].lengths[0], 0.34 / 17, 1e-12);
   EXPECT_EQ(garment.sheet.bands[2].allowance, 0.02);
   const mesh::Band& band = garment.sheet.bands[3];
@@ -178,7 +177,7 @@ TEST_F(SewingText, BandsFollowTheirEdges) {
   EXPECT_GT(garment.sheet.bands[4].mass, 0);
 }
 
-// Two rectangles that lie one on the other, with all four sides sewn, or three: the first pattern that people try.
+// Two rectangles, one on the other, sewn along all four sides or three: the first pattern that users try.
 TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
   const std::string path = "path = 'M -0.25 -0.2 L 0.25 -0.2 L 0.25 0.2 L -0.25 0.2 Z'\nedges = 'low right top left'\n";
   const std::string panels =
@@ -192,13 +191,13 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
     EXPECT_TRUE(mesh::inspect(pillow.sheet.triangles, pillow.sheet.rest.size()).manifold()) << spacing;
     EXPECT_EQ(openings(pillow.sheet), 0U) << spacing;
     EXPECT_EQ(euler_characteristic(pillow.sheet), 2) << "a sphere, at " << spacing;
-    double area = 0, least = 1;
+    double area = 0, min_area = 1;
     for (std::size_t t = 0; t < pillow.sheet.triangles.size(); ++t) {
       area += mesh::rest_area(pillow.sheet, t);
-      least = std::min(least, mesh::rest_area(pillow.sheet, t));
+      min_area = std::min(min_area, mesh::rest_area(pillow.sheet, t));
     }
     EXPECT_NEAR(area, 2 * 0.5 * 0.4, 1e-12) << spacing;
-    EXPECT_GT(least, 0.02 * spacing * spacing) << "no needles, at " << spacing;
+    EXPECT_GT(min_area, 0.02 * spacing * spacing) << "no needles, at " << spacing;
     const support::JudgedObject object{"pillow", true, pillow.sheet.rest, pillow.sheet.triangles};
     EXPECT_EQ(support::judge(std::span(&object, 1)).pairs.size(), 0U) << spacing;
     const Garment open = sew_text(panels + three, spacing);
@@ -210,7 +209,7 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
   expect_mistake(both_before, "panels that lie one on the other need side = \"front\" and side = \"back\"");
 }
 
-// The half is on the wearer's left; its fold is slanted, so that the reflection is not that of x.
+// The half is on the wearer's left. Its fold line is slanted, so that the reflection is not a change of sign of x.
 TEST_F(SewingText, AHalfCutOnTheFoldIsAWholePanel) {
   const auto panel = [&](const std::string& text) {
     support::write_bytes(folder_ / "p.toml", "[[panel]]\nname = 'p'\n" + text);
@@ -227,7 +226,7 @@ TEST_F(SewingText, AHalfCutOnTheFoldIsAWholePanel) {
   std::ranges::sort(names);
   EXPECT_EQ(names, (std::vector<std::string>{"hem", "neck", "side_l", "side_r"}));
   EXPECT_NEAR(hem, 2 * std::hypot(0.2, 0.15), 1e-12) << "goes on beyond the fold";
-  // The line of the fold is along (3, 4) / 5: what is reflected there keeps its distance from the origin.
+  // The fold line passes through the origin along (3, 4) / 5: reflected points keep their distance from the origin.
   const auto end_of = [&](const std::string& name, bool end) {
     const std::vector<Curve>& curves = std::ranges::find(whole.edges, name, &PanelEdge::name)->curves;
     return end ? curves.back().end() : curves.front().start();
@@ -263,12 +262,12 @@ TEST_F(SewingText, WhatCannotBeSewnIsRefused) {
   three += "[[panel]]\nname = 'third'\npath = 'M0 0L0.4 0L0.4 0.3L0 0.3Z'\n";
   three += "[[seam]]\na = 'third.2'\nb = 'third.3'\n[[seam]]\na = 'third.1'\nb = 'third.4'\n";
   EXPECT_ANY_THROW(sew_text(three));
-  // A panel upside down: its seams would join front to back of the cloth.
+  // A panel upside down: its seams would join the front to the back of the cloth.
   std::string turned = kDart + kDartSeams;
   turned.replace(turned.find("grain = 90"), 10, "rotation = 180");
   expect_mistake(turned, "whose triangles face both ways");
-  // A quarter of a ring, sewn along its straight sides: they meet only if what is between folds over. With eleven
-  // twelfths the gap between them closes as a dart does.
+  // A quarter of a ring, sewn along its straight sides, which can meet only if the rest folds over. With eleven
+  // twelfths of a ring the gap closes as a dart does.
   const std::string ring =
       "[[seam]]\na = 'hat.a'\nb = 'hat.b'\n[[panel]]\nname = 'hat'\nedges = 'a low b top'\npath = ";
   expect_mistake(ring + "'M 0.1 0 L 0.3 0 A 0.3 0.3 0 0 1 0 0.3 L 0 0.1 A 0.1 0.1 0 0 0 0.1 0 Z'\n",

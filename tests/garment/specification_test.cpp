@@ -1,4 +1,4 @@
-// Patterns of GarmentCode as garments.
+// Patterns of GarmentCode read as garments.
 #include "garment/specification.hpp"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 namespace weft::garment {
 namespace {
 
-// A skirt, a trouser leg and a sleeve. Fronts run counter-clockwise, backs clockwise, as there. The sleeve lies along
-// its drawing's x axis, its cap to the left.
+// A skirt, a trouser leg and a sleeve. As in GarmentCode, fronts run counter-clockwise, backs clockwise. The sleeve
+// lies along the x axis of its drawing, with its cap to the left.
 const char* const kSpecification = R"({
   "pattern": {
     "panels": {
@@ -45,7 +45,7 @@ const char* const kSpecification = R"({
   "properties": { "curvature_coords": "relative", "units_in_meter": 100 }
 })";
 
-// The inside of a leg is sewn front to back.
+// Trousers: the inside of a leg is sewn front to back.
 const char* const kLegs = R"({ "pattern": { "panels": {
   "a": { "translation": [0, 10, 20], "vertices": [[2, 0], [24, 0], [26, 80], [2, 80]],
     "edges": [ { "endpoints": [0, 1] }, { "endpoints": [1, 2] }, { "endpoints": [2, 3] }, { "endpoints": [3, 0] } ] },
@@ -77,21 +77,21 @@ TEST_F(Specification, HasOutlinesInMetresSeenFromOutside) {
   const ReadPattern read = this->read(kSpecification);
   ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
   const Pattern& pattern = read.pattern;
-  ASSERT_EQ(pattern.panels.size(), 3U);  // in the order of their names
+  ASSERT_EQ(pattern.panels.size(), 3U);  // sorted by name
   EXPECT_TRUE(pattern.wraps());
   EXPECT_NEAR(length_of(pattern, "skirt_front.1"), 0.5, 1e-12);
-  // A parabola 30 mm deep, of which 256 chords are measured: s/w = ½√(1+q²) + asinh(q)/(2q), q = 4h/w.
+  // A parabola 30 mm deep, measured with 256 chords: s/w = ½√(1+q²) + asinh(q)/(2q), q = 4h/w.
   const double q = 4 * 0.03 / 0.6;
   EXPECT_NEAR(length_of(pattern, "skirt_front.0"), 0.3 * (std::sqrt(1 + q * q) + std::asinh(q) / q), 1e-6);
-  // 60° of a circle of 0.6 m; arcs as cubic curves are off by 3e-4 of the radius at most.
+  // 60° of a circle of 0.6 m; cubic curves approximate arcs to 3e-4 of the radius.
   EXPECT_NEAR(length_of(pattern, "skirt_front.2"), 0.6 * std::numbers::pi / 3, 2e-4);
-  // Without "right" the arc runs clockwise, which the top of the front going to the left lies below.
+  // Without "right" the arc runs clockwise: the top of the front, drawn to the left, curves downward.
   const auto& top = pattern.panels[2].edges[pattern.find("skirt_front.2").second].curves[0];
   EXPECT_LT(top.at(0.5).y(), 0.5);
   for (const Seam& seam : pattern.seams) EXPECT_FALSE(seam.closure());
   EXPECT_EQ(pattern.seams[0].a, "skirt_front.1");
   EXPECT_EQ(pattern.seams[0].b, "skirt_back.2");
-  // Seen from behind its left is where it lies to the wearer's left.
+  // Seen from behind, the left of the back lies to the wearer's left.
   const Panel &back = pattern.panels[1], &front = pattern.panels[2];
   EXPECT_EQ(back.angle, 180);
   EXPECT_EQ(front.angle, 0);
@@ -121,13 +121,13 @@ TEST_F(Specification, LimbsLieAlongTheirAxesWithTheTrunkAbove) {
   EXPECT_EQ(legs.panels[0].around, Around::left_leg);
   EXPECT_EQ(legs.panels[1].around, Around::left_leg);
   EXPECT_LT((*legs.panels[0].position - Vec2(0, 0.1)).norm(), 1e-12);
-  // Halves of a skirt have that seam with the other half.
+  // In a skirt of two halves, such seams join the other half.
   const Pattern skirt =
       read(changed(kLegs, R"("b": { "translation": [0, 10, -20])", R"("b": { "translation": [-28, 10, -20])")).pattern;
   EXPECT_EQ(skirt.panels[0].around, Around::torso);
 }
 
-// The forerunner of GarmentCode: other units, quadratic curves as lists, heights from within the body.
+// The predecessor of GarmentCode: other units, quadratic curves as lists, heights measured from within the body.
 TEST_F(Specification, OfTheForerunnerStandsOnTheFloorToo) {
   std::string old = changed(kSpecification, R"({ "type": "quadratic", "params": [[0.5, -0.1]] })", "[0.5, -0.1]");
   old = changed(old, R"("units_in_meter": 100)", R"("units_in_meter": 200)");
@@ -160,17 +160,17 @@ TEST_F(Specification, IsSewnAroundTheWearer) {
     for (const Vec3& x : made.cloths[0].start) box.extend(x);
     return box;
   };
-  // The hem 40 cm above the floor, curved by 3; joining its panels moves it by some more.
+  // The hem is 40 cm above the floor and curved by 3 cm; joining the panels moves it a little more.
   const Box3 box = spans();
   EXPECT_NEAR(box.min().z(), 0.40, 0.05);
   EXPECT_NEAR(box.max().z(), 0.90, 0.05);
-  EXPECT_LT(box.min().y(), -0.1);  // before and behind
+  EXPECT_LT(box.min().y(), -0.1);  // in front and behind
   EXPECT_GT(box.max().y(), 0.1);
   scene.cloths[0].scale = 1.2;
   EXPECT_NEAR(spans().max().z(), 1.2 * box.max().z(), 0.03);
 }
 
-// A flap 15 cm wide, drawn lying on its side, whose right side goes on from the wrong side of the front's top.
+// A flap 15 cm wide, drawn lying on its side. Its right side continues from the wrong side of the front's top.
 TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
   std::string folded = changed(kSpecification, R"("left_sleeve_f": {)", R"("flap": { "translation": [0, 150, 60],
         "vertices": [[0, 60], [0, 0], [15, 0], [15, 60]],
@@ -189,14 +189,14 @@ TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
   EXPECT_TRUE(flap.turned);
   EXPECT_EQ(flap.layer, 1);
   for (const std::size_t other : {1, 2}) EXPECT_FALSE(read.pattern.panels[other].turned);
-  // The front's top goes from (0.3, 0.9) to (-0.3, 0.9); the flap hangs down before it from there.
+  // The front's top goes from (0.3, 0.9) to (-0.3, 0.9); the flap hangs down in front of it.
   const std::vector<Vec2> corners{{0.3, 0.9}, {-0.3, 0.9}, {-0.3, 0.75}, {0.3, 0.75}};
   for (std::size_t e = 0; e < 4; ++e) {
     const Vec2 start = flap.edges[read.pattern.find("flap." + std::to_string(e)).second].curves[0].start();
     const Vec2 worn = *flap.position + Eigen::Rotation2Dd(flap.rotation * std::numbers::pi / 180) * start;
     EXPECT_LT((worn - corners[e]).norm(), 1e-9) << e;
   }
-  // It is sewn as one surface, lies before the front, and shows its back there.
+  // It is sewn as one surface, lies in front of the front panel, and shows its back there.
   const environment::Environment made(support::scene_of_text(
       "[[character]]\nname = 'model'\nsource = 'mannequin'\nstance = 'rest'\nblend = 1\nedge_length = 0.05\n"
       "[[cloth]]\nname = 'skirt'\nshape = 'pattern'\nfile = '" +
@@ -222,7 +222,7 @@ TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
   EXPECT_LT(front_faces.y(), -0.5 * front_faces.norm());
 }
 
-// Slivers beside an edge of 2 mm would be as stiff as they are short.
+// Slivers beside an edge of 2 mm would be very stiff.
 TEST_F(Specification, EdgesShorterThanTheMeshBecomePoints) {
   const std::string with_corner = changed(
       changed(changed(kLegs, "[26, 80], [2, 80]]", "[26, 80], [2, 80], [2, 79.8]]"), R"({ "endpoints": [3, 0] } ] },
@@ -249,17 +249,17 @@ TEST_F(Specification, MistakesNameWhatTheyAreAbout) {
     const std::size_t at = line.find(".json:");
     return at == std::string::npos ? line : line.substr(at + 6);
   };
-  EXPECT_EQ(first("{\n\"pattern\": }"), "2:1: expected JSON, got what is none near here");
-  EXPECT_TRUE(first("{\"pattern\": 1e999}").starts_with("1:1: expected JSON, got what is none: "));
+  EXPECT_EQ(first("{\n\"pattern\": }"), "2:1: expected valid JSON, found an error near here");
+  EXPECT_TRUE(first("{\"pattern\": 1e999}").starts_with("1:1: expected valid JSON: "));
   EXPECT_EQ(first(std::string(200'000, '[')),
-            "1:1: expected JSON, got what is none: expected at most 128 levels of lists and objects, got more");
+            "1:1: expected valid JSON: expected at most 128 levels of lists and objects, got more");
   EXPECT_EQ(first("{}"), "1:1: expected \"pattern\" of a specification of GarmentCode, got none");
   EXPECT_EQ(first(R"({"pattern": {"panels": {}}})"), "1:1: pattern.panels: expected panels by name, got none");
   for (const char* units : {"0", "1e-320", "1e308", "-1", "\"cm\"", "null"})
     EXPECT_TRUE(first(changed(kSpecification, "\"units_in_meter\": 100", std::string("\"units_in_meter\": ") + units))
                     .starts_with("1:1: properties.units_in_meter: expected a number from 0.001 to 1e+06, got "))
         << units;
-  // Each value of the wrong kind, wherever it stands: never an exception of the library.
+  // Values of the wrong type, in every place: the JSON library's exceptions never reach the caller.
   for (const char* value : {"\"q\"", "7", "null", "{}", "[]", "[7]", "[[]]", "true"}) {
     const std::string text = std::string("{\"pattern\": {\"panels\": {\"a\": ") + value + "}, \"stitches\": []}}";
     EXPECT_NE(first(text), "none") << text;

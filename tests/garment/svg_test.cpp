@@ -30,14 +30,14 @@ class Drawings : public support::TestFolder {
 
 TEST_F(Drawings, LengthsAreThoseOfTheSheet) {
   const std::string path = "<path id='p' d='M10 20h100v50z'/></svg>";
-  // One unit is a millimetre, a tenth of an inch, a pixel; y points down in the file.
+  // One unit is a millimetre, a tenth of an inch, or a pixel; y points down in the file.
   expect_corners("<svg width='210mm' height='297mm' viewBox='0 0 210 297'>" + path,
                  {{0.01, -0.02}, {0.11, -0.02}, {0.11, -0.07}});
   expect_corners("<svg width='20in' viewBox='0 0 200 300'>" + path,
                  {{0.0254, -0.0508}, {0.2794, -0.0508}, {0.2794, -0.1778}});
   const double px = 0.0254 / 96;
   expect_corners("<svg>" + path, {{10 * px, -20 * px}, {110 * px, -20 * px}, {110 * px, -70 * px}});
-  // Fits into the smaller.
+  // The smaller scale is used.
   expect_corners("<svg width='420mm' height='297mm' viewBox='0 0 210 297'>" + path,
                  {{0.01, -0.02}, {0.11, -0.02}, {0.11, -0.07}});
 }
@@ -67,8 +67,7 @@ TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineColumnAndElement) {
 }
 
 TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
-  // Two panels on a sheet: a bodice whose neck is drawn in two pieces and whose hem goes over in the side without a
-  // corner, and another.
+  // A bodice, with its neck in two pieces and a hem that passes into the side without a corner, and another panel.
   const std::string sheet = R"(<svg width='1000mm' viewBox='0 0 1000 1000' xmlns:inkscape='x'>
     <g inkscape:label='front' transform='translate(100 0)'>
       <path class='fabric sa' d='M-10 -10H210V310H-10Z'/>
@@ -104,7 +103,7 @@ TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
   refused("odd", "text: expected edge: and a name of letters");
 }
 
-// As of Valentina and Seamly.
+// As written by Valentina and Seamly.
 TEST_F(Drawings, WithoutIdsGiveTheirPathsByNumber) {
   support::write_bytes(folder_ / "d.svg",
                        "<svg width='10mm' viewBox='0 0 10 10'><g><path d='M0 0L1 0L0 1Z'/></g><path d='M5 0L7 0L5 2Z'/>"

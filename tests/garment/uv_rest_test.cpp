@@ -25,15 +25,14 @@ struct Textured {
   }
 };
 
-// A tube of two pleated panels: each point of the pattern at (u, v) lies at a length of u along a regular zigzag around
-// a circle, so that all edges of the mesh that run along u or v are as long as in the pattern. The second panel is
-// drawn from behind.
+// A tube of two pleated panels. A pattern point (u, v) lies at arc length u along a regular zigzag around a circle, so
+// that all mesh edges along u or v are as long as in the pattern. The second panel is drawn from behind.
 Textured pleated_tube() {
   constexpr int kAround = 24, kUp = 6;
   constexpr double kStep = 0.02;
   Textured tube;
   const double angle = 2 * std::numbers::pi / kAround;
-  // Radii in turn such that neighbours are a step apart.
+  // Alternating radii for which neighbours are one step apart.
   const double inner = 0.07,
                outer = inner * std::cos(angle) + std::sqrt(kStep * kStep - std::pow(inner * std::sin(angle), 2));
   for (int j = 0; j <= kUp; ++j)
@@ -59,7 +58,7 @@ Textured pleated_tube() {
   return tube;
 }
 
-// What rounding leaves of lengths below a metre.
+// Rounding error of lengths below a metre.
 constexpr double kRounding = 1e-12;
 
 TEST(UvRest, IslandsArePanelsAlsoThoseDrawnFromBehind) {
@@ -69,8 +68,8 @@ TEST(UvRest, IslandsArePanelsAlsoThoseDrawnFromBehind) {
   EXPECT_EQ(rest.mirrored, tube.uv.size() / 2);
   EXPECT_EQ(rest.unit, "metres");
   EXPECT_EQ(rest.unusable, 0U);
-  EXPECT_TRUE(rest.like_panels());
-  EXPECT_LT(rest.most_stretch, 1e-9);
+  EXPECT_TRUE(rest.has_panel_lengths());
+  EXPECT_LT(rest.stretch_quantile_95, 1e-9);
   for (std::size_t t = 0; t < tube.uv.size(); ++t) {
     const UvCorners& m = rest.material[t];
     const Vec2 a = m[1] - m[0], b = m[2] - m[0];
@@ -90,21 +89,21 @@ TEST(UvRest, TheSizeIsMeasuredOrAUnitOrGiven) {
   const UvRest uneven = scale_of({0.7, 1.9});
   EXPECT_NEAR(uneven.scale.x(), 1 / 0.7, 1e-6);
   EXPECT_NEAR(uneven.scale.y(), 1 / 1.9, 1e-6);
-  EXPECT_TRUE(uneven.like_panels());
+  EXPECT_TRUE(uneven.has_panel_lengths());
   const UvRest given = rest_from_uv(tube.mesh, tube.uv, Vec2(2, 3));
   EXPECT_EQ(given.scale, Vec2(2, 3));
-  EXPECT_FALSE(given.like_panels());
-  EXPECT_NEAR(given.most_stretch, 1 - 1.0 / 3, 1e-9);
+  EXPECT_FALSE(given.has_panel_lengths());
+  EXPECT_NEAR(given.stretch_quantile_95, 1 - 1.0 / 3, 1e-9);
 }
 
-// A fold that is pulled out to twice its length must not change the measure of the rest.
+// A fold that is stretched far must not change the scale of the rest.
 TEST(UvRest, SeamsThatAreStretchedDoNotCount) {
   Textured tube = pleated_tube();
   for (std::size_t v = 0; v < 24; ++v) tube.mesh.positions[v].z() -= 0.5;  // the lowest ring
   const UvRest rest = rest_from_uv(tube.mesh, tube.uv, std::nullopt);
   EXPECT_EQ(rest.scale, Vec2(1, 1));
-  EXPECT_TRUE(rest.like_panels());
-  EXPECT_GT(rest.most_stretch, 10);
+  EXPECT_TRUE(rest.has_panel_lengths());
+  EXPECT_GT(rest.stretch_quantile_95, 10);
 }
 
 TEST(UvRest, TrianglesWithoutAreaKeepThatOfTheMesh) {
@@ -128,7 +127,7 @@ TEST(UvRest, ChartsOfABodyAreNoPanels) {
     }
   }
   const UvRest rest = rest_from_uv(ball.mesh, ball.uv, std::nullopt);
-  EXPECT_FALSE(rest.like_panels()) << rest.describe();
+  EXPECT_FALSE(rest.has_panel_lengths()) << rest.describe();
 }
 
 TEST(UvRest, OfTrianglesThatAreTooFlatForTheRestIsTheMesh) {

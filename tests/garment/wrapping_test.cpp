@@ -1,4 +1,4 @@
-// Panels that start bent around parts of a wearer.
+// Panels that start wrapped around limbs of a wearer.
 #include "garment/wrapping.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kTrunk = 0.15, kArm = 0.05;  // radii [m]
 
-// An upright cylinder 1.8 m tall, and one from (0.2, 0, 1.4) to the left, level, as its arm.
+// An upright cylinder 1.8 m tall, and as its left arm a horizontal cylinder that starts at (0.2, 0, 1.4).
 Wearer stick_figure() {
   Wearer wearer;
   const auto add = [&](const mesh::Mesh& mesh, const Eigen::Isometry3d& placed, Region region) {
@@ -39,15 +39,14 @@ Wearer stick_figure() {
   return wearer;
 }
 
-// A ring of 96 chords is shorter than its circle by 1.8e-4, and that of the skin lies within its circle by up
-// to 5.4e-4.
+// A ring of 96 chords is shorter than its circle by 1.8e-4, that of the skin lies within its circle by up to 5.4e-4.
 constexpr double kChords = 1e-3;
 
 TEST(Tubes, HaveTheGirthOfWhatTheyAreAround) {
   const Tube torso(stick_figure(), Around::torso), arm(stick_figure(), Around::left_arm);
   EXPECT_NEAR(torso.girth(1, 0), 2 * std::numbers::pi * kTrunk, kChords);
   EXPECT_NEAR(torso.girth(1, 0.02), 2 * std::numbers::pi * (kTrunk + 0.02), kChords);
-  EXPECT_NEAR(torso.girth(3, 0), torso.girth(1.7, 0), kChords);  // goes on above the crown
+  EXPECT_NEAR(torso.girth(3, 0), torso.girth(1.7, 0), kChords);  // continues above the crown
   EXPECT_NEAR(arm.girth(-0.3, 0.01), 2 * std::numbers::pi * (kArm + 0.01), kChords);
   EXPECT_GT(Tube(stick_figure(), Around::body).girth(1.4, 0), 2);  // around the arm, and below it
   EXPECT_GT(Tube(stick_figure(), Around::body).girth(0.5, 0), 2);
@@ -60,12 +59,12 @@ TEST(Tubes, HaveTheFrontAtTheAngle0AndTheLeftAt90) {
   EXPECT_LT((torso.at(1, quarter, 0, 0.02) - Vec3(kTrunk + 0.02, 0, 1)).norm(), kChords);
   EXPECT_LT((torso.at(1, 0, quarter * (kTrunk + 0.02), 0.02) - Vec3(kTrunk + 0.02, 0, 1)).norm(), kChords);
   EXPECT_LT((torso.at(1, 0, -quarter * kTrunk, 0) - Vec3(-kTrunk, 0, 1)).norm(), kChords);
-  // The outside of an arm that is held level is above.
+  // The outside of a horizontal arm is its upper side.
   EXPECT_LT((arm.at(-0.3, quarter, 0, 0) - Vec3(0.5, 0, 1.4 + kArm)).norm(), kChords);
   EXPECT_LT((arm.along(-0.3) - Vec3(-1, 0, 0)).norm(), 1e-9);
 }
 
-// A tube of two panels for the trunk with a hole for a sleeve at its left, and the sleeve.
+// A tube of two panels for the trunk, with a hole at the left for a sleeve, and the sleeve.
 const std::string kVest = R"(
 [[panel]]
 name = "front"
@@ -127,10 +126,10 @@ TEST_F(Wrapping, ASleeveStartsAtItsHoleAroundTheArmWithItsFrontOutside) {
     EXPECT_GT(normal.dot(out), 0);
     if (sleeve && middle.x() > 0.32) nearest = std::min(nearest, out.norm()), farthest = std::max(farthest, out.norm());
   }
-  // The sleeve is 0.36 m wide: a circle of 57 mm, 15 mm in from which its chords and what closing it bends must stay.
+  // The sleeve is 0.36 m wide: a circle of 57 mm radius, from which chords and bending deviate by less than 15 mm.
   EXPECT_GT(nearest, kArm);
   EXPECT_LT(farthest, 0.072);
-  // Its middle lies above, and ends 0.3 m from its cap, which is at the trunk.
+  // The middle of the cuff lies above the arm and 0.3 m from the cap, which is at the trunk.
   const std::vector<Index>& cuff = garment.edges.at("sleeve.cuff");
   EXPECT_GT(x[cuff[cuff.size() / 2]].z(), 1.4 + kArm);
   EXPECT_NEAR(x[cuff[cuff.size() / 2]].x(), kTrunk + 0.3, 0.06);
@@ -172,7 +171,7 @@ TEST_F(Wrapping, ClosuresAreTiesBetweenEdgesThatStayApart) {
   for (const mesh::Tie& tie : closed.sheet.ties) {
     EXPECT_EQ(tie.open, 2);
     const Vec3 &a = closed.sheet.rest[tie.a], &b = closed.sheet.rest[tie.b];
-    EXPECT_NEAR(a.z(), b.z(), 0.02);  // the ends that are together
+    EXPECT_NEAR(a.z(), b.z(), 0.02);  // the ends that are sewn together
     EXPECT_GT((a - b).norm(), 0.005);
   }
 }
@@ -204,7 +203,7 @@ TEST_F(Wrapping, MistakesSayWhatWouldBeRight) {
          "expected a wearer with the joints UpperLeg, LowerLeg and Foot for panels around left_leg");
 }
 
-// As the gallery has them: 16 pairs of triangles that crossed were left before seams decided where hoods lie.
+// As in the gallery: before seams decided on which side hoods lie, 16 pairs of triangles crossed.
 TEST(ShippedPatterns, StartOnTheMannequinWithoutIntersections) {
   for (const std::string name : {"jacket", "poncho"}) {
     const auto file = std::filesystem::path(WEFT_SOURCE_DIR) / "scenes/gallery" / (name + ".toml");

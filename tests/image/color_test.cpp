@@ -7,7 +7,7 @@
 namespace weft::image {
 namespace {
 
-// IEC 61966-2-1 worked out by hand: 0.5 encoded is ((0.5 + 0.055) / 1.055)^2.4 linear.
+// IEC 61966-2-1, computed by hand: 0.5 encoded is ((0.5 + 0.055) / 1.055)^2.4 linear.
 TEST(Color, SrgbCurveMeetsItsStandardAndInverts) {
   EXPECT_NEAR(linear_from_srgb(0.5), 0.21404114048223255, 1e-15);
   EXPECT_NEAR(linear_from_srgb(0.04), 0.04 / 12.92, 1e-15);
@@ -19,7 +19,7 @@ double lightness(const Vec3& linear) {
   return y > std::pow(6.0 / 29, 3) ? 116 * std::cbrt(y) - 16 : y * 903.3;
 }
 
-// 0.05 of 75: the two halves of the sRGB matrix are rounded to seven digits.
+// Tolerance 0.05 of 75: the two halves of the sRGB matrix are rounded to seven digits.
 TEST(Color, HeatLightnessRisesEvenlyFrom15To90) {
   for (int i = 0; i <= 20; ++i) EXPECT_NEAR(lightness(heat_color(i / 20.0)), 15 + 75 * i / 20.0, 0.05) << i;
 }

@@ -20,7 +20,7 @@ std::vector<SheetPicture> pictures(int count) {
   return result;
 }
 
-/// Where the picture lies on the sheet, by trying every place; -1, -1 where nowhere.
+/// Position of the picture on the sheet, by exhaustive search; -1, -1 if it is not there.
 std::array<int, 2> find(const Image& sheet, const Image& picture) {
   for (int y = 0; y + picture.height <= sheet.height; ++y) {
     for (int x = 0; x + picture.width <= sheet.width; ++x) {
@@ -58,7 +58,7 @@ TEST(ContactSheet, TextIsWrittenBesideThePicturesNotOnThem) {
   for (const SheetPicture& picture : all) EXPECT_EQ(find(with, picture.image), find(without, picture.image));
 }
 
-// Ink of one picture's caption, in rows of the sheet below the picture.
+// Ink of the caption of a picture, for each row of the sheet below the picture.
 std::vector<int> ink_below(const Image& sheet, const Image& picture) {
   const auto place = find(sheet, picture);
   std::vector<int> ink;
@@ -82,13 +82,13 @@ TEST(ContactSheet, WrapsLongTextAndCutsNothing) {
   const int once = sum(ink_below(contact_sheet(all, 1, ""), all[0].image));
   ASSERT_GT(once, 10);
   const int short_sheet = contact_sheet(all, 1, "").height;
-  // As words, and as one word that is longer than a line.
+  // Separate words, and one word that is longer than a line.
   for (const char* blank : {" ", ""}) {
     all[0].left = "";
     for (int i = 0; i < 30; ++i) all[0].left += (i > 0 ? blank : "") + std::string("a=1");
     const Image sheet = contact_sheet(all, 1, "");
     EXPECT_GT(sheet.height, short_sheet + 5 * 11);
-    // Measured: within 4 % of 30 times as much ink; letters lie at fractions of pixels.
+    // Measured: within 4 % of 30 times the ink; letters are at fractions of pixels.
     EXPECT_NEAR(sum(ink_below(sheet, all[0].image)), 30 * once, 0.1 * 30 * once) << '"' << blank << '"';
   }
 }

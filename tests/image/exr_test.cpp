@@ -22,14 +22,14 @@ class ExrTest : public support::TestFolder {
     const int status = std::system("oiiotool --version >/dev/null 2>&1");
     if (WEXITSTATUS(status) == 127) GTEST_SKIP() << "oiiotool is not here: apt-get install openimageio-tools";
   }
-  std::string told(const std::string& options) {
+  std::string run_oiiotool(const std::string& options) {
     const std::string out = (folder_ / "out").string();
     EXPECT_EQ(std::system(fmt::format("oiiotool {} >'{}' 2>&1", options, out).c_str()), 0);
     return read_bytes(out);
   }
 };
 
-// Values that 16 bits hold; no two alike.
+// Values that are exact in 16 bits, all different.
 Layers patterned_layers(int width, int height) {
   Layers layers{width, height, {}};
   for (const char* name : {"R", "A", "depth.Z", "normal.X"}) {
@@ -46,7 +46,7 @@ TEST_F(ExrTest, EveryValueIsReadBackInItsPlace) {
   const Layers layers = patterned_layers(5, 3);
   const std::string file = (folder_ / "a.exr").string();
   write_exr(file, layers);
-  std::istringstream lines(told("--dumpdata '" + file + "'"));
+  std::istringstream lines(run_oiiotool("--dumpdata '" + file + "'"));
   int pixels = 0;
   for (std::string line; std::getline(lines, line);) {
     int x = 0, y = 0, at = 0;
@@ -65,7 +65,7 @@ TEST_F(ExrTest, EveryValueIsReadBackInItsPlace) {
 TEST_F(ExrTest, HeaderHasNamesDepthsAndMetadata) {
   const std::string file = (folder_ / "a.exr").string();
   write_exr(file, patterned_layers(2, 2), {{"object.2", "sheet"}});
-  const std::string header = told("--info -v '" + file + "'");
+  const std::string header = run_oiiotool("--info -v '" + file + "'");
   EXPECT_NE(header.find("R (half), A (half), depth.Z (float), normal.X (float)"), std::string::npos) << header;
   EXPECT_NE(header.find("object.2: \"sheet\""), std::string::npos) << header;
   EXPECT_NE(header.find("chromaticities: 0.64, 0.33, 0.3, 0.6, 0.15, 0.06"), std::string::npos) << header;

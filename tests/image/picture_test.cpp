@@ -29,7 +29,7 @@ std::string png_bytes(int width, int height, std::uint32_t format, const std::ve
   return bytes;
 }
 
-/// A picture whose left half is dark and whose right half is bright, in the full range of values.
+/// A JPEG with a dark left half and a bright right half, in the full range of values.
 std::string jpeg_bytes(int width, int height, AVPixelFormat format) {
   const AVCodec* codec = avcodec_find_encoder(AV_CODEC_ID_MJPEG);
   AVCodecContext* context = avcodec_alloc_context3(codec);
@@ -85,7 +85,7 @@ TEST(PictureFile, GrayPngIsOpaque) {
 }
 
 TEST(PictureFile, TgaKeepsColorsAndAlphaAndItsFirstRowIsTheLowestUnlessItSaysSo) {
-  // Of 24 bits as blue, green, red; of 32 with alpha and from the top, in runs.
+  // 24-bit pixels are blue, green, red; the 32-bit picture has alpha, starts at the top and is run-length encoded.
   const std::string plain = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 24, 0, 30, 20, 10, 60, 50, 40};
   EXPECT_EQ(decode_picture(plain).rgba, (std::vector<std::uint8_t>{40, 50, 60, 255, 10, 20, 30, 255}));
   const std::string runs = {0,  0,  10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 32, 0x28, static_cast<char>(0x81),
@@ -94,8 +94,8 @@ TEST(PictureFile, TgaKeepsColorsAndAlphaAndItsFirstRowIsTheLowestUnlessItSaysSo)
   EXPECT_NE(complaint(plain.substr(0, 20)), "");
 }
 
-// The encoder keeps even halves to within two levels; black and white come out as such only where the full range of
-// values is taken for what it is: else 16 and 235.
+// The encoder preserves uniform halves to within two levels. Black and white are correct only if the full range is
+// recognised; otherwise they become 16 and 235.
 TEST(PictureFile, JpegHasTheFullRangeWhateverItsColorsAreStoredLike) {
   for (const AVPixelFormat format : {AV_PIX_FMT_YUVJ420P, AV_PIX_FMT_YUVJ444P}) {
     const Picture picture = decode_picture(jpeg_bytes(64, 32, format));
@@ -121,7 +121,7 @@ TEST(PictureFile, WhatIsBrokenOrSomethingElseIsRefusedWithTheReason) {
   EXPECT_NE(complaint(png.substr(0, 12)), "");
   EXPECT_EQ(complaint(jpeg.substr(0, jpeg.size() / 2)), "the file ends too early");
   std::string wide = png;
-  wide[16] = 0x7f;  // the first byte of its width, which the checksum then is not of
+  wide[16] = 0x7f;  // the first byte of the width; the checksum is now wrong
   EXPECT_NE(complaint(wide), "");
 }
 

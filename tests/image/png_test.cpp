@@ -18,7 +18,7 @@ using support::write_bytes;
 
 using PngTest = support::TestFolder;
 
-// A picture in which no two neighbours agree, so that a swapped row, column or channel shows.
+// A picture whose neighbouring pixels differ, so that swapped rows, columns or channels are detected.
 Image patterned(int width, int height) {
   Image image(width, height);
   for (int y = 0; y < height; ++y) {
@@ -32,7 +32,7 @@ Image patterned(int width, int height) {
   return image;
 }
 
-// Pixels in one of libpng's other layouts, through its simplified writer.
+// Writes pixels in another layout of libpng, with its simplified API.
 void write_other_layout(const std::filesystem::path& file, int width, int height, std::uint32_t format,
                         const void* pixels) {
   png_image other{};
@@ -158,7 +158,7 @@ TEST_F(PngTest, HugeSizesInTheHeaderAreRefusedBeforeMemoryIsTaken) {
                [&] { read_png(folder_ / "huge.png"); });
 }
 
-// 2 GB for a text, in a file of a hundred bytes; the largest length that PNG allows.
+// A text chunk of 2 GB, the largest length that PNG allows, in a file of a hundred bytes.
 TEST_F(PngTest, PromisedLengthOfAChunkIsRefusedBeforeMemoryIsTaken) {
   write_png(folder_ / "a.png", Image(2, 2), {{"key", "text"}});
   std::string bytes = read_bytes(folder_ / "a.png");

@@ -10,7 +10,7 @@ namespace {
 
 constexpr Color kWhite{255, 255, 255};
 
-/// First and last column and row that are not black; -1 where all are.
+/// First and last column and row that are not black; -1 if all pixels are black.
 struct Ink {
   int left = -1, right = -1, top = -1, bottom = -1;
 
@@ -38,7 +38,7 @@ TEST(Text, LettersStandOnTheirLineWithinTheirWidth) {
   EXPECT_GE(ink.left, 50);
   EXPECT_LT(ink.right, 50 + Font(20).width("frame 12  H"));
   EXPECT_EQ(ink.bottom, 49) << "nothing hangs below the line";
-  EXPECT_GE(ink.top, 50 - 19);  // letters of DejaVu Sans rise 0.928 em above it
+  EXPECT_GE(ink.top, 50 - 19);  // letters of DejaVu Sans rise 0.928 em above the baseline
   EXPECT_GT(ink_of("gp").bottom, 49) << "these letters do hang below it";
   // Capitals of DejaVu Sans are 0.729 em high: 14.6 pixels.
   EXPECT_NEAR(50 - ink_of("H").top, 14.6, 1);

@@ -1,4 +1,4 @@
-// Estimates of local errors, the lengths of steps that follow from them, and how fast BDF2 may let steps grow.
+// Estimates of the local truncation error, the resulting step lengths, and the allowed growth of BDF2 steps.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -12,10 +12,10 @@ namespace {
 
 using testing::kMethods;
 
-// Above the rounding of x / h², and far below the errors looked at.
+// Above the rounding of x / h², and far below the measured errors.
 constexpr NewtonParameters kAboveRounding{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
-// The motion of the hardening spring after a time t of either sign, by classical Runge-Kutta with an error below 1e-14.
+// Motion of the hardening spring after a time t of either sign; classical Runge-Kutta with an error below 1e-14.
 State moved(State now, double t) {
   constexpr int kSteps = 200;
   const auto a = [](const Vec3& x) { return testing::HardeningSpring::force_at(x); };
@@ -36,7 +36,7 @@ struct Errors {
   double estimated, made;
 };
 
-// One step from a point of the exact motion, with an exact history or with none (r = 0).
+// One step from a point of the exact motion, with an exact history or without one (r = 0).
 Errors errors_of_one_step(Method method, double h, double r) {
   testing::HardeningSpring spring;
   const State now{{Vec3(1, 0.2, -0.3)}, {Vec3(0.1, 0.8, 0.4)}};
@@ -49,10 +49,10 @@ Errors errors_of_one_step(Method method, double h, double r) {
 }
 
 TEST(LocalError, OfOneStepIsEstimatedUpToTermsOfTheNextOrder) {
-  // The next term is h times the first one, times a few.
+  // The next term of the error is h times the first, times a small factor.
   for (Method method : kMethods) {
     for (double r : {0.5, 1.0, 1.9}) {
-      // What BDF2 makes in one step grows by half in those that follow, and the estimate says the whole.
+      // The error of one BDF2 step grows by half in the steps that follow; the estimate includes this.
       const double whole = method == Method::bdf2 ? 1.5 : 1;
       for (double h : {0.02, 0.01, 0.005}) {
         const Errors errors = errors_of_one_step(method, h, r);
@@ -71,12 +71,12 @@ TEST(LocalError, WithoutAHistoryIsThatOfEuler) {
   EXPECT_NEAR(euler.estimated, euler.made, 0.05 * euler.made);
   EXPECT_NEAR(bdf2.estimated, 1.5 * bdf2.made, 0.05 * bdf2.made);
   EXPECT_EQ(bdf2.made, euler.made);
-  // Of midpoint a bound: it has no error of this order.
+  // For midpoint the estimate is a bound: it has no error of this order.
   EXPECT_GT(midpoint.estimated, 100 * midpoint.made);
 }
 
 TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
-  // Free fall with Euler: every free particle is ahead by ½ h² g.
+  // Free fall with Euler: every free particle leads by ½ h² g.
   testing::Spring nothing(0, {1, 3, 2});
   nothing.linear_system().parts = {{0, 2}, {2, 3}};
   const Vec3 g(0, 0, -10);
@@ -96,19 +96,19 @@ TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
   EXPECT_EQ(error_with({0, 1, 2}), 0);
 }
 
-// Lengths of steps that are accepted where the error of a step over h, taken at time t, is error(t, h).
+// Lengths of the accepted steps if a step over h, from time t, has the error error(t, h).
 std::vector<double> lengths(Method method, double tolerance, const std::function<double(double t, double h)>& error,
                             double end) {
   StepControl control(method, tolerance, 1e-3);
   std::vector<double> accepted;
   double t = 0;
   while (t < end) {
-    const double h = control.wanted(), e = error(t, h);
+    const double h = control.next_step_size(), e = error(t, h);
     if (!control.accepts(h, e)) {
-      control.too_inexact(h, e);
+      control.record_rejected_step(h, e);
       continue;
     }
-    control.accepted(h, e);
+    control.record_accepted_step(h, e);
     accepted.push_back(h);
     t += h;
   }
@@ -122,25 +122,25 @@ TEST(StepControl, BringsTheErrorOfSmoothMotionJustBelowTheTolerance) {
     for (double tolerance : {1e-3, 1e-6}) {
       const double h = lengths(method, tolerance, error, 3).back();
       EXPECT_LE(error(0, h), tolerance);
-      // The aim is 0.7; a step that would change by less than a tenth stays as it is.
+      // The target is 0.7; the controller keeps a length that would change by less than a tenth.
       EXPECT_GT(error(0, h), 0.7 / std::pow(1.1, power) * tolerance);
     }
   }
 }
 
 TEST(StepControl, NeverLetsAStepGrowByMoreThanBdf2Bears) {
-  // Errors that jump by three decades to and fro.
+  // Errors that alternate by three decades.
   const auto error = [](double t, double h) { return (std::fmod(t, 0.4) < 0.2 ? 50 : 0.05) * h * h * h; };
   const std::vector<double> steps = lengths(Method::bdf2, 1e-5, error, 5);
   double largest = 0;
   for (std::size_t i = 1; i < steps.size(); ++i) largest = std::max(largest, steps[i] / steps[i - 1]);
-  EXPECT_LE(largest, Stepper::kLargestRatio);
+  EXPECT_LE(largest, Stepper::kMaxStepRatio);
   EXPECT_GT(largest, 1.3);
 }
 
 TEST(StepControl, PassesAJumpOfVelocityInABoundedNumberOfSteps) {
-  // From t = 0.5 to the end of the step around it the error is that of a jump by 10 m/s; the tolerance is met by steps
-  // of 1e-5 s only. Down by a fifth at a time, up by a half: 5 and 17 steps.
+  // From t = 0.5 to the end of the step that contains it, the error is that of a velocity jump of 10 m/s; only steps of
+  // 1e-5 s meet the tolerance. Each length falls to a fifth at most, or grows by half: 5 and 17 steps.
   int tries = 0;
   const auto error = [&](double t, double h) {
     ++tries;
@@ -148,19 +148,19 @@ TEST(StepControl, PassesAJumpOfVelocityInABoundedNumberOfSteps) {
   };
   lengths(Method::implicit_euler, 5e-4, error, 1);
   EXPECT_LT(tries, 200);
-  // And one that no step meets is passed with the least one.
+  // If no step meets the tolerance, the shortest step is accepted.
   const auto wall = [&](double t, double h) { return t <= 0.5 && t + h > 0.5 ? 1 : 5 * h * h; };
   EXPECT_DOUBLE_EQ(std::ranges::min(lengths(Method::implicit_euler, 5e-4, wall, 1)), numerics.steps.least);
 }
 
 TEST(StepControl, DoesNotGrowAtOnceAfterAStepWasDoneAgain) {
   StepControl control(Method::bdf2, 1e-4, 0.01);
-  control.unsolved(0.01);
-  EXPECT_DOUBLE_EQ(control.wanted(), 0.005);
-  control.accepted(0.005, 1e-9);
-  EXPECT_DOUBLE_EQ(control.wanted(), 0.005);
-  control.accepted(0.005, 1e-9);
-  EXPECT_DOUBLE_EQ(control.wanted(), 0.0075);
+  control.record_unsolved_step(0.01);
+  EXPECT_DOUBLE_EQ(control.next_step_size(), 0.005);
+  control.record_accepted_step(0.005, 1e-9);
+  EXPECT_DOUBLE_EQ(control.next_step_size(), 0.005);
+  control.record_accepted_step(0.005, 1e-9);
+  EXPECT_DOUBLE_EQ(control.next_step_size(), 0.0075);
 }
 
 TEST(Bdf2Ratio, LongestStepFollowsTheLastOne) {
@@ -173,8 +173,8 @@ TEST(Bdf2Ratio, LongestStepFollowsTheLastOne) {
   EXPECT_EQ(bdf2.longest_step(), std::numeric_limits<double>::infinity());
 }
 
-// By how much steps that grow by r each, from y = ω h = 1e-4 until 1e-2, change the difference between two states that
-// should be nearly the same: by the formula, and by the Stepper.
+// Change of the difference between two nearly equal states while steps grow by r each, from y = ω h = 1e-4 to 1e-2: by
+// the formula, and by the Stepper.
 struct Growth {
   double formula, stepper;
   int steps;
@@ -182,7 +182,7 @@ struct Growth {
 Growth change_while_growing(double r) {
   constexpr double kOmega = 1e4, kOff = 0.1;
   testing::Spring spring(kOmega * kOmega);
-  // Here x − x̂ = −β² ω² x: to six digits above the rounding of x.
+  // Here x − x̂ = −β² ω² x, to six digits above the rounding of x.
   Stepper stepper(Method::bdf2, {.tolerance = 1e-6, .max_iterations = 40, .linear_tolerance = 1e-12});
   double h = 1e-4 / kOmega, before = 1 + kOff, now = 1, v_before = 0, v_now = 0;
   stepper.return_to({{{Vec3(before, 0, 0)}, {Vec3::Zero()}}, h});
@@ -204,16 +204,16 @@ Growth change_while_growing(double r) {
 }
 
 TEST(Bdf2Ratio, UpToTheBoundErrorsOfTheHistoryFadeAndBeyondTheyGrow) {
-  for (double r : {1.5, Stepper::kLargestRatio, 1 + std::sqrt(2.0), 3.0}) {
+  for (double r : {1.5, Stepper::kMaxStepRatio, 1 + std::sqrt(2.0), 3.0}) {
     const Growth growth = change_while_growing(r);
-    // Each step takes r² / (1 + 2r) of the difference on; the motion itself makes y² / 2 of it at most.
+    // Each step keeps r² / (1 + 2r) of the difference; the motion itself changes it by at most y² / 2.
     const double expected = std::pow(r * r / (1 + 2 * r), growth.steps);
     EXPECT_NEAR(growth.formula, expected, 0.01) << "r = " << r;
-    if (r <= Stepper::kLargestRatio) {
+    if (r <= Stepper::kMaxStepRatio) {
       EXPECT_NEAR(growth.stepper, growth.formula, 1e-4) << "r = " << r;
     }
   }
-  EXPECT_LT(change_while_growing(Stepper::kLargestRatio).formula, 0.25);
+  EXPECT_LT(change_while_growing(Stepper::kMaxStepRatio).formula, 0.25);
   EXPECT_GT(change_while_growing(3).formula, 3);
 }
 
@@ -222,7 +222,7 @@ TEST(Bdf2Ratio, AStepTooLongForTheLastOneIsOneOfEuler) {
   const State before{{Vec3(1, 0, 0)}, {Vec3::Zero()}}, now{{Vec3(0.9, 0, 0)}, {Vec3(-1, 0, 0)}};
   State next, euler_next;
   for (const double ratio : {0.999, 1.001}) {
-    const double h = ratio * Stepper::kLargestRatio * 0.1;
+    const double h = ratio * Stepper::kMaxStepRatio * 0.1;
     Stepper bdf2(Method::bdf2, kAboveRounding), euler(Method::implicit_euler, kAboveRounding);
     bdf2.return_to({before, 0.1});
     ASSERT_EQ(bdf2.step(spring, now, h, Vec3::Zero(), {}, next).verdict, Verdict::solved);
@@ -233,7 +233,7 @@ TEST(Bdf2Ratio, AStepTooLongForTheLastOneIsOneOfEuler) {
 }
 
 TEST(Bdf2Ratio, StiffOscillatorDecaysWhateverTheStepsWithinTheBound) {
-  // Steps that double seven times and then fall back at once, around y = ω h from 1 to 128.
+  // Steps that double seven times and then return to the first length, with y = ω h from 1 to 128.
   constexpr double kOmega = 1e3;
   testing::Spring spring(kOmega * kOmega);
   Stepper stepper(Method::bdf2, kAboveRounding);

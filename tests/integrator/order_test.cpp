@@ -9,14 +9,14 @@
 namespace weft::integrator {
 namespace {
 
-// Above the rounding of x / h² = 2e-11, and far below what is left of the error itself, 1e-6.
+// Above the rounding of x / h² = 2e-11, and far below the remaining error of the method, 1e-6.
 constexpr NewtonParameters kSolved{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
 const Vec3 kStartX(1, 0.2, -0.3), kStartV(0.1, 0.8, 0.4);
 constexpr double kEnd = 1.5;  // [s]
 using Law = std::function<Vec3(const Vec3& x, const Vec3& v)>;
 
-// Classical Runge-Kutta with steps so small that its error, of order h⁴ = 3e-14, does not count.
+// Classical Runge-Kutta with steps so small that its error, of order h⁴ = 3e-14, is negligible.
 Vec3 reference(const Law& acceleration) {
   constexpr int kSteps = 4000;
   const double h = kEnd / kSteps;
@@ -32,7 +32,7 @@ Vec3 reference(const Law& acceleration) {
   return x;
 }
 
-// End of a run over the given steps, which add up to kEnd.
+// End position of a run over the given steps, which add up to kEnd.
 Vec3 run(testing::Particles& system, Method method, const std::vector<double>& steps) {
   Stepper stepper(method, kSolved);
   State now{{kStartX}, {kStartV}}, next;
@@ -49,7 +49,7 @@ std::vector<double> equal_steps(int count) {
   return std::vector<double>(static_cast<std::size_t>(count), kEnd / count);
 }
 
-// Long and short in turn, as where steps are halved and go back.
+// Long and short steps in turn, as when steps are halved and lengthened again.
 std::vector<double> uneven_steps(int count) {
   std::vector<double> steps;
   for (int s = 0; s < count; ++s) steps.push_back(kEnd / count * (s % 2 ? 4.0 / 3 : 2.0 / 3));
@@ -63,7 +63,7 @@ void expect_order(testing::Particles&& system, const Law& law, Method method, do
   double coarse = (run(system, method, steps(80)) - exact).norm();
   for (int count : {160, 320}) {
     const double fine = (run(system, method, steps(count)) - exact).norm();
-    // The next term of the error is h times the first one: a few per cent at these steps.
+    // The next term of the error is h times the first: a few per cent with these steps.
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.1) << count << " steps";
     coarse = fine;
   }

@@ -1,7 +1,7 @@
-// Every method against its exact damping and phase on x'' = −ω² x.
+// Compares every method with its exact damping and phase on x'' = −ω² x.
 //
 // With w = ω x + i v the equation is w' = −i ω w, and every method of the stepper is w(next) = z w. Damping is ‖z‖ and
-// phase −arg(z) / y with y = ω h; both would be 1 for the exact solution.
+// phase −arg(z) / y with y = ω h; both are 1 for the exact solution.
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -17,12 +17,12 @@ using namespace std::complex_literals;
 using Complex = std::complex<double>;
 using testing::kTight;
 
-// The measured error is below 1e-12; the tolerance is what is asked of a method.
+// The measured error is below 1e-12; the tolerance states the requirement.
 constexpr double kTolerance = 1e-6;
 constexpr double kStep = 0.01;  // [s]
 constexpr double kProducts[] = {0.1, 1, 10, 100};
 
-// A state whose w is the given number; along a slanted direction, so that all three axes take part.
+// State with the given w, along a slanted direction, so that all three axes take part.
 const Vec3 kDirection = Vec3(1, -2, 2) / 3;
 State state_of(Complex w, double omega) {
   return {{Vec3(w.real() / omega * kDirection)}, {Vec3(w.imag() * kDirection)}};
@@ -31,7 +31,7 @@ Complex number_of(const State& state, double omega) {
   return {omega * kDirection.dot(state.x[0]), kDirection.dot(state.v[0])};
 }
 
-// w after a step over h from `now`; `before` is the history of a BDF2 step.
+// w after a step over h from `now`; a BDF2 step has `before` as history.
 Complex stepped(Method method, double omega, double h, Complex now, const Complex* before = nullptr,
                 double before_h = 0) {
   testing::Spring spring(omega * omega);
@@ -48,7 +48,7 @@ void expect_damping_and_phase(Complex z, double damping, double phase, double y)
   EXPECT_NEAR(-std::arg(z) / y, phase, kTolerance * phase) << "y = " << y;
 }
 
-// The root of (3 + 2iy) z² − 4z + 1 = 0 that goes to 1 as y goes to 0.
+// Root of (3 + 2iy) z² − 4z + 1 = 0 that tends to 1 as y tends to 0.
 Complex principal_root(double y) {
   return (2.0 + std::sqrt(1.0 - 2i * y)) / (3.0 + 2i * y);
 }
@@ -73,7 +73,7 @@ TEST(Oscillator, Bdf2DampsAndTurnsAsThePrincipalRootOfItsCharacteristicPolynomia
   for (double y : kProducts) {
     const Complex root = principal_root(y);
     ASSERT_LT(std::abs((3.0 + 2i * y) * root * root - 4.0 * root + 1.0), 1e-13 * (3 + 2 * y));
-    // Two states of the sequence 1, z, z², ... as history.
+    // Two states of the sequence 1, z, z², ... are the history.
     const Complex before = kStart, now = root * kStart;
     const Complex z = stepped(Method::bdf2, y / kStep, kStep, now, &before, kStep) / now;
     expect_damping_and_phase(z, std::abs(root), -std::arg(root) / y, y);
@@ -114,7 +114,7 @@ TEST(Oscillator, Bdf2WithVariableStepsDifferentiatesTheParabolaThroughThreeState
   }
 }
 
-// Against mistakes in the names: at y = 1 all three are far apart.
+// Detects swapped methods: at y = 1 all three differ clearly.
 TEST(Oscillator, NoMethodIsAnotherInDisguise) {
   const Complex root = principal_root(1), before = kStart, now = root * kStart;
   const Complex euler = stepped(Method::implicit_euler, 100, kStep, now) / now;
@@ -128,7 +128,7 @@ TEST(Oscillator, NoMethodIsAnotherInDisguise) {
 }
 
 TEST(Oscillator, ExactFiguresOfTheThreeMethodsAtATenth) {
-  // Rounded to six digits, by hand from the formulas: a second look at the expressions above.
+  // Values computed by hand from the formulas to six digits: an independent check of the expressions above.
   EXPECT_NEAR(std::abs(stepped(Method::implicit_euler, 10, kStep, kStart)), 0.995037, 5e-7);
   EXPECT_NEAR(std::abs(stepped(Method::implicit_midpoint, 10, kStep, kStart)), 1.0, 5e-7);
   const Complex before = kStart, now = principal_root(0.1) * kStart;

@@ -1,4 +1,4 @@
-// Friction that a part of the system as a whole cannot have, against what a block on a floor says.
+// Friction that a block as a whole cannot have, compared with the theory of a block on a floor.
 #include "integrator/sliding.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ struct Contacts {
   double limit;
 };
 
-/// A block of two particles on a floor, each with half of these forces.
+/// A block of two particles on a floor; each has half of these forces.
 class Block final : public System {
  public:
   explicit Block(const Contacts& whole) : whole_(whole) {}
@@ -37,31 +37,31 @@ class Block final : public System {
   solver::LinearSystem system_;
 };
 
-/// By a residual that is missing as a whole.
-double wrong_friction(const Contacts& contacts, const Vec3& missing) {
+/// Wrong friction that results from this residual of the whole block.
+double friction_error(const Contacts& contacts, const Vec3& missing) {
   const std::vector<Vec3> nothing(2, Vec3::Zero()), residual(2, 0.5 * missing);
   Sliding sliding;
   sliding.evaluate(Block(contacts), {nothing, nothing, nothing, 1, 1});
-  return sliding.wrong_friction({0, 2}, residual);
+  return sliding.friction_error({0, 2}, residual);
 }
 
-// Friction 0.3 of 10 N.
+// The friction limit is 0.3 of 10 N.
 TEST(Sliding, FrictionOfABlockAtRestIsRight) {
-  EXPECT_EQ(wrong_friction({{0, 0, 10}, {-2, 0, 0}, 3}, Vec3::Zero()), 0);
-  // However much is left: what sticks hardly moves by it.
-  EXPECT_EQ(wrong_friction({{0, 0, 10}, {-2, 0, 0}, 3}, {-0.5, 0, 0}), 0);
-  EXPECT_EQ(wrong_friction({{0, 0, 10}, Vec3::Zero(), 0}, {1, 0, 0}), 0);
+  EXPECT_EQ(friction_error({{0, 0, 10}, {-2, 0, 0}, 3}, Vec3::Zero()), 0);
+  // Whatever the residual, it hardly moves what sticks.
+  EXPECT_EQ(friction_error({{0, 0, 10}, {-2, 0, 0}, 3}, {-0.5, 0, 0}), 0);
+  EXPECT_EQ(friction_error({{0, 0, 10}, Vec3::Zero(), 0}, {1, 0, 0}), 0);
 }
 
 TEST(Sliding, MomentumThatIsMissingAlongFrictionAtItsLimitCounts) {
-  EXPECT_NEAR(wrong_friction({{0, 0, 10}, {-3, 0, 0}, 3}, {1, 0, 0}), 1, 1e-12);        // held back too much
-  EXPECT_NEAR(wrong_friction({{0, 0, 10}, {-2.9, 0, 0}, 3}, {0.1, 0, 0}), 0.1, 1e-12);  // it should have slid
-  EXPECT_NEAR(wrong_friction({{0, 0, 10}, {-3, 0, 0}, 3}, {0, 5, 0}), 0, 1e-12);        // across
+  EXPECT_NEAR(friction_error({{0, 0, 10}, {-3, 0, 0}, 3}, {1, 0, 0}), 1, 1e-12);        // friction is too large
+  EXPECT_NEAR(friction_error({{0, 0, 10}, {-2.9, 0, 0}, 3}, {0.1, 0, 0}), 0.1, 1e-12);  // the block should slide
+  EXPECT_NEAR(friction_error({{0, 0, 10}, {-3, 0, 0}, 3}, {0, 5, 0}), 0, 1e-12);        // residual across the slip
 }
 
 TEST(Sliding, FrictionByALoadThatIsMissingItselfCounts) {
-  // The floor pushes with 20 N where the motion takes 10, so 3 N of friction are what it can have.
-  EXPECT_NEAR(wrong_friction({{0, 0, 20}, {-4.4, 0, 0}, 6}, {0, 0, 10}), 1.4, 1e-12);
+  // The floor pushes with 20 N, but the motion needs 10 N, so the friction limit is 3 N.
+  EXPECT_NEAR(friction_error({{0, 0, 20}, {-4.4, 0, 0}, 6}, {0, 0, 10}), 1.4, 1e-12);
 }
 
 TEST(Sliding, AWallThatIsSlidAlongHoldsNothing) {

@@ -1,4 +1,4 @@
-// Systems of one or two particles whose motion is known.
+// Systems of one or two particles with known motion.
 #pragma once
 
 #include <Eigen/Dense>
@@ -11,13 +11,13 @@
 
 namespace weft::integrator::testing {
 
-/// Solved to rounding, so that only the method itself is left to see.
+/// Solves to rounding, so that only the error of the method remains.
 inline const NewtonParameters kTight{
     .tolerance = 1e-12, .max_iterations = 40, .linear_tolerance = 1e-12, .max_linear_iterations = 1000};
 
 inline constexpr Method kMethods[] = {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2};
 
-/// Particles that do not know of each other.
+/// Uncoupled particles.
 class Particles : public System {
  public:
   explicit Particles(std::vector<double> masses) : masses_(std::move(masses)) {
@@ -75,8 +75,8 @@ class HardeningSpring : public Particles {
   }
 };
 
-/// Two particles of 1 kg with f0 = −s x1 and f1 = −s x0: they flee from each other ever faster where s > 0, and the
-/// matrix is indefinite with a definite diagonal where s is above rate².
+/// Two particles of 1 kg with f0 = −s x1 and f1 = −s x0. If s > 0 they separate ever faster; if s is above rate², the
+/// matrix is indefinite although its diagonal is definite.
 class Saddle final : public System {
  public:
   explicit Saddle(double s) : s_(s) { system_.matrix = solver::BlockMatrix(2, {{0, 1}}); }

@@ -1,4 +1,4 @@
-// Held particles, free fall, and what the stepper reports.
+// Held particles, free fall, and the reports of the stepper.
 #include "integrator/stepper.hpp"
 
 #include <gtest/gtest.h>
@@ -24,12 +24,12 @@ TEST(Stepper, FreeFallFollowsTheLawOfEachMethod) {
       stepper.accept(now, next, h);
       std::swap(now, next);
       const double t = n * h;
-      // Against ½ g t²: Euler is ahead by ½ g h t; BDF2 by what its first step, an Euler step, leaves behind.
+      // Relative to ½ g t²: Euler leads by ½ g h t; BDF2 keeps the error of its first step, an Euler step.
       Vec3 expected = x0 + t * v0 + 0.5 * t * t * g;
       if (method == Method::implicit_euler) expected += 0.5 * h * t * g;
       if (method == Method::bdf2) expected += 0.75 * h * h * (1 - std::pow(3, -n)) * g;
       for (std::size_t i : {0u, 1u}) {
-        // A few roundings of metres per step.
+        // A few roundings of coordinates of metres per step.
         EXPECT_LT((now.x[i] - expected).norm(), 1e-13 * n);
         EXPECT_LT((now.v[i] - (v0 + t * g)).norm(), 1e-12 * n);
       }
@@ -47,7 +47,7 @@ TEST(Stepper, HeldParticleEndsExactlyAtItsTarget) {
     ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {&held, 1}, next).verdict, Verdict::solved);
     EXPECT_EQ(next.x[1], held.x_end);
     EXPECT_EQ(next.v[1], held.v_end);
-    // The other one does not notice.
+    // The other particle is unaffected.
     ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {}, alone).verdict, Verdict::solved);
     EXPECT_LT((next.x[0] - alone.x[0]).norm(), 1e-14);
     EXPECT_GT((next.x[1] - alone.x[1]).norm(), 0.1);
@@ -65,7 +65,7 @@ TEST(Stepper, ParticleHeldInAPlaneIsFreeWithinIt) {
     State next, alone;
     ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {&held, 1}, next).verdict, Verdict::solved);
     ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {}, alone).verdict, Verdict::solved);
-    // Along n as told; across as if it were free, for the spring is the same in all directions.
+    // Along n as prescribed; across n as if free, because the spring is isotropic.
     EXPECT_NEAR(n.dot(next.x[0] - held.x_end), 0, 1e-15);
     EXPECT_NEAR(n.dot(next.v[0] - held.v_end), 0, 1e-14);
     EXPECT_LT((free * (next.x[0] - alone.x[0])).norm(), 1e-13);
@@ -89,7 +89,7 @@ TEST(Stepper, StepIsRememberedOnlyWhenAccepted) {
 }
 
 TEST(Stepper, LeavesAShareOfItsOwnErrorAndSaysHowMuch) {
-  // One free particle: the end of the step is known from a solve to rounding.
+  // One free particle; a solve to rounding gives the exact end of the step.
   testing::HardeningSpring spring;
   const double h = 0.5;
   const State now{{Vec3(3, 0, 0)}, {Vec3(0, 2, 0)}};
@@ -102,13 +102,13 @@ TEST(Stepper, LeavesAShareOfItsOwnErrorAndSaysHowMuch) {
     const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, next);
     ASSERT_EQ(report.verdict, Verdict::solved);
     EXPECT_LE(report.left, report.allowed);
-    EXPECT_LT((next.v[0] - exact.v[0]).norm(), 2 * report.allowed) << tolerance;  // an estimate from one iteration
+    EXPECT_LT((next.v[0] - exact.v[0]).norm(), 2 * report.allowed) << tolerance;  // estimated from one iteration
     EXPECT_LE(report.solver_error, tolerance * report.local_error);
   }
 }
 
 TEST(Stepper, WhatNobodySeesIsLeftAtRestButNotBesideATolerance) {
-  // Next to its place of rest, 1e-6 m off: nothing moves enough to be worth a solve to the last digit.
+  // The particle is 1e-6 m from rest: the motion is too small to be worth an exact solve.
   testing::HardeningSpring spring;
   const State now{{Vec3(1e-6, 0, 0)}, {Vec3::Zero()}};
   State next;
@@ -118,16 +118,16 @@ TEST(Stepper, WhatNobodySeesIsLeftAtRestButNotBesideATolerance) {
   EXPECT_LT(strict.step(spring, now, 0.01, Vec3::Zero(), {}, next).allowed, 1e-8);
 }
 
-// Two springs that nothing couples, and where Newton's method looked at them.
+// Two uncoupled springs; records where Newton's method evaluated them.
 class TwoParts : public testing::Particles {
  public:
   TwoParts() : Particles({1, 1}) { linear_system().parts = {{0, 1}, {1, 2}}; }
   void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) override {
-    looked_at.emplace_back(at.x.begin(), at.x.end());
-    for (solver::Part& part : linear_system().parts) ++part.version;
+    evaluated_at.emplace_back(at.x.begin(), at.x.end());
+    for (solver::DiagonalBlock& part : linear_system().parts) ++part.version;
     Particles::linearise(at, iteration, force);
   }
-  std::vector<std::vector<Vec3>> looked_at;
+  std::vector<std::vector<Vec3>> evaluated_at;
 
  protected:
   Vec3 force_on(const Vec3& x) const override { return testing::HardeningSpring::force_at(x); }
@@ -142,13 +142,13 @@ TEST(Stepper, PartThatIsSolvedStandsStillWhileAnotherGoesOn) {
   State next;
   Stepper stepper(Method::implicit_euler, {1e-3, 40, 1e-6, 1000});
   ASSERT_EQ(stepper.step(system, now, 0.5, Vec3::Zero(), {}, next).verdict, Verdict::solved);
-  ASSERT_GE(system.looked_at.size(), 4U);
-  const std::vector<Vec3>& before_last = *(system.looked_at.end() - 2);
+  ASSERT_GE(system.evaluated_at.size(), 4U);
+  const std::vector<Vec3>& before_last = *(system.evaluated_at.end() - 2);
   EXPECT_EQ(next.x[0], before_last[0]);
   EXPECT_NE(next.x[1], before_last[1]);
 }
 
-// A force without a value.
+// A force that is not a number.
 class Broken : public testing::HardeningSpring {
  protected:
   Vec3 force_on(const Vec3&) const override { return Vec3::Constant(std::numeric_limits<double>::quiet_NaN()); }
@@ -175,27 +175,27 @@ TEST(Stepper, EndsUnfinishedForALookAndGoesOnFromThere) {
   const State now{{{2, 0, 0}}, {{0, 3, 0}}};
   for (Method method : {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2}) {
     Stepper stepper(method, kTight);
-    State whole = now, looked_at = now;
+    State whole = now, continued = now;
     const StepReport at_once = stepper.step(spring, now, 1, Vec3::Zero(), {}, whole);
     ASSERT_EQ(at_once.verdict, Verdict::solved);
     ASSERT_GT(at_once.newton_iterations, 3);
     const auto start = Stepper::Start::unchanged_velocity;
-    const StepReport first = stepper.step(spring, now, 1, Vec3::Zero(), {}, looked_at, start, 2);
+    const StepReport first = stepper.step(spring, now, 1, Vec3::Zero(), {}, continued, start, 2);
     EXPECT_EQ(first.verdict, Verdict::unfinished);
     EXPECT_EQ(first.newton_iterations, 2);
-    EXPECT_GT((looked_at.x[0] - whole.x[0]).norm(), 1e-9);
-    const StepReport rest = stepper.step(spring, now, 1, Vec3::Zero(), {}, looked_at, Stepper::Start::next);
+    EXPECT_GT((continued.x[0] - whole.x[0]).norm(), 1e-9);
+    const StepReport rest = stepper.step(spring, now, 1, Vec3::Zero(), {}, continued, Stepper::Start::next);
     EXPECT_EQ(rest.verdict, Verdict::solved);
     EXPECT_EQ(rest.newton_iterations, at_once.newton_iterations - 2);
-    EXPECT_LT((looked_at.x[0] - whole.x[0]).norm(), 1e-12);
-    // What is solved by then is not looked at.
-    EXPECT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, looked_at, start, at_once.newton_iterations).verdict,
+    EXPECT_LT((continued.x[0] - whole.x[0]).norm(), 1e-12);
+    // Blocks that are solved already are not evaluated.
+    EXPECT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, continued, start, at_once.newton_iterations).verdict,
               Verdict::solved);
   }
 }
 
 TEST(Stepper, MatrixThatIsNotDefiniteIsReported) {
-  // The rate is 2 / s, so the diagonal is 4.
+  // The rate is 2 1/s, so the diagonal is 4.
   Stepper stepper(Method::implicit_euler, kTight);
   for (const auto& [s, verdict] : {std::pair{3.0, Verdict::solved}, std::pair{400.0, Verdict::indefinite}}) {
     State next;

@@ -1,5 +1,5 @@
-// The launcher in a copy of its own, with apt-get, dpkg-query, cmake, ninja and id replaced by scripts that write down
-// how they were called: what would be installed and built is seen without doing it.
+// Runs a copy of the launcher in which apt-get, dpkg-query, cmake, ninja and id are replaced by scripts that log their
+// arguments: nothing is installed or built.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -39,7 +39,7 @@ class Launcher : public support::TestFolder {
  protected:
   void SetUp() override {
     TestFolder::SetUp();
-    tree_ = folder_ / "source tree";  // a space, as in the worst home directory
+    tree_ = folder_ / "source tree";  // the name contains a space, as a home directory may
     fs::create_directories(tree_ / "shaders");
     for (const char* file : {"weft", ".launch.sh"}) fs::copy_file(fs::path(WEFT_SOURCE_DIR) / file, tree_ / file);
     write(tree_ / ".packages", "# what for\nbuild g++\nbuild libx-dev   # x\n\ntest libgtest-dev\n");
@@ -54,7 +54,7 @@ class Launcher : public support::TestFolder {
     write_script(folder_ / "fakes/dpkg-query",
                  "sed 's/$/ installed/' \"$FAKES/installed\"; echo 'libx-dev config-files'\n");
     write_script(folder_ / "fakes/apt-get", log + "echo chatter of apt\n");
-    // Called as: cmake -S TREE --preset release ...; ninja -C FOLDER -j N TARGET.
+    // Calls: cmake -S TREE --preset release ...; ninja -C FOLDER -j N TARGET.
     write_script(folder_ / "fakes/cmake",
                  log +
                      "mkdir -p \"$2/build/bin\"; touch \"$2/build/build.ninja\"\n"
@@ -77,7 +77,7 @@ class Launcher : public support::TestFolder {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(folder_ / "out"), read_bytes(folder_ / "err")};
   }
 
-  /// Names of the tools called since the last question, in order, one word each.
+  /// Names of the tools called since the last call of calls(), in order, one word each.
   std::string calls() const {
     std::ifstream file(folder_ / "fakes/calls");
     std::string names;
@@ -187,7 +187,7 @@ TEST_F(Launcher, SaysHowFarTheBuildIsEvery15SecondsWhereNoTerminalShowsIt) {
   const Outcome outcome = launch();
   EXPECT_EQ(outcome.status, 7);
   EXPECT_EQ(read_bytes(folder_ / "fakes/status"), "[%f/%t] %e s: \n");
-  // 30 s of 24 files: 90 s for 72 more. 45 s of 36: 75 s for 60 more.
+  // 30 s for 24 files: 90 s for 72 more. 45 s for 36: 75 s for 60 more.
   EXPECT_EQ(outcome.err,
             "weft: building\n"
             "weft: 24 of 96 files, about 2 min left\n"

@@ -1,4 +1,4 @@
-// What `cmake --install` installs, used by a program that knows nothing of the source tree.
+// A program that does not know the source tree uses what `cmake --install` installs.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 class InstalledLibrary : public support::TestFolder {
  protected:
-  // What `command` prints, run in the folder of the test; both outputs if it fails.
+  // Output of `command`, run in the folder of the test; standard output and error if it fails.
   std::string run(const std::string& command) {
     const std::string line = "cd '" + folder_.string() + "' && { " + command + "; } 2>errors";
     FILE* pipe = ::popen(line.c_str(), "r");

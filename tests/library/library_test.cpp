@@ -1,4 +1,4 @@
-// The public interface against the program's own classes.
+// Compares the public interface with the program's own classes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -151,7 +151,7 @@ TEST(LibrarySimulation, ThreadsDoNotDisturbEachOther) {
   EXPECT_EQ(two, expected);
 }
 
-// Keys of the scene and calls of move() that say the same.
+// Keys of the scene and equivalent calls of move().
 TEST(LibraryMove, IsMotionBetweenLinearKeys) {
   const Scene scene = Scene::parse(kDrape);
   const auto written = [](double number) { return std::to_string(number); };
@@ -170,7 +170,7 @@ TEST(LibraryMove, IsMotionBetweenLinearKeys) {
     for (std::size_t i = 0; i < a.size(); ++i)
       for (std::size_t c = 0; c < 3; ++c) apart = std::max(apart, std::abs(a[i][c] - b[i][c]));
   }
-  EXPECT_LT(apart, 1e-9);  // the same but for rounding of times and places
+  EXPECT_LT(apart, 1e-9);  // equal up to rounding of times and places
 }
 
 TEST(LibraryMove, PinsFollowTheHandle) {
@@ -251,7 +251,7 @@ TEST(LibraryWarnings, GoToTheHandlerInsteadOfStandardError) {
   std::vector<std::string> warnings;
   set_warning_handler([&](std::string_view text) { warnings.emplace_back(text); });
   ::testing::internal::CaptureStderr();
-  // The pin begins elsewhere than its first key.
+  // The pin starts at another place than its first key.
   Simulation(Scene::parse(kHanging +
                           "[[cloth]]\nname = \"b\"\nposition = [5, 0, 0]\n"
                           "pin = [{ low = [0, 0], high = [0, 1], keys = [{ time = 0, offset = [0.1, 0, 0] }, "

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Sources through clang as the build compiles them: those of src/ in clang-tidy (`tidy`), which also prints what the
-compiler warns of, those of tests/ as they are (`syntax`). `changed` is `tidy` of what differs from the commit before
-the last one; without that commit, of everything.
+"""Checks sources with clang, with the flags of the build: those of src/ with clang-tidy (`tidy`), which also prints the
+warnings of the compiler, those of tests/ with the compiler only (`syntax`). `changed` is `tidy` of the differences from
+the commit before the last one; without that commit, of everything.
 
 usage: lint.py BUILD syntax|tidy|changed [PART OF A PATH...]
 
-Reads compile_commands.json of the build folder. Prints what is found; ends with 1 where there is anything.
+Reads compile_commands.json of the build folder. Prints all findings; exits with 1 if there are any.
 """
 import json
 import os
@@ -19,19 +19,19 @@ from concurrent.futures import ThreadPoolExecutor
 
 TREE = pathlib.Path(__file__).resolve().parents[2]
 
-# Read once for all sources: a third of the time that clang takes without.
+# Precompiled for all sources: clang takes a third of the time.
 PRECOMPILED = ["Eigen/Dense", "fmt/format.h", "algorithm", "filesystem", "functional", "map", "memory", "optional",
                "string", "vector", "gtest/gtest.h", "fstream", "random", "sstream"]
 
-# clang-tidy looks at all that is included, which is most of its work: it gets many sources as one. A name that is said
-# to be ambiguous then stands for two things in one module, of which a header declares one: one of them wants another.
+# clang-tidy spends most of its time on included headers, so that many sources are checked as one file. If it reports an
+# ambiguous name, a source and a header of one module use the same name: rename one of them.
 CHUNKS = 2
 
 
 class Source:
     def __init__(self, entry):
         self.path = pathlib.Path(entry["file"])
-        self.flags = ["-Wno-unknown-warning-option"]  # those of GCC, but for outputs and its precompiled header
+        self.flags = ["-Wno-unknown-warning-option"]  # the flags for GCC, without outputs and its precompiled header
         words = iter(shlex.split(entry["command"])[1:])
         for word in words:
             if word in ("-include", "-o", "-c", "--param"):
@@ -39,11 +39,11 @@ class Source:
             elif word == "-isystem":
                 self.flags.append(word + next(words))
             elif word != "-Winvalid-pch" and not word.startswith(("-fPIC", "-fvisibility")):
-                self.flags.append(word)  # all share one precompiled header
+                self.flags.append(word)  # the flags are the same for all sources
 
     def names(self):
-        """What it declares in unnamed namespaces or defines for another module, and what it may call or name: what one
-        source of a chunk declares so no other one may use."""
+        """Names that the source declares in unnamed namespaces or defines for another module, and names that it may use.
+        In one chunk no source may use a name that another declares in this way."""
         text = self.path.read_text()
         outer = re.search(r"^namespace (weft\S*) \{", text, re.M)
         used = set(re.findall(r"(?<![\w.>:])(?:[a-z]\w*(?=\()|[A-Z]\w*|k[A-Z]\w*)", text))
@@ -57,7 +57,7 @@ class Source:
 
 
 def compiled(entry):
-    """The entries of what is compiled: where that is several sources at a time, one for each of them."""
+    """The entries of a compiled file: for a unity file one entry for each of its sources."""
     path = pathlib.Path(entry["file"])
     if "Unity" not in path.parts:
         return [entry]
@@ -80,11 +80,11 @@ def changed_files():
 
 
 def through_headers(names, paths):
-    """The sources among `names`, and for each header one that includes it, if need be through others."""
+    """The sources among `names`, and for each header one source that includes it, directly or through other headers."""
     texts = {path: path.read_text() for path in [*paths, *sorted((TREE / "src").rglob("*.hpp"))]}
     chosen = {path for path in paths if str(path.relative_to(TREE)) in names}
     headers = sorted(TREE / name for name in names if name.endswith(".hpp"))
-    for header in headers:  # grows while it is read
+    for header in headers:  # the list grows during the loop
         line = f'#include "{header.relative_to(TREE / "src")}"'
         including = sorted((path for path in texts if line in texts[path]), key=lambda path: path.stem != header.stem)
         sources = [path for path in including if path.suffix == ".cpp"]
@@ -110,7 +110,7 @@ def syntax_commands(build, sources):
 
 
 def tidy_commands(build, sources):
-    chunks = []  # the sources of each, what they declare, what they use
+    chunks = []  # of each: sources, declared names, used names
     for source in sources:
         declared, used = source.names()
         fitting = [chunk for chunk in chunks if not chunk[1] & used and not chunk[2] & declared]
@@ -125,7 +125,7 @@ def tidy_commands(build, sources):
     for number, (chunk, _, _) in enumerate(chunks):
         file = build / f"lint_{number}.cpp"
         file.write_text("".join(f'#include "{source.path}"\n' for source in chunk))
-        # One source may shadow what another has declared.
+        # A name may shadow one of another source in the same chunk.
         flags = dict.fromkeys(flag for source in chunk for flag in source.flags if flag != "-Wshadow")
         commands.append(["clang-tidy-14", "--quiet", file, "--", *flags])
     return commands

@@ -8,7 +8,7 @@
 namespace weft::mesh {
 namespace {
 
-/// The triangles with a corner that passes the test.
+/// Triangles with at least one corner that passes the test.
 template <class Test>
 std::vector<Triangle> kept_of(const Mesh& mesh, Test test) {
   std::vector<Triangle> kept;
@@ -31,8 +31,7 @@ TEST(Caps, CloseASphereThatWasCutTwice) {
   const TopologyReport report = inspect(kept, sphere.positions.size());
   EXPECT_TRUE(report.border.empty());
   EXPECT_TRUE(report.manifold());
-  // Of the sphere between -h and h: 2 π (h - h³/3); h is between 0.5 and a row (7.5 degrees) more, 0.61, and 48 corners
-  // cut off 1 %.
+  // Sphere between -h and h: 2 π (h - h³/3). h is 0.5 to one row (7.5 degrees) more, 0.61; 48 corners reduce it by 1 %.
   EXPECT_GT(volume(kept, sphere.positions), 0.98 * 2 * 3.1416 * (0.5 - 0.125 / 3));
   EXPECT_LT(volume(kept, sphere.positions), 2 * 3.1416 * (0.61 - 0.61 * 0.61 * 0.61 / 3));
 }
@@ -54,10 +53,10 @@ TEST(Caps, AddNothingWhereNothingWasCut) {
   EXPECT_TRUE(kept.empty());
 }
 
-// Two corners cut off a tetrahedron of smaller ones touch in a vertex: rings of a figure eight are closed apart.
+// Two corners cut off a subdivided tetrahedron touch in a vertex: both loops of the figure eight are closed separately.
 TEST(Caps, CloseRingsThatMeetInAVertex) {
   const std::vector<Vec3> x{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
-  // A double pyramid without a face on either side of vertex 5.
+  // A double pyramid without one face on either side of vertex 5.
   const std::vector<Triangle> whole{{1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {4, 1, 5},
                                     {2, 1, 0}, {3, 2, 0}, {4, 3, 0}, {1, 4, 0}};
   std::vector<Triangle> kept{whole[1], whole[3], whole[4], whole[5], whole[6], whole[7]};

@@ -10,7 +10,7 @@
 namespace weft::mesh {
 namespace {
 
-// Ten roundings of numbers near one.
+// Ten rounding errors of numbers near one.
 constexpr double kRounding = 1e-15;
 
 const std::vector<Triangle> kTetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
@@ -29,7 +29,7 @@ TEST(Volume, OfATetrahedronIsASixthOfItsBoxAndNegativeInsideOut) {
 }
 
 TEST(Volume, OfATinyBodyFarFromTheOriginKeepsItsDigits) {
-  // A third of a millimetre, rounded so that adding the distance is exact: only the sum itself can lose digits.
+  // A third of a millimetre, rounded so that adding the distance is exact: only the sum can lose digits.
   const double size = std::round(std::ldexp(1.0 / 3, 30)) * std::ldexp(1.0, -40);
   auto far = kCorners;
   for (Vec3& x : far) x = size * x + Vec3(1024, -2048, 4096);
@@ -60,7 +60,7 @@ TEST(VertexNormals, OfATinySphereStillHaveUnitLength) {
   vertex_normals(sphere.topology.triangles, sphere.positions, normals);
   for (std::size_t v = 0; v < normals.size(); ++v) {
     EXPECT_NEAR(normals[v].norm(), 1, kRounding);
-    // A geodesic sphere of this fineness is even enough for normals within 3 degrees of the radius.
+    // This geodesic sphere is regular enough for normals within 3 degrees of the radius.
     EXPECT_GT(normals[v].dot(sphere.positions[v].normalized()), std::cos(3 * M_PI / 180));
   }
 }

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Triangles = std::vector<std::array<Index, 3>>;
 
-// Values that only survive bit for bit.
+// Values that show any change of a bit.
 const std::vector<Vec3> kPositions{
     {0, -0.0, 1.0 / 3}, {1e-310, std::numeric_limits<double>::max(), -1}, {0.1, 0.2, 0.30000000000000004}};
 const Triangles kTriangles{{0, 1, 2}, {2, 1, 0}};
@@ -44,7 +44,7 @@ class Ply : public testing::Test {
   fs::path folder_;
 };
 
-/// The text of the error, with its exit code in front.
+/// Text of the error, preceded by its exit code.
 template <class Action>
 std::string error_of(const Action& action) {
   try {

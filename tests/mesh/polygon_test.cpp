@@ -11,21 +11,22 @@
 namespace weft::mesh {
 namespace {
 
-// Sums of some ten rounded areas near one.
+// Rounding error of a sum of about ten areas near one.
 constexpr double kRoundingOfAreas = 1e-14;
 
-std::vector<Triangle> cut(const std::vector<Vec3>& corners, decltype(triangulate_polygon)* way = triangulate_polygon) {
+std::vector<Triangle> triangulate(const std::vector<Vec3>& corners,
+                                  decltype(triangulate_polygon)* method = triangulate_polygon) {
   std::vector<Index> indices;
   for (std::size_t k = 0; k < corners.size(); ++k) indices.push_back(static_cast<Index>(k));
   std::vector<Triangle> triangles;
-  way(indices, corners, triangles);
+  method(indices, corners, triangles);
   return triangles;
 }
 
-/// Expects n - 2 triangles that cover the area without turning over.
+/// Expects n - 2 triangles that cover the area, none of them inverted.
 void expect_covered(const std::vector<Vec3>& corners, double area, const Vec3& normal) {
-  for (auto* way : {triangulate_polygon, triangulate_face}) {
-    const std::vector<Triangle> triangles = cut(corners, way);
+  for (auto* method : {triangulate_polygon, triangulate_face}) {
+    const std::vector<Triangle> triangles = triangulate(corners, method);
     EXPECT_EQ(triangles.size(), corners.size() - 2);
     EXPECT_NEAR(surface_area(triangles, corners), area, kRoundingOfAreas);
     for (const Triangle& t : triangles) EXPECT_GE(area_vector(t, corners).dot(normal), 0);
@@ -34,12 +35,12 @@ void expect_covered(const std::vector<Vec3>& corners, double area, const Vec3& n
 }
 
 TEST(Polygon, OfThreeCornersIsItself) {
-  EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(triangulate({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), (std::vector<Triangle>{{0, 1, 2}}));
 }
 
 TEST(Polygon, OfFewerCornersGivesNothing) {
-  EXPECT_TRUE(cut({}).empty());
-  EXPECT_TRUE(cut({{0, 0, 0}, {1, 0, 0}}).empty());
+  EXPECT_TRUE(triangulate({}).empty());
+  EXPECT_TRUE(triangulate({{0, 0, 0}, {1, 0, 0}}).empty());
 }
 
 TEST(Polygon, WithNotchesIsCoveredFromEveryStartAndEitherSide) {
@@ -66,17 +67,17 @@ TEST(Polygon, ThatIsRegularIsCutWithoutAFan) {
   for (int k = 0; k < n; ++k)
     corners.emplace_back(std::cos(2 * std::numbers::pi * k / n), std::sin(2 * std::numbers::pi * k / n), 0);
   expect_covered(corners, 0.5 * n * std::sin(2 * std::numbers::pi / n), Vec3(0, 0, 1));
-  // No corner carries more than the 2 log2(n) triangles of a halving cut.
+  // No corner is in more than 2 log2(n) triangles, the bound of a recursive halving.
   std::vector<int> around(n);
-  for (const Triangle& triangle : cut(corners))
+  for (const Triangle& triangle : triangulate(corners))
     for (const Index v : triangle) ++around[v];
   for (const int count : around) EXPECT_LE(count, 10);
 }
 
-/// Expects that each corner is in a triangle with an area.
+/// Expects each corner to be in a triangle of non-zero area.
 void expect_each_corner_kept(const std::vector<Vec3>& corners) {
   std::vector<int> kept(corners.size());
-  for (const Triangle& t : cut(corners, triangulate_face)) {
+  for (const Triangle& t : triangulate(corners, triangulate_face)) {
     const double longest = std::max({(corners[t[1]] - corners[t[0]]).norm(), (corners[t[2]] - corners[t[1]]).norm(),
                                      (corners[t[0]] - corners[t[2]]).norm()});
     if (area_vector(t, corners).norm() > 1e-4 * longest * longest)
@@ -85,7 +86,7 @@ void expect_each_corner_kept(const std::vector<Vec3>& corners) {
   EXPECT_EQ(std::ranges::count(kept, 0), 0) << "of " << corners.size();
 }
 
-// Strips of a row of cells in one face, which some programs write; in single precision, as files have them.
+// Some programs write a row of cells as one face; coordinates in single precision, as in files.
 TEST(Polygon, WithCornersAlongStraightSidesKeepsThemAll) {
   for (const int along : {4, 13, 40})
     for (const double angle : {0.0, 0.3, 1.1}) {
@@ -98,7 +99,7 @@ TEST(Polygon, WithCornersAlongStraightSidesKeepsThemAll) {
       for (int i = 0; i < along; ++i) add(0.025 * (along - 1 - i), 0.025);
       expect_each_corner_kept(corners);
       double flattest = 1;
-      for (const Triangle& t : cut(corners, triangulate_face)) {
+      for (const Triangle& t : triangulate(corners, triangulate_face)) {
         double longest = 0;
         for (std::size_t k = 0; k < 3; ++k)
           longest = std::max(longest, (corners[t[(k + 1) % 3]] - corners[t[k]]).norm());
@@ -106,7 +107,7 @@ TEST(Polygon, WithCornersAlongStraightSidesKeepsThemAll) {
       }
       EXPECT_GT(flattest, along > 4 ? 0.3 : 0.1)
           << "halves of squares have 0.5, with " << along << " corners along a side";
-      // A square with as many corners along each side.
+      // A square with this number of corners along each side.
       corners.clear();
       const double size = 0.025 * along;
       for (int i = 0; i < along; ++i) add(0.025 * i, 0);
@@ -118,10 +119,10 @@ TEST(Polygon, WithCornersAlongStraightSidesKeepsThemAll) {
 }
 
 TEST(Polygon, ThatCrossesItselfOrHasCollapsedStillEnds) {
-  for (auto* way : {triangulate_polygon, triangulate_face}) {
-    EXPECT_EQ(cut({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0.5, 0}}, way).size(), 3u);
-    EXPECT_EQ(cut(std::vector<Vec3>(7, Vec3(1, 2, 3)), way).size(), 5u);
-    EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, way).size(), 3u);
+  for (auto* method : {triangulate_polygon, triangulate_face}) {
+    EXPECT_EQ(triangulate({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0.5, 0}}, method).size(), 3u);
+    EXPECT_EQ(triangulate(std::vector<Vec3>(7, Vec3(1, 2, 3)), method).size(), 5u);
+    EXPECT_EQ(triangulate({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, method).size(), 3u);
   }
 }
 

@@ -25,7 +25,7 @@ TEST(QuadSplit, TakesTheFirstDiagonalOnATie) {
 }
 
 TEST(QuadSplit, StaysInsideAnArrowheadEvenIfThatDiagonalIsLonger) {
-  // The notch is corner 3 at (0, 0.5): its diagonal to corner 1 has length 4.5, the outer one only 2.
+  // The reflex corner is corner 3 at (0, -0.5): its diagonal to corner 1 has length 3.5, the outer one only 2.
   const std::vector<Vec3> arrow{{-1, 0, 0}, {0, -4, 0}, {1, 0, 0}, {0, -0.5, 0}};
   EXPECT_EQ(split_quads(kQuad, arrow), kSecondDiagonal);
 }
@@ -58,7 +58,7 @@ TEST(Sheet, OfAGradedGridHasSpacingsThatGrowByOneFactor) {
   for (int j = 0; j < 4; ++j) EXPECT_NEAR(sheet.uv[5 * j].y(), 12.0 / 7 * (1 - std::pow(0.5, j)), 1e-15);
   for (std::size_t k = 0; k < sheet.uv.size(); ++k)
     EXPECT_LT((sheet.positions[k] - Vec3(sheet.uv[k].x() - 1.5, sheet.uv[k].y() - 0.75, 0)).norm(), 1e-15);
-  EXPECT_NEAR(grid.least_spacing(), 0.2, 1e-15);
+  EXPECT_NEAR(grid.min_spacing(), 0.2, 1e-15);
 }
 
 TEST(Grid, WidthsAreThoseOfTheNeighbouringHalvesAndAddUpToTheSheet) {

@@ -1,4 +1,4 @@
-// Frames of rigid bodies against the moments of solids.
+// Frames of rigid bodies, compared with the moments of solids.
 #include "mesh/rigid_frame.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(RigidFrame, HasTheMomentsOfACylinderWhereverItIs) {
 TEST(RigidFrame, CarriesAllVertices) {
   const Mesh mesh = make_sphere(0.2, 16);
   const RigidFrame frame = frame_of(mesh);
-  // An affine motion, which the vertices share with the particles.
+  // The vertices follow the particles through any affine motion.
   Mat3 deform;
   deform << 1, 0.2, 0, -0.1, 0.9, 0.3, 0, 0, 1.2;
   std::vector<Vec3> particles;

@@ -17,19 +17,19 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Sums of a few thousand rounded terms.
+// Rounding error of a sum of a few thousand terms.
 constexpr double kRoundingOfSums = 1e-12;
 
 double volume(const Mesh& mesh) {
   return support::enclosed_volume(mesh.topology.triangles, mesh.positions);
 }
 
-/// Area of a regular polygon with its corners on the unit circle.
+/// Area of a regular polygon inscribed in the unit circle.
 double polygon(int corners) {
   return 0.5 * corners * std::sin(2 * kPi / corners);
 }
 
-/// Highest vertex over the plane of any triangle; at most rounding for a convex body.
+/// Largest height of a vertex above the plane of any triangle; for a convex body at most rounding.
 double bulge_over_faces(const Mesh& mesh) {
   double highest = -std::numeric_limits<double>::infinity();
   for (const Triangle& t : mesh.topology.triangles) {
@@ -120,7 +120,7 @@ TEST(Sphere, IsConvexAndMissesNoMoreVolumeThanOutsideTheBallItHolds) {
   for (const int segments : {3, 24, 48}) {
     const Mesh sphere = make_sphere(1, segments);
     EXPECT_LT(bulge_over_faces(sphere), kRoundingOfSums);
-    double depth = 1;  // distance of the nearest face: the convex polyhedron holds the ball of that radius
+    double depth = 1;  // distance of the nearest face: the convex polyhedron contains the ball of that radius
     for (const Triangle& t : sphere.topology.triangles) {
       depth = std::min(depth, area_vector(t, sphere.positions).normalized().dot(sphere.positions[t[0]]));
     }
@@ -145,7 +145,7 @@ TEST(Sphere, HasAboutTheSegmentsAskedFor) {
     const auto corner = [&](const Edge& edge, std::size_t k) { return sphere.positions[edge.vertices[k]]; };
     double sum = 0;
     for (const Edge& edge : set.edges) sum += (corner(edge, 1) - corner(edge, 0)).norm();
-    // As many edges of mean length as fit into the circumference; they come in steps of 10.5.
+    // Number of edges of mean length that fit into the circumference; it changes in steps of 10.5.
     EXPECT_NEAR(2 * kPi / (sum / static_cast<double>(set.edges.size())), segments, 5.5) << segments;
   }
 }
@@ -162,7 +162,7 @@ TEST(Box, HasItsSizesVolumeAndTwelveTriangles) {
 TEST(Box, WithOneBevelFaceLosesPrismsAtEdgesAndTetrahedraAtCorners) {
   const double b = 0.1;
   const Mesh box = make_box({1, 2, 3}, b, 8);
-  // Between the corners each edge loses a prism over b²/2. Of a corner's cube b³ a tetrahedron b³/6 remains.
+  // The bevel removes a prism over b²/2 from each edge; of the cube b³ at each corner a tetrahedron b³/6 remains.
   const double edges = 4 * (1 + 2 + 3 - 3 * 2 * b) * b * b / 2;
   EXPECT_NEAR(volume(box), 6 - edges - 8 * (b * b * b * 5 / 6), kRoundingOfSums);
   EXPECT_LT(bulge_over_faces(box), kRoundingOfSums);
@@ -224,10 +224,10 @@ TEST(Cone, IsThePyramidOverItsPolygonWithItsTipUp) {
 TEST(Torus, HasTheVolumeOfItsTurnedPolygon) {
   const double radius = 0.5, tube = 0.2;
   const Mesh torus = make_torus(radius, tube, 48);
-  // The width of a cell on the outer equator fits 13.7 times around the tube; the nearest multiple of four.
+  // The cell width at the outer equator fits 13.7 times around the tube; the nearest multiple of four is used.
   const int around_tube = 12;
   ASSERT_EQ(torus.positions.size(), 48u * around_tube);
-  // Pappus: path of the centroid times area; 48 steps instead of a turn scale both radii's squares alike.
+  // Pappus: path of the centroid times area. The 48 steps instead of a circle scale the squares of both radii alike.
   EXPECT_NEAR(volume(torus), 2 * polygon(48) * radius * polygon(around_tube) * tube * tube, kRoundingOfSums);
   for (const Vec3& x : torus.positions)
     EXPECT_NEAR(std::hypot(std::hypot(x.x(), x.y()) - radius, x.z()), tube, kRoundingOfSums);

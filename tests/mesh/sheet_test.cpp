@@ -33,7 +33,7 @@ TEST(TriangleSheet, PatternsCoverTheGridOnceAndFaceUp) {
 
 TEST(TriangleSheet, FlatOnesHaveWeftAlongXAndWarpAlongY) {
   const Mesh mesh = make_triangle_sheet(kGrid, Pattern::crossed);
-  const Sheet sheet = make_sheet_of(mesh);
+  const Sheet sheet = make_sheet_from_mesh(mesh);
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& x = mesh.positions[sheet.triangles[t][k]];
@@ -47,7 +47,7 @@ TEST(TriangleSheet, MaterialCoordinatesKeepLengthsHoweverTheTriangleIsTurned) {
     for (double angle : {0.3, M_PI / 2, 2.5}) {
       Mesh turned = mesh;
       for (Vec3& x : turned.positions) x = Eigen::AngleAxisd(angle, axis.normalized()) * x;
-      const Sheet sheet = make_sheet_of(turned);
+      const Sheet sheet = make_sheet_from_mesh(turned);
       for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
         const auto& m = sheet.material[t];
         for (std::size_t k = 0; k < 3; ++k)
@@ -62,9 +62,9 @@ TEST(TriangleSheet, MaterialCoordinatesKeepLengthsHoweverTheTriangleIsTurned) {
 }
 
 TEST(TriangleSheet, LeastHeightIsThatOfTheNarrowestTriangle) {
-  const Sheet sheet = make_sheet_of(make_triangle_sheet(kGrid, Pattern::aligned));
+  const Sheet sheet = make_sheet_from_mesh(make_triangle_sheet(kGrid, Pattern::aligned));
   // Legs 0.5 and 0.25: height over the hypotenuse.
-  EXPECT_NEAR(least_height(sheet), 0.125 / std::hypot(0.5, 0.25), 1e-15);
+  EXPECT_NEAR(min_height(sheet), 0.125 / std::hypot(0.5, 0.25), 1e-15);
 }
 
 }  // namespace

@@ -13,10 +13,10 @@ namespace {
 using Pair = std::array<Index, 2>;
 using Pairs = std::vector<Pair>;
 
-// Two triangles over the square 0 1 2 3, cut from 0 to 2.
+// The square 0 1 2 3, split along the diagonal from 0 to 2.
 const std::vector<Triangle> kSquare{{0, 1, 2}, {0, 2, 3}};
 
-// Counter-clockwise from outside.
+// Triangles are counter-clockwise seen from outside.
 const std::vector<Triangle> kFourSides{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
 
 TEST(Edges, AreListedOnceSortedWithTheTrianglesOnBothSides) {
@@ -69,7 +69,7 @@ TEST(Inspection, NamesTrianglesOutOfRangeOnEitherSideAndDegenerateOnes) {
   const TopologyReport report = inspect(triangles, 3);
   EXPECT_EQ(report.out_of_range, (std::vector<Index>{1, 2, 4}));
   EXPECT_EQ(report.degenerate, std::vector<Index>{3});
-  EXPECT_EQ(report.border.size(), 3u);  // only the sound triangle counts
+  EXPECT_EQ(report.border.size(), 3u);  // only the valid triangle counts
   EXPECT_FALSE(report.manifold());
 }
 

@@ -5,7 +5,7 @@ import subprocess
 
 
 def missing():
-    """Why no archive can be made or tried here; empty where all is well."""
+    """The reason why no archive can be made or run here; empty if it can."""
     for tool in ("zstd", "unshare", "chroot"):
         if not shutil.which(tool):
             return f"{tool} is not found: apt-get install zstd util-linux coreutils"
@@ -15,7 +15,7 @@ def missing():
 
 
 def make(source, weft, start, folder, *opengl):
-    """Its path. Compressed little, which takes less time."""
+    """Makes the archive, with fast compression, and returns its path."""
     build = os.path.dirname(os.path.dirname(weft))
     done = subprocess.run([os.path.join(source, ".packaging/bundle.sh"), build, start, folder, *opengl],
                           env={**os.environ, "ZSTD_CLEVEL": "1"}, capture_output=True, text=True, check=False)

@@ -1,7 +1,7 @@
-"""The archive of `ninja bundle` in a root that has nothing else: no shell, no C library, no /dev. Films, pictures, meshes
-from files, sweeps and comparisons are, to the bit, those of the built program; with OSMesa, and with EGL alone.
+"""The archive of `ninja bundle` in an otherwise empty root: no shell, no C library, no /dev. Films, pictures, meshes
+from files, sweeps and comparisons equal those of the built program to the bit; with OSMesa, and with EGL only.
 
-root_test.py SOURCE WEFT START    ends with 77 where no such root can be made.
+root_test.py SOURCE WEFT START    exits with 77 if no such root can be made.
 """
 import os
 import shutil
@@ -63,7 +63,7 @@ def run(*words, **options):
 
 
 def prepare(folder, weft):
-    """Scenes of a cube from an OBJ file, and of what an export holds from a glTF file."""
+    """Writes scenes of a cube from an OBJ file, and of an exported ball from a glTF file."""
     os.mkdir(folder)
     for name, text in (("cube.obj", CUBE), ("cube.toml", SCENE),
                        ("cube_gltf.toml", SCENE.replace("cube.obj", "ball/s.glb"))):
@@ -81,7 +81,7 @@ def read(path):
 
 
 def is_same(weft, opengl, expected, found):
-    """To the bit; what EGL drew, by pixels, as files name the source of OpenGL."""
+    """Compares bytes; for EGL pixels, because files contain the name of the OpenGL implementation."""
     if opengl == "osmesa":
         return read(expected) == read(found)
     run(weft, "diff", expected, found, "--pixel-tolerance", "0", "--pixel-budget", "0")
@@ -89,7 +89,7 @@ def is_same(weft, opengl, expected, found):
 
 
 def enter(root, *words):
-    """In a mount namespace of its own, which takes /proc along when it ends: becomes the program, as a user without rights."""
+    """Called in a private mount namespace, which unmounts /proc at its end: executes the program as an unprivileged user."""
     subprocess.run(["mount", "-t", "proc", "proc", os.path.join(root, "proc")], check=True)
     os.chroot(root)
     os.chdir("/data")

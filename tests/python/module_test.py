@@ -1,4 +1,4 @@
-"""The Python module: what it computes, that its arrays are views, its errors, and that its stubs name what is there.
+"""The Python module: its results, its arrays (which must be views), its errors, and the completeness of its stubs.
 
 module_test.py WEFT SOURCES    PYTHONPATH names the folder of the module.
 """
@@ -170,7 +170,7 @@ friction = 0.8
             frame = simulation.advance()
         forces, weight = frame["sheet"].contact_forces, 0.25 * 0.4 * 0.4 * 9.81
         self.assertEqual((forces.shape, forces.flags.writeable), ((289, 3), False))
-        # What the solver leaves: 3e-7 of the weight was seen.
+        # Residual of the solver: measured 3e-7 of the weight.
         numpy.testing.assert_allclose(forces.sum(axis=0), [0, 0, weight], atol=1e-4 * weight)
         self.assertEqual(frame["tray"].contact_forces.shape, (0, 3))
 

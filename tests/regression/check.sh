@@ -3,7 +3,7 @@
 #
 #     tests/regression/check.sh WEFT OUTPUT [NAME]     one still, or all of stills.txt; exit codes of `weft diff`
 #
-# After a change that is wanted, look at OUTPUT and OUTPUT/differences, then
+# After an intended change, inspect OUTPUT and OUTPUT/differences, then
 #
 #     WEFT accept tests/regression/references OUTPUT/*.png --reason "why"
 set -uf
@@ -12,7 +12,7 @@ root=$here/../..
 weft=$1 output=$2 only=${3:-}
 mkdir -p "$output"
 
-# A still of the last run must not pass for one of this run.
+# Draws a still. The file of an earlier run is removed first: it must not count as one of this run.
 draw() { # NAME SCENE FRAME CHANGE...
   name=$1 scene=$2 frame=$3
   shift 3

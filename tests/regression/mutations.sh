@@ -1,9 +1,9 @@
 #!/bin/sh
-# Shows that the suite notices small changes of the program: applies each line of mutations.txt to a copy of the last
-# commit, builds it, draws the stills and compares them. Takes about a minute of processor time each, so not a test.
+# Shows that the suite detects small changes of the program: applies each line of mutations.txt to a copy of the last
+# commit, builds it, draws the stills and compares them. Each takes about a minute of processor time, so this is no test.
 #
 #     tests/regression/mutations.sh FOLDER [STILL...]     table in FOLDER/mutations.md; without names, all stills
-#     tests/regression/mutations.sh --check               that each line still changes its file: a test
+#     tests/regression/mutations.sh --check               checks that each line still changes its file: a test
 set -uf
 here=$(cd "$(dirname -- "$0")" && pwd)
 root=$here/../..
@@ -27,7 +27,7 @@ build() {
   ninja -C "$source/build" weft_tools_program >"$folder/build.log" 2>&1 || { tail "$folder/build.log"; exit 1; }
 }
 
-# The lines of `weft diff` for the stills, one each.
+# Prints the lines of `weft diff`, one for each still.
 compare() { # OUTPUT STILL...
   output=$1
   shift
@@ -67,7 +67,7 @@ while IFS='|' read -r name file change; do
   cmp -s "$source/$file" "$folder/original" && { echo "$name: changes nothing in $file"; exit 1; }
   build
   compare "$folder/$number" "$@" >"$folder/$number.txt"
-  cp "$folder/original" "$source/$file" # with a new date, so that it is built again
+  cp "$folder/original" "$source/$file" # with a new date, so that it is rebuilt
   # Fields of the line with the largest FLIP.
   awk -v name="$name" '
     / pixels differ/ {

@@ -1,4 +1,4 @@
-// Cameras that are found from all frames of a run.
+// Cameras that are computed from all frames of a run.
 #include "render/camera_path.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ frame::Camera found_camera(Kind kind) {
   return camera;
 }
 
-/// A body that walks six metres to the right, swinging up and down once a second, under a banner that stays.
+/// A body that walks six metres to the right and moves up and down once a second, under a static banner.
 std::vector<frame::FrameSnapshot> walk(const frame::Camera& camera) {
   std::vector<frame::FrameSnapshot> run;
   for (int k = 0; k < kFrames; ++k) {
@@ -50,7 +50,7 @@ CameraPath path_of(const std::vector<frame::FrameSnapshot>& run) {
   return path;
 }
 
-/// Largest |x| or |y| of a surface in the picture, 1 at its edges.
+/// Largest |x| or |y| of a surface in the picture; the edges are at 1.
 double extent(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, std::size_t surface) {
   const View view = make_view(camera, Vec3::UnitZ(), kAspect, subject_bounds(snapshot), std::nullopt);
   double largest = 0;
@@ -87,7 +87,7 @@ TEST(CameraPath, FollowKeepsItsSubjectInTheMiddleWithoutTakingOverItsSteps) {
   EXPECT_NEAR(largest, 0.86, 1e-9);
   for (std::size_t k = 1; k + 1 < eyes.size(); ++k) {
     EXPECT_NEAR((eyes[k] - eyes[k - 1]).x(), 1.5 / kFps, 1e-9) << "an even walk is followed evenly, from the start";
-    // Of a swing of 1 Hz a Gaussian of half a second leaves exp(-(pi)^2 / 2) = 0.7 percent; at the ends a little more.
+    // A Gaussian of half a second damps 1 Hz to exp(-(pi)^2 / 2) = 0.7 percent; at the ends a little more is left.
     const double bend = (eyes[k + 1] - 2 * eyes[k] + eyes[k - 1]).z();
     const double own = 0.03 * std::pow(2 * 3.14159265 / kFps, 2);
     EXPECT_LT(std::abs(bend), 0.1 * own) << k;
@@ -103,7 +103,7 @@ TEST(CameraPath, CloseComesNearerWhereTheSubjectIsSmallAndNeverCutsIt) {
     }
   const CameraPath path = path_of(run);
   const auto distance = [&](std::size_t k) { return (path.at(run[k]).position - path.at(run[k]).target).norm(); };
-  // A fifth of the size needs a fifth of the distance, and room for the swing that the camera does not take part in.
+  // A fifth of the size needs a fifth of the distance, and a margin for the oscillation, which the camera ignores.
   EXPECT_LT(distance(100), 0.35 * distance(0));
   for (const frame::FrameSnapshot& snapshot : run) EXPECT_LT(extent(snapshot, path.at(snapshot), 0), 0.86 + 1e-9);
 }
@@ -121,7 +121,7 @@ TEST(CameraPath, TrackStaysWhereItIsPutAndOpensAsWideAsItsSubjectNeeds) {
     largest = std::max(largest, extent(snapshot, at, 0));
   }
   EXPECT_LT(largest, 0.86 + 1e-9);
-  EXPECT_GT(largest, 0.6);  // the box around a ball is up to sqrt(3) times as wide
+  EXPECT_GT(largest, 0.6);  // the bounding box of a ball is up to sqrt(3) times as wide
 }
 
 TEST(CameraPath, OrbitGoesAroundAtOneDistanceWithEverythingInView) {
@@ -137,7 +137,7 @@ TEST(CameraPath, OrbitGoesAroundAtOneDistanceWithEverythingInView) {
     for (const std::size_t surface : {0, 1}) largest = std::max(largest, extent(snapshot, at, surface));
   }
   EXPECT_NEAR(largest, 0.86, 1e-9);
-  // A second is a quarter of the way round: right angles between eyes seen from above.
+  // One second is a quarter of the orbit: the directions to both eyes, seen from above, are at right angles.
   const Vec3 first = path.at(run[0]).position - path.at(run[0]).target;
   const Vec3 later = path.at(run[25]).position - path.at(run[25]).target;
   EXPECT_NEAR(first.head<2>().dot(later.head<2>()), 0, 1e-9);
@@ -164,10 +164,10 @@ TEST(CameraPath, PlacedCamerasAreTakenAsTheyAre) {
   frame::FrameSnapshot snapshot;
   add_sphere(snapshot, Vec3::Zero(), 1, 8);
   snapshot.cameras = {camera_at(Vec3(0, -5, 1), Vec3::Zero(), 40)};
-  EXPECT_FALSE(CameraPath::is_found(snapshot, ""));
+  EXPECT_FALSE(CameraPath::is_computed(snapshot, ""));
   EXPECT_EQ(CameraPath("", kAspect).at(snapshot).position, Vec3(0, -5, 1));
   snapshot.cameras.clear();
-  EXPECT_TRUE(CameraPath::is_found(snapshot, ""));
+  EXPECT_TRUE(CameraPath::is_computed(snapshot, ""));
 }
 
 }  // namespace

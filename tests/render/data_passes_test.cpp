@@ -1,4 +1,4 @@
-// Each figure of random pixels against a search through all triangles.
+// Compares the data of random pixels with a search through all triangles.
 #include "render/data_passes.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kPassWidth = 192, kPassHeight = 108;
 
-/// A sheet that turns over a sphere in front of a floor, warped by `phase` and moved by it.
+/// A sheet that wraps a sphere in front of a floor, deformed by `phase` and moved by it.
 frame::FrameSnapshot moment(double phase, const frame::FrameSnapshot* same) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -56,7 +56,7 @@ struct Found {
   Vec2 uv{0, 0};
 };
 
-/// Sum of the normals around a vertex, by area, to length one.
+/// Area-weighted mean normal at a vertex, normalised.
 Vec3 smooth_normal(const frame::Surface& surface, std::span<const Vec3> x, Index vertex) {
   Vec3 sum = Vec3::Zero();
   for (const auto& [a, b, c] : surface.triangles)
@@ -64,7 +64,7 @@ Vec3 smooth_normal(const frame::Surface& surface, std::span<const Vec3> x, Index
   return sum.normalized();
 }
 
-/// By the heights over the sides of each triangle, as areas.
+/// Finds the nearest hit of the ray, with barycentric coordinates from signed areas.
 Found search(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before, const Vec3& eye, const Vec3& along) {
   Found found;
   for (std::size_t s = 0; s < now.surfaces.size(); ++s) {
@@ -145,7 +145,7 @@ class DataPassesTest : public support::TestFolder {
   static inline image::Image picture_;
 };
 
-/// 1,000 random pixels of so many rows.
+/// Checks 1,000 random pixels of this number of rows.
 void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows) {
   const Viewer viewer(second_.cameras[0]), viewer_before(first_.cameras[0]);
   std::mt19937 random(1);
@@ -157,7 +157,7 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
     const Found found = search(second_, first_, viewer.eye, viewer.along(pixel));
     const auto at = [&](const char* name) { return value(layers, name, x, y); };
     if (at("id.object") != found.object || at("id.part") != found.part) {
-      ++beside;  // an edge passes through the centre
+      ++beside;  // an edge passes through the centre of the pixel
       continue;
     }
     ++counts[static_cast<int>(found.object)];
@@ -165,7 +165,7 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
       EXPECT_TRUE(std::isinf(at("depth.Z")));
       continue;
     }
-    // 32 bits of some metres; what the floor shows at the horizon is far.
+    // 32-bit numbers of some metres; the floor at the horizon is far away.
     const double rounding = 2e-7 * std::max(1.0, found.depth);
     EXPECT_NEAR(at("depth.Z"), found.depth, rounding);
     EXPECT_NEAR(at("position.X"), found.position.x(), rounding);
@@ -177,7 +177,7 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
     const Vec2 motion = pixel - viewer_before.pixel(found.before);
     EXPECT_NEAR(at("motion.X"), motion.x(), 1e-5);
     EXPECT_NEAR(at("motion.Y"), motion.y(), 1e-5);
-    // Toward the viewer. The sphere ends in vertices of their own along one meridian.
+    // The normal faces the viewer. The sphere has duplicate vertices along one meridian.
     const Vec3 normal(at("normal.X"), at("normal.Y"), at("normal.Z"));
     const Vec3 expected = found.normal * (found.face.dot(viewer.along(pixel)) > 0 ? -1 : 1);
     EXPECT_LT((normal - expected).norm(), found.object == 2 ? 0.02 : 1e-6);
@@ -190,7 +190,7 @@ TEST_F(DataPassesTest, AreThoseOfASearchThroughAllTriangles) {
   expect_exact(layers_, 0, kPassHeight);
 }
 
-// Of some rows a file, as OpenImageIO prints it: names in their order, then a line for each pixel.
+// A file of some rows, printed by OpenImageIO: channel names in their order, then one line for each pixel.
 TEST_F(DataPassesTest, AreReadBackByOpenImageIOAsThoseOfASearch) {
   constexpr int kTop = 44, kRows = 20;
   image::Layers rows{kPassWidth, kRows, layers_.channels};
@@ -203,14 +203,14 @@ TEST_F(DataPassesTest, AreReadBackByOpenImageIOAsThoseOfASearch) {
   const int status = std::system(fmt::format("oiiotool --info -v --dumpdata '{}' >'{}'", file, out).c_str());
   if (WEXITSTATUS(status) == 127) GTEST_SKIP() << "oiiotool is not here: apt-get install openimageio-tools";
   ASSERT_EQ(status, 0);
-  const std::string told = support::read_bytes(out);
+  const std::string printed = support::read_bytes(out);
   image::Layers read{kPassWidth, kPassHeight, {}};
   constexpr std::string_view kList = "channel list: ";
-  std::istringstream names(told.substr(told.find(kList) + kList.size()));
+  std::istringstream names(printed.substr(printed.find(kList) + kList.size()));
   for (std::string name, depth = ","; depth.back() == ',' && names >> name >> depth;)
     read.channels.push_back({name, std::vector<float>(std::size_t{kPassWidth} * kPassHeight)});
   ASSERT_EQ(read.channels.size(), layers_.channels.size());
-  std::istringstream lines(told);
+  std::istringstream lines(printed);
   int pixels = 0;
   for (std::string line; std::getline(lines, line);) {
     int x = 0, y = 0, at = 0;
@@ -254,14 +254,13 @@ TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
     }
   }
   EXPECT_GT(whole, 1000);
-  // Where surfaces fold, as half of so small a picture does, that averages their encoded colours, this the linear
-  // ones.
+  // At folds, half of so small a picture, the ordinary picture averages encoded colours, this pass linear ones.
   EXPECT_GT(same, 0.45 * whole);
   EXPECT_GT(partly, 100) << "outlines are smooth";
 }
 
-// Floor from which a ray to the sun meets something is black over a plate, as no light comes from around here; other
-// floor leaves the plate as it is. But for the width of the penumbra, in which some percents of the pixels lie.
+// Floor is black over a plate if a ray to the sun hits something, because this scene has no ambient light; other floor
+// leaves the plate unchanged. Pixels in the penumbra, a few percent, are excluded.
 TEST_F(DataPassesTest, CaughtShadowsAreWhereNoSunGetsTo) {
   const Vec3 toward_sun = Vec3(0.3, -0.4, 1).normalized();
   int lit = 0, dark = 0, otherwise = 0;

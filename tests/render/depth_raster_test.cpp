@@ -17,7 +17,7 @@ std::vector<float> fill(const Eigen::Vector3f& a, const Eigen::Vector3f& b, cons
   return depths;
 }
 
-// Every texel against the sign of its centre's distance from the three sides, either way round.
+// Compares every texel with the signed distances of its centre from the three sides, for both orientations.
 TEST(DepthRaster, CoversTheTexelsWhoseCentresLieInsideAndGivesThemTheDepthOfThePlane) {
   const Eigen::Vector3f a(3.2f, 5.1f, 0.1f), b(60.7f, 20.3f, 0.5f), c(17.9f, 58.6f, 0.9f);
   for (const bool turned : {false, true}) {

@@ -10,7 +10,7 @@
 namespace weft::render {
 namespace {
 
-/// Largest |x| and |y| in the picture (1 at its edges) over all vertices that are no floor.
+/// Largest |x| and |y| in the picture (1 at its edges) over all vertices except those of floors.
 Vec2 extent(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, const Vec3& up, double aspect) {
   const View view = make_view(camera, up, aspect, subject_bounds(snapshot), std::nullopt);
   Vec2 largest(0, 0);
@@ -40,7 +40,7 @@ TEST(Framing, EveryVertexIsInFrameAndTheTighterDirectionReachesTheMargin) {
       add_sphere(snapshot, Vec3(3, 1, 0.5), 0.5, 12);
       add_square(snapshot, frame::ObjectKind::cloth, Vec3(-2, 0, 4), Vec3::UnitY(), Vec3::UnitX(), 1.5);
       const Vec2 largest = extent(snapshot, camera_of(snapshot, "", aspect), up, aspect);
-      // The margin is 14 percent of the half picture; the fit is exact, so only rounding is left.
+      // The margin is 14 percent of half the picture; the fit is exact except for rounding.
       EXPECT_NEAR(largest.maxCoeff(), 0.86, 1e-9) << up.transpose() << " " << aspect;
     }
   }

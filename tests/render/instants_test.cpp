@@ -1,4 +1,4 @@
-// Motion blur, depth of field, looks, and cloth drawn finer than it is simulated.
+// Motion blur, depth of field, render styles, and cloth that is refined for drawing.
 #include "render/instants.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Settings small_settings() {
   return settings;
 }
 
-/// A white square of 0.2 m before black, 2 m from the camera; a pixel is 7.3 mm there.
+/// A white square of 0.2 m in front of black, 2 m from the camera; a pixel is 7.3 mm there.
 frame::FrameSnapshot square_at(double x, double distance = 2) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -44,8 +44,8 @@ double linear_at(const image::Image16& image, int x) {
   return std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-// The shutter of 180 degrees closes at the frame: a square that moved by 40 pixels is seen over the last 20, and its
-// edges are ramps of light as long as that.
+// The 180 degree shutter closes at the frame: a square that moved by 40 pixels is visible over the last 20, and its
+// edges are ramps of that length.
 TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   const double pixel = 2 * 2 * std::tan(10 * std::numbers::pi / 180) / kInstantHeight;
   const frame::FrameSnapshot now = square_at(20 * pixel), before = square_at(-20 * pixel);
@@ -56,11 +56,11 @@ TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   const image::Image16 image = renderer.deep();
   const double white = linear_at(image, 110);
   EXPECT_GT(white, 0.8);
-  // 0.1 m are 14.2 pixels: the right edge went from 114.2 to 134.2, the left one from 85.8 to 105.8.
+  // 0.1 m are 14.2 pixels: the right edge moved from 114.2 to 134.2, the left one from 85.8 to 105.8.
   EXPECT_NEAR(linear_at(image, 124) / white, 0.5, 0.06);
   EXPECT_NEAR(linear_at(image, 119) / white, 0.75, 0.06);
   EXPECT_NEAR(linear_at(image, 95) / white, 0.5, 0.06);
-  // Without steps: of four sharp pictures alone some are off by 0.12.
+  // The ramp has no steps: with four sharp pictures alone some pixels are off by 0.12.
   for (int x = 116; x < 133; ++x) EXPECT_NEAR(linear_at(image, x) / white, (134.2 - x - 0.5) / 20, 0.05) << x;
   EXPECT_LT(linear_at(image, 84), 0.02);
   EXPECT_LT(linear_at(image, 136), 0.02);
@@ -73,8 +73,7 @@ TEST(Instants, NothingIsBlurredUnasked) {
   EXPECT_TRUE(instants(0, false, 16).empty());
 }
 
-// Of what lies at twice the distance that is sharp, an edge is as wide as the lens looks from there: the aperture times
-// half, in the plane that is sharp.
+// For an object at twice the focus distance, the edge blur has half the aperture's width, measured in the focus plane.
 TEST(Instants, LensBlursWhatIsOutOfFocus) {
   frame::FrameSnapshot snapshot = square_at(0, 4);
   snapshot.cameras[0].aperture = 0.5;  // 12 mm / tan 10 / 0.5 = 136 mm wide
@@ -106,7 +105,7 @@ TEST(Looks, ClayHasNoColorsAndWireShowsEdges) {
   EXPECT_GT(pixel[2], 100);
   settings.look = Look::wire;
   const image::Image wire = Renderer(settings).draw(snapshot);
-  // The diagonal of the two triangles goes through the middle.
+  // The diagonal of the two triangles passes through the middle.
   int darkest = 255;
   for (int x = 95; x < 105; ++x) darkest = std::min<int>(darkest, wire.pixel(x, 50)[1]);
   EXPECT_LT(darkest, 0.75 * clay.pixel(100, 40)[1]);
@@ -134,12 +133,13 @@ TEST(Looks, ExposureIsInStops) {
     renderer.draw(snapshot);
     return linear_at(renderer.deep(), 100);
   };
-  // The fitted curve of sRGB is off by 0.1 levels, 0.2 % here.
+  // The fitted curve of sRGB is off by 0.1 levels, which is 0.2 % here.
   EXPECT_NEAR(light(1) / light(0), 2, 0.01);
   EXPECT_NEAR(light(-1) / light(0), 0.5, 0.005);
 }
 
-// Chords of a circle of 1 cm: the middle of each is on it, to the fourth order of the angle; 0.26 rad: 1.1e-4 of it.
+// Chords of a circle of 1 cm: the middle of each must lie on the circle, to fourth order of the angle; for 0.26
+// rad 1.1e-4 of the radius.
 TEST(Refinement, MiddlesOfChordsLieOnTheCircle) {
   const double angle = std::numbers::pi / 12;
   const double radius = 0.01;  // m
@@ -147,7 +147,7 @@ TEST(Refinement, MiddlesOfChordsLieOnTheCircle) {
   const Middle half = middle(a, b, from, to, 1e-3);
   EXPECT_NEAR(half.position.norm(), radius, 1.5e-4 * radius);
   EXPECT_LT((half.normal - half.position.normalized()).norm(), 1e-12);
-  // A plane stays one, and normals that have nothing to do with it make no spike.
+  // A plane stays plane, and inconsistent normals cause no spike.
   EXPECT_LT((middle(a, b, Vec3::UnitZ(), Vec3::UnitZ(), 1e-3).position - 0.5 * (a + b)).norm(), 1e-15);
   EXPECT_LE((middle(from, to, (b - a).normalized(), Vec3::UnitZ(), 3e-4).position - 0.5 * (from + to)).norm(),
             3.001e-4);
@@ -159,7 +159,7 @@ TEST(Refinement, NeighboursShareTheirMiddles) {
   refinement.update(triangles, 4);
   EXPECT_EQ(refinement.edges().size(), 5u);
   ASSERT_EQ(refinement.triangles().size(), 8u);
-  // Edge 1 2 is halved once: its middle is in three small triangles of either side.
+  // Edge 1 2 is halved once: its middle belongs to three small triangles on each side.
   std::array<int, 9> uses{};
   for (const Triangle& triangle : refinement.triangles())
     for (const Index vertex : triangle) ++uses[vertex];

@@ -23,13 +23,13 @@ View test_view() {
   return view;
 }
 
-/// The world position that is drawn at a place of the picture [pixels], `distance` metres away.
+/// World position at a place of the picture [pixels], at this distance [m].
 Vec3 seen_at(double x, double y, double distance) {
   return distance *
          Vec3(2 * x / kOutlinedWidth - 1, 1, (2 * y / kOutlinedHeight - 1) * kOutlinedHeight / kOutlinedWidth);
 }
 
-/// A mesh with what the geometry buffer would show of it, and its flat colour.
+/// A mesh with its flat colour and its content of the geometry buffer.
 struct Thing {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
@@ -41,7 +41,7 @@ struct Scene {
   std::vector<Seen> seen = std::vector<Seen>(kOutlinedWidth * kOutlinedHeight, Seen{100, kNothing});
   std::vector<std::uint64_t> picture = std::vector<std::uint64_t>(kOutlinedWidth * kOutlinedHeight, kBlack);
 
-  /// Adds a thing that covers the pixels for which `covers(x, y)` of their centre is true.
+  /// Adds a thing that covers the pixels for whose centre `covers(x, y)` is true.
   template <class Covers>
   void add(const Thing& thing, float distance, const Covers& covers, float back = 0) {
     things.push_back(thing);
@@ -70,8 +70,8 @@ Thing quad(double x0, double y0, double x1, double y1, double distance, std::uin
           color};
 }
 
-// Eight samples, no two in one eighth of the pixel's width: an edge at any place covers them to half a sample. Added
-// over a row of pixels, that is the width of the quad.
+// Eight samples, no two in the same eighth of the pixel's width: for an edge at any position the covered fraction is
+// exact to half a sample. Summed over a row of pixels this gives the width of the quad.
 TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
   for (const double edge : {20.0625, 20.3, 20.5, 20.8, 21.0}) {
     Scene scene;
@@ -86,12 +86,12 @@ TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
   }
 }
 
-// Two sheets half a millimetre apart at 2 m: 1 / distance has no step that counts, but their numbers differ.
+// Two sheets half a millimetre apart at 2 m: 1 / distance has no significant step, but their ids differ.
 TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
   Scene scene;
   scene.add(quad(0, 0, kOutlinedWidth, kOutlinedHeight, 2.0005, 0x404040404040), 2.0005f,
             [](double, double) { return true; });
-  // Its border rises one pixel in eight.
+  // The border of the sheet rises by one pixel in eight.
   const auto border = [](double x) { return 20 + x / 8; };
   const Thing sheet{{seen_at(0, 0, 2), seen_at(kOutlinedWidth, 0, 2),
                      seen_at(kOutlinedWidth, border(kOutlinedWidth), 2), seen_at(0, border(0), 2)},
@@ -99,7 +99,7 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
                     kWhite};
   scene.add(sheet, 2, [&](double x, double y) { return y < border(x); });
   scene.smooth();
-  // Each column is covered up to the border at its middle; a sample counts 1/8.
+  // The column is covered up to the border at its middle; each sample counts 1/8.
   for (int x = 8; x < 88; ++x) {
     double covered = 0;
     for (int y = 0; y < kOutlinedHeight; ++y) covered += (scene.red(x, y) - 64) / 191.0;
@@ -108,7 +108,7 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
 }
 
 TEST(Outlines, TheBackOfASheetEndsAgainstItsFront) {
-  // Folded along a line: the same surface, as far away, once from behind.
+  // A sheet folded along a line: the same surface at the same distance, on one side seen from behind.
   Scene scene;
   Thing folded{{seen_at(10, 10, 2), seen_at(40.5, 10, 2), seen_at(40.5, 50, 2), seen_at(10, 50, 2)},
                {{0, 1, 2}, {0, 2, 3}},
@@ -128,8 +128,8 @@ TEST(Outlines, TheBackOfASheetEndsAgainstItsFront) {
   EXPECT_EQ(scene.red(41, 30), 0);
 }
 
-// A quad over all of the picture, cut into its triangles along a line through one of the samples, to rounding, at many
-// angles: that sample must not fall between them.
+// A quad that covers the whole picture is split into triangles along a line through a sample, at many angles. To
+// rounding, the sample must not fall between the triangles.
 TEST(Outlines, SampleOnACutBetweenTrianglesBelongsToOneOfThem) {
   const double x = 48 + 9 / 16.0, y = 32 + 5 / 16.0;
   for (int i = 0; i < 300; ++i) {
@@ -140,7 +140,7 @@ TEST(Outlines, SampleOnACutBetweenTrianglesBelongsToOneOfThem) {
                     kQuad,
                     kWhite};
     scene.add(cut, 2, [](double, double) { return true; });
-    // Something seen at another distance makes outlines in the middle, and something black to take colour from.
+    // A pixel at another distance makes outlines in the middle; its black colour would show.
     scene.seen[32 * kOutlinedWidth + 49] = {100, kNothing};
     scene.picture[32 * kOutlinedWidth + 49] = kBlack;
     scene.smooth();
@@ -169,7 +169,7 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
   }
 }
 
-// Two sides of a box that meet in an upright edge, white and grey, at x = 40.25: the same surface, as far away there.
+// Two sides of a box, white and grey, meet in a vertical edge at x = 40.25: one surface, equal distance there.
 TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
   Scene scene;
   const Thing box{{seen_at(10, 10, 3), seen_at(40.25, 10, 2), seen_at(40.25, 50, 2), seen_at(10, 50, 3),
@@ -179,9 +179,9 @@ TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
   scene.add(box, 2, [](double x, double y) { return x > 10 && x < 80 && y > 10 && y < 50; });
   for (int y = 10; y < 50; ++y) {
     for (int x = 10; x < 80; ++x) {
-      const double center = x + 0.5, share = center < 40.25 ? (center - 10) / 30.25 : (80 - center) / 39.75;
-      // 1 / distance is linear over the picture of each side.
-      scene.seen[y * kOutlinedWidth + x].distance = static_cast<float>(1 / (1 / 3.0 + share * (1 / 2.0 - 1 / 3.0)));
+      const double center = x + 0.5, fraction = center < 40.25 ? (center - 10) / 30.25 : (80 - center) / 39.75;
+      // 1 / distance is linear in the picture on each side.
+      scene.seen[y * kOutlinedWidth + x].distance = static_cast<float>(1 / (1 / 3.0 + fraction * (1 / 2.0 - 1 / 3.0)));
       if (center > 40.25) scene.picture[y * kOutlinedWidth + x] = 0x404040404040;
     }
   }
@@ -192,10 +192,10 @@ TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
 }
 
 TEST(Outlines, WhatReachesBehindTheViewerIsCutOff) {
-  // A strip on the ground one metre below that begins behind the viewer: it covers the lower part of the picture.
+  // A strip on the ground, one metre below, that begins behind the viewer and covers the lower part of the picture.
   Scene scene;
   const Thing strip{{Vec3(-50, -5, -1), Vec3(50, -5, -1), Vec3(50, 3.2, -1), Vec3(-50, 3.2, -1)}, kQuad, kWhite};
-  // One metre down at 3.2 m: 15 pixels below the middle.
+  // One metre below at 3.2 m: 15 pixels under the middle.
   for (int y = 0; y < 17; ++y) {
     const float distance = static_cast<float>(1 / ((32 - y - 0.5) / 48));
     for (int x = 0; x < kOutlinedWidth; ++x) {

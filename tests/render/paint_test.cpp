@@ -1,4 +1,4 @@
-// Pictures on surfaces: where they lie, how they shrink, and what they leave open.
+// Pictures on surfaces: position, minification, and transparency.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Settings painted_settings(Quality quality = Quality::final) {
   return result;
 }
 
-/// Fields in rows from the top, each of `size` x `size` pixels: llvmpipe's filter reaches over one of them.
+/// Fields in rows from the top, each of `size` x `size` pixels, so that llvmpipe's filter stays within one field.
 std::shared_ptr<const frame::Texture> texture(int columns, int rows,
                                               const std::vector<std::array<std::uint8_t, 4>>& fields, int size = 32) {
   frame::Texture made{columns * size, rows * size, {}};
@@ -42,7 +42,7 @@ std::shared_ptr<const frame::Texture> texture(int columns, int rows,
 constexpr std::array<std::uint8_t, 4> kRedPixel{180, 20, 20, 255}, kGreenPixel{20, 180, 20, 255},
     kBluePixel{20, 20, 180, 255}, kWhitePixel{180, 180, 180, 255}, kHolePixel{180, 20, 20, 0};
 
-/// A square of 0.5 m seen and lit straight on, which fills 0.687 of the picture; u runs right and v up, in metres.
+/// A square of 0.5 m, seen and lit from the front, which fills 0.687 of the picture; u runs right and v up, in metres.
 frame::FrameSnapshot painted_square(frame::ObjectKind kind, std::shared_ptr<const frame::Texture> picture,
                                     Alpha alpha) {
   frame::FrameSnapshot snapshot;
@@ -58,7 +58,7 @@ frame::FrameSnapshot painted_square(frame::ObjectKind kind, std::shared_ptr<cons
   return snapshot;
 }
 
-/// Whether a pixel, at shares of the picture from the left and the top, has about this colour.
+/// Expects a pixel, given by fractions of the picture from left and top, to have about this colour.
 testing::AssertionResult shows(const image::Image& image, double x, double y, const std::array<std::uint8_t, 4>& color,
                                double tolerance = 6) {
   const std::uint8_t* pixel = image.pixel(static_cast<int>(x * kPaintedSide), static_cast<int>(y * kPaintedSide));
@@ -68,7 +68,7 @@ testing::AssertionResult shows(const image::Image& image, double x, double y, co
   return testing::AssertionSuccess();
 }
 
-// Light of full strength, straight on: a surface comes out in its own colour (Picture.LitSurfaceHasItsOwnColor).
+// With frontal light of full strength a surface shows its own colour (Picture.LitSurfaceHasItsOwnColor).
 TEST(Paint, LiesWithItsTopUpwardAndItsLeftToTheLeft) {
   for (const auto kind : {frame::ObjectKind::cloth, frame::ObjectKind::character}) {
     const auto snapshot =
@@ -86,7 +86,9 @@ TEST(Paint, RepeatsInMetresOrLiesOnceOnItsColor) {
   auto& paint = const_cast<frame::Surface&>(*snapshot.surfaces[0]).appearance.paint;
   paint.texture_from_uv << 4, 0, 0, 0, 4, 0;  // tiles of 0.25 m: stripes of half of that
   const image::Image tiled = Renderer(painted_settings()).draw(snapshot);
-  const auto height = [](double v) { return 0.5 - 0.687 * (v - 0.5); };  // of a share of the square
+  const auto height = [](double v) {
+    return 0.5 - 0.687 * (v - 0.5);
+  };  // picture fraction of a fraction v of the square
   EXPECT_TRUE(shows(tiled, 0.5, height(0.125), kGreenPixel));
   EXPECT_TRUE(shows(tiled, 0.5, height(0.375), kRedPixel));
   EXPECT_TRUE(shows(tiled, 0.5, height(0.625), kGreenPixel));
@@ -100,13 +102,13 @@ TEST(Paint, RepeatsInMetresOrLiesOnceOnItsColor) {
 TEST(Paint, HolesShowWhatIsBehindThemInDrawingAndInShadow) {
   for (const Quality quality : {Quality::draft, Quality::final}) {
     auto snapshot = painted_square(frame::ObjectKind::cloth, texture(2, 1, {kHolePixel, kRedPixel}), Alpha::cutout);
-    // A white wall behind, in the light that comes through.
+    // A white wall behind it, in the transmitted light.
     add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0.5, 0), -Vec3::UnitY(), Vec3::UnitX(), 2)
         .appearance.color = Vec3(0.7, 0.7, 0.7);
     const image::Image image = Renderer(painted_settings(quality)).draw(snapshot);
     EXPECT_TRUE(shows(image, 0.67, 0.5, kRedPixel));
     EXPECT_TRUE(shows(image, 0.3, 0.5, kWhitePixel)) << "the wall, lit through the hole";
-    // From the other side: the shadow of its right half alone lies on the wall. A metre is 0.82 of the picture there.
+    // From the side: only the right half casts a shadow on the wall. A metre is 0.82 of the picture there.
     snapshot.cameras = {camera_at(Vec3(1.2, -1, 0), Vec3(0, 0.5, 0), 40)};
     const frame::Camera& camera = snapshot.cameras[0];
     const Vec3 forward = (camera.target - camera.position).normalized(), right = forward.cross(Vec3::UnitZ());
@@ -135,8 +137,8 @@ TEST(Paint, HalfTransparentClothIsHalfSeenFromAfar) {
       green += image.pixel(x, y)[1];
     }
   }
-  // Half of the samples show the wall, of which the veil lets half of the light through: its level is somewhere below
-  // 180; red is more than green by half of 160, as eight samples and sixteen thresholds have it.
+  // Half of the samples show the wall, in half of the light that the veil transmits: its level is below 180. Red
+  // exceeds green by half of 160, to the accuracy of eight samples and sixteen thresholds.
   EXPECT_NEAR((red - green) / count, 80, 12);
 }
 

@@ -1,4 +1,4 @@
-// Known shapes in known places: what the picture must show is worked out by hand.
+// Known shapes in known places: the expected picture is computed by hand.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -46,7 +46,7 @@ int count(const image::Image& image, const Predicate& predicate) {
   return pixels;
 }
 
-/// A square seen straight on from 2 m, and lit straight on.
+/// A square seen from the front at 2 m, with frontal light.
 frame::FrameSnapshot facing_square(frame::ObjectKind kind, double half, const Vec3& color) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -57,14 +57,14 @@ frame::FrameSnapshot facing_square(frame::ObjectKind kind, double half, const Ve
 }
 
 // A side of 2 h at distance d is h / (d tan(fov / 2)) of the picture's height: 200 * 0.3 / (2 tan 20) = 82.4 pixels.
-// Half a pixel along each of the four sides may fall either way.
+// Along each of the four sides half a pixel may count or not.
 TEST(Picture, SquareCoversThePixelsThatPerspectiveGives) {
   const double side = kPictureHeight * 0.3 / (2 * std::tan(20 * std::numbers::pi / 180));
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
     Renderer renderer(settings(quality));
     const image::Image image = renderer.draw(facing_square(frame::ObjectKind::obstacle, 0.3, kRed));
     EXPECT_NEAR(count(image, reddish), side * side, 2 * side) << static_cast<int>(quality);
-    // Centred: the middle of the sides, one pixel in and one out.
+    // The square is centred: test the middle of each side, one pixel inside and one outside.
     const int reach = static_cast<int>(side / 2);
     EXPECT_TRUE(reddish(image.pixel(kPictureWidth / 2 - reach + 1, kPictureHeight / 2)));
     EXPECT_FALSE(reddish(image.pixel(kPictureWidth / 2 - reach - 3, kPictureHeight / 2)));
@@ -87,7 +87,7 @@ TEST(Picture, NearerHidesFartherInEitherOrder) {
     frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::obstacle, 0.3, near_first ? kRed : kBlue);
     add_square(snapshot, frame::ObjectKind::cloth, Vec3::Zero(), -Vec3::UnitY(), Vec3::UnitX(), 0.3).appearance.color =
         near_first ? kBlue : kRed;
-    // The red one is 2 mm nearer, and the picture must tell.
+    // The red one is 2 mm nearer and must hide the other.
     for (Vec3& position : snapshot.states[near_first ? 0 : 1].positions) position.y() -= 0.002;
     const image::Image image = Renderer(settings()).draw(snapshot);
     EXPECT_TRUE(reddish(image.pixel(160, 100)));
@@ -95,8 +95,8 @@ TEST(Picture, NearerHidesFartherInEitherOrder) {
   }
 }
 
-// A tetrahedron, seen from outside and from within, with its fronts outside and inside. Light from the viewer's side
-// falls on its near side only; behind it and without it the backdrop is light grey.
+// A tetrahedron, seen from outside and from inside, with outward and inward fronts. Light from the viewer's side
+// reaches only the near side; behind the tetrahedron is the light grey backdrop.
 TEST(Picture, ClosedSurfacesAreSeenFromWithinAsWell) {
   for (const bool outward : {true, false}) {
     for (const bool within : {true, false}) {
@@ -121,7 +121,7 @@ TEST(Picture, ClosedSurfacesAreSeenFromWithinAsWell) {
 }
 
 // A matte surface that faces a light of intensity 1 shows its own colour. Tolerance: a rough highlight of f0 = 0.004
-// adds under 1 level, dithering and the fitted sRGB curve under 1.
+// adds less than 1 level, dithering and the fitted sRGB curve less than 1.
 TEST(Picture, MatteSurfaceFacingTheLightShowsItsOwnColor) {
   const Vec3 color(0.65, 0.35, 0.2);
   for (const auto kind : {frame::ObjectKind::obstacle, frame::ObjectKind::character, frame::ObjectKind::cloth}) {
@@ -132,7 +132,7 @@ TEST(Picture, MatteSurfaceFacingTheLightShowsItsOwnColor) {
   }
 }
 
-// At 60 degrees half of the light arrives, whatever the channel.
+// At 60 degrees half of the light arrives in each channel.
 TEST(Picture, ObliqueLightFallsWithTheCosine) {
   frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::obstacle, 0.3, kRed);
   snapshot.lights = {sun(Vec3(std::sqrt(3.0), 1, 0))};
@@ -173,7 +173,7 @@ TEST(Picture, ClothShowsItsTwoColorsOnItsTwoSides) {
   EXPECT_EQ(count(back, reddish), 0);
 }
 
-/// Floor seen from straight above at 4 m, field of view 40 degrees: 100 pixels are 4 tan 20 = 1.456 m.
+/// Floor seen vertically from 4 m, field of view 40 degrees: 100 pixels are 4 tan 20 = 1.456 m.
 frame::FrameSnapshot box_over_floor(const frame::Light& light) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -191,11 +191,11 @@ int brightness(const image::Image& image, double across, double along) {
   return image.pixel(x, y)[1];
 }
 
-// Light at 45 degrees moves the shadow of what is 0.5 m up by 0.5 m. Looking straight down leaves the roll open, so the
-// test tries which way the picture's right lies: the shadow is on one of four sides and nowhere else.
+// Light at 45 degrees displaces the shadow of an object at 0.5 m by 0.5 m. A vertical view leaves the roll undefined,
+// so the test determines the direction of the picture's right: the shadow must be on exactly one of four sides.
 TEST(Picture, ShadowLiesWhereTheLightPutsIt) {
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
-    // 1 cm is 2.7 pixels: the picture of soft light, a quarter of the size in preview, blurs its steps over two of its.
+    // 1 cm is 2.7 pixels. In preview soft light has a quarter of the size and blurs steps over two of its pixels.
     Settings large = settings(quality);
     large.width = 1280;
     large.height = 800;
@@ -217,7 +217,7 @@ TEST(Picture, ShadowLiesWhereTheLightPutsIt) {
   }
 }
 
-// A spot 2 m above the middle throws the square, 0.5 m up, as one of half side 0.2 * 2 / 1.5 = 0.267 m.
+// A spot 2 m above the middle casts the shadow of the square, at 0.5 m, with a half side of 0.2 * 2 / 1.5 = 0.267 m.
 TEST(Picture, SpotShadowGrowsWithDistance) {
   frame::Light spot;
   spot.kind = frame::Light::Kind::spot;
@@ -230,17 +230,17 @@ TEST(Picture, SpotShadowGrowsWithDistance) {
   large.width = 1280;
   large.height = 800;
   const image::Image image = Renderer(large).draw(snapshot);
-  // Outline of the square itself as the camera sees it: 0.2 * 4 / 3.5 = 0.229 m on the floor.
+  // The camera sees the square itself with a half side of 0.2 * 4 / 3.5 = 0.229 m on the floor.
   EXPECT_LT(brightness(image, 0.248, 0), 60);
   EXPECT_GT(brightness(image, 0.30, 0), 120);
   EXPECT_LT(brightness(image, 0, 0.248), 60);
   EXPECT_GT(brightness(image, 0, 0.30), 120);
-  // Outside the cone of 45 degrees to each side nothing is lit.
+  // Outside the cone of 45 degrees to each side there is no light.
   EXPECT_LT(brightness(image, 2.05, 0), 250);
 }
 
-// A strip 2 m tall that ends 2 cm above the floor hides next to nothing of the sky from a floor 0.5 m and more away
-// (form factor of a strip 2 cm wide: under 0.3 percent), however deep below it the floor lies.
+// A strip 2 m tall that ends 2 cm above the floor hides almost no sky from floor at least 0.5 m away (form factor of a
+// strip 2 cm wide: below 0.3 percent), at any depth of the floor below it.
 TEST(Picture, ThinStripAboveTheFloorLeavesTheSkyOpenAllRound) {
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
     frame::FrameSnapshot snapshot = box_over_floor(sun(-Vec3::UnitZ()));
@@ -253,16 +253,16 @@ TEST(Picture, ThinStripAboveTheFloorLeavesTheSkyOpenAllRound) {
     snapshot.cameras = {camera_at(Vec3(0, -3, 5), Vec3::Zero(), 40)};
     const image::Image image = Renderer(settings(quality)).draw(snapshot);
     for (const int x_pixel : {20, 80, 120, 200, 240, 300}) {
-      // 2.4 m away, at the borders of the picture, the studio falls off by 4 levels.
+      // 2.4 m away, at the borders of the picture, the studio light falls off by 4 levels.
       const double tolerance = std::abs(x_pixel - 160) > 100 ? 5 : 3;
       EXPECT_NEAR(image.pixel(x_pixel, 100)[1], 255 * snapshot.surfaces[0]->appearance.color[1], tolerance) << x_pixel;
     }
   }
 }
 
-// Sky 0.6 and a light of 0.4 whose cosine is 0.6 leave the floor at 0.84: direct light is turned up until it is its own
-// colour again. Three times that light is too much, and stays so. 4 levels: half a metre from its middle the
-// square hides 5 percent of the sky and the studio falls off by 1, together 3 levels; dither adds one.
+// Sky 0.6 and a light of 0.4 with cosine 0.6 give the floor 0.84: direct light is amplified until the floor shows its
+// own colour. Three times that light is too much and is not reduced. Tolerance 4 levels: half a metre from the middle
+// the square hides 5 percent of the sky and the studio falls off by 1, together 3 levels; dither adds one.
 TEST(Picture, FloorIsExposedToItsOwnColorAndNeverDarkened) {
   auto stage = std::make_shared<frame::Stage>();
   stage->sky_color = Vec3(1, 1, 1);
@@ -278,7 +278,7 @@ TEST(Picture, FloorIsExposedToItsOwnColorAndNeverDarkened) {
     const std::uint8_t* pixel = image.pixel(185, 75);
     return Vec3(pixel[0], pixel[1], pixel[2]);
   };
-  // 0.4 * 0.6 = 0.24 comes to 0.4 by a gain of 1.67.
+  // 0.4 * 0.6 = 0.24 is raised to 0.4 by a gain of 1.67.
   EXPECT_LE((draw(1) - 255 * Vec3(0.7, 0.6, 0.5)).cwiseAbs().maxCoeff(), 4) << draw(1).transpose();
   // 0.6 + 3 * 0.24 = 1.32.
   const Vec3 bright = image::srgb_from_linear(Vec3(1.32 * image::linear_from_srgb(Vec3(0.7, 0.6, 0.5))));
@@ -296,7 +296,7 @@ TEST(Picture, ThinSheetDoesNotShadeItself) {
       highest = std::max<int>(highest, image.pixel(x, y)[1]);
     }
   }
-  // The angle of view changes the highlight by a level or two across the sheet; acne would be tens.
+  // The viewing angle changes the highlight by a level or two across the sheet; shadow acne by tens of levels.
   EXPECT_LE(highest - lowest, 6);
   EXPECT_GT(lowest, 60);
 }
@@ -305,13 +305,13 @@ TEST(Picture, LayerTwoMillimetresAboveShadesTheOneBelow) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
   add_square(snapshot, frame::ObjectKind::cloth, Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 0.3);
-  // 0.8 mm a pixel: the shadow is some five pixels wide.
+  // A pixel is 0.8 mm: the shadow is about five pixels wide.
   snapshot.cameras = {camera_at(Vec3(0, -0.15, 0.15), Vec3::Zero(), 40)};
   snapshot.lights = {sun(Vec3(0.2, 0.95, -0.3))};
   Renderer renderer(settings());
   const int open = renderer.draw(snapshot).pixel(160, 100)[1];
-  // Its edge is 3 mm from the middle, on the side of the light; light falling 0.3 for every 0.95 along y carries the
-  // shadow 6.3 mm on, past the middle.
+  // The edge is 3 mm from the middle, toward the light. The light falls by 0.3 for each 0.95 along y, so that the
+  // shadow extends 6.3 mm further, past the middle.
   add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, -0.103, 0.002), Vec3::UnitZ(), Vec3::UnitX(), 0.1);
   const int shaded = renderer.draw(snapshot).pixel(160, 100)[1];
   EXPECT_GT(open, 90);
@@ -330,7 +330,7 @@ TEST(Picture, HeatShowsTheEndsAndTheMiddleOfTheScale) {
     const image::Image image = renderer.draw(snapshot);
     const Vec3 expected = image::srgb_from_linear(image::heat_color(share));
     for (int channel = 0; channel < 3; ++channel) {
-      // Brighter than 0.8 the tone curve bends: the pale end is compared below that only.
+      // Above 0.8 the tone curve bends: the bright end is compared only below that.
       if (image::linear_from_srgb(expected.maxCoeff()) > 0.8) continue;
       EXPECT_NEAR(image.pixel(160, 100)[channel], 255 * expected[channel], 4) << share << " " << channel;
     }
@@ -364,7 +364,7 @@ TEST(Picture, SameSnapshotGivesSameBytesWhateverWasDrawnBefore) {
   CameraPath path("", settings().aspect());
   path.see(snapshot);
   path.find();
-  second.look_through(path);
+  second.set_camera_path(path);
   second.draw(other);
   const image::Image a = first.draw(snapshot), b = second.draw(snapshot), c = first.draw(snapshot);
   EXPECT_EQ(a.rgb, b.rgb);
@@ -383,14 +383,14 @@ TEST(PictureChild, DISABLED_PrintsItsHash) {
 }
 
 std::string hash_with_threads(int threads) {
-  // The driver reads its thread count once a process.
+  // The driver reads the number of threads once per process.
   const std::string command = "LP_NUM_THREADS=" + std::to_string(threads) +
                               " /proc/self/exe --gtest_also_run_disabled_tests "
                               "--gtest_filter=PictureChild.DISABLED_PrintsItsHash";
   char path[4096];
   const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
   std::string whole = command;
-  // Quoted: the folder's name may hold a space.
+  // Quoted, because the name of the folder may contain a space.
   whole.replace(whole.find("/proc/self/exe"), 14, "'" + std::string(path, static_cast<std::size_t>(length)) + "'");
   FILE* pipe = popen(whole.c_str(), "r");
   std::string found;
@@ -428,11 +428,11 @@ TEST(Picture, OddSnapshotsAreDrawn) {
   EXPECT_THROW(renderer.draw(broken), Error);
 }
 
-// Whatever runs beside it: the process less what another thread burns, of which threads of TBB that look for work in
-// vain take a few percent.
+// Other threads do not count: the expected time is that of the process minus that of a busy thread. Idle TBB threads
+// that search for work add a few percent.
 TEST(Picture, TimesAreThoseOfDrawingAlone) {
   Renderer renderer(settings());
-  renderer.draw(busy_scene());  // makes the shaders
+  renderer.draw(busy_scene());  // compiles the shaders
   std::atomic<bool> stop = false;
   std::atomic<double> burnt = 0;
   std::thread beside([&] {
@@ -467,7 +467,7 @@ TEST(Picture, SizesOutsideTheDriversRangeAreErrors) {
   }
 }
 
-/// nullptr where the library of this backend is not there.
+/// Returns nullptr if the library of this backend is missing.
 std::unique_ptr<Renderer> renderer_by(Backend backend, const char* library) {
   Settings wanted = settings();
   wanted.backend = backend;
@@ -479,7 +479,7 @@ std::unique_ptr<Renderer> renderer_by(Backend backend, const char* library) {
   }
 }
 
-// A machine needs one of the two.
+// A machine needs only one of the two.
 TEST(Backend, EglDrawsTheSamePictureAsOSMesaWhereBothAreThere) {
   const auto osmesa = renderer_by(Backend::osmesa, "libOSMesa.so.8"), egl = renderer_by(Backend::egl, "libEGL.so.1");
   if (!osmesa || !egl) GTEST_SKIP() << "only one of OSMesa and EGL is there";

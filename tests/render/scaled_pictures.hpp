@@ -1,4 +1,4 @@
-// Pictures of one view in several sizes, for what has to look alike in all of them.
+// Pictures of one view in several sizes, for content that must look alike in all of them.
 #pragma once
 
 #include "render/renderer.hpp"
@@ -15,7 +15,7 @@ inline image::Image drawn(const frame::FrameSnapshot& snapshot, int scale, Quali
   return Renderer(settings).draw(snapshot);
 }
 
-/// Of the picture's green, mean over a block of pixels.
+/// Mean green level of a block of pixels.
 inline double mean(const image::Image& image, int x0, int y0, int size) {
   double sum = 0;
   for (int y = y0; y < y0 + size; ++y)

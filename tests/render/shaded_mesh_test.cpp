@@ -26,13 +26,13 @@ double worst_sphere_normal(int n) {
   double worst = 0;
   for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
     const Vec3 radial = (snapshot.states[0].positions[mesh.source[v]] - center) / 0.7;
-    // Towards the poles the triangles round a vertex are no longer alike, and the error is of first order.
+    // Toward the poles the triangles around a vertex become unequal, and the error is of first order.
     if (std::abs(radial.z()) < 0.7) worst = std::max(worst, (mesh.normals[v] - radial).norm());
   }
   return worst;
 }
 
-// Second order in the mesh width: measured 0.0088 at n = 24, limit twice that; halving the width divides by four.
+// Second order in the mesh width: measured 0.0088 at n = 24, limit twice that; half the width, a quarter of the error.
 TEST(ShadedMesh, NormalsOfASphereAreRadialToSecondOrder) {
   const double coarse = worst_sphere_normal(24), fine = worst_sphere_normal(48);
   EXPECT_LT(coarse, 0.018);
@@ -90,14 +90,14 @@ TEST(ShadedMesh, OnlyASurfaceWithoutBordersIsClosed) {
   const std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   EXPECT_TRUE(is_closed(tetrahedron));
   EXPECT_FALSE(is_closed(std::span(tetrahedron).first(3)));
-  // One triangle the wrong way round, one twice, and none.
+  // One triangle is inverted; one is duplicated and one is missing.
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {2, 0, 3}}));
   EXPECT_FALSE(is_closed({}));
 }
 
-// A sphere of 16 columns, its terminator in the middle of the picture: faces beyond which the light goes shade those
-// that still face it, unless light is asked for at the sphere.
+// A sphere of 16 columns, its terminator in the middle of the picture: self-shadowing of coarse faces would darken
+// faces that still face the light, unless the light is evaluated on the smooth sphere.
 TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -108,7 +108,7 @@ TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
   settings.width = 320;
   settings.height = 320;
   const image::Image image = Renderer(settings).draw(snapshot);
-  // 142 pixels are its radius. Below a cosine of 0.06 direct light fades out.
+  // The radius is 142 pixels. Below a cosine of 0.06 direct light fades out.
   for (int x = 70; x < 148; ++x) {
     const double cosine = (160 - (x + 0.5)) / 142;
     const Vec3 shown = image::srgb_from_linear(cosine * image::linear_from_srgb(Vec3::Constant(0.8)));

@@ -1,4 +1,4 @@
-// What shadow maps are fitted to, and how far spots reach.
+// The extent of shadow maps, and the range of spots.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ frame::Light lamp(const Vec3& position, const Vec3& target, double cone_angle) {
   return spot;
 }
 
-/// Corners of a level square.
+/// Corners of a horizontal square.
 std::vector<Vec3> level(const Vec3& center, double half) {
   std::vector<Vec3> corners;
   for (const double x : {-half, half})
@@ -40,7 +40,7 @@ bool holds(const ShadowView& map, const Vec3& place) {
   return clip.head<2>().cwiseAbs().maxCoeff() < clip.w();
 }
 
-// Casters 20 m wide, of which a corner of 1 m is in view: a quarter of each side, and 1/32 more at each of its edges.
+// Casters 20 m wide, of which a corner of 1 m is visible: a quarter of each side, and 1/32 more at each edge.
 TEST(ShadowFit, MapsHoldWhatIsInViewAndLittleMore) {
   const std::vector<Vec3> casters = level(Vec3(0, 0, 1), 10);
   const InView near{level(Vec3(9.5, 9.5, 0), 0.5), {}};
@@ -50,13 +50,13 @@ TEST(ShadowFit, MapsHoldWhatIsInViewAndLittleMore) {
                      some = fit_shadow(light, casters, &near, Vec3::UnitY(), kTexels);
     for (const Vec3& place : near.places) EXPECT_TRUE(holds(some, place)) << spot;
     EXPECT_NEAR(some.texel_metres / all.texel_metres, 0.25, 0.02) << spot;
-    // As wide in metres, with more texels.
+    // The same penumbra in metres, with more texels.
     EXPECT_NEAR(some.penumbra_uv.x() * some.texel_metres, all.penumbra_uv.x() * all.texel_metres,
                 0.01 * all.penumbra_uv.x() * all.texel_metres);
   }
 }
 
-// A lamp 2 m up that opens by 90 degrees lights 4 m; what there is to cast shadows, 1 m up, covers a quarter of that.
+// A lamp at 2 m with a cone of 90 degrees lights 4 m; the shadow casters, at 1 m, cover a quarter of that.
 TEST(ShadowFit, ASpotsMapFitsItsCasters) {
   const ShadowView map =
       fit_shadow(lamp(Vec3(0, 0, 2), Vec3::Zero(), 90), level(Vec3(0, 0, 1), 0.25), nullptr, Vec3::UnitY(), kTexels);
@@ -64,7 +64,7 @@ TEST(ShadowFit, ASpotsMapFitsItsCasters) {
   EXPECT_NEAR(map.texel_metres, 1.0 / kTexels, 0.1 / kTexels);
 }
 
-// Half of the picture's height is 1 m at 2 m.
+// Half of the picture's height is 1 m at a distance of 2 m.
 TEST(ShadowFit, WhatSticksOutOfThePictureIsCutOffAtItsBorder) {
   const View view = make_view(camera_at(Vec3(0, -2, 0), Vec3::Zero(), 2 * 180 / std::numbers::pi * std::atan(0.5)),
                               Vec3::UnitZ(), 1, Box3(Vec3(-1, -1, -1), Vec3(1, 1, 1)), std::nullopt);
@@ -85,7 +85,8 @@ TEST(ShadowFit, WhatSticksOutOfThePictureIsCutOffAtItsBorder) {
   EXPECT_LT((bounds.max() - Vec3(1, 0, 1)).norm(), 1e-9);
 }
 
-// Twice as far from the lamp as its target comes a quarter. Tolerance as in Picture.ObliqueLightFallsWithTheCosine.
+// At twice the distance of the target a quarter of the light arrives. Tolerance as in
+// Picture.ObliqueLightFallsWithTheCosine.
 TEST(SpotLight, FallsWithTheSquareOfTheDistanceFromItsTarget) {
   const Vec3 color(0.7, 0.5, 0.3);
   for (const double distance : {2.0, 4.0}) {
@@ -104,10 +105,10 @@ TEST(SpotLight, FallsWithTheSquareOfTheDistanceFromItsTarget) {
   }
 }
 
-// Two renderers that draw at the same time have not taken more than the process. The threads of the rasteriser are
-// asked when a picture begins, as of their last tick: a hundredth of a second each at most. Nor much less: what the
-// process does beside the pictures, to check and to free, is 0.3 to 0.6 % of its time (eleven runs); ten times that is
-// allowed.
+// Two renderers that draw at the same time must not report more time than the process used. The times of the rasteriser
+// threads are read at the start of a picture, as of their last tick: an error of at most a hundredth of a second each.
+// They must not report much less either: other work of the process, checks and deallocation, takes 0.3 to 0.6 % of its
+// time (eleven runs); ten times that is allowed.
 TEST(DrawingTime, OfRenderersThatDrawAtTheSameTimeIsCountedOnce) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -117,7 +118,7 @@ TEST(DrawingTime, OfRenderersThatDrawAtTheSameTimeIsCountedOnce) {
   Settings settings;
   settings.threads = 1;
   Renderer one(settings), other(settings);
-  one.draw(snapshot);  // makes the shaders
+  one.draw(snapshot);  // compiles the shaders
   other.draw(snapshot);
   const double before = process_cpu_seconds();
   constexpr int kPictures = 4;

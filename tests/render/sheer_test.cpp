@@ -1,4 +1,4 @@
-// Cloth that is seen through, and floors that reflect.
+// Translucent cloth, and floors that reflect.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace weft::render {
 namespace {
 
-/// A red wall, seen from the front.
+/// A red wall seen from the front.
 frame::FrameSnapshot wall() {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -24,7 +24,7 @@ frame::FrameSnapshot wall() {
   return snapshot;
 }
 
-/// A blue veil before it.
+/// Adds a blue veil in front of it.
 void hang(frame::FrameSnapshot& snapshot, double y, double sheer) {
   frame::Surface& veil =
       add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, y, 0), -Vec3::UnitY(), Vec3::UnitX(), 0.5);
@@ -41,13 +41,13 @@ TEST(Sheer, CloseWeavesHideWhatIsBehindAndOpenOnesHalf) {
   hang(dense, -1, 0.5);
   hang(veiled, -1, 0.9);
   const image::Image red = drawn(bare, 1), blue = drawn(dense, 1), both = drawn(veiled, 1);
-  // Of the dense one hardly any red is left; through chiffon half of that of the wall, which its shadow darkens.
+  // The dense veil transmits almost no red. Chiffon transmits half of the wall's red, which its shadow darkens further.
   EXPECT_LT(blue.pixel(80, 50)[0], 90);
   const double through = linear(both.pixel(80, 50)[0]) / linear(red.pixel(80, 50)[0]);
   EXPECT_GT(through, 0.25);
   EXPECT_LT(through, 0.55);
   EXPECT_GT(both.pixel(80, 50)[2], red.pixel(80, 50)[2] + 40);
-  // Beside it nothing has changed.
+  // Beside the veil nothing has changed.
   for (int k = 0; k < 3; ++k) EXPECT_EQ(both.pixel(8, 50)[k], red.pixel(8, 50)[k]);
 }
 
@@ -60,7 +60,7 @@ TEST(Sheer, TheOrderOfVeilsInTheSceneDoesNotMatter) {
   const image::Image a = drawn(front_first, 1), b = drawn(back_first, 1);
   for (int x = 20; x < 140; x += 5)
     for (int k = 0; k < 3; ++k) EXPECT_EQ(a.pixel(x, 50)[k], b.pixel(x, 50)[k]) << x;
-  // Two hide more than one.
+  // Two veils hide more than one.
   frame::FrameSnapshot one = wall();
   hang(one, -1, 0.9);
   EXPECT_LT(a.pixel(80, 50)[0], drawn(one, 1).pixel(80, 50)[0] - 10);
@@ -100,18 +100,18 @@ frame::FrameSnapshot ball_on_floor(double roughness) {
   return snapshot;
 }
 
-/// How red a pixel is.
+/// Excess of red over green of a pixel.
 int redness(const image::Image& image, int x, int y) {
   return image.pixel(x, y)[0] - image.pixel(x, y)[1];
 }
 
 TEST(Mirror, FloorsThatAreSmoothShowWhatStandsOnThem) {
   const image::Image smooth = drawn(ball_on_floor(0.1), 1), rough = drawn(ball_on_floor(0.6), 1);
-  // The ball's middle is 0.5 m above the floor, its picture as much below: both in the middle column.
+  // The centre of the ball is 0.5 m above the floor, its mirror image as far below: both in the middle column.
   const int mirrored_row = 50 + static_cast<int>(std::lround(0.7 / 4 / std::tan(15 * std::acos(-1.0) / 180) * 50));
   EXPECT_GT(redness(smooth, 80, mirrored_row), redness(rough, 80, mirrored_row) + 5);
   EXPECT_LE(std::abs(redness(smooth, 10, mirrored_row) - redness(rough, 10, mirrored_row)), 3);
-  // Only of final quality.
+  // Reflections are drawn only in final quality.
   EXPECT_LE(redness(drawn(ball_on_floor(0.1), 1, Quality::preview), 80, mirrored_row),
             redness(rough, 80, mirrored_row) + 3);
 }
@@ -129,7 +129,7 @@ TEST(Mirror, AViewFromBelowMeetsWhatTheFloorReflects) {
   view.view_from_world = look_along(view.eye, view.axes);
   view.clip_from_world = perspective(0.5, 0.3, 0.1, 100) * view.view_from_world;
   const View below = mirrored(view, floor);
-  // A point and the place of its mirror image: in the same column, rows counted from the other side, as far away.
+  // A point and its mirror image are in the same column, in rows counted from opposite sides, at the same distance.
   for (const Vec3& p : {Vec3(0.1, 0.2, 0.5), Vec3(-0.4, 1, 0.3)}) {
     const Vec3 image(p.x(), p.y(), 0.4 - p.z());
     const Eigen::Vector4d seen = view.clip_from_world * image.homogeneous(),
@@ -140,8 +140,8 @@ TEST(Mirror, AViewFromBelowMeetsWhatTheFloorReflects) {
   }
 }
 
-// Under a ball that touches the floor, in the shadow of a sheet, half of what averages the noise of occlusion is
-// missing. Steps that go to and fro from pixel to pixel: 1 level is seen, 5 where the blur is done once.
+// Under a ball that touches the floor, in the shadow of a sheet, half of the samples that average the noise of
+// occlusion are missing. Measured alternation from pixel to pixel: 1 level; 5 if the blur is done only once.
 TEST(Occlusion, HasNoStreaksWhereABallTouchesTheFloor) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();
@@ -165,9 +165,8 @@ TEST(Occlusion, HasNoStreaksWhereABallTouchesTheFloor) {
   EXPECT_LE(worst, 2);
 }
 
-// Down a column that crosses an edge once, light rises once: no line lies along the edge, on either side, that would
-// read as dashes where the edge runs nearly level. Steps back: 3 levels are seen; 17 where the edge is blurred in some
-// columns and searched for in others.
+// Along a column that crosses an edge once, light increases only: a line along a nearly horizontal edge would look
+// dashed. Measured decrease: 3 levels; 17 if the edge is blurred in some columns and searched for in others.
 TEST(Shadows, EdgesThatRunNearlyLevelAreNotDashed) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();

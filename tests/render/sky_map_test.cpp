@@ -5,8 +5,8 @@
 namespace weft::render {
 namespace {
 
-// Two level squares of half side 1 at heights 0.25 and 0.75 in a box of 2 x 2 x 1 with a margin of 1 round about, over
-// which the map is 4 m wide: 64 texels a metre.
+// Two horizontal squares of half side 1 at heights 0.25 and 0.75 in a box of 2 x 2 x 1. With a margin of 1 on each side
+// the map is 4 m wide: 64 texels a metre.
 TEST(SkyMap, TellsTheHighestAndTheLowestOverEachSpot) {
   const Box3 bounds(Vec3(-1, -1, 0), Vec3(1, 1, 1));
   const SkyView view = fit_sky(bounds, Vec3::UnitZ(), 1);

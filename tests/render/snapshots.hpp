@@ -20,7 +20,7 @@ inline frame::Surface& add_surface(frame::FrameSnapshot& snapshot, frame::Object
   return *surface;
 }
 
-/// Square of the given half side around `center`, facing `normal`; `across` is one of its directions.
+/// Adds a square of the given half side around `center`, facing `normal`; `across` is parallel to two of its sides.
 inline frame::Surface& add_square(frame::FrameSnapshot& snapshot, frame::ObjectKind kind, const Vec3& center,
                                   const Vec3& normal, const Vec3& across, double half) {
   const Vec3 x = half * across.normalized(), y = half * normal.cross(across).normalized();
@@ -28,7 +28,7 @@ inline frame::Surface& add_square(frame::FrameSnapshot& snapshot, frame::ObjectK
                      {{0, 1, 2}, {0, 2, 3}});
 }
 
-/// Sphere of n rings and 2 n columns; poles are points where n triangles have no area.
+/// Adds a sphere of n rings and 2 n columns; at each pole n triangles have zero area.
 inline frame::Surface& add_sphere(frame::FrameSnapshot& snapshot, const Vec3& center, double radius, int n) {
   std::vector<Vec3> positions;
   std::vector<std::array<Index, 3>> triangles;
@@ -66,7 +66,7 @@ inline frame::Light sun(const Vec3& direction) {
   return light;
 }
 
-/// Stage whose light is all direct, so that colours can be worked out by hand.
+/// Stage with direct light only, so that colours can be computed by hand.
 inline std::shared_ptr<frame::Stage> stage_without_sky() {
   auto stage = std::make_shared<frame::Stage>();
   stage->sky_intensity = 0;

@@ -16,7 +16,7 @@ float open_of(const SoftTexel& texel) {
   return (texel.surface_open - std::floor(texel.surface_open)) / kOpen;
 }
 
-/// Texels of one surface at an angle, everywhere lit; `open` of each place.
+/// Texels of one inclined surface, lit everywhere; `open` gives the openness of each place.
 template <class Open>
 std::vector<SoftTexel> slope(const Open& open) {
   std::vector<SoftTexel> texels;
@@ -26,8 +26,8 @@ std::vector<SoftTexel> slope(const Open& open) {
   return texels;
 }
 
-// Taps differ by texel such that any 5x5 hold the same 25 values: their mean is left, but where the border cuts the
-// window. Single precision: 24 sums of numbers below 1 round by 1e-6 at most.
+// The taps differ between texels so that any 5x5 window contains the same 25 values: only their mean remains, except
+// where the border cuts the window. Single precision: 24 sums of numbers below 1 round by 1e-6 at most.
 TEST(SoftBlur, NoiseOfTheTapsCancelsOnASlope) {
   const auto noise = [](int x, int y) { return static_cast<float>((5 * ((x + 2 * y) % 5) + (y + 2 * x) % 5)) / 25; };
   std::vector<SoftTexel> texels = slope(noise);
@@ -37,7 +37,7 @@ TEST(SoftBlur, NoiseOfTheTapsCancelsOnASlope) {
       EXPECT_NEAR(open_of(texels[y * kTexelsAcross + x]), 0.48, 1e-5) << x << " " << y;
 }
 
-// Also of what lies on a floor, as far away as it.
+// This holds also for an object that lies on a floor, at the same distance.
 TEST(SoftBlur, OutlinesAreKept) {
   std::vector<SoftTexel> texels = slope([](int, int) { return 0.25f; });
   for (int y = 0; y < kTexelsDown; ++y)
@@ -53,7 +53,7 @@ TEST(SoftBlur, OutlinesAreKept) {
   }
 }
 
-// Across and then down: of an edge the texels to both sides are told of, and what was told of before stays.
+// Across and then down: the texels on both sides of an edge are reported, and earlier reports are kept.
 TEST(SoftBlur, EdgesTooCrispForTheSmallPictureAreToldOf) {
   std::vector<SoftTexel> texels = slope([](int, int) { return 1.0f; });
   for (int y = 0; y < kTexelsDown; ++y) {

@@ -1,4 +1,4 @@
-// Looks of bodies: metal, a clear coat, and pictures on floors.
+// Appearance of bodies: metal, a clear coat, and pictures on floors.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -51,7 +51,7 @@ Range green_of(const image::Image& image) {
 }
 
 TEST(Metal, ScattersNoLight) {
-  // The sun shines from the left, and nothing else: what faces the camera mirrors the dark.
+  // The sun from the left is the only light: the part that faces the camera reflects darkness.
   const auto middle = [](double metal) {
     frame::FrameSnapshot snapshot = ball(metal, 0, 0.1);
     snapshot.stage = stage_without_sky();
@@ -65,7 +65,7 @@ TEST(Metal, ScattersNoLight) {
 }
 
 TEST(Metal, ReflectsInItsOwnColor) {
-  // On a white ball, by how much more it shows of red than of green.
+  // On a white ball: excess of red over green.
   const auto redness = [](double metal, const Vec3& color) {
     frame::FrameSnapshot snapshot = ball(metal, 0, 0.3);
     const_cast<frame::Surface&>(*snapshot.surfaces[0]).appearance.color = color;
@@ -101,7 +101,7 @@ TEST(Coat, AndMetalAreNoneInClay) {
 }
 
 TEST(Look, OfOneBodyLeavesThatOfOthers) {
-  // Side by side; only the ball on the right is of metal.
+  // Two balls side by side; only the right one is metal.
   const auto pair = [](double metal) {
     frame::FrameSnapshot snapshot = ball(0, 0, 0.6);
     add_sphere(snapshot, Vec3(2, 0, 0), 0.5, 40).appearance.metal = metal;
@@ -113,11 +113,12 @@ TEST(Look, OfOneBodyLeavesThatOfOthers) {
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide / 2 - 10; ++x)
       for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(plain.pixel(x, y)[c] - metal.pixel(x, y)[c]));
-  EXPECT_LE(most, 2);  // metal scatters no light onto it
+  EXPECT_LE(most, 2);  // metal scatters no light onto the other ball
   EXPECT_NE(plain.rgb, metal.rgb);
 }
 
-/// A floor of 10 m with a picture of two by two fields on each metre, seen from above with its front below.
+/// A floor of 10 m with a picture of two by two fields on each metre, seen from above; the front of the scene is at the
+/// bottom of the picture.
 frame::FrameSnapshot tiled_floor() {
   constexpr std::array<std::array<std::uint8_t, 4>, 4> kFields{
       {{180, 20, 20, 255}, {20, 180, 20, 255}, {20, 20, 180, 255}, {180, 180, 180, 255}}};
@@ -133,7 +134,7 @@ frame::FrameSnapshot tiled_floor() {
     }
   floor.appearance.paint.texture = std::make_shared<const frame::Texture>(std::move(picture));
   floor.appearance.color = Vec3(0.5, 0.5, 0.5);
-  // Something to look at; a small thing above the picture's middle.
+  // A subject: a small object above the middle of the picture.
   add_sphere(snapshot, Vec3(0.5, 0.5, 0.02), 0.02, 6);
   snapshot.cameras = {camera_at(Vec3(0.5, 0.499, 3), Vec3(0.5, 0.5, 0), 18.4)};  // 0.97 m wide at the floor
   return snapshot;

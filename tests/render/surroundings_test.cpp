@@ -25,7 +25,7 @@ Surroundings surroundings_of(Look look, const Vec3& ground) {
   return surround(style_of(stage), stage, Vec3::UnitZ(), {&key, 1}, ground);
 }
 
-/// Light on matte white facing n, summed up over the sphere.
+/// Light on a matte white surface with normal n, summed over the sphere.
 Vec3 summed(const Surroundings& around, const Vec3& n) {
   constexpr int kRows = 180, kColumns = 360;
   Vec3 sum = Vec3::Zero();
@@ -40,8 +40,8 @@ Vec3 summed(const Surroundings& around, const Vec3& n) {
   return sum;
 }
 
-// Nine harmonics leave out a few percent of what narrow boxes give (Ramamoorthi and Hanrahan: 3 % on the mean, 9 % at
-// most). The light is of order 0.4; seen are 0.025.
+// Nine harmonics miss a few percent of the light of narrow boxes (Ramamoorthi and Hanrahan: 3 % on average, 9 % at
+// most). The light is about 0.4; the measured error is 0.025.
 TEST(Surroundings, IrradianceIsTheSumOverAllDirections) {
   for (const Look look : kLooks) {
     const Surroundings around = surroundings_of(look, Vec3(0.3, 0.2, 0.1));
@@ -54,7 +54,7 @@ TEST(Surroundings, IrradianceIsTheSumOverAllDirections) {
   }
 }
 
-// Sums over 24 rows of cells: ground of 0.5, which what faces the sky does not see, adds 0.0015.
+// Sums over 24 rows of cells: ground of 0.5, which a surface facing the sky does not see, adds 0.0015.
 TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
   for (const Look look : kLooks) {
     for (const double ground : {0.0, 0.5}) {
@@ -69,7 +69,7 @@ TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
   }
 }
 
-/// Bytes at the left border of a picture, which a sheet at this height neither covers nor shades.
+/// Bytes at the left border of a picture, which a sheet at this height neither covers nor shadows.
 std::vector<int> left_border(double height) {
   frame::FrameSnapshot snapshot;
   add_floor(snapshot);
@@ -89,7 +89,7 @@ TEST(Surroundings, AreThoseOfTheRunWhileASheetFalls) {
   EXPECT_EQ(left_border(2), left_border(0.2));
 }
 
-// A mirror sees the middle of a box as bright as it is, a rough surface sees it weaker and wider; all of it stays.
+// A mirror shows the middle of a box at its own brightness, a rough surface dimmer and wider; the sum is kept.
 TEST(Surroundings, BlurKeepsTheLightOfABox) {
   Surroundings around;
   around.boxes[0] = {Vec3(0.6, 0, 0.8), 40, Vec3(2, 1, 0.5)};
@@ -106,20 +106,20 @@ TEST(Surroundings, BlurKeepsTheLightOfABox) {
     }
     return sum / (kRows * kColumns);
   };
-  // A Gaussian of sharpness s holds 2 pi / s (1 - exp(-2 s)); that of the widest has s = 2.4.
+  // A Gaussian of sharpness s has the integral 2 pi / s (1 - exp(-2 s)); the widest has s = 2.4.
   EXPECT_NEAR(whole(0.05), 2 / (2 * 40.0), 1e-3);
   EXPECT_NEAR(whole(0.9), 2 / (2 * 40.0), 1e-3);
   EXPECT_LT(around.light(Vec3(0.6, 0, 0.8), 0.9).x(), 0.5);
 }
 
-/// Share of a cosine over a half sphere that a rectangle of 2a x 2b at a distance c takes, seen from below its middle:
-/// four times that of a corner (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-4).
+/// Fraction of a cosine lobe over a hemisphere that a rectangle of 2a x 2b at a distance c covers, seen from below its
+/// middle: four times that of a corner (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-4).
 double form_factor(double a, double b, double c) {
   const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
   return 4 / (2 * std::numbers::pi) * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
 }
 
-// Pieces count as discs: a few percent at twice their width.
+// Pieces are treated as discs: an error of a few percent at twice their width.
 TEST(BouncedLight, OfARectangleIsItsFormFactor) {
   BounceGrid grid(Box3(Vec3(-1, -1, 0), Vec3(1, 1, 1)), 5000);
   const Eigen::Array3i place = grid.counts / 2;
@@ -149,8 +149,8 @@ TEST(BouncedLight, OfARectangleIsItsFormFactor) {
   }
 }
 
-/// White floor before a wall 0.6 m wide and high, whose lower edge is at `height`, and perhaps a black shelf below
-/// that. The light comes level from the front and lights the wall alone.
+/// White floor in front of a wall 0.6 m wide and high with its lower edge at `height`, and optionally a black shelf
+/// below that. Horizontal light from the front lights only the wall.
 image::Image wall(double height, bool shelf) {
   frame::FrameSnapshot snapshot;
   auto stage = std::make_shared<frame::Stage>();
@@ -160,7 +160,7 @@ image::Image wall(double height, bool shelf) {
   const auto add = [&](const Vec3& center, const Vec3& normal, const Vec3& color) {
     auto& look = add_square(snapshot, frame::ObjectKind::cloth, center, normal, Vec3::UnitX(), 0.3).appearance;
     look.color = look.back_color = color;
-    // Matte: seen at this angle, fibres that stand out would add a quarter.
+    // No fuzz: at this angle protruding fibres would add a quarter.
     look.finish = {0, 0.5, 0, 0};
   };
   add(Vec3(0, 0, height + 0.3), -Vec3::UnitY(), Vec3(0.9, 0.3, 0.3));
@@ -173,15 +173,15 @@ image::Image wall(double height, bool shelf) {
   return Renderer(settings).draw(snapshot);
 }
 
-/// Light in the middle of the picture, which shows the floor 0.3 m before the wall.
+/// Light in the middle of the picture, which shows the floor 0.3 m in front of the wall.
 Vec3 light_on_floor(const image::Image& image) {
   const std::uint8_t* pixel = image.pixel(80, 50);
   return image::linear_from_srgb(Vec3(pixel[0], pixel[1], pixel[2]) / 255);
 }
 
-// What no light meets directly shows what a lit wall throws on it: within a tenth of the form factor, summed up over
-// the wall here. 1.08 to 1.09 of it were seen where the wall stands on the floor, for pieces of wall lie in the middle
-// of cells of 14 cm, 0.99 to 1.00 where it hangs. A shelf in between leaves less than a third.
+// Floor without direct light receives the light that a lit wall reflects, within a tenth of the form factor, summed
+// over the wall here. Measured: 1.08 to 1.09 of it where the wall stands on the floor, because pieces of wall lie in
+// the middle of cells of 14 cm; 0.99 to 1.00 where it hangs. A shelf in between leaves less than a third.
 TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
   for (const double height : {0.0, 0.4}) {
     double factor = 0;
@@ -215,11 +215,11 @@ TEST(Floor, IsSeenHoweverItsHeightIsRounded) {
     snapshot.cameras = {camera_at(Vec3(0, -2, 1.3 + 0.013 * i), Vec3::Zero(), 30)};
     snapshot.lights = {sun(-Vec3::UnitZ())};
     const image::Image image = renderer.draw(snapshot);
-    EXPECT_GT(image.pixel(8, 15)[1], 195) << i;  // 0.8 of 255; the backdrop has 178 and less
+    EXPECT_GT(image.pixel(8, 15)[1], 195) << i;  // 0.8 of 255 is 204; the backdrop has at most 178
   }
 }
 
-/// Light in the middle of a picture of grey floor, toward which a lamp behind it shines at 50 degrees.
+/// Light in the middle of a picture of grey floor, onto which a lamp behind it shines toward the viewer at 50 degrees.
 double floor_before_a_lamp(double roughness, Quality quality) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -241,8 +241,8 @@ double floor_before_a_lamp(double roughness, Quality quality) {
   return light_on_floor(Renderer(settings).draw(snapshot)).x();
 }
 
-// Facets of GGX that hide each other as Smith has it (Heitz, "Understanding the Masking-Shadowing Function in
-// Microfacet-Based BRDFs", 2014, Eq. 99), for which the program takes Hammon's shorter form: 9 % less here.
+// GGX facets with Smith masking (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014,
+// Eq. 99), for which the program uses Hammon's shorter form: 9 % less here.
 TEST(Floor, MirrorsALampWhereItShinesMoreThanOthers) {
   const double roughness = 0.55, alpha = roughness * roughness, cosine = std::cos(50 * std::numbers::pi / 180);
   const double head_on = 0.04 * (1 - 0.9 * alpha), fresnel = head_on + (1 - head_on) * std::pow(1 - cosine, 5);

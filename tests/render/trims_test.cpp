@@ -1,4 +1,4 @@
-// Hems, seams and the edge of cloth.
+// Hems, seams and edges of cloth.
 #include "render/trims.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace weft::render {
 namespace {
 
-/// n x n squares of two triangles each, 1 m wide; `parts`: the right half is another panel.
+/// n x n squares of two triangles each, 1 m wide; `parts`: the right half is a separate panel.
 frame::Surface sheet(int n, bool parts) {
   frame::Surface surface;
   for (int j = 0; j <= n; ++j)
@@ -38,7 +38,7 @@ TEST(Trims, AreDistancesFromBordersAndSeams) {
     EXPECT_NEAR(trim.from_border(), std::min({at.x(), at.y(), 1 - at.x(), 1 - at.y()}), 1e-6) << at.transpose();
     EXPECT_NEAR(trim.distance[Trim::seam], std::abs(at.x() - 0.5), 1e-6) << at.transpose();
   }
-  // A diagonal across a corner: both of its ends lie on the border.
+  // A diagonal across a corner: both of its ends are on the border.
   const Trim corner = trims.middle(0 + 1, 9);
   EXPECT_NEAR(corner.from_border(), 1.0 / 16, 1e-6);
   EXPECT_EQ(trims.rims().size(), 4U * 8);
@@ -60,8 +60,8 @@ TEST(Trims, PlacesAlongABorderGoOnFromEdgeToEdge) {
   EXPECT_EQ(jumps, 0) << "as each side has places of its own";
 }
 
-// Cells that are wider than high, cut by either diagonal: what is nearest to a corner changes within triangles. Between
-// its vertices each of both distances is linear, so that their minimum is exact everywhere.
+// Cells that are wider than high, split by either diagonal: the nearest border line near a corner changes within
+// triangles. Between the vertices both distances are linear, so that their minimum is exact everywhere.
 TEST(Trims, LinesTurnSharplyAtCorners) {
   frame::Surface surface = sheet(6, false);
   for (Vec2& at : surface.uv) at.x() *= 3;
@@ -84,7 +84,7 @@ TEST(Trims, LinesTurnSharplyAtCorners) {
   }
 }
 
-// Of edges and their middles, in whatever order the triangles come: at a vertex of a line two of its edges are as near.
+// For edges and their middles, in any order of the triangles: at a vertex of a line two of its edges are equally near.
 TEST(Trims, LinesGoOnThroughTheMiddlesOfTheirEdges) {
   frame::Surface surface = sheet(8, true);
   for (const std::size_t stride : {5U, 11U, 37U}) {
@@ -109,14 +109,14 @@ TEST(Trims, LinesGoOnThroughTheMiddlesOfTheirEdges) {
   }
 }
 
-// Two triangles of one panel that lie apart in it are sewn together by a dart.
+// Two triangles that are apart in one panel are joined by a dart.
 TEST(Trims, DartsAreSeams) {
   frame::Surface surface = sheet(2, true);
   surface.part_of_triangle.assign(surface.triangles.size(), 0);
   for (const Triangle& t : surface.triangles)
     surface.paint_uv.push_back({surface.uv[t[0]], surface.uv[t[1]], surface.uv[t[2]]});
   EXPECT_EQ(Trims(surface).at(4).distance[Trim::seam], kNoTrim);
-  // Cells 0 and 1 of the lower row: the one to the right is turned away around the upper end of their edge.
+  // Cells 0 and 1 of the lower row: the right one is rotated about the upper end of their common edge.
   for (std::size_t t : {2, 3})
     for (std::size_t k = 0; k < 3; ++k)
       if (surface.triangles[t][k] != 4) surface.paint_uv[t][k].x() += 0.1;
@@ -146,7 +146,7 @@ TEST(Trims, AStripAlongTheBorderFacesOutwardAndIsAsThickAsTheCloth) {
   EXPECT_NEAR(area, 4 * 0.01, 1e-12);
 }
 
-/// Cloth that fills the picture, leant back by 50 degrees, with a line of stitches (a seam) up or across its middle.
+/// Cloth that fills the picture, tilted back by 50 degrees, with a line of stitches (a seam) up or across its middle.
 frame::FrameSnapshot sewn_cloth(double distance, bool seam, Threads threads = Threads::plain) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -166,7 +166,7 @@ frame::FrameSnapshot sewn_cloth(double distance, bool seam, Threads threads = Th
   cloth.appearance.finish.threads = threads;
   for (frame::SurfacePart& part : cloth.parts) part.appearance = cloth.appearance;
   cloth.appearance.thickness = 1e-3;
-  cloth.appearance.hem = seam ? 0 : half - 0.008;  // so that its stitches are 1 cm from the middle, on both sides
+  cloth.appearance.hem = seam ? 0 : half - 0.008;  // puts the stitches 1 cm from the middle, on both sides
   snapshot.cameras = {camera_at(Vec3(0, -distance, 0), Vec3::Zero(), 30)};
   snapshot.lights = {sun(Vec3::UnitY())};
   return snapshot;
@@ -188,7 +188,7 @@ TEST(Trims, StitchesShowCloseByAndInFinalQualityOnly) {
   }
 }
 
-/// How many dark lines go across the middle of a picture.
+/// Counts the dark lines across the middle of a picture.
 int dark_lines(const image::Image& image) {
   const auto level = [&](int y) {
     double sum = 0;
@@ -197,14 +197,14 @@ int dark_lines(const image::Image& image) {
   };
   int lines = 0;
   for (int y = 5; y < 95; ++y) {
-    // Light falls off by less than a level over five pixels; a row takes five or more.
-    const bool least = level(y) < level(y - 1) && level(y) <= level(y + 1);
-    if (least && level(y) < std::min(level(y - 5), level(y + 5)) - 2) ++lines;
+    // Light varies by less than a level over five pixels; a row of stitches darkens by five levels or more.
+    const bool is_minimum = level(y) < level(y - 1) && level(y) <= level(y + 1);
+    if (is_minimum && level(y) < std::min(level(y - 5), level(y + 5)) - 2) ++lines;
   }
   return lines;
 }
 
-// Above and below the middle, from where both borders are as far away.
+// The hems lie above and below the middle, at the same distance from it.
 TEST(Trims, KnitsAreHemmedInTwoRows) {
   EXPECT_EQ(dark_lines(drawn(sewn_cloth(0.08, false), 1)), 2);
   EXPECT_EQ(dark_lines(drawn(sewn_cloth(0.08, false, Threads::knit), 1)), 4);
@@ -218,12 +218,12 @@ TEST(Trims, ThreadOfDenimHasAColorOfItsOwn) {
       for (int x = 40; x < 120; ++x) most = std::max(most, image.pixel(x, y)[0] - image.pixel(x, y)[2]);
     return most;
   };
-  // The cloth has 0.3 more red than blue, and so has its own thread; that of denim has 0.55.
+  // The cloth has 0.3 more red than blue, and so has its default thread; the thread of denim has 0.55 more.
   EXPECT_GT(reddest(Threads::denim), reddest(Threads::twill) + 20);
 }
 
-// From any distance a line of stitches is the mean of one drawn six times as fine: 0.4 to 2.6 levels are seen, 4.6
-// where lines are not filtered.
+// At any distance a line of stitches equals the mean of a picture of six times the resolution: measured difference 0.4
+// to 2.6 levels, 4.6 if lines are not filtered.
 TEST(Trims, StitchesHaveNoBeats) {
   constexpr int kFiner = 6;
   for (double distance = 0.26; distance < 21; distance *= 2.62) {
@@ -231,7 +231,7 @@ TEST(Trims, StitchesHaveNoBeats) {
     const image::Image image = drawn(snapshot, 1), finer = drawn(snapshot, kFiner);
     double squares = 0, farthest = 0;
     int count = 0;
-    // Within four pixels of the line.
+    // Compare within four pixels of the line.
     for (int y = 10; y < 90; ++y) {
       for (int x = 76; x < 84; ++x) {
         const double off = image.pixel(x, y)[1] - mean(finer, kFiner * x, kFiner * y, kFiner);

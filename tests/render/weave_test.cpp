@@ -1,4 +1,4 @@
-// Yarns of cloth, from near and far.
+// Yarns of cloth, seen from near and far.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace weft::render {
 namespace {
 
-/// Cloth that fills the picture, leant back by 50 degrees if not said otherwise, seen from a distance [m].
+/// Cloth that fills the picture, tilted back by `degrees`, seen from a distance [m].
 frame::FrameSnapshot leaning_cloth(double distance, double thread_spacing, Threads threads = Threads::plain,
                                    double degrees = 50) {
   frame::FrameSnapshot snapshot;
@@ -28,7 +28,7 @@ frame::FrameSnapshot leaning_cloth(double distance, double thread_spacing, Threa
   return snapshot;
 }
 
-// The level of the mean light in the middle of a picture: of light and dark threads that of the mean level is less.
+// The level of the mean linear light in the middle of a picture; the mean of the levels would be lower.
 double mean_light(const image::Image& image) {
   constexpr double kGamma = 2.2;
   double sum = 0;
@@ -40,13 +40,13 @@ double mean_light(const image::Image& image) {
 TEST(Weave, KeepsTheMeanColorNearAndFar) {
   const double bare = mean_light(drawn(leaning_cloth(1, 0), 1));
   for (const double spacing : {0.0001, 0.0006, 0.03})
-    // A picture of few threads shows some yarns more than others.
+    // A picture with few threads contains some yarns more often than others.
     EXPECT_NEAR(mean_light(drawn(leaning_cloth(1, spacing), 1)), bare, 4) << spacing;
   for (const Threads threads : {Threads::twill, Threads::denim, Threads::knit, Threads::none})
     EXPECT_NEAR(mean_light(drawn(leaning_cloth(1, 0.03, threads), 1)), bare, 4) << static_cast<int>(threads);
 }
 
-// How much alike a picture is to itself, moved by so many threads of eight pixels to the right and up: 1 if the same.
+// Correlation of a picture with itself, displaced by so many threads (of eight pixels) right and up; 1 if identical.
 double alike(const image::Image& image, int right, int up) {
   constexpr int kThread = 8;
   double mean = 0, square = 0, product = 0, count = 0;
@@ -61,7 +61,7 @@ double alike(const image::Image& image, int right, int up) {
   return product / square;
 }
 
-// Lines of a twill rise to the right, a plain weave is as alike both ways, stitches stand in columns.
+// The lines of a twill rise to the right, a plain weave is symmetric, stitches form columns.
 TEST(Weave, LiesAsTheThreadsOfTheFabricDo) {
   const double spacing = 8 * 2 * std::tan(15 * std::numbers::pi / 180) / 100;
   const auto seen = [&](Threads threads) { return drawn(leaning_cloth(1, spacing, threads, 0), 1); };
@@ -77,8 +77,9 @@ TEST(Weave, LiesAsTheThreadsOfTheFabricDo) {
   EXPECT_LT(alike(twill, 1, 0), 0.5);
 }
 
-// Where threads are below a pixel the picture is that of their mean, as one six times as fine says: no beats. Seen are
-// 0.4 to 1.3 levels, of which dither and the rounding to bytes make 0.4; without the fading 14 to 16.
+// If threads are smaller than a pixel, the picture equals their mean, as in a picture of six times the resolution,
+// without beats. Measured difference: 0.4 to 1.3 levels, of which dither and rounding to bytes make 0.4; without the
+// fading 14 to 16.
 TEST(Weave, HasNoBeats) {
   constexpr int kFiner = 6;
   constexpr double kSpacing = 0.0006;

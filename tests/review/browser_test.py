@@ -1,4 +1,4 @@
-"""The review page in headless Chromium, driven as a reader would. Usage: browser_test.py WEFT SOURCE_FOLDER"""
+"""The review page in headless Chromium, operated as by a reader. Usage: browser_test.py WEFT SOURCE_FOLDER"""
 
 import json
 import os
@@ -14,9 +14,9 @@ import zlib
 import webdriver
 
 WEFT, SOURCE = sys.argv[1:3]
-SKIPPED = 77  # told to ctest
+SKIPPED = 77  # exit code for ctest
 HOSTILE = "<img src=x onerror=alert(1)> & 'co'"
-FRAMES, STEP = 40, 4  # drawn: frames 0, 4, 8 up to 36, in which a falling band differs clearly
+FRAMES, STEP = 40, 4  # drawn frames: 0, 4, 8 up to 36, in which a falling band differs clearly
 PICTURES = FRAMES // STEP
 SIZE = (192, 108)
 
@@ -101,14 +101,14 @@ class Page(unittest.TestCase):
         self.settled()
 
     def settled(self):
-        """Waits until every picture on screen is the one that the controls name; returns the frame."""
+        """Waits until every picture on screen is the one that the controls select; returns the frame."""
         return int(self.browser.wait("""
             const viewer = document.querySelector('.viewer'), wanted = viewer.querySelector('.scrubber').value;
             const media = [...viewer.querySelectorAll('video, .layer img')];
             return media.length > 0 && media.every((m) => m.dataset.picture === wanted) && viewer.dataset.frame;"""))
 
     def shown(self, selector=".blend", size=SIZE):
-        """What is on screen, at the size of the video."""
+        """The screen content, at the size of the video."""
         import base64
         box = self.browser.run("const b = document.querySelector(arguments[0]).getBoundingClientRect();"
                                "return {x: b.x + scrollX, y: b.y + scrollY, width: b.width, height: b.height}", selector)
@@ -147,7 +147,7 @@ class Page(unittest.TestCase):
         self.assertEqual((order[-2:]), ["runs/soft-plain", f"runs/img-src-x-onerror-alert-1-co"])
 
     def sweep(self):
-        """Runs with the values 0.02, 0.01, 0.2 of one key and two of another, of which one is no scene; once for all tests."""
+        """Runs with the values 0.02, 0.01, 0.2 of one key and two of another, of which one is invalid; made once for all tests."""
         page = self.folder / "sweep/page"
         if not page.exists():
             subprocess.run([WEFT, "sweep", f"{SOURCE}/scenes/falling_band.toml", "-o", "sweep", "--quality", "draft", "--size", "64x36",
@@ -244,19 +244,19 @@ class Page(unittest.TestCase):
             self.browser.drag([(box[0] + box[2] / 2, box[1] + 50), (box[0] + box[2] * percent / 100, box[1] + 50)])
             share = self.browser.run("return document.querySelector('.stage').style.getPropertyValue('--split')")
             self.assertAlmostEqual(float(share.rstrip("%")), percent, delta=0.5)
-            # The reference, all of it, where the slider is at the left end.
+            # The slider at the left end shows only the reference.
             self.assertEqual(distance(self.shown(), self.stills[9]) < 3, percent == 0)
         self.browser.press("]", "]")
         self.assertEqual(self.browser.run("return document.querySelector('.split').value"), "10")
 
     def test_difference_of_equal_videos_is_dark_and_of_others_is_not(self):
         def brightest():
-            # Without the border, in which what lies around the picture has a share.
+            # Without the border, which mixes with the surroundings of the picture.
             return max(max(row[6:-6]) for row in self.shown()[2:-2])
 
         self.open_run("plain", "&view=difference&frame=36")
         self.browser.run("document.querySelector('.names').hidden = true")
-        # The dark end of the heat colours has a blue of 8. A browser tells that it has found a frame before it draws it.
+        # The dark end of the heat colours has a blue of 8. A browser reports a frame before it draws it.
         self.assertTrue(any(brightest() < 24 for _ in range(20)))
         self.open_run("soft-plain", "&view=difference&frame=36")
         self.browser.run("document.querySelector('.names').hidden = true")
@@ -344,7 +344,7 @@ class Page(unittest.TestCase):
         box = self.browser.run("const b = document.querySelector('.blend').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]")
         points = [(box[0] + box[2] * x, box[1] + box[3] * y) for x, y in ((0.25, 0.5), (0.5, 0.75), (0.75, 0.5))]
         self.browser.drag(points)
-        self.browser.press("m", *"a fold", "Tab", "Tab", "Enter")  # past the button that draws
+        self.browser.press("m", *"a fold", "Tab", "Tab", "Enter")  # past the draw button
         self.assertEqual(self.text(".note-list .at"), "frame 12")
         self.assertEqual(self.text(".downloads button"), "Download review.json for in: 1 new decision")
         self.assertEqual(self.text(".accept-line"), "weft accept ref/plain.mp4 in/soft/plain.mp4 --reason WHY")
@@ -353,7 +353,7 @@ class Page(unittest.TestCase):
         self.browser.press("a")
         self.assertEqual(self.text(".accept-line"), "weft accept ref/plain.mp4 in/soft/plain.mp4 --reason 'a fold'")
         self.browser.press("w")
-        self.open("?again#run=runs/soft-plain&frame=12")  # the browser keeps it
+        self.open("?again#run=runs/soft-plain&frame=12")  # the browser keeps the decision
         self.settled()
         self.assertEqual(self.text("[data-state][aria-pressed=true]"), "Needs work")
         self.assertEqual(self.browser.run("return document.querySelectorAll('.drawn .over').length"), 1)

@@ -1,4 +1,4 @@
-// Folders with files as `weft run` leaves them, the smallest that serve.
+// Folders with files as `weft run` writes them, as small as possible.
 #pragma once
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ class MadeRuns : public support::TestFolder {
                        output, more);
   }
 
-  /// A picture with a gray square on black, which moves to the right by two pixels from one frame to the next.
+  /// A picture with a gray square on black, which moves to the right by two pixels per frame.
   static image::Image picture(int frame, int gray = 200, int width = 64) {
     image::Image image(width, 36);
     for (int y = 12; y < 24; ++y) {

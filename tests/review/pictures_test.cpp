@@ -52,7 +52,7 @@ TEST_F(Pictures, OfAVideoAreThoseThatWereEncoded) {
   EXPECT_EQ(found.width, 64);
   EXPECT_EQ(numbers(found), (std::vector<long long>{0, 2, 4, 6, 8, 10, 12, 14, 16, 18}));
   for (const Tile& tile : found.tiles) {
-    // The square's left edge is at twice the number: within it bright, before it dark.
+    // The left edge of the square is at twice the picture number: bright inside, dark before it.
     const int edge = 2 * static_cast<int>(tile.picture);
     EXPECT_GT(tile.image.pixel(std::min(edge + 2, 63), 18)[1], 150) << tile.picture;
     if (edge > 4) {
@@ -121,7 +121,7 @@ TEST_F(Pictures, HeatOfWidePicturesKeepsItsBrightestPixel) {
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].heat.width, 500);
   const image::Image whole = compare::heat_map(compare::compare(dot, black, 4).flip);
-  // Pixel (1001, 20) is in the square of four at (250, 5).
+  // Pixel (1001, 20) belongs to the square of four by four at (250, 5).
   EXPECT_GE(pairs[0].heat.pixel(250, 5)[0], whole.pixel(1001, 20)[0]);
 }
 

@@ -27,7 +27,7 @@ class Review : public MadeRuns {
     return request;
   }
 
-  // What the page's script element holds.
+  // Content of the page's script element.
   Json data() const {
     const std::string html = support::read_bytes(folder_ / "page/index.html"), mark = "id=\"review-data\">";
     const std::size_t begin = html.find(mark) + mark.size();
@@ -255,7 +255,7 @@ TEST_F(Review, FormerPageIsKeptWithAFileOfSomebodyElseInIt) {
     EXPECT_EQ(support::read_bytes(folder_ / file), "-");
     fs::remove(folder_ / file);
   }
-  // Put there while the page is made.
+  // The file appears while the page is made.
   again.stop = [&] {
     write("page/notes.txt");
     return false;
@@ -287,7 +287,7 @@ TEST_F(Review, LinksInFoldersOfRunsAreNotFollowed) {
     EXPECT_TRUE(!entry.is_regular_file() || support::read_bytes(entry.path()) != "-") << entry.path();
 }
 
-// Each in the place of every value: the page names it and shows what is right, and the other runs.
+// Each bad value, in every place: the page names it, and shows the valid values and the other runs.
 TEST_F(Review, NoValueOfStatisticsKeepsThePageFromTheRest) {
   int k = 0;
   for (const char* value :

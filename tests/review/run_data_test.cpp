@@ -19,7 +19,7 @@ TEST(FrameColumns, KeepSixDigits) {
   EXPECT_EQ(frame_columns(frames).dump(), R"({"a":[0.0123457],"b":[123456789],"c":[-1.23457e-30],"d":[0]})");
 }
 
-// Whatever size numbers have: std::stod() would throw for those below 2.2e-308.
+// Numbers of any size: std::stod() would throw for those below 2.2e-308.
 TEST(FrameColumns, TakeNumbersOfAllSizes) {
   const Json columns = frame_columns(Json::parse(R"([{"v": 5e-324}, {"v": 1e-310}, {"v": 1.7e308}, {"v": -1e-320}])"));
   EXPECT_DOUBLE_EQ(columns.at("v")[0].get<double>(), 5e-324);

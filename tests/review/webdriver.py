@@ -1,4 +1,4 @@
-"""Headless Chromium through chromedriver, with nothing but Python's own library."""
+"""Headless Chromium through chromedriver, with the standard library only."""
 
 import base64
 import json
@@ -11,7 +11,7 @@ import urllib.request
 
 
 def missing():
-    """What is not installed, as Debian calls it; empty if all is there."""
+    """Missing Debian packages; empty if there are none."""
     programs = {"chromium": "chromium", "chromedriver": "chromium-driver"}
     return [package for program, package in programs.items() if shutil.which(program) is None]
 
@@ -55,7 +55,7 @@ class Browser:
             self.driver.wait()
 
     def resize(self, width, height):
-        """The page's own size, which a window of Chromium could not have below 500 pixels."""
+        """Sets the size of the page; a window of Chromium cannot be narrower than 500 pixels."""
         self.devtools("Emulation.setDeviceMetricsOverride",
                       {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
 
@@ -94,7 +94,7 @@ class Browser:
         self._call("POST", self.session + "/actions", {"actions": [{"type": "key", "id": "keys", "actions": actions}]})
 
     def drag(self, points):
-        """The mouse, pressed at the first of the points and let go at the last."""
+        """Presses the mouse at the first of the points and releases it at the last."""
         move = [{"type": "pointerMove", "duration": 20, "x": round(x), "y": round(y)} for x, y in points]
         actions = [move[0], {"type": "pointerDown", "button": 0}, *move[1:], {"type": "pointerUp", "button": 0}]
         self._call("POST", self.session + "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": actions}]})
@@ -105,11 +105,11 @@ class Browser:
             out.write(base64.b64decode(picture))
 
     def complaints(self):
-        """What the console was told since the last call."""
+        """Console messages since the last call."""
         return [f"{entry['level']}: {entry['message']}" for entry in self._log("browser")]
 
     def requests(self):
-        """Addresses asked for since the last call."""
+        """Addresses requested since the last call."""
         events = [json.loads(entry["message"])["message"] for entry in self._log("performance")]
         return [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
 

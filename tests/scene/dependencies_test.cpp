@@ -1,4 +1,4 @@
-// The scene's hash knows every file that the result depends on.
+// The hash of a scene covers every file on which the result depends.
 #include "scene/dependencies.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ class Dependencies : public support::TestFolder {
     EXPECT_EQ(result.describe(), "");
     return result.scene.hash;
   }
-  /// Another byte in this file gives another hash; a file beside it that nobody names changes nothing.
+  /// Changing a byte of this file must change the hash; changing an unreferenced file beside it must not.
   void expect_counts(const std::string& scene, const std::string& file) {
     const auto before = hash_of(scene);
     const std::string content = support::read_bytes(folder_ / file);
@@ -68,7 +68,7 @@ TEST_F(Dependencies, FilesOfASequence) {
   expect_counts(scene, "run/a_3.obj");
 }
 
-// A byte that moves from the end of one file to the start of the next is a change.
+// Moving a byte from the end of one file to the start of the next is a change.
 TEST_F(Dependencies, WhereOneFileEndsCounts) {
   const std::string scene =
       "obstacle = [{ name = 'a', shape = 'mesh', file = 'a.obj' }, { name = 'b', shape = 'mesh', file = 'b.obj' }]\n";
@@ -78,7 +78,7 @@ TEST_F(Dependencies, WhereOneFileEndsCounts) {
   EXPECT_NE(hash_of(scene), before);
 }
 
-// Files that name each other, or themselves, are read once.
+// Files that reference each other, or themselves, are read once.
 TEST_F(Dependencies, EachFileIsReadOnce) {
   put("a.obj", "mtllib a.obj b.mtl\n");
   put("b.mtl", "map_Kd a.obj\n");

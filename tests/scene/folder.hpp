@@ -4,7 +4,7 @@
 
 namespace weft::scene {
 
-/// Where the files lie that the tests of scenes read.
+/// Folder of the files that the scene tests read.
 inline const std::string kFolder = WEFT_SOURCE_DIR "/tests/scene/";
 
 }  // namespace weft::scene

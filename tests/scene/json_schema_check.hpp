@@ -1,4 +1,4 @@
-// A small independent judge of JSON schemas: the part of Draft 2020-12 that the scene schema uses, no more.
+// A small independent validator of JSON schemas: the part of Draft 2020-12 that the scene schema uses, no more.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,10 +6,10 @@
 
 namespace weft::scene {
 
-/// TOML text as JSON; throws what toml++ throws.
+/// Converts TOML text to JSON; throws what toml++ throws.
 nlohmann::json json_of_toml(const std::string& text);
 
-/// The first violation, "key.path: what", or nothing. Throws std::logic_error at a schema keyword it does not know.
+/// Returns the first violation, "key.path: what", or "". Throws std::logic_error at an unknown schema keyword.
 std::string schema_violation(const nlohmann::json& schema, const nlohmann::json& value);
 
 }  // namespace weft::scene

@@ -16,14 +16,14 @@ namespace {
 struct Malformed {
   std::string claim;
   std::string text;
-  std::string messages;  ///< all of describe(), the file being s.toml
+  std::string messages;  ///< complete output of describe() for a file named s.toml
 };
 
 void PrintTo(const Malformed& malformed, std::ostream* out) {
   *out << malformed.claim;
 }
 
-// Enough to make a scene; on one line, so that what follows starts on line 2.
+// The smallest valid scene, on one line, so that the text that follows starts on line 2.
 const std::string kFloor = "obstacle = [{ name = 'floor', shape = 'plane' }]\n";
 const std::string kBand = "cloth = [{ name = 'band' }]\n";
 
@@ -306,7 +306,7 @@ const std::vector<Malformed> kMalformed = {
     {"MeshIsAFolder", "[[obstacle]]\nname = 'b'\nshape = 'mesh'\nfile = '/'\n",
      "s.toml:4:8: obstacle.b.file: expected a readable file, got \"/\": / is not a file\n"},
 
-    // All at once, in the order of the file, whatever the order of the rules.
+    // All mistakes are reported at once, in the order of the file, not in the order of the rules.
     {"AllMistakesInFileOrder",
      "[render]\nwidth = 1\n[[light]]\nkind = 'spot'\n[[cloth]]\nname = 'band'\nsize = [0, 1]\nsise = 2\n[time]\nfps = "
      "-1\nstep = 'x'\n",
@@ -330,7 +330,7 @@ TEST_P(MalformedScene, IsReportedInExactlyTheseWords) {
 INSTANTIATE_TEST_SUITE_P(Scene, MalformedScene, testing::ValuesIn(kMalformed),
                          [](const auto& test) { return test.param.claim; });
 
-/// A folder that goes away with the test.
+/// A folder that is deleted at the end of the test.
 class SceneFile : public testing::Test {
  protected:
   SceneFile() { std::filesystem::create_directories(folder_); }
@@ -361,7 +361,7 @@ TEST_F(SceneFile, ThatIsAPipeIsRefusedWithoutWaitingForIt) {
 TEST_F(SceneFile, OfAGigabyteIsRefusedByItsSize) {
   const auto file = folder_ / "big.toml";
   std::ofstream(file) << "# big";
-  std::filesystem::resize_file(file, std::uintmax_t{1} << 30);  // sparse: takes no disk
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 30);  // sparse: occupies no disk space
   EXPECT_EQ(messages(file), file.string() + ": expected at most 16 MB, got 1024 MB\n");
 }
 

@@ -1,4 +1,4 @@
-// Thousands of damaged scenes: each loads or is refused with places that exist, and none crashes.
+// Thousands of damaged scenes: each loads, or is refused with messages that point to existing places. None crashes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace weft::scene {
 namespace {
 
-/// Damages a text in a few places, as bad typing, bad merges and bad disks do.
-std::string damaged(std::string text, std::mt19937& random) {
+/// Damages a text in a few places, as typing errors, bad merges and disk errors do.
+std::string damage_text(std::string text, std::mt19937& random) {
   using namespace std::string_literals;
   static const std::string kBytes = "[]{}=.,\"'#\n\0\xff-+e0159 \t_nan"s;
   const auto below = [&](std::size_t count) {
@@ -37,7 +37,7 @@ std::string damaged(std::string text, std::mt19937& random) {
         text.erase(at, 1 + below(20));
         break;
       case 4: {
-        // Another digit in a number: leaves the syntax whole, so that rules and checks get their share.
+        // Replaces a digit in a number. The syntax stays valid, so that rules and checks are tested too.
         const std::size_t digit = text.find_first_of("0123456789", at);
         if (digit != std::string::npos) text[digit] = static_cast<char>('0' + below(10));
         break;
@@ -50,7 +50,7 @@ std::string damaged(std::string text, std::mt19937& random) {
   return text;
 }
 
-/// A scene that passed may be built: nothing in it is out of the bounds that memory and arithmetic rely on.
+/// An accepted scene can be built: all values are within the bounds that memory and arithmetic rely on.
 void expect_buildable(const Scene& scene) {
   long particles = 0;
   for (const Cloth& cloth : scene.cloths) {
@@ -58,7 +58,7 @@ void expect_buildable(const Scene& scene) {
     EXPECT_GE(std::min(cloth.particles_weft, cloth.particles_warp), 2);
     EXPECT_GT(cloth.size.minCoeff(), 0);
     EXPECT_TRUE(cloth.pose.position.allFinite() && cloth.size.allFinite());
-    EXPECT_NEAR(cloth.pose.rotation.norm(), 1, 1e-12);  // normalised in double: error of a few 1e-16
+    EXPECT_NEAR(cloth.pose.rotation.norm(), 1, 1e-12);  // normalised in double precision: error of a few 1e-16
     EXPECT_GT(cloth.material.density, 0);
     EXPECT_TRUE(std::isfinite(cloth.material.density));
   }
@@ -74,11 +74,11 @@ void expect_buildable(const Scene& scene) {
 TEST(DamagedScenes, LoadOrAreRefusedAtAPlaceThatExists) {
   const std::string good = support::read_bytes(kFolder + "every_key.toml");
   ASSERT_FALSE(good.empty());
-  std::mt19937 random(20010901);  // fixed: a failure can be repeated
+  std::mt19937 random(20010901);  // fixed seed, so that a failure can be reproduced
   int loaded = 0, misread = 0;
   constexpr int kScenes = 4000;
   for (int i = 0; i < kScenes; ++i) {
-    const std::string text = damaged(good, random);
+    const std::string text = damage_text(good, random);
     const LoadResult result = load_text(text, kFolder + "damaged.toml");
     const auto lines = 1 + std::count(text.begin(), text.end(), '\n');
     for (const Mistake& mistake : result.mistakes) {
@@ -113,7 +113,7 @@ TEST(DamagedScenes, WithDamagedOverridesDoNotCrash) {
   const std::string good = support::read_bytes(kFolder + "every_key.toml");
   std::mt19937 random(20010902);
   for (int i = 0; i < 1000; ++i) {
-    const std::string text = damaged("cloth.sheet.material.stretch=[1e3, 2.5]", random);
+    const std::string text = damage_text("cloth.sheet.material.stretch=[1e3, 2.5]", random);
     const LoadResult result = load_text(good, kFolder + "s.toml", {text});
     if (result.ok()) expect_buildable(result.scene);
     for (const Mistake& mistake : result.mistakes) EXPECT_FALSE(mistake.text.empty());

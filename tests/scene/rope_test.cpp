@@ -1,4 +1,4 @@
-// Ropes of scenes: how they are read, how they start, and what is refused.
+// Ropes in scenes: how they are read, their start shape, and what is refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,10 +44,10 @@ TEST(RopeScenes, SlackRopesStartAsCatenariesOfTheirLength) {
   EXPECT_LT((shape.places.front() - Vec3(0, 0, 1)).norm(), 1e-12);
   EXPECT_LT((shape.places.back() - Vec3(1, 0.5, 1.4)).norm(), 1e-12);
   EXPECT_NEAR(length_of(shape), 1.9, 1e-12);
-  // On a catenary z'' = √(1 + z'²) / a: the same a from any three places that are evenly spaced along it.
+  // On a catenary z'' = √(1 + z'²) / a. Any three evenly spaced points along it must give the same a.
   const auto ratio = [&](std::size_t i) {
     const Vec3 before = shape.places[i] - shape.places[i - 1], after = shape.places[i + 1] - shape.places[i];
-    const auto slope = [](const Vec3& way) { return way.z() / way.head<2>().norm(); };
+    const auto slope = [](const Vec3& segment) { return segment.z() / segment.head<2>().norm(); };
     return before.norm() / (slope(after) - slope(before));
   };
   EXPECT_NEAR(ratio(5) / ratio(shape.places.size() - 6), 1, 0.01);
@@ -62,7 +62,7 @@ TEST(RopeScenes, PiecesAreEvenAlongPoints) {
 }
 
 TEST(RopeScenes, MaterialsGiveFiguresForTheDiameter) {
-  // Polyester of 10 mm: 68 g/m by the data sheet of Robline's Rapallo, 80 by the formula.
+  // Polyester rope of 10 mm: 68 g/m in the data sheet of Robline's Rapallo, 80 g/m by the formula.
   const LoadResult loaded = load_rope("from = [0, 0, 0]\nto = [1, 0, 0]\ndiameter = 0.01\nmaterial = \"polyester\"\n");
   ASSERT_EQ(loaded.describe(), "");
   EXPECT_NEAR(numbers_of(loaded.scene.ropes[0]).mass, 0.0798, 1e-6);

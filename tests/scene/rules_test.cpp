@@ -1,4 +1,4 @@
-// The rule table against what is made from it: reading, the effective scene, the hash, the schema.
+// Compares the rule table with everything that is derived from it: reading, the effective scene, the hash, the schema.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// One entry of each kind, as small as may be.
+/// One entry of each kind, as small as possible.
 const std::string kOneOfEach = R"(
 cloth = [{ name = "c", pin = [{}] }]
 camera = [{ name = "v", position = [1, 2, 3], target = [0, 0, 0] }]
@@ -45,7 +45,7 @@ LoadResult load_here(const std::string& text, const std::vector<std::string>& ov
   return load_text(text, kFolder + "text.toml", overrides);
 }
 
-/// TOML text of a value that the rule allows and that is not its default `now`.
+/// TOML text of a value that the rule allows and that differs from its default `now`.
 std::string another_value(const Rule& rule, const Value& now) {
   if (rule.type == Type::boolean) return std::get<bool>(now) ? "false" : "true";
   if (rule.type == Type::text) return "\"another_text\"";
@@ -54,21 +54,21 @@ std::string another_value(const Rule& rule, const Value& now) {
     return "\"" + (rule.choices.back() == std::get<std::string>(now) ? rule.choices.front() : rule.choices.back()) +
            "\"";
   }
-  // Numbers near the lower end of the range, or near 0 where that is inside, each another.
+  // Distinct numbers near the lower end of the range, or near 0 if the range contains 0.
   const double from = std::max(rule.range.low, 0.0);
   const double width = std::min(rule.range.high - from, 10.0);
   std::string text;
   const std::size_t count = std::max<std::size_t>(1, rule.components.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const double share = 0.031 * static_cast<double>(i + 1);
-    const double number = rule.whole ? from + 3 + static_cast<double>(i) : from + width * share;
+    const double fraction = 0.031 * static_cast<double>(i + 1);
+    const double number = rule.whole ? from + 3 + static_cast<double>(i) : from + width * fraction;
     text += (i > 0 ? ", " : "") + std::to_string(number);
     if (rule.whole) text.resize(text.find('.', text.rfind(' ') == std::string::npos ? 0 : text.rfind(' ')));
   }
   return rule.components.empty() ? text : "[" + text + "]";
 }
 
-/// Calls visit(path, rule, default value) for each key that holds a value, in every table below `table`.
+/// Calls visit(path, rule, default value) for each key with a value, in `table` and in all tables below it.
 template <class Visit>
 void for_each_value(const Table& table, const std::string& path, const Visit& visit) {
   const auto defaults = table.make();
@@ -93,8 +93,8 @@ void expect_change(const std::string& text, const std::string& override_text) {
   EXPECT_NE(effective_scene(before.scene), effective_scene(after.scene)) << override_text;
 }
 
-/// Names, references, files and what needs another key beside it need more than any other value; scene_test covers
-/// them.
+/// True if any value of the key can be set alone. Names, references, files, and keys that require another key cannot;
+/// scene_test covers those.
 bool is_plain_value(const std::string& path, const Rule& rule) {
   const bool needs_mass = path.starts_with("obstacle.") &&
                           (path.ends_with("velocity") || path.ends_with("spin") || path.ends_with("release"));
@@ -119,7 +119,7 @@ TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
   for_each_value(*root.find("cloth")->table, "cloth.c.", try_rule);
   for_each_value(*root.find("cloth")->table->find("pin")->table, "cloth.c.pin.0.",
                  [&](const auto& path, const auto& rule, const auto& now) {
-                   // All of the sheet but its first rows, so that some particles are held.
+                   // The whole sheet without its first rows, so that some particles are held.
                    if (rule.key == "low") return expect_change(kOneOfEach, path + "=[0.1, 0.2]");
                    if (rule.key == "high") return expect_change(kOneOfEach, path + "=[0.8, 0.9]");
                    try_rule(path, rule, now);
@@ -128,7 +128,7 @@ TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
   for_each_value(*root.find("character")->table, "character.dancer.", try_rule);
   for_each_value(*root.find("camera")->table, "camera.v.", try_rule);
   for_each_value(*root.find("light")->table, "light.sun.", try_rule);
-  // Spot checks that the walk went where it should.
+  // Spot checks that the traversal reached all tables.
   EXPECT_TRUE(paths.contains("up"));
   EXPECT_TRUE(paths.contains("cloth.c.material.bend_viscosity"));
   EXPECT_TRUE(paths.contains("obstacle.sphere.look.checker"));
@@ -307,7 +307,7 @@ TEST(Schema, NamesTheKeyThatAVariantDoesNotHave) {
   EXPECT_EQ(violation("obstacle = [{ name = 'a', shape = 'sphere', height = 1 }]\n"),
             "obstacle.0.height: unknown property");
   EXPECT_EQ(violation("cloth = [{ name = 'a', particels = [3, 3] }]\n"), "cloth.0.particels: unknown property");
-  // A plane has two edges, or one for both; a box has three.
+  // The size of a plane is one number or two; that of a box is three.
   EXPECT_EQ(violation("obstacle = [{ name = 'a', shape = 'plane', size = 2 }]\n"), "");
   EXPECT_EQ(violation("obstacle = [{ name = 'a', shape = 'box', size = [2, 2] }]\n"),
             "obstacle.0.size: wrong number of items");

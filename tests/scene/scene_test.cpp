@@ -1,4 +1,4 @@
-// What a good scene becomes: every key in its member, defaults, poses, fabrics.
+// A valid scene after loading: the member for every key, defaults, poses, fabrics.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,14 +46,14 @@ TEST_F(EveryKey, OfPressureKeysFansAndAttachmentsFillsItsMember) {
   EXPECT_EQ(gauge.interpolation, Interpolation::linear);
   ASSERT_EQ(gauge.keys.size(), 2u);
   EXPECT_EQ(gauge.keys[1].time, 0.6);
-  EXPECT_EQ(gauge.keys[1].value, 41);  // as the key before
+  EXPECT_EQ(gauge.keys[1].value, 41);  // inherited from the previous key
   EXPECT_EQ(scene_.cloths[1].pressure.control, PressureControl::air);
   EXPECT_EQ(scene_.cloths[1].pressure.value, 0.02);
   EXPECT_EQ(scene_.cloths[0].spin, Vec3(10, 20, 30));
 
   ASSERT_EQ(scene_.physics.keys.size(), 2u);
   EXPECT_EQ(scene_.physics.interpolation, Interpolation::linear);
-  EXPECT_EQ(scene_.physics.keys[0].wind, Vec3(1, 2, 3));  // that of the table
+  EXPECT_EQ(scene_.physics.keys[0].wind, Vec3(1, 2, 3));  // inherited from the table
   EXPECT_EQ(scene_.physics.keys[1].gravity, Vec3(0, -2, 0));
   EXPECT_EQ(scene_.physics.keys[1].wind, Vec3(3, 2, 1));
 
@@ -363,7 +363,7 @@ TEST_F(EveryKey, OfCamerasAndLightsFillsItsMember) {
 TEST(Scene, RotatesAboutTheFixedAxesInTheOrderXyz) {
   const Scene scene = load_good("cloth = [{ name = 'a', rotation = [90, 0, 90] }]\n");
   const Quat& q = scene.cloths[0].pose.rotation;
-  // About x by 90°: y -> z, which the turn about z leaves; x goes to y by the turn about z alone.
+  // The turn by 90° about x maps y to z, which the turn about z leaves; x is mapped to y by the turn about z alone.
   // Three products of unit quaternions: rounding of a few 1e-16.
   EXPECT_LT((q * Vec3(0, 1, 0) - Vec3(0, 0, 1)).norm(), 1e-15);
   EXPECT_LT((q * Vec3(1, 0, 0) - Vec3(0, 1, 0)).norm(), 1e-15);
@@ -400,7 +400,7 @@ TEST(Scene, WhatHasNoColorHasATone) {
       "[[cloth]]\nname = 'a'\n[[obstacle]]\nname = 'b'\nshape = 'box'\n[[obstacle]]\nname = 'c'\nshape = 'plane'\n");
   const Vec3 cloth = scene.cloths[0].look.color, box = scene.obstacles[0].look.color,
              floor = scene.obstacles[1].look.color;
-  EXPECT_LT(floor.maxCoeff(), 0.79);  // 0.6 of the light comes back
+  EXPECT_LT(floor.maxCoeff(), 0.79);  // it reflects 0.6 of the light
   for (const Vec3& difference : {Vec3(cloth - box), Vec3(box - floor), Vec3(floor - cloth)})
     EXPECT_GT(difference.cwiseAbs().maxCoeff(), 0.08);
 }
@@ -428,16 +428,16 @@ TEST(Fabrics, AreMadeOfWhatWasMeasured) {
   const Fabric& poplin = *find_fabric("poplin");
   EXPECT_FALSE(poplin.measured.bend_weft.estimated);
   EXPECT_TRUE(poplin.measured.shear.estimated);
-  // 0.118 gf·cm²/cm and 2HB of 0.124 gf·cm/cm; materials have two digits.
+  // Measured: 0.118 gf·cm²/cm and 2HB of 0.124 gf·cm/cm. The material stores two significant digits.
   EXPECT_NEAR(poplin.material.bend, 0.118 * 9.807e-5, 0.05 * 1.2e-5);
   EXPECT_NEAR(poplin.material.bend_friction, 0.5 * 0.124 * 9.807e-3, 0.05 * 6e-4);
-  // A wool whose FAST E20, at 19.6 N/m, is 1.87 % both ways: 1048 N/m.
+  // A wool with FAST E20 (extension at 19.6 N/m) of 1.87 % in both directions: 1048 N/m.
   const Material& wool = find_fabric("wool")->material;
   EXPECT_NEAR(std::sqrt(wool.stretch_weft * wool.stretch_warp), 1048, 0.25 * 1048);
 }
 
 TEST(Fabrics, EstimateBendingFromWeight) {
-  // 130 µN·m (density / 1 kg/m²)^1.35.
+  // The estimate is 130 µN·m (density / 1 kg/m²)^1.35.
   const Measurements suiting = find_fabric("suiting")->measured, cotton = find_fabric("cotton")->measured;
   EXPECT_TRUE(cotton.bend_weft.estimated);
   EXPECT_NEAR(std::sqrt(cotton.bend_weft.value * cotton.bend_warp.value), 10.0e-6, 0.1e-6);

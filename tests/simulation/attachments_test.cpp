@@ -1,4 +1,4 @@
-// Springs from cloth to cloth and to bodies: forces, loads, what breaks and what is let go.
+// Springs between cloths, and from cloth to bodies: forces, normal operation, breaking and release.
 #include "simulation/attachments.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 using testing::lowest;
 
-/// A towel that hangs from a rail by an attachment with these keys, 0.03 kg; `more` are other tables.
+/// A towel of 0.03 kg that hangs from a rail by an attachment with these keys; `more` holds further tables.
 scene::Scene towel(const std::string& keys, const std::string& more = "") {
   return support::scene_of_text(
       "[time]\nduration = 1\nstep = 0.01\n[physics]\nair_density = 0\n[contact]\nobstacles = false\nself = false\n"
@@ -47,7 +47,7 @@ TEST(Attachments, BearTheWeightThatHangsOnThem) {
   EXPECT_EQ(peg.name, "peg");
   EXPECT_TRUE(peg.holds);
   EXPECT_NEAR(peg.load / kWeight, 1, 0.01);
-  // 11 springs of 500 N/m give way by 0.05 mm, and all that hangs on them.
+  // The 11 springs of 500 N/m extend by 0.05 mm; the cloth below stretches too.
   EXPECT_NEAR(hanging.lowest.back(), 0.65, 0.001);
 }
 
@@ -57,7 +57,7 @@ TEST(Attachments, BreakUnderTheLoadThatTheyBearAndHoldBelow) {
   const Hanging breaking = hang_up(towel("breaking_load = 0.15\n"));
   EXPECT_FALSE(breaking.reports.back().attachments.at(0).holds);
   EXPECT_EQ(breaking.reports.back().attachments.at(0).load, 0);
-  EXPECT_LT(breaking.lowest.back(), 0.65 - 0.4 * 9.81);  // a fall of a second is 4.9 m
+  EXPECT_LT(breaking.lowest.back(), 0.65 - 0.4 * 9.81);  // one second of free fall is 4.9 m
 }
 
 TEST(Attachments, LetGoInTime) {
@@ -65,7 +65,7 @@ TEST(Attachments, LetGoInTime) {
   EXPECT_NEAR(released.lowest[14], 0.65, 0.002);
   EXPECT_TRUE(released.reports[13].attachments.at(0).holds);
   EXPECT_FALSE(released.reports[15].attachments.at(0).holds);
-  EXPECT_NEAR(released.lowest.back(), 0.65 - 0.5 * 9.81 * 0.16, 0.05);  // 0.4 s
+  EXPECT_NEAR(released.lowest.back(), 0.65 - 0.5 * 9.81 * 0.16, 0.05);  // fall of 0.4 s
 }
 
 TEST(Attachments, BeginWhereTheClothIsThen) {
@@ -100,7 +100,7 @@ TEST(Attachments, FollowTheirBody) {
   EXPECT_NEAR(highest, 0.95 + 0.2, 0.01);
 }
 
-// The lift does work that is not counted: without contact between them it has to be told from its motion.
+// The work of the lift is not counted: without contact, the energy check must recognise it from the lift's motion.
 TEST(Attachments, ToABodyThatLiftsAreNoEnergyWithoutASource) {
   Simulation simulation(towel(
       "release = 0\n",
@@ -110,19 +110,19 @@ TEST(Attachments, ToABodyThatLiftsAreNoEnergyWithoutASource) {
   for (int frame = 0; frame < 15; ++frame) EXPECT_TRUE(simulation.advance().warnings.empty()) << frame;
 }
 
-// What attachments have stored is in the energies that a run reports.
+// The reported energies include the energy that attachments store.
 TEST(Attachments, StoreEnergyThatIsReported) {
   scene::Scene scene = towel("length = 0\nstiffness = 1\n");
   scene.cloths[0].pose.position.z() = 0.75;  // 0.07 m below the rail
   scene.cloths[0].velocity = Vec3(0, 0, -1);
   Simulation simulation(scene);
-  // Eleven springs of 1 N/m, the ones at the ends half. In a frame of 0.04 s the towel moves by 0.02 to 0.04 m.
+  // Eleven springs of 1 N/m, those at the ends half as stiff. The towel moves by 0.02 to 0.04 m in a frame of 0.04 s.
   const double energy = simulation.advance().elastic_energy;
   EXPECT_GT(energy, 10 * 0.5 * 0.09 * 0.09);
   EXPECT_LT(energy, 10 * 0.5 * 0.11 * 0.11);
 }
 
-// Two sheets above each other, buttoned at a corner; the upper one moves.
+// Two sheets, one above the other, buttoned at a corner; the upper one moves.
 constexpr const char* kButton =
     "[time]\nduration = 1\n[physics]\ngravity = [0, 0, 0]\nair_density = 0\n[contact]\nself = false\n"
     "[[cloth]]\nname = \"lower\"\nsize = 0.2\nparticles = 6\n"
@@ -142,15 +142,15 @@ TEST(Attachments, BetweenClothsKeepTheirMomentumAndTheirDistance) {
   double farthest = 0;
   for (int frame = 0; frame < 25; ++frame) {
     simulation.advance();
-    // The corner lies between the first particles of the lower sheet, at fractions 0.75 and 0.5 of a cell.
+    // The corner lies between particles of the lower sheet, at fractions 0.75 and 0.5 of a cell.
     const auto& lower = simulation.snapshot()->states[0].positions;
     const Vec3 place = 0.25 * lower[0] + 0.25 * lower[1] + 0.5 * lower[7];
     farthest = std::max(farthest, (simulation.snapshot()->states[1].positions[0] - place).norm());
   }
   EXPECT_LT((momentum() - start).norm(), 1e-12 * start.norm());
-  EXPECT_LT(farthest, 0.0115);  // 0.01 and what the impact of 0.006 kg at 0.4 m/s gives way
+  EXPECT_LT(farthest, 0.0115);  // 0.01 m plus the extension by the impact of 0.006 kg at 0.4 m/s
   EXPECT_LT((simulation.state().velocities[0]).norm(), 1.0);
-  EXPECT_GT((simulation.state().velocities[0]).norm(), 0.01);  // it is drawn along
+  EXPECT_GT((simulation.state().velocities[0]).norm(), 0.01);  // the other sheet is pulled along
 }
 
 TEST(Attachments, HaveForcesThatAreDerivativesOfTheirEnergyAndTermsThatAreOfTheirForces) {

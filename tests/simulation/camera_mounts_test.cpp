@@ -1,4 +1,4 @@
-// Cameras that follow a body, and lenses in millimetres, as frames have them.
+// Cameras that follow a body, and focal lengths in millimetres, as frames have them.
 #include "simulation/camera_mounts.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A box that goes to (3, 0, 1) in a second and turns by a quarter about z; with cameras at its side.
+/// A box moves to (3, 0, 1) within a second and makes a quarter turn about z; cameras are mounted on it.
 const std::string kRide = R"(
 [time]
 duration = 1
@@ -51,7 +51,7 @@ frame::SnapshotPtr last_frame(const scene::Scene& scene) {
 
 TEST(CameraThatFollows, MovesWithTheBody) {
   const frame::SnapshotPtr end = last_frame(support::scene_of_text(kRide));
-  // Rounding of the fit to some vertices.
+  // Rounding of the rigid fit to some vertices.
   constexpr double kRounding = 1e-12;
   EXPECT_LT((end->cameras[0].position - Vec3(7, 0, 2)).norm(), kRounding);
   EXPECT_LT((end->cameras[0].target - Vec3(3, 0, 1)).norm(), kRounding);
@@ -96,9 +96,9 @@ follow = "man.head"
     for (const Vec3& x : frame.states[0].positions) sum += x;
     return Vec3(sum / static_cast<double>(frame.states[0].positions.size()));
   };
-  const Vec3 way = middle(*end) - middle(*start), ridden = end->cameras[0].target - start->cameras[0].target;
-  EXPECT_GT(way.norm(), 0.5);
-  EXPECT_LT((ridden - way).norm(), 0.1) << "the head and the body as a whole";
+  const Vec3 displacement = middle(*end) - middle(*start), ridden = end->cameras[0].target - start->cameras[0].target;
+  EXPECT_GT(displacement.norm(), 0.5);
+  EXPECT_LT((ridden - displacement).norm(), 0.1) << "the head and the body as a whole";
 }
 
 TEST(FocalLength, GivesTheAngleThatTheSensorSees) {
@@ -110,11 +110,11 @@ TEST(FocalLength, GivesTheAngleThatTheSensorSees) {
     const environment::Environment environment(scene);
     return SnapshotMaker(scene, environment).make(0, time, environment, {}, {})->cameras[0].field_of_view * kDegree;
   };
-  // Of 36 mm 1280 pixels are across, 720 upright: 20.25 mm.
+  // 1280 pixels span a width of 36 mm, so 720 pixels span a height of 20.25 mm.
   EXPECT_NEAR(angle("focal_length = 50\n"), 2 * std::atan(20.25 / 100), 1e-12);
   EXPECT_NEAR(angle("focal_length = 50\nsensor_width = 24\n"), 2 * std::atan(13.5 / 100), 1e-12);
   EXPECT_NEAR(angle("focal_length = 50\n[render]\nwidth = 720\nheight = 1280\n"), 2 * std::atan(36.0 / 100), 1e-12);
-  // It is the focal length that changes evenly, not the angle.
+  // Linear keys interpolate the focal length, not the angle.
   EXPECT_NEAR(
       angle("interpolation = 'linear'\nkeys = [{ time = 0, focal_length = 30 }, { time = 1, focal_length = 70 }]\n",
             0.5),
@@ -127,7 +127,7 @@ TEST(FocalLength, OpensTheLensByItsNumber) {
       "focal_length = 50\naperture = 2\n");
   const environment::Environment environment(scene);
   const frame::Camera camera = SnapshotMaker(scene, environment).make(0, 0, environment, {}, {})->cameras[0];
-  // The renderer opens by half of a film of 24 mm, over the tangent of half of the angle, over the number.
+  // Aperture diameter: the focal length, half of 24 mm over the tangent of half of the angle, over the f-number.
   EXPECT_NEAR(12 / std::tan(camera.field_of_view * kDegree / 2) / camera.aperture, 25, 1e-9);
 }
 

@@ -1,4 +1,4 @@
-// Who holds which positions in a step.
+// Which positions each party holds during a step.
 #include "simulation/collision_stage.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 namespace weft::simulation {
 namespace {
 
-// A sheet over a floor, and a ball that passes under it at 4 m/s: at 0.21 s its first coordinates are near zero, where
-// a time that is rounded otherwise shows.
+// A sheet over a floor, and a ball that passes under it at 4 m/s. At 0.21 s the ball's x coordinates are near zero,
+// where a differently rounded time shows.
 scene::Scene sheet_over_a_ball() {
   scene::Scene scene = testing::sheet_alone(0.4, 5, 1);
   scene.contact.obstacles = true;
@@ -28,12 +28,12 @@ class CollisionStages : public ::testing::Test {
   CollisionStages() : environment_(sheet_over_a_ball()), cloth_(sheet_over_a_ball(), environment_) {
     now_.x = environment_.cloths[0].start;
     now_.v.assign(25, Vec3(0.1, 0.2, 0.3));
-    now_.placed_for = 0.2;
+    now_.bodies_time = 0.2;
     stage_.emplace(sheet_over_a_ball(), environment_, cloth_, now_);
     next_ = now_;
   }
 
-  /// Floor and ball at time t, as they stand behind the particles.
+  /// Positions of floor and ball at time t, in the order in which they follow the particles.
   std::vector<Vec3> bodies_at(double t) const {
     std::vector<Vec3> floor(environment_.bodies[0].mesh.positions.size()),
         ball(environment_.bodies[1].mesh.positions.size());
@@ -42,11 +42,11 @@ class CollisionStages : public ::testing::Test {
     floor.insert(floor.end(), ball.begin(), ball.end());
     return floor;
   }
-  static std::vector<Vec3> bodies_of(const Moment& moment) { return {moment.x.begin() + 25, moment.x.end()}; }
+  static std::vector<Vec3> bodies_of(const SystemState& moment) { return {moment.x.begin() + 25, moment.x.end()}; }
 
   environment::Environment environment_;
   ClothSystem cloth_;
-  Moment now_, next_;
+  SystemState now_, next_;
   std::optional<CollisionStage> stage_;
 };
 
@@ -58,7 +58,7 @@ TEST_F(CollisionStages, PlaceBodiesBehindTheParticlesForBothEndsOfAStep) {
   EXPECT_NE(bodies_of(now_), bodies_of(next_));
   for (std::size_t i = 0; i < 25; ++i) {
     EXPECT_EQ(now_.x[i], environment_.cloths[0].start[i]);
-    EXPECT_EQ(next_.x[i], now_.x[i] + 0.01 * now_.v[i]);  // the guess
+    EXPECT_EQ(next_.x[i], now_.x[i] + 0.01 * now_.v[i]);  // the prediction
   }
 }
 
@@ -70,7 +70,7 @@ TEST_F(CollisionStages, PlaceBodiesAgainWhereStepsMeetAtTimesThatAreRoundedOther
   stage_->begin_step(t, 0.02, {}, now_, next_);
   EXPECT_EQ(bodies_of(now_), bodies_at(t));
   EXPECT_EQ(bodies_of(next_), bodies_at(t + 0.02));
-  stage_->begin_step(t, 0.01, {}, now_, next_);  // rejected, and tried again with half of it
+  stage_->begin_step(t, 0.01, {}, now_, next_);  // the step was rejected and is repeated with half its length
   EXPECT_EQ(bodies_of(now_), bodies_at(t));
   EXPECT_EQ(bodies_of(next_), bodies_at(t + 0.01));
 }
@@ -81,14 +81,14 @@ TEST_F(CollisionStages, ExpectHeldParticlesWhereTheyAreHeld) {
   EXPECT_EQ(next_.x[7], Vec3(1, 2, 3));
 }
 
-// The sheet is solved to where it crosses the floor: what moves it out shows in its velocity too.
+// The solve leaves the sheet across the floor: pushing it out also changes its velocity.
 TEST_F(CollisionStages, GiveParticlesTheVelocityOfTheirPush) {
   stage_->begin_step(0.2, 0.01, {}, now_, next_);
   for (std::size_t i = 0; i < 25; ++i) {
     next_.x[i] = now_.x[i] - Vec3(0, 0, 1.001);
     next_.v[i] = Vec3(0, 0, -100.1);
   }
-  const Moment solved = next_;
+  const SystemState solved = next_;
   ASSERT_FALSE(stage_->apart(now_, next_));
   ASSERT_EQ(stage_->push_apart(0.01, false, true, now_, next_), std::nullopt);
   EXPECT_TRUE(stage_->apart(now_, next_));

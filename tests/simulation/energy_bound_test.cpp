@@ -1,4 +1,4 @@
-// Runs that gain energy from nowhere end with a name.
+// Runs that gain energy without a source are refused with a reason.
 #include "simulation/energy_bound.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace weft::simulation {
 namespace {
 
-/// A stiff sheet that hangs from two corners, at steps far too long for the midpoint rule.
+/// A stiff sheet hangs from two corners; the steps are far too long for the midpoint rule.
 scene::Scene runaway() {
   scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
   scene.time = {.duration = 10, .fps = 10, .step = 0.1, .integrator = scene::Integrator::implicit_midpoint};
@@ -29,7 +29,7 @@ scene::Scene runaway() {
   return scene;
 }
 
-/// Frames until the simulation refuses, at most 100; its words.
+/// Advances, by at most 100 frames, until the simulation refuses; returns its message.
 std::string refusal(Simulation& simulation) {
   for (int k = 0; k < 100; ++k) {
     const int before = simulation.snapshot()->frame;
@@ -69,11 +69,11 @@ TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
   Simulation simulation(scene);
   FrameReport report;
   for (int k = 0; k < 10; ++k) report = simulation.advance();
-  EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: 3 m in a second
+  EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: it falls 3 m in a second
   EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
 }
 
-/// Turns a cloth upright and pins its upper edge; stiffnesses in N/m and N m, nothing that damps.
+/// Turns a cloth upright and pins its upper edge; stiffnesses in N/m and N·m, without damping.
 void hang(scene::Cloth& cloth, double stretch, double shear, double bend) {
   cloth.pose.rotation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
   cloth.material.stretch_weft = cloth.material.stretch_warp = stretch;
@@ -86,8 +86,8 @@ void hang(scene::Cloth& cloth, double stretch, double shear, double bend) {
   cloth.pins = {pin};
 }
 
-/// A strip that hangs from a pin which is shaken by `way` [m] with a period of 1.2 s.
-scene::Scene shaken(scene::Integrator integrator, double step, const Vec3& way) {
+/// A strip hangs from a pin that moves by `amplitude` [m] to and fro with a period of 1.2 s.
+scene::Scene shaken(scene::Integrator integrator, double step, const Vec3& amplitude) {
   scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
   scene.time.step = step;
   scene.time.integrator = integrator;
@@ -96,48 +96,49 @@ scene::Scene shaken(scene::Integrator integrator, double step, const Vec3& way) 
   cloth.particles_weft = 2;
   hang(cloth, 5000, 100, 1e-6);
   for (int k = 0; k <= 160; ++k)
-    cloth.pins[0].motion.keys.push_back({0.075 * k, {std::sin(k * std::numbers::pi / 8) * way, Quat::Identity()}});
+    cloth.pins[0].motion.keys.push_back(
+        {0.075 * k, {std::sin(k * std::numbers::pi / 8) * amplitude, Quat::Identity()}});
   return scene;
 }
 
-// 3e15 J came of it in 246 frames without a word.
+// Without the check the run gained 3e15 J in 246 frames.
 TEST(EnergyBound, RunawayOfAShakenStripIsRefused) {
-  for (const Vec3& way : {Vec3(0, 0.02, 0), Vec3(0.01, 0, 0.005), Vec3(0, 0.1, 0)}) {
-    Simulation simulation(shaken(scene::Integrator::implicit_midpoint, 0.04, way));
+  for (const Vec3& amplitude : {Vec3(0, 0.02, 0), Vec3(0.01, 0, 0.005), Vec3(0, 0.1, 0)}) {
+    Simulation simulation(shaken(scene::Integrator::implicit_midpoint, 0.04, amplitude));
     const std::string words = refusal(simulation);
-    EXPECT_NE(words.find("by the work of its pins"), std::string::npos) << way.transpose() << ": " << words;
+    EXPECT_NE(words.find("by the work of its pins"), std::string::npos) << amplitude.transpose() << ": " << words;
     EXPECT_LT(simulation.initial_report().kinetic_energy, 1);
   }
 }
 
-// What pins bring in and what is stored are the same but for what the method damps: the work is exact to its order.
+// The work of pins equals the stored energy plus the damping of the method, to the order of the method.
 TEST(EnergyBound, WorkOfPinsClosesTheBudget) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     const bool damps = integrator != scene::Integrator::implicit_midpoint;
-    for (const Vec3& way : {Vec3(0, 0.1, 0), Vec3(0.05, 0, 0.1)}) {
-      scene::Scene scene = shaken(integrator, 0.002, way);
+    for (const Vec3& amplitude : {Vec3(0, 0.1, 0), Vec3(0.05, 0, 0.1)}) {
+      scene::Scene scene = shaken(integrator, 0.002, amplitude);
       scene.solver.newton_tolerance = 1e-3;
       Simulation simulation(scene);
       const FrameReport start = simulation.initial_report();
       const auto all = [](const FrameReport& r) { return r.kinetic_energy + r.potential_energy + r.elastic_energy; };
-      double work = 0, most = 0;
+      double work = 0, max_work = 0;
       for (int k = 0; k < 25; ++k) {
         const FrameReport now = simulation.advance();
         EXPECT_TRUE(now.warnings.empty()) << now.warnings.front();
         work += now.pin_work;
-        most = std::max(most, std::abs(work));
+        max_work = std::max(max_work, std::abs(work));
         const double gain = all(now) - all(start) - work;
-        EXPECT_LT(gain, 0.02 * most) << name_of(integrator) << ", frame " << now.frame;
+        EXPECT_LT(gain, 0.02 * max_work) << name_of(integrator) << ", frame " << now.frame;
         if (!damps) {
-          EXPECT_GT(gain, -0.02 * most) << name_of(integrator) << ", frame " << now.frame;
+          EXPECT_GT(gain, -0.02 * max_work) << name_of(integrator) << ", frame " << now.frame;
         }
       }
-      EXPECT_GT(most, 1e-4);
+      EXPECT_GT(max_work, 1e-4);
     }
   }
 }
 
-// For 0.27 µJ a run was refused, in its frame 39: a sheet so stiff that it hangs at rest has less in play.
+// A gain of rounding size (measured: 0.27 µJ) is no reason to refuse: a stiff sheet at rest has less in play.
 TEST(EnergyBound, RoundingIsNoEnergy) {
   for (const double size : {0.02, 0.4})
     for (const scene::Integrator integrator : testing::kIntegrators) {
@@ -154,7 +155,7 @@ TEST(EnergyBound, RoundingIsNoEnergy) {
     }
 }
 
-// Finite, and its centre at -0.08 m where it should have fallen to -0.33.
+// The run stays finite, but the sheet's centre is at -0.08 m instead of -0.33 m.
 TEST(EnergyBound, MotionThatTheSolverHoldsBackIsWarnedOf) {
   const auto warnings_of = [](double stiffness) {
     scene::Scene scene = testing::sheet_alone(0.5, 9, 1);
@@ -181,8 +182,8 @@ TEST(EnergyBound, MotionThatTheSolverHoldsBackIsWarnedOf) {
   EXPECT_TRUE(warnings_of(1e4).empty());
 }
 
-// On a ball, at a step with which contacts shook the sheet of the midpoint rule: 12 J came of the 0.35 J of its fall. A
-// tenth of what is in play is what a run may gain without a warning.
+// The sheet falls on a ball, with a step at which contacts shook the sheet under the midpoint rule (measured: 12 J from
+// a fall of 0.35 J). Without a warning a run may gain a tenth of the energy in play.
 TEST(EnergyBound, ContactBringsNone) {
   for (scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.6, 13, 0.45);
@@ -201,7 +202,7 @@ TEST(EnergyBound, ContactBringsNone) {
   }
 }
 
-/// Largest gain of mechanical energy since the start, as a share of the energy in play; 1 where the run ended.
+/// Maximum gain of mechanical energy since the start, relative to the energy in play; 1 if the run ended.
 double largest_gain(const scene::Scene& scene, int frames) {
   Simulation simulation(scene);
   const FrameReport start = simulation.initial_report();
@@ -222,8 +223,8 @@ double largest_gain(const scene::Scene& scene, int frames) {
   return gain;
 }
 
-// What turns is no longer for it: with n·v as the rate of a length, of which the turn of a step is a part, a viscosity
-// of 30 N·s/m shortened the threads of a sheet that swings until the run was refused.
+// A rotation does not lengthen threads. With n·v as the rate of length, which includes the turn of a step, a viscosity
+// of 30 N·s/m shortened the threads of a swinging sheet until the run was refused.
 TEST(EnergyBound, ViscosityOnlyTakesEnergy) {
   using Shape = scene::ClothShape;
   for (const auto integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2})
@@ -239,14 +240,14 @@ TEST(EnergyBound, ViscosityOnlyTakesEnergy) {
           left.low = left.high = {0, 0};
           right.low = right.high = {1, 0};
           scene.cloths[0].pins = {left, right};
-          // Of a share that the solver may leave of each step, 40 times: 0 is what comes of it.
+          // The solver may leave a small fraction in each of 40 steps; the measured gain is 0.
           EXPECT_LT(largest_gain(scene, 10), 0.01)
               << name_of(integrator) << ", shape " << static_cast<int>(shape) << ", viscosity " << viscosity
               << (of == &scene::Material::stretch_viscosity ? " of stretch" : " of shear");
         }
 }
 
-/// A sheet that falls on an obstacle, and past it to the floor, with as much friction everywhere.
+/// A sheet falls on an obstacle and past it to the floor; all surfaces have this friction.
 scene::Scene falls_on(scene::Shape shape, double friction, double step) {
   scene::Scene scene = testing::sheet_alone(0.5, 11, 0.5);
   scene.time.step = step;
@@ -266,20 +267,19 @@ scene::Scene falls_on(scene::Shape shape, double friction, double step) {
   return scene;
 }
 
-// Loads and friction drove each other up: from 0.46 J, 986,000 J on the cone.
+// Normal forces and friction must not amplify each other (measured once: 986,000 J from 0.46 J on the cone).
 TEST(EnergyBound, FrictionOfManyTimesTheLoadBringsNone) {
   for (const double friction : {2.0, 10.0})
     for (const double step : {0.01, 0.02}) {
       const std::vector<scene::Shape> shapes{scene::BoxShape{{0.3, 0.3, 0.3}}, scene::Cone{0.3, 0.3}};
       for (std::size_t s = 0; s < shapes.size(); ++s)
-        // A tenth of what is in play is what a run may gain without a warning.
+        // Without a warning a run may gain a tenth of the energy in play.
         EXPECT_LT(largest_gain(falls_on(shapes[s], friction, step), 10), 0.1)
             << "friction " << friction << ", step " << step << " s, shape " << s;
     }
 }
 
-// Friction that is wrong can change no more than the speed that the sheet has, for the 0.15 s that a velocity left by
-// the solver counts.
+// Wrong friction can change at most the speed that the sheet has, for the 0.15 s over which a velocity residual counts.
 TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
   constexpr double kCounts = 0.15;  // [s]
   for (const scene::Shape& shape :
@@ -294,12 +294,12 @@ TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
       solver += report.solver_error;
       steps += report.error_estimate;
     }
-    // 2.6 and 2.7 times as much where sliding of any size is accepted after ten iterations.
+    // Measured: 2.6 and 2.7 times as much if sliding of any size is accepted after ten iterations.
     EXPECT_LT(solver, steps);
   }
 }
 
-/// A sheet that falls on the edge of a plate 1 mm thick, and folds over it faster than its contacts turn.
+/// A sheet falls on the edge of a plate of 1 mm and folds over it faster than its contact normals turn.
 scene::Scene on_a_blade() {
   scene::Scene scene = testing::sheet_alone(0.5, 21, 0.17);
   scene.time.step = 0.01;
@@ -308,7 +308,7 @@ scene::Scene on_a_blade() {
   return scene;
 }
 
-// Pushing it apart after the solve made of the 0.068 J of its fall 0.18 J in threads.
+// Pushing the sheet out after the solve stored 0.18 J in threads, from a fall of 0.068 J.
 TEST(EnergyBound, WhatWouldPassAnEdgeIsSolvedWithTheContactsOfThatPlace) {
   Simulation simulation(on_a_blade());
   const FrameReport start = simulation.initial_report();
@@ -324,10 +324,10 @@ TEST(EnergyBound, WhatWouldPassAnEdgeIsSolvedWithTheContactsOfThatPlace) {
   EXPECT_LT(most_elastic, 0.3 * fall);
 }
 
-// Of figures made for it: whether contact brings energy hangs on what the solver is at the day.
+// Uses invented figures: whether contact adds energy in a run depends on details of the solver.
 TEST(EnergyBound, EnergyThatContactBringsToAMethodThatDampsIsWarnedOfOnce) {
   const auto after_a_fall = [](double gained) {
-    FrameReport report;  // 1 J was to be had, and half of it is kinetic
+    FrameReport report;  // 1 J was available, half of it is kinetic
     report.potential_energy = -1;
     report.kinetic_energy = 0.5;
     report.elastic_energy = 0.5 + gained;

@@ -1,4 +1,4 @@
-// How much energy each method keeps.
+// How much energy each integration method keeps.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -8,11 +8,11 @@
 namespace weft::simulation {
 namespace {
 
-// Energy above that of the sheet hanging at rest [J]: elastic, kinetic and of height.
+// Energy relative to the sheet hanging at rest [J]: elastic, kinetic and potential.
 class Energy {
  public:
   explicit Energy(const scene::Scene& scene) : scene_(scene) {
-    // To rest with steps that damp.
+    // Finds the rest with steps that damp.
     scene::Scene resting = scene;
     resting.time.integrator = scene::Integrator::implicit_euler;
     resting.time.step = 0.04;
@@ -71,7 +71,7 @@ TEST(PinnedSheet, OfSecondOrderMethodsKeepMoreEnergyThanEuler) {
   const double finest = run(scene::Integrator::bdf2, 4800);
   EXPECT_LT(kept[0], kept[2]);
   EXPECT_LT(kept[2], kept[1]);
-  // Nothing here takes energy but the method.
+  // Only the method takes energy here.
   EXPECT_NEAR(kept[1], 1, 0.02);
   EXPECT_GT(finest, kept[2]);
 }

@@ -1,4 +1,4 @@
-// What cloth cannot reach has no influence on it, to the bit.
+// Bodies that the cloth cannot reach have no influence on it, to the bit.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -8,7 +8,7 @@
 namespace weft::simulation {
 namespace {
 
-/// A sheet that falls on a ball and slides on to the floor.
+/// A sheet falls on a ball and slides on to the floor.
 scene::Scene sheet_on_ball() {
   scene::Scene scene = testing::sheet_alone(0.5, 17, 0.33);
   scene.time.step = 0.01;
@@ -35,7 +35,7 @@ TEST(FarBodies, HaveNoInfluence) {
   const auto alone = film_of(sheet_on_ball(), kFrames);
   for (const Vec3& place : {Vec3(20, 0, 3), Vec3(-4000, 700, 3), Vec3(0, 0, 5), Vec3(0, 1.5, 0)}) {
     for (const bool moves : {false, true}) {
-      for (const bool comes_first : {moves != (place.z() > 4)}) {  // also the other way round, once
+      for (const bool comes_first : {moves != (place.z() > 4)}) {  // the order is swapped for one place
         scene::Scene scene = sheet_on_ball();
         scene::Obstacle prop = testing::obstacle("prop", scene::Sphere{0.1}, place);
         prop.pose.rotation = Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()));

@@ -1,4 +1,4 @@
-// Garments sewn and worn: seams stay closed, measures become those of the pattern, nothing intersects.
+// Garments are sewn and worn: seams stay closed, measures become those of the pattern, nothing intersects.
 #include "garment/garment.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace weft::simulation {
 namespace {
 
-// With an elastic band at the top.
+// A skirt with an elastic band at the top.
 const std::string kSkirt = testing::kTube + R"(
 [[elastic]]
 edge = "front.top"
@@ -66,15 +66,15 @@ Measures measure(const garment::Garment& garment, const std::vector<Vec3>& x) {
   return m;
 }
 
-// Must show 4 of the garments: area and seams within 1 % of the pattern once sewn; no frame with an intersection.
+// Requirement 4 of the garments: once sewn, area and seams are within 1 % of the pattern; no frame intersects.
 TEST_F(Garments, ATubeSewnRoundAPostFitsAndNeverIntersects) {
   const scene::Scene scene = dressed(kPost);
   const auto frames = support::run_scene(scene, {.keep_positions = true});
   for (const auto& frame : frames)
     EXPECT_EQ(frame.pairs, 0U) << "frame " << frame.report.frame << ": " << frame.between;
-  // Free of stress at the start, whatever the start is stretched.
+  // The start is free of stress, however much it is stretched relative to the pattern.
   EXPECT_LT(frames[0].report.max_strain, 1e-12);
-  EXPECT_LT(frames[0].report.elastic_energy, 0.03);  // bending alone: the pattern is flat
+  EXPECT_LT(frames[0].report.elastic_energy, 0.03);  // only bending: the pattern is flat
 
   const garment::Garment garment =
       garment::sew(garment::load_pattern(scene.cloths[0].file, "a test"), scene.cloths[0].edge_length, "a test");
@@ -85,13 +85,13 @@ TEST_F(Garments, ATubeSewnRoundAPostFitsAndNeverIntersects) {
     EXPECT_NEAR(end.seams[s], end.seams_pattern[s], 0.01 * end.seams_pattern[s]);
   std::printf("area %.5f of %.5f m², seams %.5f and %.5f of %.5f m, largest strain %.4f\n", end.area, end.area_pattern,
               end.seams[0], end.seams[1], end.seams_pattern[0], frames.back().report.max_strain);
-  // It hangs on its band.
+  // Its band holds it up.
   double lowest = 1e9;
   for (const Vec3& x : frames.back().cloths[0]) lowest = std::min(lowest, x.z());
   EXPECT_GT(lowest, 0);
 }
 
-// It has no weight while it is sewn, and falls freely after.
+// The garment has no weight during sewing, and falls freely afterwards.
 TEST_F(Garments, NothingFallsBeforeItIsSewn) {
   const scene::Scene scene = dressed("[time]\nduration = 1\n[physics]\nair_density = 0\n");
   const auto frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
@@ -100,29 +100,29 @@ TEST_F(Garments, NothingFallsBeforeItIsSewn) {
     for (const Vec3& x : frames[frame].cloths[0]) sum += x.z();
     return sum / static_cast<double>(frames[frame].cloths[0].size());
   };
-  EXPECT_NEAR(height(15), height(0), 0.02);  // the band pulls the upper end together
+  EXPECT_NEAR(height(15), height(0), 0.02);  // the band contracts the upper end
   const double fallen = 0.5 * 9.81 * 0.4 * 0.4;
-  // Implicit Euler falls ahead by half a step of 10 ms, and the mean of the particles is not the centre of mass while
-  // the shape changes.
+  // Implicit Euler leads by half a step of 10 ms, and the mean of the particles is not the centre of mass while the
+  // shape changes.
   EXPECT_NEAR(height(15) - height(25), fallen, 0.1 * fallen);
 }
 
-// The top of the front of 0.33 m at 30 mm: 12 particles, of which low and high can take a part.
+// The front's top of 0.33 m has 12 particles at 30 mm; `low` and `high` can select a part of them.
 TEST_F(Garments, ArePinnedByEdgesOfTheirPattern) {
   const scene::Scene scene = dressed("pin = [{ edge = 'front.top' }, { edge = 'back.hem', low = [0.5, 0] }]\n");
   const environment::Environment environment(scene);
   const environment::ClothObject& cloth = environment.cloths[0];
   const auto& top = cloth.pins[0];
   EXPECT_EQ(top.size(), 12U);
-  for (const auto& [i, share, faded] : top) {
-    EXPECT_EQ(share, 1);
+  for (const auto& [i, fraction, faded] : top) {
+    EXPECT_EQ(fraction, 1);
     EXPECT_FALSE(faded);
     EXPECT_NEAR(cloth.start[i].z(), 0.4, 0.01);
     EXPECT_LT(cloth.start[i].y(), 1e-3) << "of the front";
   }
   const auto& hem = cloth.pins[1];
   EXPECT_EQ(hem.size(), 6U);
-  for (const auto& [i, share, faded] : hem) {
+  for (const auto& [i, fraction, faded] : hem) {
     EXPECT_NEAR(cloth.start[i].z(), 0.1, 0.01);
     EXPECT_GT(cloth.start[i].y(), -1e-3);
     EXPECT_GT(cloth.start[i].x(), 0);
@@ -155,7 +155,7 @@ TEST_F(Garments, AStartThatTouchesTheWearerIsRefusedWithItsPlace) {
   support::expect_error(ExitCode::scene_invalid, "'tube'", [&] { Simulation simulation(scene); });
 }
 
-/// What a start is refused with.
+/// The message with which a start is refused.
 std::string refusal_of(const scene::Scene& scene) {
   try {
     Simulation simulation(scene);
@@ -175,10 +175,10 @@ TEST_F(Garments, AStartThatMeetsACharacterTellsHowArmsAreHeldOff) {
                     (folder_ / "rod.x").string(), of_character, height)));
   };
   const std::string hint = "stance_arms = 45 holds them off the body", dressed = "dressing = 0.5\nblend = 0.2\n";
-  const std::string told = refused(dressed, 0.5);
-  EXPECT_NE(told.find("'rod'"), std::string::npos) << told;
-  EXPECT_NE(told.find(hint), std::string::npos) << told;
-  // Not where nothing is put on, and not where it is something else that the cloth meets.
+  const std::string message = refused(dressed, 0.5);
+  EXPECT_NE(message.find("'rod'"), std::string::npos) << message;
+  EXPECT_NE(message.find(hint), std::string::npos) << message;
+  // The hint is absent if nothing is dressed, and if the cloth touches another body.
   const std::string moving = refused("", 0.5), elsewhere = refused(dressed, 3);
   EXPECT_NE(moving.find("'rod'"), std::string::npos) << moving;
   EXPECT_EQ(moving.find(hint), std::string::npos) << moving;

@@ -1,4 +1,4 @@
-// Closed cloth with air inside against theory: tension, volume, frequency, energy.
+// Compares closed cloth with air inside with theory: tension, volume, frequency, energy.
 #include "simulation/inflation.hpp"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ constexpr double kAmbient = Inflation::kAmbientPressure;
 
 class Balloon : public support::TestFolder {
  protected:
-  /// A sphere that stretches alike in all directions, without gravity and air outside. `rows`: of [time] and of the
-  /// cloth.
+  /// A sphere with isotropic stretch, without gravity and without air outside. `time` and `cloth` are rows of [time]
+  /// and of the cloth.
   scene::Scene scene(const std::string& time, const std::string& cloth) const {
     const mesh::Mesh sphere = mesh::make_sphere(kRadius, 32);
     std::ofstream out(folder_ / "sphere.obj");
@@ -42,7 +42,7 @@ class Balloon : public support::TestFolder {
     for (int frame = 1; frame < scene.frame_count(); ++frame) report = simulation.advance();
     return report;
   }
-  double viscosity_ = 0.5;  // [N·s/m], so that it comes to rest
+  double viscosity_ = 0.5;  // [N·s/m], to bring it to rest
 };
 
 TEST_F(Balloon, StretchesUntilTheTensionIsPressureTimesHalfTheRadius) {
@@ -51,7 +51,7 @@ TEST_F(Balloon, StretchesUntilTheTensionIsPressureTimesHalfTheRadius) {
     const FrameReport start = Simulation(balloon).initial_report(), end = run(balloon);
     ASSERT_EQ(end.enclosed.size(), 1u);
     EXPECT_EQ(end.enclosed[0].pressure, pressure);
-    // Per rest length, kStretch ε = p R (1 + ε)² / 2 holds an edge of a half.
+    // Per rest length, kStretch ε = p R (1 + ε)² / 2 balances the pressure.
     const double a = pressure * kRadius / (2 * kStretch);
     const double strain = (1 - 2 * a - std::sqrt(1 - 4 * a)) / (2 * a);
     const double measured = std::cbrt(end.enclosed[0].volume / start.enclosed[0].volume) - 1;
@@ -70,7 +70,7 @@ TEST_F(Balloon, HoldsWhatIsPumpedInAtThePressureOfItsTension) {
     const double volume = end.enclosed[0].volume, pressure = end.enclosed[0].pressure;
     EXPECT_NEAR((kAmbient + pressure) * volume / (kAmbient * start * (1 + pumped)), 1, 1e-12);
     if (pumped < 0) {
-      EXPECT_LT(pressure, 0);  // it dents, at next to no pressure
+      EXPECT_LT(pressure, 0);  // it dents at almost no pressure difference
       EXPECT_GT(pressure, -500);
       continue;
     }
@@ -89,7 +89,7 @@ TEST_F(Balloon, OfMoreAirIsOneIntoWhichThatIsPumped) {
 
 TEST_F(Balloon, SwingsWithTheFrequencyOfItsAirAndKeepsItsEnergy) {
   viscosity_ = 0;
-  // Radial motion u: ρ u'' = −(2 k / R² + 3 p₀ / R) u, 742 Hz; threads alone would swing with 184 Hz.
+  // Radial motion u: ρ u'' = −(2 k / R² + 3 p₀ / R) u, 742 Hz; threads alone would give 184 Hz.
   const double rate = std::sqrt((2 * kStretch / kRadius + 3 * kAmbient) / (kRadius * kDensity));
   const double period = 2 * std::numbers::pi / rate;
   scene::Scene balloon =
@@ -104,10 +104,10 @@ TEST_F(Balloon, SwingsWithTheFrequencyOfItsAirAndKeepsItsEnergy) {
   for (int frame = 1; frame <= 160; ++frame) {
     const FrameReport report = simulation.advance();
     volumes.push_back(report.enclosed[0].volume);
-    // 0.003 measured, of the trapezoidal error in a potential that is not quadratic.
+    // Measured: 0.003, the trapezoidal error in a potential that is not quadratic.
     EXPECT_NEAR(report.kinetic_energy + report.elastic_energy + report.air_energy, all, 0.01 * all) << frame;
   }
-  // Four whole periods after the start it is where it began; a quarter later halfway.
+  // After four periods it is back at the start; a quarter of a period later it is halfway.
   const double swing = volumes[20] - volumes[0];
   EXPECT_GT(swing, 0);
   EXPECT_NEAR(volumes[160], volumes[0], 0.05 * swing);

@@ -1,4 +1,4 @@
-// Forces that change with time and place, and spin at the start, against simple theory.
+// Compares forces that change with time and place, and an initial spin, with simple theory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ TEST(KeyedForces, GravityThatGrowsAddsItsIntegralToTheVelocity) {
   scene.time.integrator = scene::Integrator::implicit_midpoint;
   scene.physics.interpolation = scene::Interpolation::linear;
   scene.physics.keys = {{0.2, {0, 0, 0}, {0, 0, 0}}, {0.8, {0, 3, -6}, {0, 0, 0}}};
-  // The midpoint rule integrates what is linear in time exactly: ½ · 0.6 s of the last key, and 0.2 s of all of it.
+  // The midpoint rule is exact for what is linear in time: ½ · 0.6 s of the last key, and 0.2 s of its full value.
   EXPECT_LT((velocity_at_end(scene) - 0.5 * Vec3(0, 3, -6)).norm(), 1e-9);
 }
 
@@ -65,7 +65,7 @@ TEST(KeyedForces, FanPushesWhatIsInItsConeWithTheDragOfItsJet) {
     return velocity_at_end(scene).z();
   };
   const double apex = 0.2 / std::tan(12 * std::numbers::pi / 180), jet = 6 * apex / (apex + 1.5);
-  EXPECT_NEAR(after_a_millisecond(0) / (1e-3 * 1.2 * jet * jet / (2 * 0.2)), 1, 0.03);  // 0.016: it moves, it is wide
+  EXPECT_NEAR(after_a_millisecond(0) / (1e-3 * 1.2 * jet * jet / (2 * 0.2)), 1, 0.03);  // measured: 0.016
   EXPECT_EQ(after_a_millisecond(0.6), 0);
 }
 
@@ -87,7 +87,7 @@ TEST(KeyedForces, SpinTurnsClothAboutItsCentreAndIsKept) {
     return sum;
   };
   Simulation simulation(scene);
-  // Lumped masses of a square with n cells a side turn with m a² / 12 (1 + 2 / n²) about each axis in it.
+  // A square of lumped masses with n cells a side has the moment m a² / 12 (1 + 2 / n²) about each axis in its plane.
   const double inertia = 0.2 * 0.09 * 0.09 / 6 * (1 + 2.0 / 64);
   const Vec3 start = angular_momentum(simulation);
   EXPECT_LT((start - Vec3(0, 0, inertia * std::numbers::pi)).norm(), 1e-12);
@@ -95,7 +95,7 @@ TEST(KeyedForces, SpinTurnsClothAboutItsCentreAndIsKept) {
   const Vec3 corner = simulation.state().positions[0];
   for (int frame = 1; frame < scene.frame_count(); ++frame) simulation.advance();
   EXPECT_LT((angular_momentum(simulation) - start).norm(), 0.01 * start.norm());
-  // Turned by 36 degrees and moved by 0.1 m.
+  // It has turned by 36 degrees and moved by 0.1 m.
   const Vec3 arm = corner - Vec3(0, 0, 0.4), there = simulation.state().positions[0] - Vec3(0.1, 0, 0.4);
   const double angle = std::atan2(arm.cross(there).z(), arm.dot(there)) * 180 / std::numbers::pi;
   EXPECT_NEAR(angle, 36, 1);

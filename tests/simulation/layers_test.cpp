@@ -1,4 +1,4 @@
-// Cloth worn over cloth: put on one after the other, and outside of what it is worn over.
+// Layered garments: dressed one after the other, each outside the one below.
 #include "scene/layers.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace weft::simulation {
 namespace {
 
-// A tube around z as text of an OBJ file, `ellipse` times wider along x than round; flipped it faces its axis.
+// A tube around z as the text of an OBJ file, stretched along x by `ellipse`; if flipped, it faces its axis.
 std::string tube(double radius, double height, double ellipse = 1, bool flipped = false) {
   constexpr int kAround = 28, kUp = 9;
   std::string text;
@@ -36,15 +36,15 @@ std::string tube(double radius, double height, double ellipse = 1, bool flipped 
   return text;
 }
 
-/// How often the way outward from p, away from the z axis, goes through a surface.
-int times_through(const Vec3& p, const std::vector<std::array<Index, 3>>& triangles, const std::vector<Vec3>& x) {
-  const Vec3 way = 10 * Vec3(p.x(), p.y(), 0).normalized();
+/// How often the ray from p away from the z axis pierces a surface.
+int count_crossings(const Vec3& p, const std::vector<std::array<Index, 3>>& triangles, const std::vector<Vec3>& x) {
+  const Vec3 outward = 10 * Vec3(p.x(), p.y(), 0).normalized();
   int times = 0;
   for (const auto& [a, b, c] : triangles) {
-    const double u = way.dot((x[b] - p).cross(x[c] - p)), v = way.dot((x[c] - p).cross(x[a] - p)),
-                 w = way.dot((x[a] - p).cross(x[b] - p));
+    const double u = outward.dot((x[b] - p).cross(x[c] - p)), v = outward.dot((x[c] - p).cross(x[a] - p)),
+                 w = outward.dot((x[a] - p).cross(x[b] - p));
     const Vec3 n = (x[b] - x[a]).cross(x[c] - x[a]);
-    const double at = n.dot(x[a] - p) / n.dot(way);
+    const double at = n.dot(x[a] - p) / n.dot(outward);
     times += ((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0)) && at > 0;
   }
   return times;
@@ -59,7 +59,7 @@ class Layers : public support::TestFolder {
     support::write_bytes(folder_ / "coat.obj", tube(0.175, 0.4, 1.12));
   }
 
-  /// The coat first in the file and last to be put on. It crosses the vest, which the shirt, inside out, is inside of.
+  /// The coat is first in the file and dressed last. It crosses the vest; the shirt, inside out, is inside the vest.
   scene::Scene dressed(const std::string& time) const {
     const auto cloth = [&](const std::string& name, const std::string& over) {
       return "[[cloth]]\nname = '" + name + "'\nshape = 'mesh'\nfile = '" + (folder_ / (name + ".obj")).string() +
@@ -83,7 +83,7 @@ TEST_F(Layers, ThatCrossOrLieTheWrongWayAroundGetOutsideOfWhatTheyAreWornOver) {
       for (const auto& [inner, outer] : {std::pair{1, 2}, std::pair{2, 0}, std::pair{1, 0}}) {
         int inside = 0;
         for (const Vec3& p : now->states[outer].positions)
-          inside += times_through(p, now->surfaces[inner]->triangles, now->states[inner].positions) % 2;
+          inside += count_crossings(p, now->surfaces[inner]->triangles, now->states[inner].positions) % 2;
         EXPECT_EQ(inside, 0) << time << "frame " << frame << ", " << outer << " over " << inner;
       }
       simulation.advance();
@@ -93,7 +93,7 @@ TEST_F(Layers, ThatCrossOrLieTheWrongWayAroundGetOutsideOfWhatTheyAreWornOver) {
 
 TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
   scene::Scene scene = dressed("preroll = 0.36\n");
-  // Without friction: the shirt grips the vest so tightly that its speed with friction is chance.
+  // No friction: the shirt grips the vest so tightly that its speed with friction is chaotic.
   for (scene::Cloth& cloth : scene.cloths) cloth.material.friction = 0;
   for (scene::Obstacle& obstacle : scene.obstacles) obstacle.friction = 0;
   const std::vector<scene::Layer> layers = scene::list_layers(scene);
@@ -101,7 +101,7 @@ TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
   EXPECT_EQ(layers[1].first_frame, -6);
   EXPECT_EQ(layers[1].dressed, (std::vector<std::size_t>{1, 2}));
   EXPECT_EQ(layers[2].cloths, std::vector<std::size_t>{0});
-  // The vest falls as it does alone until the shirt comes.
+  // Until the shirt comes, the vest falls as it does alone.
   scene::Scene alone = scene;
   alone.cloths = {scene.cloths[1]};
   Simulation one(alone), three(scene);
@@ -111,7 +111,7 @@ TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
     EXPECT_EQ(three.state().positions.size(), vest);
     EXPECT_EQ(one.snapshot()->states[0].positions, three.snapshot()->states[1].positions) << frame;
   }
-  // And goes on from there as it fell, with the speed that it has alone; at 0.25 of it if it stood still first.
+  // Afterwards it continues with the speed that it has alone; it would have 0.25 of it after a stop.
   one.advance(), three.advance();
   EXPECT_EQ(three.state().positions.size(), 2 * vest);
   const auto speed = [&](const Simulation& simulation) {
@@ -122,14 +122,14 @@ TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
   EXPECT_NEAR(speed(three) / speed(one), 1, 0.25);
 }
 
-/// A sheet between jaws, whose pinned edge a ram pushes away, before and after another cloth comes, if there is one.
+/// A sheet between jaws, its pinned edge pushed away by a ram, before and after another cloth (if any) is dressed.
 struct HeldUp {
   std::vector<int> pinched, lagging;  // per frame
   std::vector<std::string> warnings;
-  std::vector<Vec3> end;  // of the sheet [m]
+  std::vector<Vec3> end;  // positions of the sheet [m]
 };
 HeldUp hold_up(const std::string& more) {
-  // Solved so exactly that what the solver leaves, which other cloth changes, does not show.
+  // The tolerance is so tight that the solver's residual, which another cloth changes, does not show.
   const scene::Scene scene = support::scene_of_text(R"(
 [solver]
 newton_tolerance = 0.03
@@ -172,7 +172,7 @@ keys = [{ time = -0.8, position = [-0.02, 0.25, 0.48] }, { time = -0.5, position
   return held;
 }
 
-// As if nothing else had come: what is pinched and what lags goes on so, and is not told of anew.
+// As if no cloth had come: pinching and lagging continue, and are not reported again.
 TEST_F(Layers, PinchedAndHeldUpGoOnSoWhenTheNextComes) {
   const HeldUp alone = hold_up(""), below = hold_up(
                                         "[[cloth]]\nname = 'coat'\nover = 'sheet'\nsize = [0.1, 0.1]\n"
@@ -183,8 +183,8 @@ TEST_F(Layers, PinchedAndHeldUpGoOnSoWhenTheNextComes) {
   EXPECT_EQ(below.lagging, alone.lagging);
   for (std::size_t k = 0; k < alone.pinched.size(); ++k)
     EXPECT_NEAR(below.pinched[k], alone.pinched[k], 0.2 * alone.pinched[k]) << "frame " << k;
-  // The solver stops elsewhere with one cloth more: a ninth of the pairs at most, and 11 mm at the end, where the sheet
-  // is 0.4 m and swings.
+  // With one more cloth the solver stops at another iterate: at most a ninth of the pairs differ, and 11 mm at the end,
+  // for a swinging sheet of 0.4 m.
   for (std::size_t i = 0; i < alone.end.size(); ++i) EXPECT_LT((alone.end[i] - below.end[i]).norm(), 0.02);
 }
 

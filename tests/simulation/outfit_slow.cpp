@@ -6,7 +6,7 @@
 namespace weft::simulation {
 namespace {
 
-// The gallery's outfit with coarser meshes: each layer is sewn over the one before in its share of the preroll.
+// The gallery's outfit with coarser meshes; each layer is sewn over the previous one in its own part of the preroll.
 TEST(Outfit, HasNoIntersectionsAndIsSewn) {
   const auto frames =
       support::run_scene(support::scene_of(std::filesystem::path(WEFT_SOURCE_DIR) / "scenes/gallery/outfit.toml",
@@ -15,7 +15,7 @@ TEST(Outfit, HasNoIntersectionsAndIsSewn) {
   ASSERT_EQ(frames.size(), 16u);
   for (const support::MeasuredFrame& frame : frames) {
     EXPECT_EQ(frame.pairs, 0u) << frame.report.frame << ": " << frame.between;
-    // Before it is sewn a garment is far from its pattern: the loops of panels around a part are wider by a third.
+    // Before sewing a garment is far from its pattern: the loops of panels around a limb are wider by a third.
     EXPECT_LT(frame.report.max_strain, 0.3) << frame.report.frame;
   }
 }

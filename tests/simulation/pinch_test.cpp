@@ -1,5 +1,5 @@
-// Cloth between two bodies that leave it no room: the run goes on, cloth stays apart from cloth, the pinch is reported,
-// and once the bodies have parted nothing intersects.
+// Two bodies leave no clearance for the cloth between them: the run continues, cloth stays separated from cloth, the
+// pinch is reported, and nothing intersects once the bodies have separated.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@
 namespace weft::simulation {
 namespace {
 
-// Two jaws close on a hanging sheet until they overlap by 10 mm, stay, and part.
+// Two jaws close on a hanging sheet until they overlap by 10 mm, stay, and open.
 constexpr const char* kJaws = R"(
 [time]
 duration = 1.6
@@ -56,7 +56,7 @@ keys = [
 ]
 )";
 
-// One of them stays: the cloth in it has to be pushed out.
+// One jaw stays: the cloth inside it has to be pushed out.
 constexpr const char* kOneJawStays = R"(
 [time]
 duration = 1.6
@@ -121,7 +121,7 @@ keys = [
 ]
 )";
 
-// A narrow jaw that turns while it closes: the sheet is rolled and pinched between its edge and a wall.
+// A narrow jaw turns while it closes: the sheet is rolled and pinched between its edge and a wall.
 constexpr const char* kTurningJaw = R"(
 [time]
 duration = 1.6
@@ -150,8 +150,8 @@ keys = [
 ]
 )";
 
-// Two plates 5 mm apart with three layers of cloth between them, then overlapping by 10 mm after a fiftieth of a second
-// at 0.75 m/s, or at 4 m/s and by 30 mm; for a second, while the upper one slides to the side.
+// Two plates, 5 mm apart, hold three layers of cloth between them. After a fiftieth of a second they overlap by 10 mm,
+// at 0.75 m/s, or by 30 mm, at 4 m/s. They stay so for a second, while the upper one slides sideways.
 constexpr const char* kPress = R"(
 [time]
 duration = 2.6
@@ -202,7 +202,7 @@ keys = [
 ]
 )";
 
-/// The same with threads that lock.
+/// The same scene with threads that lock.
 std::string locking(std::string scene) {
   const std::string_view before = "pin = ";
   return scene.insert(scene.find(before), "material = { max_stretch = 0.15 }\n");
@@ -235,7 +235,7 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
   std::vector<std::string> pinches;
   const auto is_of_pinch = [](const std::string& text) { return text.find("max_stretch") == std::string::npos; };
   for (int k = 1; k < scene.frame_count(); ++k) {
-    const FrameReport report = simulation.advance();  // throws where it gives up
+    const FrameReport report = simulation.advance();  // throws if the run fails
     steps += report.steps;
     const auto snapshot = simulation.snapshot();
     const auto objects = support::objects_of(*snapshot);
@@ -249,8 +249,8 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
     std::ranges::copy_if(report.warnings, std::back_inserter(pinches), is_of_pinch);
   }
   EXPECT_GT(pinched, 0);
-  // Once no shorter step finds room they are as long as ever: 1.0 to 2.1 times as many as without a pinch, with threads
-  // that lock too. Counted anew below steps that are short already the halvings made them 6 and 470 times as many.
+  // Once shorter steps have found no clearance, the steps have full length again: 1.0 to 2.1 times as many as without a
+  // pinch, also with locking threads. (Measured without that limit: 6 and 470 times as many.)
   const double without = (scene.frame_count() - 1) * std::ceil(1 / scene.time.fps / scene.time.step - 1e-9);
   EXPECT_LT(steps, 3 * without);
   ASSERT_FALSE(pinches.empty());
@@ -280,7 +280,7 @@ INSTANTIATE_TEST_SUITE_P(SlowBy, PinchedCloth,
                                            Pinch{"fast", std::string(kPress) + kFastKeys, 0.04}),
                          name_of_pinch);
 
-/// A blade of 0.6 m about the axis `turn`, quarter by quarter, under or before a sheet that falls.
+/// A blade of 0.6 m turns about the axis `turn`, with a key every quarter turn, below or in front of a falling sheet.
 std::string turning_blade(double turns_a_second, const char* turn, const char* size, double height) {
   std::string keys;
   for (int quarter = 0; quarter <= std::ceil(4 * turns_a_second * 0.4); ++quarter)
@@ -305,8 +305,7 @@ std::ostream& operator<<(std::ostream& out, const Blade& blade) {
 
 class TurningBlade : public ::testing::TestWithParam<Blade> {};
 
-// Free air all round: however fast it turns, and however it catches the cloth, nothing presses that from the other
-// side.
+// The blade is in free air: however it turns and catches the cloth, nothing presses from the other side.
 TEST_P(TurningBlade, NeitherCutsNorPinches) {
   const scene::Scene scene = support::scene_of_text(GetParam().scene, {fmt::format("time.step={}", GetParam().step)});
   bool met = false;
@@ -326,7 +325,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Blade{"whole_turn_a_step", turning_blade(25, "[0, {}, 0]", "[0.6, 0.3, 0.01]", 0.86), 0.04}),
     [](const auto& blade) { return std::string(blade.param.name); });
 
-/// Two boxes 0.2 m wide with a gap between them along y, as one OBJ file.
+/// Two boxes of 0.2 m with a gap between them along y, as one OBJ file.
 std::string jaws_file(double gap) {
   std::string vertices, faces;
   for (int jaw = 0; jaw < 2; ++jaw) {
@@ -342,7 +341,7 @@ std::string jaws_file(double gap) {
 
 class PinchBetweenParts : public support::TestFolder {
  protected:
-  /// The reports of a sheet that hangs in jaws which close to this gap and part again.
+  /// Reports on a sheet between jaws that close to this gap and open again.
   std::vector<std::string> reports(double least_gap, const std::string& more) {
     const std::array<double, 9> gaps{0.1, 0.1, 0.05, least_gap, least_gap, least_gap, 0.05, 0.1, 0.1};
     for (std::size_t k = 0; k < gaps.size(); ++k)
@@ -364,7 +363,7 @@ class PinchBetweenParts : public support::TestFolder {
   }
 };
 
-// A floor lies below; it is not what pinches. A board behind the jaws is further off than their own other part.
+// The floor below is not the pinching body. A board behind the jaws is farther away than the other jaw.
 TEST_F(PinchBetweenParts, IsSaidToBeBetweenPartsOfThatBody) {
   const auto pinches =
       reports(-0.01,
@@ -375,7 +374,7 @@ TEST_F(PinchBetweenParts, IsSaidToBeBetweenPartsOfThatBody) {
     EXPECT_NE(text.find("'sheet' has no room between parts of 'jaws' near"), std::string::npos) << text;
 }
 
-/// A flat ellipsoid, the hand, beside a tall one, the hip: in one file, which hangs together nowhere.
+/// A flat ellipsoid, the hand, beside a tall one, the hip: one file with two unconnected components.
 std::string hand_on_hip_file(const Vec3& place, double angle) {
   std::string vertices, faces;
   Index first = 1;
@@ -394,7 +393,7 @@ std::string hand_on_hip_file(const Vec3& place, double angle) {
   return vertices + faces;
 }
 
-/// What a sheet before the hip goes through while the hand comes upon it, 3 cm into the hip, and leaves it again.
+/// A sheet in front of the hip, while the hand presses it 3 cm into the hip and leaves again.
 class HandOnHip : public PinchBetweenParts {
  protected:
   struct Course {
@@ -403,7 +402,7 @@ class HandOnHip : public PinchBetweenParts {
     std::size_t pairs_at_end = 0;
   };
 
-  /// `after`: where the hand is at the end [m], turned by `angle` [rad].
+  /// `after`: place of the hand at the end [m], turned by `angle` [rad].
   Course run(const Vec3& after, double angle) {
     const Vec3 before(0.16, -0.3, 1), in(0.1, -0.105, 1);
     const std::vector<std::pair<Vec3, double>> keys{
@@ -430,17 +429,18 @@ class HandOnHip : public PinchBetweenParts {
   }
 };
 
-// In another direction, turned by a radian. As long as an exemption was one from the whole body, that took the cloth
-// along, for good: at the end 29 triangles were in it. Apart from the hand cloth rests on the hip, and the hand leaves
-// it as it came.
+// The hand leaves in another direction, turned by one radian. An exemption of the whole body would take the cloth along
+// for good (measured: 29 triangles in the hand at the end). Away from the hand the cloth rests on the hip, and the hand
+// leaves it as before.
 TEST_F(HandOnHip, LeavesTheClothAsItCame) {
   const Course course = run({0.1, -0.35, 1.05}, -1);
   EXPECT_GT(course.most_pinched, 10);
   EXPECT_EQ(course.pairs_at_end, 0U);
 }
 
-// Down along the cloth, and up past the edge that is held. While only the triangles that had been pinched were
-// exempted the hand took hold of those before it: strain 0.37 and 49 pairs at the end, for 0.015 to 0.04 and none.
+// The hand leaves down along the cloth, and up past the held edge. If only the triangles pinched before were exempt,
+// the hand would catch those in front of it (measured: strain 0.37 and 49 pairs at the end, instead of 0.015 to 0.04
+// and none).
 TEST_F(HandOnHip, TakesNoClothAlongWhereItLeavesSideways) {
   for (const Vec3& after : {Vec3(0.1, -0.25, 0.8), Vec3(0.1, -0.3, 1.2)}) {
     const Course course = run(after, 0);

@@ -1,4 +1,4 @@
-// Cloth held at places of a character's skin.
+// Cloth pinned to places on a character's surface.
 #include "simulation/pins.hpp"
 
 #include <fmt/format.h>
@@ -15,14 +15,14 @@ namespace weft::simulation {
 namespace {
 
 constexpr int kFiles = 9;
-constexpr double kFileRate = 20;  // files a second
+constexpr double kFileRate = 20;  // mesh files per second
 
-/// Where a point of the body is at a time [s].
+/// Position of a point of the body at a time [s].
 using Deformation = std::function<Vec3(const Vec3&, double)>;
 
 class PinsOnACharacter : public support::TestFolder {
  protected:
-  /// A body of boxes, moved through files, and a sheet beside it with one side held.
+  /// A body of boxes with motion from files, and a sheet beside it with one side pinned.
   scene::Scene scene_of(const Deformation& moved, const std::string& more = "") {
     const mesh::Mesh box = mesh::make_box(Vec3(0.6, 0.4, 0.2), 0, 1);
     for (int k = 0; k < kFiles; ++k) {
@@ -68,19 +68,19 @@ struct Pinned {
   }
 };
 
-// Where the body moves as one, so does what is held: at the key frames, where its vertices are exact.
+// If the body moves rigidly, so do the pinned particles: checked at the key frames, where its vertices are exact.
 TEST_F(PinsOnACharacter, MoveAsOneWithABodyThatDoes) {
   const Pinned pinned(scene_of(kRigid));
   ASSERT_EQ(pinned.at(0).size(), 9u);
   for (int k = 0; k < kFiles - 1; ++k)
     for (const auto& held : pinned.at(k / kFileRate)) {
-      const Vec3 in_body = pinned.start(held) - kRigid(Vec3::Zero(), 0);  // it is not turned at time 0
-      // Files are read in single precision: 1e-7 m, on levers of about a side.
+      const Vec3 in_body = pinned.start(held) - kRigid(Vec3::Zero(), 0);  // the body is not rotated at time 0
+      // Files have single precision: 1e-7 m, with lever arms of about one side.
       EXPECT_LT((held.x_end - kRigid(in_body, k / kFileRate)).norm(), 1e-6) << k;
     }
 }
 
-// Also between key frames, on skin that stretches, bends and shears.
+// Also between key frames, on a surface that stretches, bends and shears.
 TEST_F(PinsOnACharacter, HaveTheVelocityOfTheirPlaces) {
   const Pinned pinned(scene_of(kBent));
   const double t = 0.1337, d = 1e-5;
@@ -93,24 +93,24 @@ TEST_F(PinsOnACharacter, HaveTheVelocityOfTheirPlaces) {
   }
 }
 
-// On skin that bends, a particle keeps its distance to the surface: 10 mm above the box.
+// On a bending surface, a particle keeps its distance of 10 mm from it.
 TEST_F(PinsOnACharacter, KeepTheirDistanceFromTheSkin) {
   const Pinned pinned(scene_of(kBent));
   for (int k = 0; k < kFiles - 1; ++k)
     for (const auto& held : pinned.at(k / kFileRate)) {
-      double least = 1;  // off the 10 mm, of all faces
+      double min_deviation = 1;  // minimum deviation from 10 mm, over all faces
       for (const auto& t : pinned.environment.bodies[0].mesh.topology.triangles) {
         const auto at = [&](std::size_t c) {
           return pinned.environment.vertex(0, static_cast<std::size_t>(t[c]), k / kFileRate).position;
         };
         const Vec3 n = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
-        least = std::min(least, std::abs(n.dot(held.x_end - at(0)) - 0.01));
+        min_deviation = std::min(min_deviation, std::abs(n.dot(held.x_end - at(0)) - 0.01));
       }
-      EXPECT_LT(least, 1e-6) << k;
+      EXPECT_LT(min_deviation, 1e-6) << k;
     }
 }
 
-// The cape goes where the body goes.
+// The cape follows the body.
 TEST_F(PinsOnACharacter, CarryCloth) {
   const scene::Scene scene = scene_of(kRigid, "[contact]\nobstacles = false\n");
   const std::vector<Vec3> last = support::run_scene(scene, {.judged = false}).back().cloths[0];
@@ -121,7 +121,7 @@ TEST_F(PinsOnACharacter, CarryCloth) {
   }
 }
 
-// The mannequin walks off; of two pins that share a corner the first has it.
+// The mannequin walks away; if two pins share a corner, the first one holds it.
 TEST_F(PinsOnACharacter, FollowThePartsOfABodyWithBones) {
   const Pinned pinned(support::scene_of_text(
       "[time]\nduration = 2\n[[character]]\nname = 'body'\nsource = 'mannequin'\nedge_length = 0.05\nwalk = 1\n"
@@ -132,7 +132,7 @@ TEST_F(PinsOnACharacter, FollowThePartsOfABodyWithBones) {
   ASSERT_EQ(begin.size(), 9u);
   Vec3 torso = Vec3::Zero(), hand = Vec3::Zero();
   for (std::size_t p = 0; p < begin.size(); ++p) {
-    // At the start what follows is where it is given, but for rounding and the inverse of a map.
+    // At the start a pinned particle is where the scene puts it, except for rounding and the inversion of a map.
     EXPECT_LT((begin[p].x_end - pinned.start(begin[p])).norm(), 1e-12) << p;
     const bool first_pin = p < 5;
     EXPECT_EQ(begin[p].constraint.particle >= 20, first_pin) << "the upper row is of the first";

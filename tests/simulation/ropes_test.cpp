@@ -1,4 +1,4 @@
-// Ropes in runs: the same bits on any threads and resumed, tied to other things, and nothing where there are none.
+// Ropes in runs: equal bits with any number of threads and after resuming, ties, and no effect without ropes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace weft::simulation {
 namespace {
 
-// A loop that is drawn in around a cone and tied to a line above, with a sheet that falls on both.
+// A loop contracts around a cone and is tied to a line above; a sheet falls on both.
 const char* const kTangle =
     "[time]\nduration = 0.6\nstep = 0.01\n"
     "[[cloth]]\nname = \"sheet\"\nsize = [0.4, 0.4]\nparticles = [13, 13]\nposition = [0, 0, 0.42]\n"
@@ -47,11 +47,11 @@ TEST(RopeRuns, AreDrawnInToTheLengthOfTheirKeys) {
   const std::vector<Vec3> x = support::run_scene(scene, {.judged = false}).back().cloths.at(0);
   double length = 0;
   for (std::size_t i = 1; i < x.size(); ++i) length += (x[i] - x[i - 1]).norm();
-  EXPECT_NEAR(length, 0.7, 1e-3);  // its weight stretches cotton by less
+  EXPECT_NEAR(length, 0.7, 1e-3);  // its weight stretches cotton by less than this
 }
 
 TEST(RopeRuns, BearWhatIsTiedToThem) {
-  // 0.2 kg on a cord that is tied to the middle of a taut line.
+  // 0.2 kg on a cord tied to the middle of a taut line.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 2\nstep = 0.02\n[[rope]]\nname = \"line\"\nfrom = [-0.5, 0, 0.1]\nto = [0.5, 0, 0.1]\n"
       "diameter = 0.006\ndamping = 0.1\npin = [{ at = 0 }, { at = 1 }]\n"

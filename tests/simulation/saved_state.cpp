@@ -13,7 +13,7 @@
 namespace weft::simulation::testing {
 namespace {
 
-/// All that is seen of a frame.
+/// Everything that a frame shows.
 struct Seen {
   std::vector<Vec3> positions, velocities;
   frame::SnapshotPtr snapshot;
@@ -30,7 +30,7 @@ std::string figures(const FrameReport& r) {
                      r.rejected_steps, r.inexact_steps, r.error_estimate, r.solver_error, r.newton_iterations,
                      r.linear_iterations, r.proximities, r.constraints, r.min_distance, r.max_strain, r.kinetic_energy,
                      r.potential_energy, r.elastic_energy, r.pinched_pairs, fmt::join(r.warnings, " | ")) +
-         fmt::format("; {} {} {} {}", r.lagging_particles, r.stretch_share, r.pin_work, r.solver_work);
+         fmt::format("; {} {} {} {}", r.lagging_particles, r.stretch_ratio, r.pin_work, r.solver_work);
 }
 
 bool same_picture(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) {
@@ -40,7 +40,7 @@ bool same_picture(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) 
   return a.frame == b.frame && a.time == b.time && std::ranges::equal(a.states, b.states, same);
 }
 
-// What differs; empty if nothing does.
+// Name of the part that differs; empty if none does.
 std::string compare(const Seen& expected, const Seen& came) {
   if (!same_bits<Vec3>(expected.positions, came.positions)) return "positions";
   if (!same_bits<Vec3>(expected.velocities, came.velocities)) return "velocities";
@@ -51,7 +51,7 @@ std::string compare(const Seen& expected, const Seen& came) {
   return "";
 }
 
-// The next frame, be it one of the preroll.
+// Advances to the next frame, of the preroll or of the film.
 Seen next_frame(Simulation& simulation) {
   Seen seen;
   if (simulation.snapshot()->frame < 0) {
@@ -74,7 +74,7 @@ std::string saved(const Simulation& simulation) {
   return bytes;
 }
 
-// From a state after frame k to the end, against the run as it was.
+// Continues from a state after frame k to the end and compares with the uninterrupted run.
 std::string go_on(const scene::Scene& scene, const std::string& state, int k, const std::vector<Seen>& run) {
   Simulation simulation(scene);
   simulation.restore(state);

@@ -1,4 +1,4 @@
-// A run that goes on from a saved state is the run that was never interrupted, bit for bit.
+// A run that continues from a saved state equals the uninterrupted run, bit for bit.
 #include "simulation/saved_state.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using testing::continue_runs;
 using testing::Continued;
 
-// A sheet falls on a ball, folds down its sides, and meets itself and the floor.
+// A sheet falls on a ball, folds down its sides, and touches itself and the floor.
 constexpr const char* kDrape = R"(
 [time]
 duration = 1
@@ -39,7 +39,7 @@ shape = "plane"
 position = [0, 0, -0.05]
 )";
 
-// Two sheets at rest on a tray that creeps away: what is near is found once for many frames.
+// Two sheets rest on a tray that moves slowly: near pairs are found once for many frames.
 constexpr const char* kAtRest = R"(
 [time]
 duration = 1
@@ -68,7 +68,7 @@ size = [0.02, 0.5, 0.2]
 position = [0.3, 0, 0.1]
 )";
 
-// Two jaws close on a hanging sheet until they overlap, and part. They are thin: what is in one may be nearer to
+// Two jaws close on a hanging sheet until they overlap, and open. They are thin: cloth inside a jaw may be nearer to
 // its back than to its front.
 constexpr const char* kThinJaws = R"(
 [time]
@@ -100,8 +100,8 @@ keys = [
 ]
 )";
 
-// Two sheets that are buttoned to each other and pegged to a rail, one peg of which breaks; a fan, keys of gravity and
-// wind. Pressure bulges the larger one.
+// Two sheets are buttoned to each other and pegged to a rail; one peg breaks. There are a fan and keys for gravity and
+// wind, and pressure inflates the larger sheet.
 constexpr const char* kWashing = R"(
 [time]
 duration = 1
@@ -154,7 +154,7 @@ high = [0.6, 1]
 begin = 0.1
 )";
 
-// A flag in the wind, triangles, with colours of strain and a pin that lets go.
+// A flag of triangles in the wind, coloured by strain, with a pin that is released.
 constexpr const char* kFlag = R"(
 [time]
 duration = 1
@@ -225,7 +225,7 @@ TEST(SavedStates, OfPinchedClothKnowWhereItCameFromAndWhatWasSaid) {
   EXPECT_GT(pinched.pinched_pairs, 0);
 }
 
-// A sheet that is moved into a box by its upper edge: from frame 4 to 13 the pin lags.
+// Pins move the upper edge of a sheet into a box: the pin lags from frame 4 to 13.
 constexpr const char* kLaggingPin = R"(
 [[cloth]]
 name = "sheet"
@@ -274,7 +274,7 @@ TEST(SavedStates, AfterRejectedAndInexactStepsGoOnTheSameWay) {
 }
 
 TEST(SavedStates, KeepTheBoundOfEnergy) {
-  // A stiff sheet that hangs from two corners, at steps far too long for the midpoint rule.
+  // A stiff sheet hangs from two corners; the steps are far too long for the midpoint rule.
   scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
   scene.time = {.duration = 10, .fps = 10, .step = 0.02, .integrator = scene::Integrator::implicit_midpoint};
   scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 100;
@@ -296,7 +296,7 @@ TEST(SavedStates, KeepTheBoundOfEnergy) {
   const std::string words = refusal(first, &states);
   EXPECT_NE(words.find("more than at the start"), std::string::npos) << words;
   ASSERT_GT(states.size(), 2u);
-  // The words hold the energy that was in play, from the least and the largest of all frames before.
+  // The message contains the energy in play, from the minimum and the maximum of all frames before.
   for (const std::string& state : {states.front(), states.back()}) {
     Simulation resumed(scene);
     resumed.restore(state);
@@ -320,7 +320,7 @@ ratio = 0.85
   EXPECT_EQ(continue_runs(scene, {17, {3, 9, 11, 14}}).difference, "");
 }
 
-// Closed at 0.3 s; states before and after know what air it has.
+// The garment closes at 0.3 s; states before and after must know the enclosed air.
 TEST_F(SavedGarment, KeepsTheAirThatItWasClosedWith) {
   support::write_bytes(folder_ / "tube.toml", testing::kTube + R"([[seam]]
 a = "front.hem"
@@ -337,7 +337,7 @@ b = "back.top"
   EXPECT_EQ(continue_runs(scene, {13, {3, 7, 8, 11}}).difference, "");
 }
 
-// Open from 0.12 s on, closed again from 0.24 s on: states before, between, while it closes, and after.
+// The zip opens at 0.12 s and closes from 0.24 s on: states are saved before, between, during closing, and after.
 TEST_F(SavedGarment, KnowsWhetherItsZipIsOpen) {
   std::string text = testing::kTube + "open = 0.12\nclosed = 0.24\n";
   text.insert(text.find("path", text.find("side")), "fabric = { stretch = 2, bend = 3, density = 1.5 }\n");
@@ -370,7 +370,7 @@ position = [0, 0, 1.83]
   EXPECT_GT(walked.most_proximities, 0);
 }
 
-// Whatever the bytes are, restoring throws std::runtime_error or yields a simulation that can be asked.
+// For any bytes, restoring throws std::runtime_error or gives a simulation that works.
 void try_bytes(const scene::Scene& scene, const std::string& bytes) {
   Simulation simulation(scene);
   try {

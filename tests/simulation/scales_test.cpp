@@ -1,4 +1,4 @@
-// One scene at the scales of a doll, of a person and of a circus: steps, iterations and strain do not depend on it.
+// One scene at the scale of a doll, a person and a circus tent: steps, iterations and strain do not depend on it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 struct Scale {
   double size;          // of the sheet [m]
-  bool is_time_scaled;  // steps and frames in shares of the time of fall, else of 10 and 40 ms
+  bool is_time_scaled;  // steps and frames are fractions of the time of fall; else 10 and 40 ms
   int frames;
 };
 
@@ -39,16 +39,16 @@ TEST_P(Tarpaulin, DrapesWithFewIterationsAndLittleStrain) {
   int steps = 0, tried = 0, iterations = 0;
   for (const support::MeasuredFrame& frame : support::run_scene(scene)) {
     EXPECT_EQ(frame.pairs, 0u) << "frame " << frame.report.frame;
-    // The limit to stretch of canvas is 0.078; up to 0.089 at 40 m, where a spacing weighs 0.5 kg.
+    // The stretch limit of canvas is 0.078; measured up to 0.089 at 40 m, where one cell weighs 0.5 kg.
     EXPECT_LT(frame.report.max_strain, 0.1) << "frame " << frame.report.frame;
     steps += frame.report.steps;
     tried += frame.report.steps + frame.report.rejected_steps;
     iterations += frame.report.newton_iterations;
   }
-  // 16 at 40 m in long steps, less in short ones and smaller scenes. Where what diverges goes on, a step takes up to
+  // Measured: 16 at 40 m with long steps, fewer otherwise. If diverging iterations continued, a step would take up to
   // 400.
   EXPECT_LT(iterations, 20 * steps);
-  // 1.08 at 40 m in long steps, else 1.
+  // Measured: 1.08 at 40 m with long steps, else 1.
   EXPECT_LT(tried, 1.2 * steps);
 }
 

@@ -1,4 +1,4 @@
-// Small scenes made in the test, without a file.
+// Small scenes without a file.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace weft::simulation::testing {
 inline constexpr scene::Integrator kIntegrators[] = {scene::Integrator::implicit_euler,
                                                      scene::Integrator::implicit_midpoint, scene::Integrator::bdf2};
 
-/// Of no fabric: what is pinned to it stays when fabrics are measured anew.
+/// Not a fabric: the expected values of tests do not change when fabrics are measured again.
 inline scene::Material test_material() {
   scene::Material material;
   material.density = 0.2;
@@ -26,7 +26,7 @@ inline scene::Material test_material() {
   return material;
 }
 
-/// A square sheet of the test material, flat at the given height, with nothing around it: no air, no contact.
+/// A square sheet of the test material, flat at the given height [m], without air and without contact.
 inline scene::Scene sheet_alone(double size, int particles, double height) {
   scene::Scene scene;
   scene.name = "test";
@@ -43,7 +43,7 @@ inline scene::Scene sheet_alone(double size, int particles, double height) {
   return scene;
 }
 
-/// Newton and conjugate gradients down to rounding.
+/// Sets Newton's method and conjugate gradients to solve down to rounding.
 inline void solve_tightly(scene::Scene& scene) {
   scene.solver = {.newton_tolerance = 1e-9, .newton_iterations = 60, .linear_tolerance = 1e-9, .halvings = 0};
 }
@@ -54,9 +54,9 @@ inline const std::vector<Vec3>& sheet_of(const frame::SnapshotPtr& snapshot) {
 }
 
 inline double lowest(const std::vector<Vec3>& x) {
-  double least = x.front().z();
-  for (const Vec3& point : x) least = std::min(least, point.z());
-  return least;
+  double minimum = x.front().z();
+  for (const Vec3& point : x) minimum = std::min(minimum, point.z());
+  return minimum;
 }
 
 inline scene::Obstacle obstacle(const char* name, scene::Shape shape, const Vec3& position = Vec3::Zero()) {
@@ -67,7 +67,7 @@ inline scene::Obstacle obstacle(const char* name, scene::Shape shape, const Vec3
   return made;
 }
 
-/// A tube skirt of two rectangles, 0.33 m wide each, as a pattern. What is added belongs to its last seam.
+/// Pattern of a tube skirt of two rectangles, each 0.33 m wide. Text appended to it belongs to its last seam.
 inline const std::string kTube = R"(
 depth = 0.14
 [[panel]]

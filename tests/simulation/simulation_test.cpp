@@ -1,4 +1,4 @@
-// The step loop as a whole: pins, contact, failure, the same bits on any number of threads.
+// The whole step loop: pins, contact, failures, and the same bits with any number of threads.
 #include "simulation/simulation.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using testing::obstacle;
 using testing::sheet_alone;
 using testing::sheet_of;
 
-// A sheet of 0.6 m that falls on a ball and down its sides.
+// A sheet of 0.6 m falls on a ball and down its sides.
 scene::Scene sheet_on_ball() {
   scene::Scene scene = sheet_alone(0.6, 21, 0.26);
   scene.contact.self = scene.contact.obstacles = true;
@@ -47,7 +47,7 @@ TEST(Simulation, FrameZeroIsTheSheetAsTheSceneLaysIt) {
 TEST(Simulation, FrameTimesAreThoseOfTheRateAndNoSums) {
   scene::Scene scene = sheet_alone(0.4, 3, 1);
   scene.time.fps = 30;
-  scene.time.step = 0.01;  // three and a third to a frame: four equal ones are taken
+  scene.time.step = 0.01;  // three and a third steps would fit a frame, so four equal ones are used
   Simulation simulation(scene);
   for (int k = 1; k <= 20; ++k) {
     const FrameReport report = simulation.advance();
@@ -78,7 +78,7 @@ TEST(Simulation, FreeFallInVacuumIsTheLawOfTheMethodForEveryParticle) {
       if (integrator == scene::Integrator::bdf2) fall += 0.75 * h * h * (1 - std::pow(3, -n)) * scene.physics.gravity;
       const auto& x = sheet_of(simulation.snapshot());
       for (std::size_t i = 0; i < x.size(); ++i)
-        // A residual of 1e-9 of the weight each step: 1e-9 · ½ g t² = 3e-9 m at most.
+        // A residual of 1e-9 of the weight in each step: at most 1e-9 · ½ g t² = 3e-9 m.
         ASSERT_LT((x[i] - start[i] - fall).norm(), 4e-9) << "frame " << k << ", particle " << i;
     }
   }
@@ -100,20 +100,20 @@ TEST(Simulation, PinnedParticlesFollowTheKeysExactly) {
     simulation.advance();
     const auto& x = sheet_of(simulation.snapshot());
     const double t = k / 20.0;
-    // The keys are at frames 5 and 10; after the last one the edge stays.
+    // The keys are at frames 5 and 10; after the last key the edge stays.
     const double first = std::min(t / 0.25, 1.0), second = std::clamp(t / 0.25 - 1, 0.0, 1.0);
-    const Vec3 way = first * Vec3(0.1, 0, 0.2) + second * Vec3(0, 0.3, 0);
+    const Vec3 displacement = first * Vec3(0.1, 0, 0.2) + second * Vec3(0, 0.3, 0);
     const Eigen::AngleAxisd turn(second * std::numbers::pi / 2, Vec3::UnitZ());
     for (std::size_t i = 42; i < 49; ++i)
-      EXPECT_LT((x[i] - (centre + way + turn * (start[i] - centre))).norm(), 1e-14) << "frame " << k;
+      EXPECT_LT((x[i] - (centre + displacement + turn * (start[i] - centre))).norm(), 1e-14) << "frame " << k;
     if (k == 2) {
-      EXPECT_LT(x[0].z(), 1 - 0.01);  // what is free falls, until the edge pulls it along
+      EXPECT_LT(x[0].z(), 1 - 0.01);  // the free part falls until the edge pulls it along
     }
   }
 }
 
 TEST(Simulation, WithoutRigidityThereIsNoBendingAtAll) {
-  // A sheet that hangs from one corner: all of it bends.
+  // A sheet hangs from one corner, so that all of it bends.
   const auto end_with = [](scene::ClothShape shape, double rigidity, double damping) {
     scene::Scene scene = sheet_alone(0.2, 5, 0);
     scene.cloths[0].shape = shape;
@@ -152,7 +152,7 @@ TEST(Simulation, PinLetsGoAtItsReleaseTime) {
     EXPECT_EQ(sheet_of(simulation.snapshot()), start);
   }
   EXPECT_EQ(simulation.advance().constraints, 0);
-  // Two Euler steps of free fall, to the default tolerance of 5 % of the weight.
+  // Two Euler steps of free fall, with the default tolerance of 5 % of the weight.
   const double fall = 9.81 * 0.02 * 0.02 * 3;
   for (std::size_t i = 0; i < start.size(); ++i)
     EXPECT_NEAR(start[i].z() - sheet_of(simulation.snapshot())[i].z(), fall, 0.1 * fall);
@@ -190,7 +190,7 @@ TEST(Simulation, SurfacesKnowAllPlacesToWhichKeysMoveThem) {
   EXPECT_NEAR(surfaces[1]->run_bounds->max().x(), 2.1, 1e-3);
 }
 
-// A step depends on where it starts alone, not on what a frame has done before it.
+// A step depends only on its initial state, not on earlier steps of the frame.
 TEST(Simulation, EqualStepsLeadToTheSameBitsInFramesOfAnyLength) {
   scene::Scene coarse = sheet_on_ball();
   coarse.time.step = 0.01;
@@ -205,7 +205,7 @@ TEST(Simulation, EqualStepsLeadToTheSameBitsInFramesOfAnyLength) {
     for (int k = 0; k < 4; ++k) many.advance();
     ASSERT_EQ(sheet_of(few.snapshot()), sheet_of(many.snapshot())) << "frame " << frame;
   }
-  EXPECT_LT(lowest(sheet_of(few.snapshot())), 0.2);  // it has met the ball
+  EXPECT_LT(lowest(sheet_of(few.snapshot())), 0.2);  // the sheet has touched the ball
 }
 
 TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
@@ -218,7 +218,7 @@ TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
     EXPECT_EQ(support::judge(support::objects_of(*snapshot)).pairs.size(), 0u) << "frame " << k;
     lowest_so_far = std::min(lowest_so_far, lowest(sheet_of(snapshot)));
   }
-  // It did fall, and was held up by the ball.
+  // It fell and the ball held it up.
   EXPECT_LT(lowest_so_far, 0.1);
   EXPECT_GT(proximities, 1000);
   EXPECT_GT(sheet_of(simulation.snapshot())[220].z(), 0.2);
@@ -237,11 +237,11 @@ TEST(Simulation, SheetOnABallIsSolvedDownToRounding) {
     EXPECT_LT(report.solver_error, 1e-9) << "frame " << k + 1;
     rejected += report.rejected_steps;
   }
-  EXPECT_LE(rejected, 4);  // 2; 69 with depths of tangents to 1e-3 of their force
+  EXPECT_LE(rejected, 4);  // measured 2; 69 with depths of tangents accurate to 1e-3 of their force
 }
 
-// Whatever is switched in contact.search, surfaces are found. Contacts come in another order then, so motion differs in
-// its last digits, and soon in more than that.
+// All settings of contact.search find the same surfaces. The order of contacts differs, so the motion differs in its
+// last digits, and soon in more.
 class EverySearch : public ::testing::TestWithParam<void (*)(scene::Search&)> {};
 
 TEST_P(EverySearch, FindsTheFirstContactsThatTheDefaultFindsAndKeepsTheSheetApart) {
@@ -253,7 +253,7 @@ TEST_P(EverySearch, FindsTheFirstContactsThatTheDefaultFindsAndKeepsTheSheetApar
   for (int k = 1; k <= 12; ++k) {
     const FrameReport expected = simulation.advance(), report = other.advance();
     EXPECT_EQ(support::judge(support::objects_of(*other.snapshot())).pairs.size(), 0u) << "frame " << k;
-    // Up to the first step with contacts the positions are the same; that frame has others after it.
+    // Positions are equal up to the first step with contacts; the rest of that frame differs.
     if (!touched) {
       EXPECT_EQ(report.proximities > 0, expected.proximities > 0) << "frame " << k;
       EXPECT_NEAR(report.proximities, expected.proximities, 0.1 * expected.proximities) << "frame " << k;
@@ -286,7 +286,7 @@ TEST(Simulation, SheetOnAFloorComesToRestWithinHalfItsThickness) {
     EXPECT_GT(x.z(), 0);
     EXPECT_LE(x.z(), half_thickness);
   }
-  // At rest: its weight falling for one step would have (g h)² / 2 = 0.02 J/kg.
+  // At rest: a fall of one step would give (g h)² / 2 = 0.02 J/kg.
   const double mass = scene.cloths[0].material.density * 0.3 * 0.3;
   EXPECT_LT(report.kinetic_energy, 1e-6 * mass);
   EXPECT_GT(report.min_distance, 0);
@@ -294,7 +294,7 @@ TEST(Simulation, SheetOnAFloorComesToRestWithinHalfItsThickness) {
   EXPECT_GT(report.constraints, 0);
 }
 
-// FNV-1a over all positions of all objects.
+// FNV-1a hash of all positions of all objects.
 std::uint64_t fingerprint(const frame::FrameSnapshot& snapshot) {
   std::uint64_t hash = 14695981039346656037u;
   for (const auto& state : snapshot.states)
@@ -308,7 +308,7 @@ std::uint64_t fingerprint(const frame::FrameSnapshot& snapshot) {
 }
 
 TEST(Simulation, GivesTheSameBitsOnAnyNumberOfThreads) {
-  // More particles than a thread adds forces to at once, already at the ball.
+  // More particles than the grain size of the force loop, and already at the ball.
   scene::Scene scene = sheet_on_ball();
   scene.cloths[0].particles_weft = scene.cloths[0].particles_warp = 48;
   std::vector<std::vector<std::uint64_t>> runs;
@@ -328,8 +328,8 @@ TEST(Simulation, GivesTheSameBitsOnAnyNumberOfThreads) {
   for (const auto& run : runs) EXPECT_EQ(run, runs[0]);
 }
 
-// A sheet of steel whose edge is torn away at its fourth frame.
-scene::Scene torn_sheet() {
+// A steel sheet; in its fourth frame its edge moves away too fast.
+scene::Scene sheet_with_fast_edge() {
   scene::Scene scene = sheet_alone(0.4, 9, 1);
   scene.solver.newton_iterations = 1;
   scene.solver.halvings = 0;
@@ -343,7 +343,7 @@ scene::Scene torn_sheet() {
   return scene;
 }
 
-/// A strip of 1 m by 1 mm, ten cells long, held at one end, so many frames after it was let go.
+/// Report on a strip of 1 m by 1 mm, ten cells long and held at one end, this number of frames after its release.
 FrameReport swinging_strip(scene::Integrator integrator, int particles_across, int frames) {
   scene::Scene scene = testing::sheet_alone(1, 11, 1);
   scene.time.integrator = integrator;
@@ -363,15 +363,15 @@ FrameReport swinging_strip(scene::Integrator integrator, int particles_across, i
 TEST(Simulation, NeedlesSwingAsASingleRowOfCells) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     const FrameReport row = swinging_strip(integrator, 2, 5), needles = swinging_strip(integrator, 101, 5);
-    // Solved to default tolerances: 0.1 % apart at most. With groups that are halved along both axes, or blocks shifted
-    // by 1e-9 of their trace, 10 % and more.
+    // With default tolerances they are at most 0.1 % apart. (Measured with aggregates halved along both axes, or blocks
+    // shifted by 1e-9 of their trace: 10 % and more.)
     EXPECT_NEAR(needles.kinetic_energy, row.kinetic_energy, 0.01 * row.kinetic_energy);
     EXPECT_NEAR(needles.max_strain, row.max_strain, 0.05 * row.max_strain);
     EXPECT_LT(needles.linear_iterations, 100);
   }
 }
 
-// To look at a character or a camera before there is cloth. It was refused: no mass, no mean.
+// A user may want to see a character or a camera before adding cloth: a scene without mass must run.
 TEST(Simulation, BodiesAloneMove) {
   Simulation simulation(
       support::scene_of_text("[time]\nduration = 0.2\n[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n"
@@ -384,7 +384,7 @@ TEST(Simulation, BodiesAloneMove) {
 }
 
 TEST(Simulation, StepThatCannotBeSolvedFailsWithItsFrameAndKeepsTheLastGoodOne) {
-  Simulation simulation(torn_sheet());
+  Simulation simulation(sheet_with_fast_edge());
   for (int k = 1; k <= 3; ++k) simulation.advance();
   const auto good = simulation.snapshot();
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -396,16 +396,16 @@ TEST(Simulation, StepThatCannotBeSolvedFailsWithItsFrameAndKeepsTheLastGoodOne) 
 }
 
 TEST(Simulation, FailureInTheMiddleOfAFrameTakesBackItsFirstSteps) {
-  scene::Scene scene = torn_sheet();
+  scene::Scene scene = sheet_with_fast_edge();
   scene.physics.gravity = {0, 0, -9.81};
   scene.solver.newton_iterations = 3;
   scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1000;
-  scene.cloths[0].pins[0].motion.keys[1].time = 0.14;  // after the first of the frame's two steps
+  scene.cloths[0].pins[0].motion.keys[1].time = 0.14;  // after the first of the two steps of the frame
   scene.cloths[0].pins[0].motion.keys[2].pose.position = {500, 3000, 2000};
   Simulation simulation(scene);
   for (int k = 1; k <= 3; ++k) simulation.advance();
-  // The text holds what the step that failed has left that failed: with the first step of the frame still in place, a
-  // second attempt would fail with others.
+  // The message contains the residual of the failed step: if the first step of the frame were kept, a second attempt
+  // would fail with another value.
   const auto failure = [&]() -> std::string {
     try {
       simulation.advance();
@@ -420,7 +420,7 @@ TEST(Simulation, FailureInTheMiddleOfAFrameTakesBackItsFirstSteps) {
 }
 
 TEST(Simulation, RejectedStepIsHalvedUntilItCanBeSolved) {
-  scene::Scene scene = torn_sheet();
+  scene::Scene scene = sheet_with_fast_edge();
   scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1000;
   scene.cloths[0].pins[0].motion.keys[2].pose.position = {0, 0.5, 0.5};
   scene.solver.newton_iterations = 2;
@@ -429,7 +429,7 @@ TEST(Simulation, RejectedStepIsHalvedUntilItCanBeSolved) {
   for (int k = 1; k <= 3; ++k) simulation.advance();
   const FrameReport report = simulation.advance();
   EXPECT_GT(report.rejected_steps, 0);
-  // Every rejection puts two steps in the place of one.
+  // Each rejection replaces one step by two.
   EXPECT_EQ(report.steps, 2 + report.rejected_steps);
   EXPECT_EQ(simulation.snapshot()->frame, 4);
 }
@@ -463,7 +463,7 @@ TEST(Preroll, IsSimulatedBeforeFrameZeroWhileKeysStand) {
   EXPECT_EQ(shown.snapshot()->frame, 4);
 }
 
-// A frame of one step: what is asked for in the middle of it need not wait for its end.
+// A frame has one step: a stop requested during the step must not wait for its end.
 TEST(Stop, EndsAStepAndLeavesTheLastFrame) {
   scene::Scene scene = sheet_alone(0.6, 5, 2);
   scene.time.step = 1;

@@ -1,4 +1,4 @@
-// time.tolerance: steps of their own choice, which end on frames.
+// time.tolerance: the program chooses the steps, which end on frames.
 #include "integrator/step_control.hpp"
 
 #include <gtest/gtest.h>
@@ -22,31 +22,31 @@ scene::Scene falling_sheet(scene::Integrator integrator, double tolerance) {
   return scene;
 }
 
-// How much lower than after free fall the sheet is after so many frames [m].
+// How much lower the sheet is than after free fall, after this number of frames [m].
 double ahead_of_free_fall(const Simulation& simulation, int frames) {
   const double t = frames / 25.0;
   return 2 - 0.5 * 9.81 * t * t - testing::sheet_of(simulation.snapshot())[7].z();
 }
 
 TEST(StepTolerance, StepsEndOnFramesWhateverTheirLength) {
-  // The midpoint rule is exact in free fall, so that every frame shows whether its steps add up to it.
+  // The midpoint rule is exact in free fall, so every frame shows whether its steps add up to it.
   Simulation simulation(falling_sheet(scene::Integrator::implicit_midpoint, 1e-5));
   int steps = 0;
   for (int k = 1; k <= 10; ++k) {
     const FrameReport report = simulation.advance();
     steps += report.steps;
-    // The steps know no error, and grow to whole frames.
+    // The estimated error is zero, so steps grow to whole frames.
     if (k > 5) {
       EXPECT_EQ(report.steps, 1);
     }
-    // What Newton leaves; a step too many or too few would be off by centimetres.
+    // The residual of Newton's method; one step too many or too few would cause an error of centimetres.
     EXPECT_NEAR(ahead_of_free_fall(simulation, k), 0, 1e-8);
   }
   EXPECT_GT(steps, 12);
 }
 
 TEST(StepTolerance, EstimateIsTheErrorInFreeFall) {
-  // Each step of Euler over h is ahead by ½ h² g, and stays so.
+  // Each Euler step over h leads by ½ h² g, and the lead stays.
   Simulation simulation(falling_sheet(scene::Integrator::implicit_euler, 1e-5));
   double estimate = 0;
   for (int k = 1; k <= 10; ++k) {
@@ -67,7 +67,7 @@ TEST(StepTolerance, EstimateIsThereWithFixedStepsToo) {
   EXPECT_NEAR(simulation.advance().error_estimate, 4 * 0.5 * 1e-4 * 9.81, 1e-9);
 }
 
-// A sheet that falls on the floor, all of it at once.
+// A sheet falls flat on the floor.
 scene::Scene landing_sheet(scene::Integrator integrator, double tolerance) {
   scene::Scene scene = falling_sheet(integrator, tolerance);
   scene.contact.self = scene.contact.obstacles = true;
@@ -80,16 +80,16 @@ scene::Scene landing_sheet(scene::Integrator integrator, double tolerance) {
 TEST(StepTolerance, ImpactTakesShortStepsButNotWithoutEnd) {
   for (scene::Integrator integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2}) {
     Simulation simulation(landing_sheet(integrator, 1e-4));
-    int most = 0, rejected = 0;
+    int max_steps = 0, rejected = 0;
     for (int k = 1; k <= 25; ++k) {
       const FrameReport report = simulation.advance();
-      most = std::max(most, report.steps);
+      max_steps = std::max(max_steps, report.steps);
       rejected += report.rejected_steps;
       EXPECT_GT(report.min_distance, 0);
     }
     EXPECT_GT(rejected, 0);
-    // 2.4 m/s to nothing: the tolerance asks for some 1e-4 s, once.
-    EXPECT_LT(most, 200);
+    // The sheet stops from 2.4 m/s: the tolerance needs one step of about 1e-4 s.
+    EXPECT_LT(max_steps, 200);
     EXPECT_GT(testing::lowest(testing::sheet_of(simulation.snapshot())), 0);
   }
 }
@@ -119,8 +119,8 @@ TEST(StepTolerance, ErrorThatAStepCannotMeetIsTakenAndCounted) {
   EXPECT_GT(inexact, 0);
 }
 
-/// An edge that is torn away at 10⁵ m/s.
-scene::Pin torn_edge() {
+/// An edge that moves away at 10⁵ m/s.
+scene::Pin fast_edge() {
   scene::Pin edge;
   edge.low = {0, 1};
   edge.motion.interpolation = scene::Interpolation::linear;
@@ -132,7 +132,7 @@ TEST(StepTolerance, StepThatCannotBeSolvedEndsTheRunWithTheStateBefore) {
   scene::Scene scene = falling_sheet(scene::Integrator::bdf2, 1e-4);
   scene.solver.newton_iterations = 1;
   scene.solver.linear_iterations = 1;
-  const scene::Pin edge = torn_edge();
+  const scene::Pin edge = fast_edge();
   scene.cloths[0].pins.push_back(edge);
   Simulation simulation(scene);
   std::string said[2];
@@ -144,12 +144,12 @@ TEST(StepTolerance, StepThatCannotBeSolvedEndsTheRunWithTheStateBefore) {
     }
     EXPECT_NE(text.find("try a smaller time.tolerance"), std::string::npos) << text;
   }
-  // Tried again from there, it fails in the same way.
+  // A second attempt from there fails in the same way.
   EXPECT_EQ(said[0], said[1]);
 }
 
 TEST(StepTolerance, RunThatIsStuckIsRefusedInsteadOfShorteningStepsForEver) {
-  // One iteration solves no step of a sheet that is 10⁴ times as long as it should be.
+  // One iteration cannot solve a step of a sheet that is 10⁴ times too long.
   scene::Scene scene = falling_sheet(scene::Integrator::bdf2, 1e-3);
   scene.solver.newton_iterations = 1;
   scene.solver.linear_iterations = 1;
@@ -169,11 +169,11 @@ TEST(StepTolerance, RunThatIsStuckIsRefusedInsteadOfShorteningStepsForEver) {
   ASSERT_NE(at, std::string::npos) << text;
   ASSERT_EQ(std::sscanf(text.c_str() + at, "down to h = %lf", &h), 1);
   EXPECT_LT(h, numerics.steps.least);
-  // Lengths go down by a fifth at most at once.
+  // Each length is at least a fifth of the one before.
   EXPECT_GE(h, 0.2 * numerics.steps.least);
 }
 
-// A sheet laid on a block, over whose edges it hangs down, in two steps a frame.
+// A sheet on a block hangs down over its edges; two steps per frame.
 scene::Scene sheet_on_block() {
   scene::Scene scene = testing::sheet_alone(0.3, 9, 0.103);
   scene.time.duration = 4;
@@ -182,7 +182,7 @@ scene::Scene sheet_on_block() {
   return scene;
 }
 
-// A sheet that hangs flat from its upper edge, likewise.
+// A sheet hangs flat from its upper edge, also with two steps per frame.
 scene::Scene sheet_that_hangs() {
   scene::Scene scene = testing::sheet_alone(0.3, 5, 1);
   scene.time.duration = 4;
@@ -193,7 +193,7 @@ scene::Scene sheet_that_hangs() {
   return scene;
 }
 
-// Steps of each frame from the first on, of so many.
+// Number of steps of each of the next `frames` frames.
 std::vector<int> steps_of(Simulation& simulation, int frames) {
   std::vector<int> steps;
   for (int k = 0; k < frames; ++k) steps.push_back(simulation.advance().steps);
@@ -209,7 +209,7 @@ double mean_height(const Simulation& simulation) {
 TEST(Rest, TakesOneStepAFrameAndMovesNothing) {
   scene::Scene scene = sheet_on_block();
   Simulation resting(scene);
-  // Something else moves, in the block: every step is taken.
+  // Another body moves inside the block: every step is taken.
   scene.obstacles.push_back(testing::obstacle("inside", scene::Sphere{0.005}));
   scene.obstacles.back().motion.keys = {{0, {{0, 0, 0.09}, Quat::Identity()}},
                                         {9, {{0.01, 0, 0.09}, Quat::Identity()}}};
@@ -218,7 +218,7 @@ TEST(Rest, TakesOneStepAFrameAndMovesNothing) {
   EXPECT_EQ(steps.front(), 2);
   EXPECT_EQ(steps_of(stepping, 50), std::vector<int>(50, 2));
   for (int k = 40; k < 50; ++k) EXPECT_EQ(steps[static_cast<std::size_t>(k)], 1) << "frame " << k + 1;
-  // 0.01 m/s² over the 40 ms of a frame are 8 µm: as if all frames at rest had been as far off, all the same way.
+  // 0.01 m/s² over a frame of 40 ms is 8 µm; the bound is that of equal deviations in all resting frames.
   const double farthest = 8e-6 * static_cast<double>(std::ranges::count(steps, 1));
   const auto &x = testing::sheet_of(resting.snapshot()), &expected = testing::sheet_of(stepping.snapshot());
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), farthest) << "particle " << i;
@@ -241,8 +241,8 @@ TEST(Rest, EndsWithTheFrameInWhichSomethingMovesOrIsLetGo) {
   EXPECT_EQ(steps_of(released, 49).back(), 1);
   const double hung_at = mean_height(released);
   EXPECT_EQ(steps_of(released, 2), std::vector<int>(2, 2));
-  // Euler over the three steps of 20 ms that end after it, 6 g h². It creeps by 0.4 mm/s before; a step more or less
-  // would be 12 mm.
+  // Euler over the three steps of 20 ms that end after the release: 6 g h². Before, the sheet creeps by 0.4 mm/s; one
+  // step more or less would change the fall by 12 mm.
   EXPECT_NEAR(hung_at - mean_height(released), 6 * 9.81 * 0.02 * 0.02, 2e-4);
 }
 
@@ -277,8 +277,8 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
   EXPECT_EQ(shaken.advance().steps, 2);
 }
 
-// A strip of felt in cells of 3 by 27 mm, thrown while it hangs. Friction of its bending flips with some micrometres a
-// second; halving the step, down to the last, left as much, and the run ended.
+// A strip of felt in cells of 3 by 27 mm, thrown while it hangs. Its bending friction alternates by some micrometres
+// per second; halving the step, even down to the minimum, left as much, so the visibility threshold must accept it.
 TEST(StepThatStalls, LeavesWhatNobodySees) {
   Simulation simulation(support::scene_of_text(R"(
 time = { step = 0.002, integrator = 'bdf2' }
@@ -314,7 +314,7 @@ TEST(Rest, IsNotForMethodsThatKeepSmallMotionNorForGusts) {
     EXPECT_EQ(steps_of(simulation, 3), std::vector<int>(3, 2));
     scene.time.integrator = scene::Integrator::implicit_euler;
     Simulation euler(scene);
-    EXPECT_EQ(steps_of(euler, 3), (std::vector<int>{2, 1, 1}));  // at first it has not been seen to rest
+    EXPECT_EQ(steps_of(euler, 3), (std::vector<int>{2, 1, 1}));  // at first it is not known to rest
     scene.physics.air_density = 1.2;
     scene.physics.gusts.speed = 0.001;
     Simulation blown(scene);

@@ -1,4 +1,4 @@
-// What a step remembers: the same arguments and the same memory give the same force, and no memo outlives its truth.
+// The memory of a step: equal arguments and memory give equal forces, and no invalid cached value is used.
 #include "simulation/step_problem.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 constexpr double kRate = 100;  // [1/s]
 constexpr Index kSide = 5, kParticles = kSide * kSide;
 
-// Two crumpled sheets in motion, with all forces that they can have; particle 3 of the first is in contact.
+// Two crumpled moving sheets with every force that cloth can have; particle 3 of the first is in contact.
 scene::Scene two_sheets() {
   scene::Scene scene = testing::sheet_alone(0.2, kSide, 0);
   scene::Material& material = scene.cloths[0].material;
@@ -68,7 +68,7 @@ class StepProblems : public ::testing::Test {
     problem.linearise(at(x, rate), iteration, force);
     return force;
   }
-  // All particles of a sheet moved by so many spacings of 5 cm.
+  // Moves all particles of a sheet by this number of spacings of 5 cm.
   std::vector<Vec3> moved(std::size_t sheet, double spacings) const {
     std::vector<Vec3> x = x_;
     for (std::size_t i = 0; i < kParticles; ++i) x[sheet * kParticles + i] += 0.05 * spacings * Vec3(0.6, 0, 0.8);
@@ -126,12 +126,12 @@ TEST_F(StepProblems, ChangeWhatForcesDependOnOnlyWhereTheyAreLinearised) {
   const SolveMemory& after = problem.memory();
   EXPECT_EQ(after.rate, before.rate);
   EXPECT_EQ(after.linearised_at, before.linearised_at);
-  EXPECT_EQ(after.contacts.loads, before.contacts.loads);
+  EXPECT_EQ(after.contacts.normal_forces, before.contacts.normal_forces);
   EXPECT_EQ(after.contacts.updates, before.contacts.updates);
   EXPECT_EQ(after.system.parts[0].version, before.system.parts[0].version);
   EXPECT_EQ(blocks(problem), matrix);
 
-  // A copy of the memory, and the rest as it is: what comes is the same.
+  // A copy with the same memory gives the same result.
   StepProblem twin = problem;
   EXPECT_EQ(linearise(twin, moved(1, 0.3)), linearise(problem, moved(1, 0.3)));
   EXPECT_EQ(blocks(twin), blocks(problem));
@@ -153,7 +153,7 @@ TEST_F(StepProblems, PutTheRowsOfAClothTogetherAnewWhereItHasMovedAndAllInEachSt
   const std::vector<Mat3> start = blocks(used);
   const auto version = [&](std::size_t sheet) { return used.memory().system.parts[sheet].version; };
   const auto first = version(0), second = version(1);
-  linearise(used, moved(1, 0.004));  // of 0.005
+  linearise(used, moved(1, 0.004));  // the limit is 0.005
   EXPECT_EQ(blocks(used), start);
   const std::vector<Vec3> far = moved(1, 0.5);
   linearise(used, far);
@@ -189,24 +189,24 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
     for (int iteration = 0; iteration < 3; ++iteration)
       linearise(problem, moved(0, 0.01 * iteration), kRate, iteration);
   EXPECT_EQ(problem.memory().contacts.updates, 6);
-  EXPECT_EQ(problem.memory().contacts.loads.size(), 1U);
+  EXPECT_EQ(problem.memory().contacts.normal_forces.size(), 1U);
   linearise(problem, moved(0, 0.02));
-  const double lagging = problem.memory().contacts.loads[0];
+  const double lagging = problem.memory().contacts.normal_forces[0];
   problem.begin_step(0, x_, {});
   EXPECT_EQ(problem.memory().contacts.updates, 0);
   linearise(problem, x_);
-  EXPECT_NE(problem.memory().contacts.loads[0], lagging);  // that of the start
+  EXPECT_NE(problem.memory().contacts.normal_forces[0], lagging);  // the contact normal force of the start
 }
 
 TEST_F(StepProblems, FollowLoadsOfContactsThatAreOthersWithinAStep) {
   StepProblem problem = this->problem();
   for (int update = 0; update < 25; ++update) linearise(problem, moved(0, 0.01));
   EXPECT_GE(problem.memory().contacts.updates, numerics.newton.patience);
-  problem.forget_contacts();
+  problem.limit_friction_updates();
   linearise(problem, x_);
-  const double load = problem.memory().contacts.loads[0];
+  const double load = problem.memory().contacts.normal_forces[0];
   linearise(problem, moved(0, -0.02));
-  EXPECT_NE(problem.memory().contacts.loads[0], load);
+  EXPECT_NE(problem.memory().contacts.normal_forces[0], load);
 }
 
 TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {

@@ -1,4 +1,4 @@
-// A sheet pinned at two corners that swings, without contact: what its end depends on is the time integration alone.
+// A swinging sheet pinned at two corners, without contact: its end depends on the time integration only.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,8 @@
 
 namespace weft::simulation::testing {
 
-/// A square metre, flat at the start, held at two neighbouring corners. Forces are smooth: no dry friction of bending.
+/// A sheet of one square metre, flat at the start, held at two neighbouring corners. All forces are smooth: there is no
+/// dry bending friction.
 inline scene::Scene swinging_sheet(int particles, double stretch, double shear, double bend) {
   scene::Scene scene = sheet_alone(1, particles, 0);
   scene::Cloth& cloth = scene.cloths[0];
@@ -26,11 +27,11 @@ inline scene::Scene swinging_sheet(int particles, double stretch, double shear, 
 
 struct SwingEnd {
   std::vector<Vec3> x;
-  double estimate = 0;  ///< sum of the local errors as estimated [m]
+  double estimate = 0;  ///< sum of the estimated local errors [m]
   int steps = 0, rejected = 0, newton = 0;
 };
 
-/// The scene after so many frames.
+/// Runs the scene for this number of frames.
 inline SwingEnd swing(const scene::Scene& scene, int frames) {
   Simulation simulation(scene);
   SwingEnd end;
@@ -46,7 +47,7 @@ inline SwingEnd swing(const scene::Scene& scene, int frames) {
   return end;
 }
 
-/// Root mean square of the distances of two states [m].
+/// Root mean square of the distances between two states [m].
 inline double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();

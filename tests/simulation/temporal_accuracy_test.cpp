@@ -1,5 +1,4 @@
-// Accuracy in time on a swinging sheet: order with fixed steps and with a tolerance, and estimates of the error. The
-// tables are printed.
+// Accuracy in time on a swinging sheet: order with fixed steps and with a tolerance, error estimates. Prints tables.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -18,11 +17,11 @@ int order_of(scene::Integrator integrator) {
   return integrator == scene::Integrator::implicit_euler ? 1 : 2;
 }
 
-// Moderately stiff: membrane waves of at most 2 / l √(2k/ρ) = 380 rad/s, of which those that swing are resolved by all
-// steps here. 0.3 s, in which the free edge falls by 0.4 m.
+// Moderately stiff: membrane waves have at most 2 / l √(2k/ρ) = 380 rad/s, and all steps here resolve those that are
+// excited. The free edge falls by 0.4 m in 0.3 s.
 class SwingingSheet : public ::testing::Test {
  protected:
-  static constexpr int kFrames = 6;  // at 20 frames a second
+  static constexpr int kFrames = 6;  // at 20 frames per second
 
   static scene::Scene sheet(scene::Integrator integrator) {
     scene::Scene scene = testing::swinging_sheet(7, 100, 20, 1e-3);
@@ -33,7 +32,7 @@ class SwingingSheet : public ::testing::Test {
   static SwingEnd swing_with_step(scene::Integrator integrator, double step) {
     scene::Scene scene = sheet(integrator);
     scene.time.step = step;
-    // Newton's share of the error is then below 1e-8 m.
+    // The error of Newton's method is then below 1e-8 m.
     scene.solver.newton_tolerance = 1e-7;
     scene.solver.linear_tolerance = 1e-3;
     return testing::swing(scene, kFrames);
@@ -43,8 +42,8 @@ class SwingingSheet : public ::testing::Test {
     scene.time.tolerance = tolerance;
     return testing::swing(scene, kFrames);
   }
-  // Midpoint with steps eight times finer than the finest measured. Its error is a third of the distance to twice the
-  // step.
+  // Midpoint rule with steps eight times finer than the finest measured. Its error is a third of its distance to the
+  // run with twice the step.
   static const SwingEnd& reference() {
     static const SwingEnd kEnd = [] {
       const SwingEnd fine = swing_with_step(scene::Integrator::implicit_midpoint, 1.0 / 12800);
@@ -68,11 +67,11 @@ TEST_F(SwingingSheet, ConvergesWithTheOrderOfEachMethodWhereStepsAreFixed) {
       const double error = rms_distance(end.x, exact.x), order = before > 0 ? std::log2(before / error) : 0;
       std::printf("%-18s   1/%-4d %10.2e %6.2f %10.2e %10.2f\n", name_of(integrator).c_str(), rate, error, order,
                   end.estimate, end.estimate / error);
-      // Measured 0.90, 0.93, 0.96 for Euler, whose next term is a few per cent, and 1.99 to 2.03 for the others.
+      // Measured: 0.90, 0.93, 0.96 for Euler, whose next error term is a few per cent, and 1.99 to 2.03 for the others.
       if (before > 0) {
         EXPECT_NEAR(order, order_of(integrator), integrator == scene::Integrator::implicit_euler ? 0.12 : 0.06);
       }
-      // The sum of local errors, measured 1.2 to 2.1 times the error: in half a swing they nearly add up.
+      // The sum of local errors is 1.2 to 2.1 times the error (measured): in half a swing they nearly add up.
       EXPECT_GT(end.estimate, error);
       EXPECT_LT(end.estimate, 3 * error);
       before = error;
@@ -94,7 +93,7 @@ TEST_F(SwingingSheet, KeepsTheSecondOrderInAir) {
     const double coarse = rms_distance(end(integrator, 400), exact), fine = rms_distance(end(integrator, 800), exact);
     std::printf("%-18s in air, step 1/800: error %.2e m, order %.2f\n", name_of(integrator).c_str(), fine,
                 std::log2(coarse / fine));
-    // Measured 2.01 and 2.00; 1.1 with drag as a mean over the step, and 9 to 34 times the error.
+    // Measured: 2.01 and 2.00; with drag as a mean over the step 1.1, and 9 to 34 times the error.
     EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << name_of(integrator);
   }
 }
@@ -111,7 +110,7 @@ TEST_F(SwingingSheet, ErrorFollowsTheToleranceWithTheExponentOfEachMethod) {
       const double error = rms_distance(end.x, exact.x);
       std::printf("%-18s %11.2e %6d %8d %10.2e %8.2f %10.2f\n", name_of(integrator).c_str(), tolerance, end.steps,
                   end.rejected, error, before > 0 ? std::log2(before / error) : 0, end.estimate / error);
-      // A step stays as it is while it is right within a tenth, so that one halving may come out a fifth off.
+      // The controller keeps a step that is right within a tenth, so one halving may deviate by a fifth.
       if (before > 0) {
         EXPECT_LT(error, before);
       } else {
@@ -122,7 +121,7 @@ TEST_F(SwingingSheet, ErrorFollowsTheToleranceWithTheExponentOfEachMethod) {
       EXPECT_LT(end.estimate, 3 * error);
       before = error;
     }
-    // Over all six halvings.
+    // The exponent over all six halvings.
     const double measured = std::log(first / before) / std::log(64.0);
     std::printf("%-18s exponent %.3f, expected %.3f\n", name_of(integrator).c_str(), measured, exponent);
     EXPECT_NEAR(measured, exponent, 0.05);

@@ -1,4 +1,4 @@
-// Cloth of triangles as a cloth of a scene.
+// Triangle cloth in scenes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace weft::simulation {
 namespace {
 
-/// A strip of 8 cm by 2 cm that overhangs its clamp, when it has come to rest: drop of its end [m].
+/// Drop of the end of a strip of 8 cm by 2 cm that overhangs its clamp, at rest [m].
 double drop_of_cantilever(scene::ClothShape shape) {
   scene::Scene scene = testing::sheet_alone(0.08, 17, 0);
   scene.solver.newton_tolerance = 1e-5;
@@ -35,7 +35,7 @@ double drop_of_cantilever(scene::ClothShape shape) {
 TEST(TriangleCloth, CantileverHangsAsDeepAsThatOfQuads) {
   const double quads = drop_of_cantilever(scene::ClothShape::quads);
   EXPECT_GT(quads, 0.01);
-  // Where the clamp begins is known to half a cell of 5 mm in 65 mm.
+  // The position of the clamp is known to half a cell of 5 mm in 65 mm.
   EXPECT_NEAR(drop_of_cantilever(scene::ClothShape::aligned_triangles), quads, 0.03 * quads);
   EXPECT_NEAR(drop_of_cantilever(scene::ClothShape::crossed_triangles), quads, 0.03 * quads);
 }
@@ -59,7 +59,7 @@ TEST(TriangleCloth, CrossedSheetIsPinnedByPlaceAndWeighsAsMuchAsQuads) {
 
 using TriangleClothOfFile = support::TestFolder;
 
-/// A half pipe of 8 cm radius in a file, open upward or, with the other sign, downward.
+/// Writes a half pipe with a radius of 8 cm; open upward or, with the other sign, downward.
 void write_half_pipe(const std::filesystem::path& file, double sign) {
   constexpr int kAround = 24, kAlong = 6;
   std::ofstream out(file);

@@ -1,4 +1,4 @@
-// Garments from mesh files whose UVs are their patterns.
+// Garments from mesh files whose UV coordinates are their patterns.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +13,7 @@
 namespace weft::simulation {
 namespace {
 
-// Seven pleats of a sheet of 0.28 m by 0.12 m, standing 45° against each other, of two islands that meet in the middle:
-// the right one is drawn from behind, elsewhere.
+// A sheet of 0.28 m by 0.12 m in seven pleats at 45°. Two UV islands meet in the middle; the right one is mirrored.
 constexpr int kWide = 28, kHigh = 12;
 constexpr double kCell = 0.01;
 
@@ -39,7 +38,7 @@ class UvCloth : public support::TestFolder {
         const bool right = i >= kWide / 2;
         const auto corner = [&](int column, int row) {
           const int v = 1 + row + (kHigh + 1) * column;
-          const int vt = right ? v + kHigh + 1 : v;  // the middle has two
+          const int vt = right ? v + kHigh + 1 : v;  // the middle column has two UV vertices
           return with_uv ? fmt::format(" {}/{}", v, vt) : fmt::format(" {}", v);
         };
         out << 'f' << corner(i, j) << corner(i + 1, j) << corner(i + 1, j + 1) << '\n';
@@ -67,7 +66,7 @@ TEST_F(UvCloth, PleatsOpenWhereTheUvsAreAFlatSheetAndStayWhereTheMeshIsItsShape)
   write_sheet(true);
   const double pleated = std::sqrt(0.5) * kCell * kWide, flat = kCell * kWide;
   EXPECT_NEAR(width("rest = 'mesh'\n"), pleated, 0.01 * pleated);
-  const double opened = width("");  // found by itself
+  const double opened = width("");  // without keys
   EXPECT_GT(opened, pleated + 0.7 * (flat - pleated));
   EXPECT_LT(opened, 1.01 * flat);
 }
@@ -80,7 +79,7 @@ TEST_F(UvCloth, IslandsThatMeetAreOneCloth) {
   EXPECT_TRUE(cloth.sheet.sewn);
   EXPECT_NE(cloth.rest_from.find("UVs: 2 islands, 1 unit = 1 m (metres)"), std::string::npos) << cloth.rest_from;
   EXPECT_TRUE(cloth.warnings.empty());
-  // To the single precision of files in assimp.
+  // Tolerance: assimp reads files in single precision.
   for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t)
     EXPECT_NEAR(mesh::rest_area(cloth.sheet, t), 0.5 * kCell * kCell, 1e-6 * kCell) << t;
 }
@@ -102,8 +101,7 @@ TEST_F(UvCloth, WhatDoesNotFitIsSaid) {
                         [&] { environment::Environment made(scene("rest = 'uv'\n")); });
 }
 
-// A tube that is sewn and hangs on a post, written and read back: the pattern is what it was, and it hangs on as it
-// did.
+// A sewn tube that hangs on a post is written and read back: its pattern is the same, and it continues to hang.
 TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
   std::string pattern = testing::kTube + "allowance = 0\n";  // allowances are not in meshes
   pattern.insert(pattern.rfind("[[seam]]"), "allowance = 0\n");
@@ -131,7 +129,7 @@ TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
   double area = 0;
   for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t) area += mesh::rest_area(cloth.sheet, t);
   EXPECT_NEAR(area, 2 * 0.33 * 0.3, 1e-6);  // to the single precision of files in assimp
-  // Vertices are numbered as faces name them, so places are compared: how far each particle is from where one was.
+  // Faces determine the numbering of vertices, so the test compares places: the distance to the nearest earlier one.
   const auto off = [&] {
     Simulation again(read);
     for (int k = 0; k < kOn; ++k) again.advance();

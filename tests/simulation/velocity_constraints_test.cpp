@@ -1,4 +1,4 @@
-// The seed's own response in scenes: velocities prescribed in the solver (Eq. 4).
+// The seed's own contact response in scenes: velocities prescribed in the solver (Eq. (4)).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,12 +19,12 @@ scene::Scene with_velocity_constraints(scene::Scene scene) {
   return scene;
 }
 
-/// A patch of 0.2 m on a plane that is turned down about the y axis; nothing but friction holds it.
+/// A patch of 0.2 m on a plane that is inclined about the y axis; only friction holds it.
 scene::Scene patch_on_slope(double angle, double friction) {
   scene::Scene scene = with_velocity_constraints(testing::sheet_alone(0.2, 11, 0));
   scene.time.fps = 50;
   scene.time.step = 0.005;
-  scene.solver.newton_tolerance = 1e-4;  // of the weight: far below the 2 % that is asked for
+  scene.solver.newton_tolerance = 1e-4;  // relative to the weight: far below the tested 2 %
   scene.solver.linear_tolerance = 1e-3;
   const Quat turned(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   scene.obstacles.push_back(testing::obstacle("slope", scene::Plane{}));
@@ -39,15 +39,15 @@ scene::Scene patch_on_slope(double angle, double friction) {
 }
 
 /// Mean position along the slope [m] in each frame.
-std::vector<double> ways_down(const scene::Scene& scene, int frames) {
+std::vector<double> distances_down(const scene::Scene& scene, int frames) {
   const Vec3 down = scene.obstacles[0].pose.rotation * Vec3::UnitX();
-  std::vector<double> ways;
+  std::vector<double> distances;
   for (const auto& frame : support::run_scene(scene, {.end = frames + 1, .judged = false, .keep_positions = true})) {
-    double way = 0;
-    for (const Vec3& p : frame.cloths[0]) way += down.dot(p) / static_cast<double>(frame.cloths[0].size());
-    ways.push_back(way);
+    double distance = 0;
+    for (const Vec3& p : frame.cloths[0]) distance += down.dot(p) / static_cast<double>(frame.cloths[0].size());
+    distances.push_back(distance);
   }
-  return ways;
+  return distances;
 }
 
 TEST(VelocityConstraintsInScenes, ClothOnAPlaneRestsWithoutDrift) {
@@ -59,22 +59,22 @@ TEST(VelocityConstraintsInScenes, ClothOnAPlaneRestsWithoutDrift) {
     furthest = std::max(furthest, (frames[50].cloths[0][i] - frames[0].cloths[0][i]).norm());
     moved = std::max(moved, (frames[50].cloths[0][i] - frames[25].cloths[0][i]).norm());
   }
-  // It slides until friction knows its load, for one step or two.
+  // It slides for one or two steps, until friction knows the normal force.
   EXPECT_LT(furthest, 2e-4);
-  // What sticks stays where it is; springs creep by up to 1e-4 m in the same time.
+  // A sticking patch does not move; with springs it creeps by up to 1e-4 m in this time.
   EXPECT_LT(moved, 1e-9);
 }
 
 TEST(VelocityConstraintsInScenes, ClothSlidesDownASlopeAsCoulombSays) {
   const double mu = 0.4, angle = std::atan(1.25 * mu);
-  const auto way = ways_down(patch_on_slope(angle, mu), 30);
-  const double acceleration = 50 * ((way[30] - way[29]) - (way[15] - way[14])) / 0.3;
+  const auto distance = distances_down(patch_on_slope(angle, mu), 30);
+  const double acceleration = 50 * ((distance[30] - distance[29]) - (distance[15] - distance[14])) / 0.3;
   const double expected = kGravity * (std::sin(angle) - mu * std::cos(angle));
   EXPECT_NEAR(acceleration, expected, 0.02 * expected);
 }
 
 TEST(VelocityConstraintsInScenes, ClothIsReleasedWhereItIsLifted) {
-  // One edge goes up with its pins; what is attached to it leaves the floor freely.
+  // Pins lift one edge; the rest of the cloth leaves the floor freely.
   scene::Scene scene = with_velocity_constraints(testing::sheet_alone(0.2, 11, 0.001));
   scene.obstacles.push_back(testing::obstacle("floor", scene::Plane{}));
   scene::Pin pin;
@@ -99,12 +99,12 @@ TEST(VelocityConstraintsInScenes, AMovingObstacleCarriesCloth) {
   const auto frames = support::run_scene(scene, {.keep_positions = true});
   for (const auto& frame : frames) EXPECT_EQ(frame.pairs, 0u);
   for (std::size_t i = 0; i < frames[0].cloths[0].size(); ++i) {
-    const Vec3 way = frames.back().cloths[0][i] - frames[0].cloths[0][i];
-    EXPECT_LT((way - Vec3(0.1, 0, 0.2)).norm(), 1e-3);
+    const Vec3 displacement = frames.back().cloths[0][i] - frames[0].cloths[0][i];
+    EXPECT_LT((displacement - Vec3(0.1, 0, 0.2)).norm(), 1e-3);
   }
 }
 
-/// A patch of 0.15 m at rest on a plane that moves by `keys`.
+/// A patch of 0.15 m rests on a plane that moves by `keys`.
 scene::Scene patch_on_tray(double friction, std::vector<scene::PoseKey> keys) {
   scene::Scene scene = with_velocity_constraints(testing::sheet_alone(0.15, 8, 0.0012));
   scene.contact.self = false;
@@ -118,34 +118,34 @@ scene::Scene patch_on_tray(double friction, std::vector<scene::PoseKey> keys) {
   return scene;
 }
 
-// Half of the patch stuck while the other half slid, in turns from step to step: it stayed where it was up to 40
-// degrees.
+// The patch must not stay in place because one half sticks while the other slides, in alternating steps (measured: up
+// to 40 degrees).
 TEST(VelocityConstraintsInScenes, ClothOnATiltingTraySlipsAsABlockDoes) {
-  constexpr double kTurn = 10 * std::numbers::pi / 180;  // [rad/s], from 0.4 s on
+  constexpr double kTurn = 10 * std::numbers::pi / 180;  // [rad/s]; the tray turns from 0.4 s on
   for (double mu : {0.1, 0.3, 0.6}) {
     scene::Scene scene = patch_on_tray(
         mu, {{0, {}}, {0.4, {}}, {4.4, {Vec3::Zero(), Quat(Eigen::AngleAxisd(4 * kTurn, Vec3::UnitY()))}}});
     const auto frames = support::run_scene(scene, {.end = 111, .judged = false, .keep_positions = true});
-    double way = 0, speed = 0;  // of a block along the tray, by steps that are far shorter
+    double distance = 0, speed = 0;  // of a block along the tray, computed with far shorter steps
     const double h = 1e-5;
     for (int step = 0; step < 440000; ++step) {
       const double angle = kTurn * std::max(0.0, step * h - 0.4);
       const double load = kGravity * std::cos(angle) - 2 * kTurn * speed;
-      speed = std::max(0.0, speed + h * (kGravity * std::sin(angle) + kTurn * kTurn * way - mu * load));
-      way += h * speed;
+      speed = std::max(0.0, speed + h * (kGravity * std::sin(angle) + kTurn * kTurn * distance - mu * load));
+      distance += h * speed;
       if ((step + 1) % 4000 != 0) continue;
       const auto& x = frames[static_cast<std::size_t>((step + 1) / 4000)].cloths[0];
       const Vec3 down(std::cos(angle), 0, -std::sin(angle));
       double of_patch = 0;
       for (const Vec3& point : x) of_patch += down.dot(point) / static_cast<double>(x.size());
-      // Implicit Euler is ahead by half a step's speed; it begins up to half a degree, 0.05 s, late.
-      EXPECT_NEAR(of_patch, way, 0.02 * way + 0.05 * speed + 0.001)
+      // Implicit Euler leads by half a step times the speed; sliding begins up to half a degree, 0.05 s, late.
+      EXPECT_NEAR(of_patch, distance, 0.02 * distance + 0.05 * speed + 0.001)
           << "friction " << mu << ", " << angle / kTurn * 10 << " degrees";
     }
   }
 }
 
-// The same where the tray starts with an acceleration [m/s²], piecewise linear in its key-frames.
+// The same for a tray that starts with an acceleration [m/s²]; its key frames are piecewise linear.
 TEST(VelocityConstraintsInScenes, ClothOnATrayThatStartsLagsAsABlockDoes) {
   constexpr double kMu = 0.3;
   for (double acceleration : {0.9 * kMu * kGravity, 1.1 * kMu * kGravity, 2 * kMu * kGravity}) {
@@ -155,16 +155,17 @@ TEST(VelocityConstraintsInScenes, ClothOnATrayThatStartsLagsAsABlockDoes) {
       keys.push_back({t, {{0.5 * acceleration * since * since, 0, 0}, Quat::Identity()}});
     }
     const auto frames = support::run_scene(patch_on_tray(kMu, keys), {.end = 26, .judged = false});
-    double way = 0;
-    for (const Vec3& x : frames.back().cloths[0]) way += x.x() / static_cast<double>(frames.back().cloths[0].size());
+    double distance = 0;
+    for (const Vec3& x : frames.back().cloths[0])
+      distance += x.x() / static_cast<double>(frames.back().cloths[0].size());
     const double expected = 0.5 * std::min(acceleration, kMu * kGravity) * 0.8 * 0.8;
-    // Euler's own way is longer by half of the last step's, and of the tray's first, 1.25 and 2.5 %.
-    EXPECT_NEAR(way, expected, 0.04 * expected) << acceleration << " m/s²";
+    // Euler adds half of the last step's motion and half of the tray's first step: 1.25 and 2.5 %.
+    EXPECT_NEAR(distance, expected, 0.04 * expected) << acceleration << " m/s²";
   }
 }
 
 TEST(VelocityConstraintsInScenes, ClothThatMeetsClothKeepsItsMomentum) {
-  // Cloth against cloth is pushed by springs in this mode too.
+  // Contacts between cloths use springs in this mode too.
   scene::Scene scene = with_velocity_constraints(testing::sheet_alone(0.2, 11, 0));
   scene.physics.gravity = Vec3::Zero();
   scene.cloths.push_back(scene.cloths[0]);
@@ -182,9 +183,9 @@ TEST(VelocityConstraintsInScenes, ClothThatMeetsClothKeepsItsMomentum) {
     double total = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       // Lumped masses: half at the sides, a quarter at the corners.
-      const double share = (i % 11 % 10 == 0 ? 0.5 : 1) * (i / 11 % 10 == 0 ? 0.5 : 1);
-      sum += share * x[i];
-      total += share;
+      const double mass_ratio = (i % 11 % 10 == 0 ? 0.5 : 1) * (i / 11 % 10 == 0 ? 0.5 : 1);
+      sum += mass_ratio * x[i];
+      total += mass_ratio;
     }
     return Vec3(sum / total);
   };
@@ -212,7 +213,7 @@ TEST(VelocityConstraintsInScenes, NothingIntersectsAndADrapeComesToRest) {
         iterations += frame.report.newton_iterations;
       }
     }
-    // Where walls are forgotten from step to step 13 a step at 40 ms, else 2.1 or 3.2 by the fold that is left.
+    // Measured: 2.1 or 3.2, depending on the remaining fold; 13 per step of 40 ms if walls are not kept between steps.
     EXPECT_LT(iterations, 4 * steps) << "at " << step << " s";
   }
 }

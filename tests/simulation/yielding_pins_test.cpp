@@ -1,4 +1,4 @@
-// Pins that something keeps from getting where they are to be, soft pins, and what is said of pins beforehand.
+// Pins that an obstacle blocks, soft pins, and warnings about pins before the run.
 #include "simulation/yielding_pins.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace weft::simulation {
 namespace {
 
-// A sheet hangs by its upper edge, which goes where `pin` says.
+// A sheet hangs by its upper edge, which moves as `pin` says.
 std::string hanging(double duration, const std::string& pin, const std::string& more) {
   return "[time]\nduration = " + std::to_string(duration) +
          "\n[[cloth]]\nname = 'sheet'\nsize = [0.4, 0.4]\nparticles = [13, 13]\nposition = [0, 0, 0.6]\n"
@@ -20,8 +20,8 @@ std::string hanging(double duration, const std::string& pin, const std::string& 
          pin + "\n" + more;
 }
 
-// At 1.3 m/s, where it returns in all of four runs; at 1 to 1.5 m/s it is chance whether the crushed edge turns about
-// itself and hooks (2 of 9 runs).
+// At 1.3 m/s the edge returned in all of four runs; at 1 to 1.5 m/s it is chaotic whether the crushed edge curls and
+// hooks (2 of 9 runs).
 const std::string kIntoTheFloor = hanging(
     1.9,
     "keys = [{ time = 0 }, { time = 0.7, offset = [0, 0, -0.9] }, { time = 0.9 }, { time = 1.4, offset = [0, 0, 0] }]",
@@ -58,10 +58,10 @@ TEST_P(ObstructedPin, LagsBehindAndReturns) {
     for (const support::MeasuredFrame& frame : frames) {
       EXPECT_EQ(frame.pairs, 0u) << response << ", frame " << frame.report.frame;
       EXPECT_EQ(frame.report.pinched_pairs, 0);
-      // 1.07 where the sheet is crushed on the floor; a pin that does not give way tears it to 30.
+      // Measured: 1.07 where the sheet is crushed on the floor; a pin that does not yield stretches it to 30.
       EXPECT_LT(frame.max_stretch, 1.5) << response << ", frame " << frame.report.frame;
       lagging += frame.report.lagging_particles > 0;
-      // Others are of threads that are stretched meanwhile.
+      // Other warnings concern threads that are stretched meanwhile.
       for (const std::string& warning : frame.report.warnings)
         if (warning.find("pin 0 of") != std::string::npos) said.push_back(warning);
     }
@@ -69,7 +69,7 @@ TEST_P(ObstructedPin, LagsBehindAndReturns) {
     ASSERT_GE(said.size(), 2u) << response;
     EXPECT_NE(said.front().find("pin 0 of 'sheet' gives way to '"), std::string::npos) << said.front();
     EXPECT_NE(said.back().find("pin 0 of 'sheet' is held again"), std::string::npos) << said.back();
-    // The upper edge is the last row; it is held where it started, exactly.
+    // The upper edge is the last row; it ends exactly where it started.
     const auto &first = frames.front().cloths[0], &last = frames.back().cloths[0];
     for (std::size_t i = first.size() - 13; i < first.size(); ++i) EXPECT_LT((last[i] - first[i]).norm(), 1e-12);
   }
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(By, ObstructedPin,
                                            Obstructed{"ram", kBeforeARam}),
                          [](const auto& obstructed) { return std::string(obstructed.param.name); });
 
-// The lowest edge of a sheet is moved down through what is below, and back.
+// Pins move the lowest edge of a sheet down through what is below, and back.
 std::string hem_into(const std::string& more) {
   return "[time]\nduration = 2.4\n[[cloth]]\nname = 'hem'\nsize = [0.3, 0.3]\nparticles = [13, 13]\nposition = [0, 0, "
          "0.95]\nmaterial = { fabric = 'cotton' }\nrotation = [-90, 0, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, "
@@ -88,7 +88,7 @@ std::string hem_into(const std::string& more) {
          "offset = [0, 0, -0.8] }, { time = 2, offset = [0, 0, 0] }]\n" +
          more;
 }
-// Held along two sides, so that it can only be stretched.
+// A sheet held along two sides, so that it can only stretch.
 std::string taut(const std::string& name, const std::string& z) {
   return "[[cloth]]\nname = '" + name + "'\nsize = [0.8, 0.6]\nparticles = [25, 19]\nposition = [0, 0, " + z +
          "]\nmaterial = { fabric = 'cotton' }\n[[cloth.pin]]\nlow = [0, 0]\nhigh = [0, 1]\n[[cloth.pin]]\nlow = [1, "
@@ -96,7 +96,7 @@ std::string taut(const std::string& name, const std::string& z) {
 }
 const std::string kIntoATautSheet = hem_into(taut("taut", "0.6"));
 const std::string kIntoTwoLayers = hem_into(taut("one", "0.6") + taut("two", "0.595"));
-// The hems may hook, and then stay so: in one of fifteen starts with gravity from 9.7 to 9.88 m/s², at 9.81.
+// The hems may hook and stay so (one of fifteen values of gravity from 9.7 to 9.88 m/s²: 9.81).
 const std::string kIntoAnotherHem =
     "[physics]\ngravity = [0, 0, -9.8]\n" + hem_into(
                                                 "[[cloth]]\nname = 'other'\nsize = [0.3, 0.3]\nparticles = [13, "
@@ -107,7 +107,7 @@ const std::string kIntoAnotherHem =
                                                 "time = 0 }, { time = 0.8, offset = [0.05, 0, 0.4] }, { time = 1.2, "
                                                 "offset = [0.05, 0, 0.4] }, { time = 2, offset "
                                                 "= [0, 0, 0] }]\n");
-// The ends of a sheet over a block are tucked under it, into the folds of the sheet.
+// Pins tuck the ends of a sheet over a block under it, into the folds of the sheet.
 const std::string kIntoItsOwnCloth =
     "[time]\nduration = 2.8\n[[cloth]]\nname = 'sheet'\nsize = [2.2, 0.3]\nparticles = [45, 7]\nposition = [0, 0, "
     "0.64]\nmaterial = { fabric = 'cotton' }\n[[cloth.pin]]\nlow = [0, 0]\nhigh = [0, 1]\nrelease = 2.3\nkeys = [{ "
@@ -127,7 +127,7 @@ TEST_P(PressingPin, LagsBehindBeforeItStretchesWhatItPressesOn) {
   int lagging = 0, free = 0, iterations_lagging = 0, iterations_free = 0;
   for (const support::MeasuredFrame& frame : support::run_scene(scene)) {
     EXPECT_EQ(frame.pairs, 0u) << "frame " << frame.report.frame;
-    // 0.116 into two layers, where it was 0.66; 0.113 into its own cloth, where it was 0.36.
+    // Measured: 0.116 into two layers, and 0.113 into its own cloth.
     EXPECT_LT(frame.report.max_strain, 0.15) << "frame " << frame.report.frame;
     const bool lags = frame.report.lagging_particles > 0;
     ++(lags ? lagging : free);
@@ -152,8 +152,9 @@ INSTANTIATE_TEST_SUITE_P(SlowOn, PressingPin,
                                            Obstructed{"layers", kIntoTwoLayers}),
                          name_of_obstructed);
 
-// The edge lies 0.15 m above the floor and is turned by 90 degrees, half of it below, and back. Its last corner hangs
-// on the threads of what is held already: drawn by its share of the pin's load alone it stayed 1 mm off for good.
+// The edge starts 0.15 m above the floor, turns by 90 degrees, half of it below the floor, and turns back. The threads
+// of what is already held pull at its last corner: with only its fraction of the pin's force the corner would stay 1 mm
+// off for good.
 TEST(LaggingCorner, ReturnsAgainstTheThreadsThatHangOnIt) {
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 2\n[[cloth]]\nname = 'sheet'\nsize = [0.5, 0.5]\nparticles = [21, 21]\n"
@@ -166,14 +167,14 @@ TEST(LaggingCorner, ReturnsAgainstTheThreadsThatHangOnIt) {
   EXPECT_LT((frames.back().cloths[0].front() - Vec3(-0.25, -0.25, 0.15)).norm(), 1e-12);
 }
 
-// Out of the box again at 1 m/s; before it is free, after half a second, it lags by up to 0.2 m.
+// The edge leaves the box at 1 m/s; before it is free, after half a second, it lags by up to 0.2 m.
 TEST(LaggingPin, IsHeldAgainWhileItMovesOn) {
   const scene::Scene scene = support::scene_of_text(
       hanging(1, "keys = [{ time = 0 }, { time = 0.3, offset = [0, 0.4, 0] }, { time = 1.1, offset = [0, -0.4, 0] }]",
               "[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.6, 0.4, 0.6]\nposition = [0, 0.4, 0.6]\n"));
   const auto frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
   EXPECT_EQ(frames[10].report.lagging_particles, 13);
-  // A quarter of a second after it has come out, 50 mm a frame on its way.
+  // From a quarter of a second after it has left the box; it moves by 50 mm per frame.
   for (std::size_t k = 19; k < frames.size(); ++k) {
     EXPECT_EQ(frames[k].report.lagging_particles, 0) << "frame " << k;
     const double y = 0.4 - (static_cast<double>(k) / 25 - 0.3);
@@ -190,12 +191,13 @@ TEST(SoftPin, GivesUnderTheWeightByItsStrength) {
   for (const double mass : state.masses) weight += 9.81 * mass;
   for (std::size_t i = state.positions.size() - 13; i < state.positions.size(); ++i)
     sag += (0.8 - state.positions[i].z()) / 13;
-  // What is left of the swing after 3 s is below a hundredth of the sag.
+  // After 3 s the remaining swing is below a hundredth of the sag.
   EXPECT_NEAR(sag, weight / (13 * 5), 0.02 * weight / (13 * 5));
 }
 
-// Held by its upper row, and drawn for 0.2 m below it, by less and less, to where the motion of that takes it: at the
-// end of a fast swing it is closer to that place than without, the closer the less has faded. Below nothing is drawn.
+// The upper row is held. A pull that fades over 0.2 m moves particles below it to where the motion of that row takes
+// them: at the end of a fast swing they are closer to that place than without the pull, the more so the nearer they are
+// to the row. Farther below nothing is pulled.
 TEST(FadingPin, DrawsWhatIsAroundAndLeavesTheRest) {
   const std::string keys = "keys = [{ time = 0 }, { time = 0.2, offset = [0.1, 0.6, 0.1], rotation = [0, 0, 60] }]\n";
   const auto distances = [&](const std::string& pin) {
@@ -204,7 +206,7 @@ TEST(FadingPin, DrawsWhatIsAroundAndLeavesTheRest) {
     const std::vector<Vec3>& start = frames.front().cloths[0];
     const Vec3 middle(0, 0, 0.8);
     const Eigen::AngleAxisd turn(std::acos(0.5), Vec3::UnitZ());
-    std::vector<double> mean(13, 0.0);  // of each row
+    std::vector<double> mean(13, 0.0);  // mean distance of each row
     for (std::size_t i = 0; i < start.size(); ++i)
       mean[i / 13] +=
           (middle + Vec3(0.1, 0.6, 0.1) + turn * (start[i] - middle) - frames.back().cloths[0][i]).norm() / 13;
@@ -232,12 +234,12 @@ TEST(PinKeys, OffsetAndPositionAreTwoWaysToSayOneThing) {
   };
   const auto by_offset = end_of("keys = [{ time = 0 }, { time = 0.3, offset = [0, 0.1, 0.05] }]");
   const auto by_position = end_of("keys = [{ time = 0 }, { time = 0.3, position = [0, 0.1, 0.85] }]");
-  // The same up to the rounding of a sum.
+  // Equal up to the rounding of a sum.
   for (std::size_t i = 0; i < by_offset.size(); ++i) EXPECT_LT((by_offset[i] - by_position[i]).norm(), 1e-6);
 }
 
 TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
-  const auto of = [](const std::string& text) { return doubts(support::scene_of_text(text)); };
+  const auto of = [](const std::string& text) { return find_warnings(support::scene_of_text(text)); };
   const auto entries = of(kIntoTheFloor);
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_EQ(entries[0].rfind("cloth.sheet.pin.0: enters 'floor' at 0.63 s", 0), 0u) << entries[0];
@@ -252,7 +254,7 @@ TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
   const auto inside = of(hanging(0.4, "keys = [{ time = 0, offset = [0, 0.4, 0] }, { time = 0.3, offset = [0, 0, 0] }]",
                                  "[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.6, 0.4, 0.6]\n"
                                  "position = [0, 0.4, 0.6]\n"));
-  // A cape on a block that jumps, and one that hangs behind it.
+  // One cape is on a block that jumps, another hangs behind it.
   const auto cape = [&](const std::string& y, const std::string& keys) {
     return of(
         "time = { duration = 2, fps = 25 }\n[[cloth]]\nname = 'cape'\nsize = [0.4, 0.6]\nparticles = [5, 7]\n"
@@ -283,9 +285,10 @@ TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
 TEST(Doubts, NamePinsThatDrawFartherApartThanTheClothIs) {
   const std::string lower = "[[cloth.pin]]\nlow = [0, 0]\nhigh = [1, 0]\ninterpolation = 'linear'\n";
   const auto of = [&](const std::string& upper_keys, const std::string& more) {
-    return doubts(support::scene_of_text(hanging(1, "keys = [{ time = 0 }, { time = 1, " + upper_keys + " }]", more)));
+    return find_warnings(
+        support::scene_of_text(hanging(1, "keys = [{ time = 0 }, { time = 1, " + upper_keys + " }]", more)));
   };
-  // 0.19 m more than 0.4 m; 10 % of that after a fifth of the time, seen at the next of 100 looks.
+  // 0.19 m more than 0.4 m; 10 % of that after a fifth of the time, detected at the next of 100 samples.
   const auto apart = of("offset = [0, 0, 0.19]", lower);
   ASSERT_EQ(apart.size(), 1u);
   EXPECT_EQ(
@@ -295,11 +298,11 @@ TEST(Doubts, NamePinsThatDrawFartherApartThanTheClothIs) {
   EXPECT_TRUE(of("offset = [0, 0, 0.03]", lower).empty()) << "by 7.5 %";
   EXPECT_TRUE(of("offset = [0, 0, 0.19]", lower + "strength = 50\n").empty()) << "it gives way";
   EXPECT_TRUE(of("offset = [0, 0, 0.19]", "").empty()) << "there is no other";
-  // A corner of both, and a third of a metre between it and the next particle.
+  // Both pins hold one corner; the next particle is a third of a metre from it.
   const auto corner = of("offset = [0, 0, 0.3]", "[[cloth.pin]]\nlow = [0, 0.5]\nhigh = [0, 1]\n");
   ASSERT_EQ(corner.size(), 1u);
   EXPECT_NE(corner[0].find("cloth.sheet.pin.1"), std::string::npos) << corner[0];
-  EXPECT_NE(corner[0].find("; what both would hold pin 0 holds"), std::string::npos) << corner[0];
+  EXPECT_NE(corner[0].find("; pin 0 holds the particles that both select"), std::string::npos) << corner[0];
 }
 
 }  // namespace

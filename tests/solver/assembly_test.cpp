@@ -1,4 +1,4 @@
-// Matrices put together from one block per pair of particles.
+// Matrices assembled from one block per pair of particles.
 #include "solver/assembly.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
     expected.block<3, 3>(3 * i, 3 * i) += (0.5 + i) * Mat3::Identity();
   }
   assembly.keep_constant();
-  // What is added before a start is gone, but for the constant part.
+  // start() clears what was added before, except for the constant part.
   for (int time = 0; time < 2; ++time) {
     assembly.start(0, 4);
     assembly.start(4, kRows);
@@ -51,7 +51,7 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
       if (time == 1) expect(i, j, block + scalar * Mat3::Identity());
     }
     const Vec3 n = random.vector();
-    assembly.add_to_own(3, packed_outer(n, n));
+    assembly.add_to_own_block(3, packed_outer(n, n));
     if (time == 1) expected.block<3, 3>(9, 9) += n * n.transpose();
   }
   assembly.write_rows(0, 2, matrix);
@@ -59,7 +59,7 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
   Eigen::MatrixXd written = Eigen::MatrixXd::Zero(3 * kRows, 3 * kRows);
   matrix.for_each_block(0, kRows,
                         [&](Index i, Index j, const auto& block) { written.block<3, 3>(3 * i, 3 * j) = block; });
-  // Sums of a row in another order: measured 1e-15.
+  // The sums of a row have another order: measured 1e-15.
   EXPECT_LT((written - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 

@@ -1,4 +1,4 @@
-// What solutions that end early leave: no work along the motion, and no resultant on free parts (Recurrence::balance).
+// Residuals of truncated solves: no work along the motion, no resultant on free blocks (Recurrence::balance).
 #include <gtest/gtest.h>
 
 #include "solver/block_systems.hpp"
@@ -11,7 +11,7 @@ using testing::flat;
 using testing::Random;
 using testing::system_of_parts;
 
-/// Three parts of twenty rows with terms between them; none of the first and last is held.
+/// Three blocks of twenty rows with terms between them; the first and the last have no held particles.
 LinearSystem system_with_free_parts(Random& random) {
   LinearSystem system = system_of_parts(random);
   std::erase_if(system.constraints, [](const auto& c) { return c.particle < 20 || c.particle >= 40; });
@@ -25,8 +25,8 @@ Vec3 sum_of(const Eigen::VectorXd& forces, Index begin, Index end) {
 }
 
 struct Left {
-  Eigen::VectorXd forces;  // on the free directions
-  double work = 0;         // along the motion with the solution
+  Eigen::VectorXd forces;  // residual in the free directions
+  double work = 0;         // of the residual along the motion with the solution
   double error = 0;        // in the energy norm
 };
 
@@ -50,14 +50,14 @@ TEST(Balance, LeavesNoResultantOnFreePartsAndDoesNoWork) {
     const auto b = random.vectors(system.matrix.rows()), motion = random.vectors(system.matrix.rows()),
                drift = random.vectors(system.matrix.rows());
     for (const bool single : {false, true}) {
-      system.metric.assign(single ? b.size() : 0, 1.0);
+      system.norm_weights.assign(single ? b.size() : 0, 1.0);
       ConjugateGradient cg;
       cg.prepare(system);
       std::vector<Vec3> x(b.size()), without(b.size());
       cg.solve(b, {}, 4, without);
       cg.solve(b, {}, 4, x, {.motion = motion, .drift = drift});
       const Left balanced = left_by(system, b, motion, x), early = left_by(system, b, motion, without);
-      // Roundings of single precision, 6e-8 of forces of size 1 on twenty rows with stiffnesses up to 100.
+      // Rounding in single precision: 6e-8 of forces of size 1 on twenty rows with stiffnesses up to 100.
       const double roundings = single ? 1e-4 : 1e-11;
       EXPECT_LT(sum_of(balanced.forces, 0, 20).norm(), roundings);
       EXPECT_LT(sum_of(balanced.forces, 40, 60).norm(), roundings);
@@ -89,7 +89,7 @@ TEST(Balance, LeavesConstrainedDirectionsAndOtherPartsAsTheyAre) {
   }
 }
 
-// The motion is then one of the translations: two conditions are the same one.
+// If the motion is a translation, two of the conditions are the same.
 TEST(Balance, OfATranslationIsThatOfItsForcesAlone) {
   for (const bool single : {false, true}) {
     Random random(8);
@@ -97,14 +97,14 @@ TEST(Balance, OfATranslationIsThatOfItsForcesAlone) {
     system.constraints.clear();
     system.terms.clear();
     const auto b = random.vectors(system.matrix.rows());
-    system.metric.assign(single ? b.size() : 0, 1.0);
+    system.norm_weights.assign(single ? b.size() : 0, 1.0);
     const std::vector<Vec3> motion(b.size(), Vec3(1e3, 2e3, 3e3));
     std::vector<Vec3> x(b.size());
     ConjugateGradient cg;
     cg.prepare(system);
     cg.solve(b, {}, 4, x, {.motion = motion});
     const Left left = left_by(system, b, std::vector<Vec3>(b.size(), Vec3::Zero()), x);
-    // As above, of a motion that is a thousand times as large.
+    // As above, for a motion that is a thousand times as large.
     for (Index begin : {0, 20, 40}) EXPECT_LT(sum_of(left.forces, begin, begin + 20).norm(), single ? 0.01 : 1e-9);
     for (const Vec3& v : x) EXPECT_LT(v.norm(), 10);
   }

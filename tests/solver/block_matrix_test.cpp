@@ -1,4 +1,4 @@
-// The block matrix against a dense one.
+// Compares the block matrix with a dense one.
 #include "solver/block_matrix.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ TEST(BlockMatrix, PatternIsTheDiagonalAndBothSidesOfEachCouplingOnce) {
   const BlockMatrix matrix(4, {{0, 2}, {2, 0}, {3, 1}, {3, 1}, {1, 1}});
   EXPECT_EQ(matrix.rows(), 4);
   EXPECT_EQ(matrix.blocks(), 4u + 2 + 2);
-  // Rows one after the other, columns ascending.
+  // Slots go row by row, columns ascending.
   EXPECT_EQ(matrix.slot(0, 0), 0);
   EXPECT_EQ(matrix.slot(0, 2), 1);
   EXPECT_EQ(matrix.slot(1, 1), 2);
@@ -35,7 +35,7 @@ TEST(BlockMatrix, ProductIsThatOfTheDenseMatrix) {
   BlockMatrix matrix(kRows, couplings);
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3 * kRows, 3 * kRows);
   for (const auto& [i, j] : pattern) {
-    Mat3 block;  // not symmetric, so that a transposed block shows
+    Mat3 block;  // not symmetric, so that the test detects a transposed block
     block << random.vector(), random.vector(), random.vector();
     matrix.add(matrix.slot(i, j), block);
     expected.block<3, 3>(3 * i, 3 * j) = block;
@@ -45,10 +45,10 @@ TEST(BlockMatrix, ProductIsThatOfTheDenseMatrix) {
   const auto x = random.vectors(kRows);
   std::vector<Vec3> y(kRows, Vec3::Constant(99));
   matrix.multiply<Vec3>(x, y, 0, kRows);
-  // Sums of up to 40 products of numbers below 1: 40 roundings of 40 · 1.1e-16 at most, 2e-13.
+  // AggregateSums of up to 40 products of numbers below 1: 40 roundings of 40 · 1.1e-16 at most, 2e-13.
   EXPECT_LT((testing::flat(y) - expected * testing::flat(x)).cwiseAbs().maxCoeff(), 2e-13);
 
-  // In pieces: the same bits, and nothing outside of the piece is touched.
+  // Multiplying in pieces gives the same bits and writes nothing outside the piece.
   std::vector<Vec3> pieces(kRows, Vec3::Constant(99));
   matrix.multiply<Vec3>(x, pieces, 0, 5);
   EXPECT_EQ(pieces[5], Vec3(Vec3::Constant(99)));
@@ -60,7 +60,7 @@ TEST(BlockMatrix, WithIsotropicBlocksIsTheDenseMatrix) {
   Random random(4);
   constexpr Index kRows = 9;
   const BlockMatrix::Couplings full{{0, 3}, {4, 1}, {7, 8}, {2, 5}};
-  // One of them is a full block as well, and stays one.
+  // One of these pairs is a full block as well, and stays one.
   const BlockMatrix::Couplings isotropic{{0, 2}, {3, 0}, {6, 1}, {8, 0}, {4, 5}, {2, 0}};
   BlockMatrix matrix(kRows, full, isotropic);
   EXPECT_EQ(matrix.blocks(), 9u + 2 * 4 + 2 * 4);
@@ -86,7 +86,7 @@ TEST(BlockMatrix, WithIsotropicBlocksIsTheDenseMatrix) {
     add(i, j, value * Mat3::Identity());
   }
 
-  // Read back row by row, columns ascending.
+  // Reads the matrix row by row, columns ascending.
   Eigen::MatrixXd read = Eigen::MatrixXd::Zero(3 * kRows, 3 * kRows);
   std::pair<Index, Index> before(-1, -1);
   matrix.for_each_block(0, kRows, [&](Index i, Index j, const auto& block) {

@@ -1,4 +1,4 @@
-// Random symmetric positive definite block systems, sparse as the solver sees them and dense for comparison.
+// Random symmetric positive definite block systems, sparse for the solver and dense for comparison.
 #pragma once
 
 #include <Eigen/Dense>
@@ -9,7 +9,7 @@
 
 namespace weft::solver::testing {
 
-/// Numbers that are the same on every run.
+/// Random numbers that are the same in every run.
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
@@ -32,7 +32,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// Springs between random neighbours on top of a definite diagonal.
+/// Springs between random neighbours plus a positive definite diagonal.
 inline BlockMatrix random_matrix(Index rows, Random& random) {
   std::vector<std::pair<Index, Index>> couplings;
   for (Index i = 1; i < rows; ++i)
@@ -49,7 +49,7 @@ inline BlockMatrix random_matrix(Index rows, Random& random) {
   return matrix;
 }
 
-/// A system with contacts of two to four particles, and constraints of every kind: a point, a line, a plane.
+/// A system with contacts of two to four particles, and constraints of every kind: to a point, a line and a plane.
 inline LinearSystem random_system(Index rows, int terms, Random& random) {
   LinearSystem system;
   system.matrix = random_matrix(rows, random);
@@ -57,7 +57,7 @@ inline LinearSystem random_system(Index rows, int terms, Random& random) {
     StencilTerm term;
     const int involved = 2 + t % 3;
     for (int k = 0; k < involved; ++k) {
-      term.particles[k] = (random.below(rows / 4) * 4 + k) % rows;  // all different
+      term.particles[k] = (random.below(rows / 4) * 4 + k) % rows;  // four different particles
       term.weights[k] = random.number();
     }
     const Vec3 n = random.vector().normalized();
@@ -73,7 +73,7 @@ inline LinearSystem random_system(Index rows, int terms, Random& random) {
   return system;
 }
 
-/// All entries of the matrix, block by block through slot(); `pattern` says which blocks exist.
+/// All entries of the matrix, block by block through slot(); `pattern` lists the existing blocks.
 inline Eigen::MatrixXd dense(const BlockMatrix& matrix, const std::vector<std::pair<Index, Index>>& pattern) {
   Eigen::MatrixXd full = Eigen::MatrixXd::Zero(3 * matrix.rows(), 3 * matrix.rows());
   for (const auto& [i, j] : pattern) full.block<3, 3>(3 * i, 3 * j) = matrix.block(matrix.slot(i, j));
@@ -100,7 +100,7 @@ inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3> x) {
   return {x.data()->data(), static_cast<Eigen::Index>(3 * x.size())};
 }
 
-/// The matrix with what stands beside it.
+/// The matrix plus all terms that the system stores beside it.
 inline Eigen::MatrixXd dense_with_terms(const LinearSystem& system) {
   Eigen::MatrixXd a = dense(system.matrix);
   for (const DiagonalTerm& term : system.diagonal_terms)
@@ -127,24 +127,24 @@ inline Eigen::MatrixXd projection(const LinearSystem& system) {
   return s;
 }
 
-/// Cuts the particles into groups of consecutive numbers, and these again, a level for each count; with one particle a
-/// group, constraints leave some without motion.
+/// Groups consecutive particles into aggregates, and these again, one level for each count. With one particle per
+/// aggregate, constraints leave some aggregates immovable.
 inline void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {
-  system.groupings.clear();
+  system.aggregate_levels.clear();
   Index members = system.matrix.rows();
   for (Index count : counts) {
-    Grouping grouping{{}, count};
+    Aggregates grouping{{}, count};
     for (Index i = 0; i < members; ++i) grouping.of.push_back(i * count / members);
-    system.groupings.push_back(std::move(grouping));
+    system.aggregate_levels.push_back(std::move(grouping));
     members = count;
   }
 }
 
-/// As the inner loops have it.
+/// Padded vectors, as the inner loops use them.
 template <class Real = double>
 std::vector<Quad<Real>> quads(std::span<const Vec3> x) {
   std::vector<Quad<Real>> result;
-  for (const Vec3& v : x) result.push_back(quad_of<Real>(v));
+  for (const Vec3& v : x) result.push_back(padded<Real>(v));
   return result;
 }
 template <class Quad>
@@ -154,7 +154,7 @@ std::vector<Vec3> vectors(const std::vector<Quad>& x) {
   return result;
 }
 
-// Three parts of twenty particles, coupled by contacts alone.
+// Three blocks of twenty particles, coupled only by contacts.
 inline LinearSystem system_of_parts(Random& random) {
   constexpr Index kRows = 60, kPart = 20;
   LinearSystem system = testing::random_system(kRows, 30, random);
@@ -173,7 +173,7 @@ inline LinearSystem system_of_parts(Random& random) {
   return system;
 }
 
-/// √(bᵀ P⁻¹ b) of the constrained part of b.
+/// √(bᵀ P⁻¹ b) of the part of b that the constraints permit.
 inline double norm(ConjugateGradient& cg, std::vector<Vec3> b) {
   cg.filter(b);
   const std::span<const Vec3> z = cg.precondition(b);

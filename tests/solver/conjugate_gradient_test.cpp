@@ -1,4 +1,4 @@
-// Constrained conjugate gradients against a dense direct solution.
+// Compares constrained conjugate gradients with a dense direct solution.
 #include "solver/conjugate_gradient.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(ConjugateGradient, AgreesWithTheDirectSolutionUnderContactsAndConstraints) 
     constexpr Index kRows = 40;
     const LinearSystem system = testing::random_system(kRows, 30, random);
     const auto b = random.vectors(kRows);
-    std::vector<Vec3> x(kRows, Vec3::Constant(7));  // what is there must not matter
+    std::vector<Vec3> x(kRows, Vec3::Constant(7));  // the initial content must not matter
 
     ConjugateGradient cg;
     cg.prepare(system);
@@ -57,7 +57,7 @@ TEST(ConjugateGradient, WithGroupsAgreesWithTheDirectSolutionUnderContactsAndCon
     cg.prepare(system);
     EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x).converged);
     const Eigen::VectorXd expected = direct_solution(system, b);
-    // As above, and ten times that for the rounding that a held group's small stand-in value lets through.
+    // As above, with a factor of ten for rounding: a held aggregate has a small substitute value.
     EXPECT_LT((testing::flat(x) - expected).norm(), 1e-9 * expected.norm()) << counts.size() << " levels";
     for (const ParticleConstraint& c : system.constraints) {
       if (c.free.isZero(0)) {
@@ -103,7 +103,7 @@ TEST(ConjugateGradient, APartWithAnotherVersionIsReadAnew) {
 }
 
 TEST(ConjugateGradient, GroupsCarryAPushAlongAStiffChainInFewerIterations) {
-  // A free chain of 200 particles, springs a million times stiffer than what holds a particle in its place.
+  // A chain of 200 particles; its springs are a million times stiffer than what holds each particle in place.
   constexpr Index kRows = 200;
   std::vector<std::pair<Index, Index>> links;
   for (Index i = 1; i < kRows; ++i) links.emplace_back(i - 1, i);
@@ -127,9 +127,9 @@ TEST(ConjugateGradient, GroupsCarryAPushAlongAStiffChainInFewerIterations) {
     EXPECT_TRUE(report.converged);
     return report.iterations;
   };
-  // One level: an iteration per particle that the push has to reach, 199, were it not for the factor from the 40th on,
-  // which along a chain is exact. Two: the condition number of a group of ten. More: what is between the two has groups
-  // of its own.
+  // One level: the push would need 199 iterations, one per particle, but the incomplete factor is used from the 40th on
+  // and is exact for a chain. Two levels: the condition number of an aggregate of ten decides. More levels: aggregates
+  // of intermediate size help further.
   EXPECT_GE(iterations({}), 40);
   EXPECT_LE(iterations({}), 52);
   EXPECT_LE(iterations({20}), 39);
@@ -152,7 +152,7 @@ TEST(ConjugateGradient, WithoutConstraintsAgreesWithTheDirectSolution) {
 TEST(ConjugateGradient, PinnedParticlesStayAtExactlyZero) {
   Random random(3);
   LinearSystem system = testing::random_system(40, 30, random);
-  // Along axes the projection itself is exact, so what it takes away has to be exactly zero.
+  // Along axes the projection is exact, so the removed components must be exactly zero.
   system.constraints = {
       {0, Mat3::Zero()}, {5, Vec3(1, 1, 0).asDiagonal()}, {6, Vec3(0, 0, 1).asDiagonal()}, {39, Mat3::Zero()}};
   const auto b = random.vectors(40);
@@ -181,7 +181,7 @@ TEST(ConjugateGradient, ObliqueConstraintsAreKeptToRounding) {
   cg.solve(b, {1e-12}, 1000, x);
   for (const ParticleConstraint& c : system.constraints) {
     const Vec3& entry = x[c.particle];
-    // Each of some 100 iterations adds a direction that is off by a rounding.
+    // Each of about 100 iterations adds a direction with a rounding error.
     EXPECT_LE((entry - c.free * entry).norm(), 1e-14 * std::max(1.0, entry.norm()));
   }
 }
@@ -221,7 +221,7 @@ TEST(ConjugateGradient, KnowsTheErrorThatItLeavesFromItsOwnSteps) {
       const LinearReport report = cg.solve(b, {}, iterations, x);
       EXPECT_EQ(report.iterations, iterations);
       EXPECT_FALSE(report.converged);
-      // It is the error of some iterations before: no less than what is left, and these systems lose a digit in four.
+      // The estimate is of an earlier iterate, so at least the remaining error; a digit takes four iterations here.
       const double error = energy_norm(system, testing::flat(x) - expected);
       EXPECT_GT(report.errors[0], error);
       EXPECT_LT(report.errors[0], 100 * error);
@@ -247,7 +247,7 @@ TEST(ConjugateGradient, EndsWhereTheErrorIsSmallEnoughForEachPart) {
 }
 
 TEST(ConjugateGradient, ErrorsCountAsFarAsTheyShowInTheMetric) {
-  // Particles of weight 1 on springs of 1e8 and of 1: in the metric the first hardly move.
+  // Particles of weight 1 on springs of 1e8 and of 1: in the mass-weighted norm the first hardly move.
   LinearSystem system;
   constexpr Index kRows = 40;
   system.matrix = BlockMatrix(kRows, {});
@@ -256,18 +256,18 @@ TEST(ConjugateGradient, ErrorsCountAsFarAsTheyShowInTheMetric) {
     const Mat3 spread = random.definite(0);
     system.matrix.add(system.matrix.diagonal(i), (i < 20 ? 1e8 : 1.0) * (Mat3::Identity() + spread));
   }
-  system.metric.assign(kRows, 1);
+  system.norm_weights.assign(kRows, 1);
   const auto b = random.vectors(kRows);
   std::vector<Vec3> x(kRows);
   ConjugateGradient cg;
   cg.prepare(system);
-  const LinearReport report = cg.solve(b, {}, 1, x);  // the block diagonal is exact here: one step
+  const LinearReport report = cg.solve(b, {}, 1, x);  // the block diagonal is the exact inverse here: one iteration
   EXPECT_LE(report.errors[0], testing::flat(x).norm() * (1 + 1e-12));
   EXPECT_GT(report.errors[0], 0.99 * testing::flat(x).norm());
 }
 
-// A sheet of kSheetSide × kSheetSide with springs of this stiffness to its neighbours, against a metric of 1, and
-// bending beside: rows sum up to the metric.
+// A sheet of kSheetSide × kSheetSide particles with springs of this stiffness to its neighbours and bending, and
+// weights of 1: the sum of each row equals the weight.
 constexpr Index kSheetSide = 12;
 LinearSystem sheet(double stiffness, Random& random) {
   BlockMatrix::Couplings links, bends;
@@ -292,7 +292,7 @@ LinearSystem sheet(double stiffness, Random& random) {
     matrix.add_scalar(matrix.slot(i, j), -0.1);
     matrix.add_scalar(matrix.slot(j, i), -0.1);
   }
-  system.metric.assign(static_cast<std::size_t>(matrix.rows()), 1);
+  system.norm_weights.assign(static_cast<std::size_t>(matrix.rows()), 1);
   const Vec3 n = random.vector().normalized();
   system.constraints = {{0, Mat3::Zero()}, {kSheetSide - 1, Mat3::Identity() - n * n.transpose()}};
   system.diagonal_terms = {{30, stiffness * n * n.transpose()}};
@@ -309,21 +309,23 @@ TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
     const Eigen::VectorXd expected = direct_solution(system, b);
     const Eigen::MatrixXd a = dense_with_terms(system);
     const auto energy = [&](const Eigen::VectorXd& e) { return std::sqrt(e.dot(a * e)); };
-    for (const double share : {0.1, 0.01, 1e-3}) {
+    for (const double relative_error : {0.1, 0.01, 1e-3}) {
       std::vector<Vec3> x(b.size()), y(b.size(), Vec3::Zero());
       ConjugateGradient cg;
       cg.prepare(system);
-      const LinearReport report = cg.solve(b, {share}, 1000, x);
+      const LinearReport report = cg.solve(b, {relative_error}, 1000, x);
       Recurrence<double> in_double;
       Progress progress{{{}}};
-      in_double.prepare(system, Sums::anew);
-      EXPECT_EQ(in_double.solve(b, {share}, 1000, y, {}, std::array{std::size_t{0}}, progress), End::converged);
+      in_double.prepare(system, AggregateSums::recompute);
+      EXPECT_EQ(in_double.solve(b, {relative_error}, 1000, y, {}, std::array{std::size_t{0}}, progress),
+                End::converged);
       EXPECT_TRUE(report.converged);
-      // As many, but for those that end in double with the factor, and begin there anew.
+      // The iteration counts are equal, except for solves that finish in double with the factor and restart there.
       EXPECT_NEAR(report.iterations, progress.iterations, 1 + progress.iterations / 6.0);
-      // What single precision adds is below what was asked for.
-      EXPECT_LT(energy(testing::flat(x) - expected), energy(testing::flat(y) - expected) + share * energy(expected))
-          << stiffness << " to " << share;
+      // The error that single precision adds is below the allowed error.
+      EXPECT_LT(energy(testing::flat(x) - expected),
+                energy(testing::flat(y) - expected) + relative_error * energy(expected))
+          << stiffness << " to " << relative_error;
       EXPECT_EQ(x[0], Vec3::Zero());
       const Vec3 entry = system.constraints[1].free * x[kSheetSide - 1];
       EXPECT_LT((entry - x[kSheetSide - 1]).norm(), 1e-14 * entry.norm());
@@ -332,8 +334,8 @@ TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
 }
 
 TEST(ConjugateGradient, SinglePrecisionLeavesToDoubleWhatIsBeyondIt) {
-  // Tighter than its reach, by an absolute size and by a share; and springs that it would round to more than the
-  // metric.
+  // Tolerances that single precision cannot meet, absolute and relative; and springs whose rounding in single precision
+  // exceeds the mass.
   for (const double stiffness : {1e3, 1e6, 1e10}) {
     Random random(52);
     const LinearSystem system = sheet(stiffness, random);
@@ -346,7 +348,7 @@ TEST(ConjugateGradient, SinglePrecisionLeavesToDoubleWhatIsBeyondIt) {
       const double allowed[] = {absolute};
       const LinearGoal goal = absolute > 0 ? LinearGoal{0, allowed} : LinearGoal{1e-10};
       EXPECT_TRUE(cg.solve(b, goal, 5000, x).converged) << stiffness;
-      // Of a solution of norm 10; with 1e10 roundings of 1e-16 times that are in it, and in the direct solution.
+      // Error of a solution of norm 10; with 1e10, rounding of 1e-16 times that affects it and the direct solution.
       EXPECT_LT((testing::flat(x) - expected).norm(), stiffness > 1e9 ? 1e-4 : 1e-7) << stiffness;
     }
   }
@@ -358,14 +360,14 @@ TEST(ConjugateGradient, MotionThatAllShareIsExactInSinglePrecisionHoweverStiffTh
   system.constraints.clear();
   system.terms.clear();
   system.diagonal_terms.clear();
-  // All blocks sum up to the metric, so this is what moves all by (1, 2, 3).
-  const std::vector<Vec3> b(system.metric.size(), Vec3(1, 2, 3));
+  // All blocks of a row sum up to the weight, so this force moves all particles by (1, 2, 3).
+  const std::vector<Vec3> b(system.norm_weights.size(), Vec3(1, 2, 3));
   std::vector<Vec3> x(b.size());
   ConjugateGradient cg;
   cg.prepare(system);
   const LinearReport report = cg.solve(b, {0.1}, 100, x, {.start = b});
   EXPECT_LE(report.iterations, 1);
-  // Sums of eight blocks in double leave 1e-10 of 1e6, and numbers are rounded by 6e-8.
+  // AggregateSums of eight blocks in double leave 1e-10 of 1e6; numbers are rounded by 6e-8.
   for (const Vec3& v : x) EXPECT_LT((v - Vec3(1, 2, 3)).norm(), 1e-6);
 }
 
@@ -383,14 +385,14 @@ TEST(ConjugateGradient, BeginsWithTheBestMultipleOfADirection) {
   const LinearReport report = cg.solve(b, {0, allowed}, 1000, x, {.start = half});
   EXPECT_LE(report.iterations, 1);
   EXPECT_LT((testing::flat(x) - testing::flat(exact)).norm(), 1e-10 * testing::flat(exact).norm());
-  // What constraints forbid is taken out of it, and a useless direction does no harm.
+  // The solver removes from the start what constraints forbid, and a useless direction does no harm.
   const std::vector<Vec3> elsewhere = random.vectors(40);
   EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, {.start = elsewhere}).converged);
   EXPECT_LT((testing::flat(x) - testing::flat(exact)).norm(), 1e-10 * testing::flat(exact).norm());
 }
 
 TEST(ConjugateGradient, NeedsNoMoreIterationsThanThereAreEigenvalues) {
-  // A chain of springs, the same along all axes: 60 eigenvalues, of condition about 1500. Steepest descent would need
+  // A chain of springs, isotropic: 60 distinct eigenvalues, condition number about 1500. Steepest descent would need
   // thousands of iterations.
   constexpr Index kRows = 60;
   LinearSystem system;
@@ -442,7 +444,7 @@ TEST(ConjugateGradient, NegativeCurvatureIsReported) {
 }
 
 TEST(ConjugateGradient, GivesTheSameBitsOnAnyNumberOfThreads) {
-  // Several chunks of rows, the last one not full.
+  // Several chunks of rows; the last is not full.
   constexpr Index kRows = 3500;
   Random random(8);
   const LinearSystem system = testing::random_system(kRows, 400, random);

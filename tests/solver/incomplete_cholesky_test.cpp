@@ -1,4 +1,4 @@
-// The incomplete factor against dense algebra.
+// Compares the incomplete factor with dense algebra.
 #include "solver/incomplete_cholesky.hpp"
 
 #include <gtest/gtest.h>
@@ -15,23 +15,23 @@ namespace {
 using testing::projection;
 using testing::Random;
 
-// What the factor adds to z for each unit of r that obeys the constraints, as a matrix: S (L Lᵀ)⁻¹ S.
+// What the factor adds to z for each unit of r that satisfies the constraints, as a matrix: S (L Lᵀ)⁻¹ S.
 Eigen::MatrixXd dense_inverse(IncompleteCholesky& factor, const LinearSystem& system, const Eigen::MatrixXd& s) {
   const auto rows = static_cast<std::size_t>(system.matrix.rows());
   Eigen::MatrixXd inverse(s.rows(), s.cols());
   for (Eigen::Index column = 0; column < s.cols(); ++column) {
     std::vector<Vec3> r(rows);
     for (std::size_t i = 0; i < rows; ++i) r[i] = s.col(column).segment<3>(static_cast<Eigen::Index>(3 * i));
-    std::vector<Quad<double>> in_quads(rows, Quad<double>{});
-    const double sum = factor.add(1, testing::quads(r), in_quads, parts_of(system));
-    const std::vector<Vec3> z = testing::vectors(in_quads);
+    std::vector<PaddedVec3<double>> padded_rows(rows, PaddedVec3<double>{});
+    const double sum = factor.add(1, testing::quads(r), padded_rows, parts_of(system));
+    const std::vector<Vec3> z = testing::vectors(padded_rows);
     inverse.col(column) = s * testing::flat(z);
     EXPECT_NEAR(sum, testing::flat(r).dot(testing::flat(z)), 1e-12 * (1 + std::abs(sum)));
   }
   return inverse;
 }
 
-// A chain: nothing fills in, so the factor leaves nothing out.
+// A chain has no fill-in, so its factor is complete.
 LinearSystem chain(Index rows, Random& random) {
   std::vector<std::pair<Index, Index>> links;
   for (Index i = 1; i < rows; ++i) links.emplace_back(i - 1, i);
@@ -53,7 +53,7 @@ TEST(IncompleteCholesky, IsExactWhereNothingFillsIn) {
   const Vec3 n = random.vector().normalized();
   const Mat3 line = n * n.transpose();
   system.constraints = {{0, Mat3::Zero()}, {9, line}, {20, Mat3::Identity() - line}};
-  // Contacts with an obstacle, one of them as a stencil of a single particle.
+  // Contacts with an obstacle; one is a stencil of a single particle.
   system.diagonal_terms.push_back({5, 50 * line});
   system.terms.push_back({{12, 0, 0, 0}, {0.5, 0, 0, 0}, 50 * line});
 
@@ -64,7 +64,7 @@ TEST(IncompleteCholesky, IsExactWhereNothingFillsIn) {
   a.block<3, 3>(15, 15) += 50 * line;
   a.block<3, 3>(36, 36) += 0.25 * 50 * line;
   const Eigen::MatrixXd expected = s * (s * a * s + identity - s).inverse() * s;
-  // Condition number 1e5 times roundings of 1e-16, and a factor of ten.
+  // Condition number 1e5 times rounding of 1e-16, times a factor of ten.
   EXPECT_LT((dense_inverse(factor, system, s) - expected).norm(), 1e-10 * expected.norm());
 }
 
@@ -83,8 +83,8 @@ TEST(IncompleteCholesky, IsSymmetricAndPositiveDefiniteOnTheFreeDirections) {
 }
 
 TEST(IncompleteCholesky, AMatrixWhosePivotsFailTakesALargerDiagonal) {
-  // A ring of four, definite, and singular once what fills in is dropped: 1 on the diagonal, c with signs +, +, +, −
-  // on the links has eigenvalues 1 ± √2 c, but the last pivot without fill is 1 − 2 c² / (1 − c²).
+  // A ring of four: definite, but singular once the fill-in is dropped. With 1 on the diagonal and c with signs +, +,
+  // +, − on the links, its eigenvalues are 1 ± √2 c, but the last pivot without fill-in is 1 − 2 c² / (1 − c²).
   constexpr double c = 0.65;
   LinearSystem system;
   system.matrix = BlockMatrix(4, {{0, 1}, {1, 2}, {2, 3}, {3, 0}});
@@ -111,7 +111,7 @@ TEST(IncompleteCholesky, ValuesThatAreNotFiniteAreRefused) {
 }
 
 TEST(IncompleteCholesky, SavesIterationsOnStiffThreadsAndGivesTheSameBitsOnAnyNumberOfThreads) {
-  // A sheet of 80 × 80 with threads 1e5 times stiffer than what holds a particle, along directions of their own.
+  // A sheet of 80 × 80 with threads 1e5 times stiffer than what holds a particle, each in its own direction.
   constexpr Index kSide = 80, kRows = kSide * kSide;
   std::vector<std::pair<Index, Index>> links;
   for (Index i = 0; i < kRows; ++i) {
@@ -138,7 +138,7 @@ TEST(IncompleteCholesky, SavesIterationsOnStiffThreadsAndGivesTheSameBitsOnAnyNu
     std::vector<Vec3> x(kRows);
     const LinearReport report = cg.solve(b, {1e-6}, 1000, x);
     EXPECT_TRUE(report.converged);
-    // More than 1,000 with the block diagonal alone.
+    // The block diagonal alone needs more than 1,000.
     EXPECT_LT(report.iterations, 300);
     solutions.push_back(x);
   }

@@ -1,4 +1,4 @@
-// Sums over groups that conjugate gradients keep from one iteration of Newton's method to the next.
+// AggregateSums over aggregates that conjugate gradients reuse in later iterations of Newton's method.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,7 @@ using testing::norm;
 using testing::Random;
 using testing::system_of_parts;
 
-// What was kept of an earlier matrix must not outlive the step: a run that is resumed there has none of it.
+// AggregateSums of an earlier matrix must not outlive the step: a run that resumes there does not have them.
 TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
   Random random(37);
   LinearSystem system = system_of_parts(random);
@@ -24,29 +24,29 @@ TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
     for (Index i = 20; i < 40; ++i) system.matrix.add_scalar(system.matrix.diagonal(i), by);
     ++system.parts[1].version;
   };
-  const auto solution = [&](ConjugateGradient& cg, double share) {
+  const auto solution = [&](ConjugateGradient& cg, double relative_error) {
     std::vector<Vec3> x(b.size());
-    cg.solve(b, {share}, 3, x);
+    cg.solve(b, {relative_error}, 3, x);
     return x;
   };
-  for (const double metric : {1e-9, 1.0}) {  // in double only, and in both
-    system.metric.assign(b.size(), metric);
+  for (const double norm_weights : {1e-9, 1.0}) {  // in double only, and in both precisions
+    system.norm_weights.assign(b.size(), norm_weights);
     ConjugateGradient used;
     used.prepare(system);
     norm(used, b);
     stiffen(1000);
-    used.prepare(system, Sums::kept);
+    used.prepare(system, AggregateSums::reuse);
     ConjugateGradient fresh;
-    fresh.prepare(system, Sums::kept);  // nothing is there to be kept
+    fresh.prepare(system, AggregateSums::reuse);  // no sums exist yet
     EXPECT_NE(norm(used, b), norm(fresh, b));
-    // Double has not been used before where single precision is.
-    EXPECT_EQ(solution(used, 1e-9) == solution(fresh, 1e-9), metric == 1);
+    // If single precision was used, the double-precision sums do not exist yet.
+    EXPECT_EQ(solution(used, 1e-9) == solution(fresh, 1e-9), norm_weights == 1);
     stiffen(1000);
     used.prepare(system);
     ConjugateGradient last;
     last.prepare(system);
     EXPECT_EQ(norm(used, b), norm(last, b));
-    // Single precision has summed up already, where it is used: double has to do so for itself.
+    // If single precision was used, its sums are new already; double must recompute its own.
     EXPECT_EQ(solution(used, 1e-9), solution(last, 1e-9));
     EXPECT_EQ(solution(used, 0.01), solution(last, 0.01));
   }

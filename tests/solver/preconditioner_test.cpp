@@ -1,4 +1,4 @@
-// The preconditioner against the sum that its header states, made of dense matrices.
+// Compares the preconditioner with the sum stated in its header, made of dense matrices.
 #include "solver/preconditioner.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using testing::Random;
 
 constexpr Index kSystemRows = 40;
 
-// Restriction to a level: sums over the groups of the particles of each.
+// Restriction to a level: sums over the particles of each aggregate.
 Eigen::MatrixXd restriction(const std::vector<Index>& group_of, Index groups) {
   Eigen::MatrixXd r = Eigen::MatrixXd::Zero(3 * groups, 3 * static_cast<Eigen::Index>(group_of.size()));
   for (std::size_t i = 0; i < group_of.size(); ++i)
@@ -28,8 +28,8 @@ Eigen::MatrixXd diagonal_blocks(const Eigen::MatrixXd& a) {
   return blocks;
 }
 
-// A step of damped Jacobi, by 0.6, on constants: to each member the mean of the groups that its neighbours are in.
-Eigen::MatrixXd interpolation(const Grouping& grouping, const Eigen::MatrixXd& neighbours) {
+// One damped Jacobi step, factor 0.6, on piecewise constants: each member gets the mean of its neighbours' aggregates.
+Eigen::MatrixXd interpolation(const Aggregates& grouping, const Eigen::MatrixXd& neighbours) {
   const auto members = static_cast<Eigen::Index>(grouping.of.size());
   Eigen::MatrixXd constants = Eigen::MatrixXd::Zero(members, grouping.count), means = constants;
   for (Eigen::Index m = 0; m < members; ++m) constants(m, grouping.of[m]) = 1;
@@ -47,7 +47,7 @@ Eigen::MatrixXd threefold(const Eigen::MatrixXd& a) {
   return result;
 }
 
-// Of each particle what the terms hold it with where all that is on its side of them moves with it.
+// For each particle, the stiffness of the terms if all particles on its side of a term move with it.
 Eigen::MatrixXd lumped_terms(const LinearSystem& system) {
   const Eigen::Index rows = system.matrix.rows();
   Eigen::MatrixXd lumped = Eigen::MatrixXd::Zero(3 * rows, 3 * rows);
@@ -61,14 +61,14 @@ Eigen::MatrixXd lumped_terms(const LinearSystem& system) {
   return lumped;
 }
 
-// The sum of the header; blocks of A_l but on the last level.
+// The sum of the header; the blocks of A_l are used on all levels but the last.
 Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
   const Eigen::Index rows = system.matrix.rows();
   const Eigen::MatrixXd s = testing::projection(system), identity = Eigen::MatrixXd::Identity(s.rows(), s.cols());
   const Eigen::MatrixXd matrix = testing::dense(system.matrix), all = testing::dense_with_terms(system);
-  const Eigen::VectorXd weights = Eigen::Map<const Eigen::VectorXd>(system.metric.data(), rows);
-  const Eigen::MatrixXd metric = threefold(weights.asDiagonal()), held = identity - s;
-  const Eigen::MatrixXd lasting = s * metric * s + held * diagonal_blocks(matrix) * held;
+  const Eigen::VectorXd weights = Eigen::Map<const Eigen::VectorXd>(system.norm_weights.data(), rows);
+  const Eigen::MatrixXd norm_weights = threefold(weights.asDiagonal()), held = identity - s;
+  const Eigen::MatrixXd lasting = s * norm_weights * s + held * diagonal_blocks(matrix) * held;
   const Eigen::MatrixXd lumped = s * lumped_terms(system) * s;
   Eigen::MatrixXd sum = diagonal_blocks(s * all * s + held).inverse();
 
@@ -77,18 +77,18 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
   std::vector<Index> group_of(rows);
   std::iota(group_of.begin(), group_of.end(), 0);
   Eigen::MatrixXd from_groups = Eigen::MatrixXd::Identity(rows, rows);
-  double share = 1;
-  for (const Grouping& grouping : system.groupings) {
+  double coupling_factor = 1;
+  for (const Aggregates& grouping : system.aggregate_levels) {
     const Eigen::MatrixXd step =
         interpolation(grouping, stiff ? Eigen::MatrixXd::Zero(neighbours.rows(), neighbours.cols()) : neighbours);
     from_groups *= step;
     for (Index& group : group_of) group = grouping.of[group];
-    if (!stiff) share *= 0.5;
+    if (!stiff) coupling_factor *= 0.5;
     const Eigen::MatrixXd r = restriction(group_of, grouping.count);
-    const Eigen::MatrixXd coarse = r * (share * s * (matrix - metric) * s + lasting) * r.transpose();
+    const Eigen::MatrixXd coarse = r * (coupling_factor * s * (matrix - norm_weights) * s + lasting) * r.transpose();
     const Eigen::MatrixXd p = threefold(from_groups);
     Eigen::MatrixXd block = coarse + p.transpose() * s * (all - matrix) * s * p;
-    if (&grouping != &system.groupings.back()) {
+    if (&grouping != &system.aggregate_levels.back()) {
       block = diagonal_blocks(coarse);
       for (Eigen::Index g = 0; g < grouping.count; ++g)
         for (Eigen::Index i = 0; i < rows; ++i)
@@ -96,7 +96,7 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
     }
     sum += p * block.inverse() * p.transpose();
 
-    // Groups are neighbours where members are.
+    // Aggregates are neighbours if members of them are.
     Eigen::MatrixXd next = Eigen::MatrixXd::Zero(grouping.count, grouping.count);
     for (Eigen::Index i = 0; i < neighbours.rows(); ++i)
       for (Eigen::Index j = 0; j < neighbours.cols(); ++j)
@@ -106,11 +106,11 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
   return s * sum * s;
 }
 
-// Contacts of one to four particles as stiff as the springs, within groups and across them, and constraints: with one
-// particle a group, some are held.
+// Contacts of one to four particles, as stiff as the springs, within aggregates and across them, and constraints: with
+// one particle per aggregate, some aggregates are held.
 LinearSystem system_with_contacts(Random& random) {
   LinearSystem system = testing::random_system(kSystemRows, 30, random);
-  for (Index i = 0; i < kSystemRows; ++i) system.metric.push_back(random.number(0.01, 0.1));
+  for (Index i = 0; i < kSystemRows; ++i) system.norm_weights.push_back(random.number(0.01, 0.1));
   for (Index i = 2; i < kSystemRows; i += 5) system.diagonal_terms.push_back({i, random.definite(20)});
   return system;
 }
@@ -137,16 +137,16 @@ TEST(Preconditioner, IsTheSumOverLevelsWithContactsInAll) {
       Random random(41);
       LinearSystem system = system_with_contacts(random);
       testing::cut_groups(system, counts);
-      // Against so little mass all threads are stiff.
+      // Relative to so little mass, all threads are stiff.
       if (stiff)
-        for (double& weight : system.metric) weight *= 1e-6;
+        for (double& weight : system.norm_weights) weight *= 1e-6;
       const Eigen::MatrixXd expected = dense_preconditioner(system, stiff);
       std::vector<Vec3> r = random.vectors(kSystemRows);
       for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
       const Eigen::VectorXd wanted = expected * testing::flat(r);
-      // The shift of 1e-13 of the trace, times the condition of the blocks, about 1e2.
+      // The shift is 1e-13 of the trace, times the condition number of the blocks, about 1e2.
       EXPECT_LT((applied<double>(system, r) - wanted).norm(), 1e-10 * wanted.norm()) << counts.size() << " levels";
-      // Roundings of 6e-8 of entries that may cancel, and a factor of ten.
+      // Rounding of 6e-8 of entries that may cancel, times a factor of ten.
       EXPECT_LT((applied<float>(system, r) - wanted).norm(), 1e-6 * wanted.norm()) << counts.size() << " levels";
     }
 }
@@ -155,8 +155,8 @@ TEST(Preconditioner, InterpolatesWhereASingleParticleIsLight) {
   Random random(47);
   LinearSystem system = system_with_contacts(random);
   testing::cut_groups(system, {20, 6});
-  // A finer mesh has lighter particles: no reason for groups to move as wholes.
-  system.metric[7] *= 1e-6;
+  // A finer mesh has lighter particles: that is no reason for aggregates to move as a whole.
+  system.norm_weights[7] *= 1e-6;
   std::vector<Vec3> r = random.vectors(kSystemRows);
   for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
   const Eigen::VectorXd wanted = dense_preconditioner(system, false) * testing::flat(r);
@@ -164,8 +164,7 @@ TEST(Preconditioner, InterpolatesWhereASingleParticleIsLight) {
   EXPECT_LT((applied<double>(system, r) - wanted).norm(), 1e-10 * wanted.norm());
 }
 
-// A part that neither its version nor terms have changed keeps what is set up; all else is as if set up anew, to the
-// bit.
+// A block whose version and terms are unchanged keeps its set-up; the result equals a new set-up, to the bit.
 TEST(Preconditioner, IsAsIfSetUpAnewWhateverWasKept) {
   Random random(43);
   LinearSystem system;

@@ -1,4 +1,4 @@
-// Terms that are outer products, in the product and in the preconditioner.
+// Rank-one terms, in the product and in the preconditioner.
 #include "solver/rank_one.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST(RankOneTerms, OfOtherPartsDoNotCountAndThoseOfOwnPartsDo) {
   cg.prepare(system);
   const std::vector<std::size_t> chosen{1};
   EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, {}, chosen).converged);
-  // As if all others were held.
+  // As if all other particles were held.
   LinearSystem held = system;
   held.constraints.clear();
   for (const ParticleConstraint& c : system.constraints)

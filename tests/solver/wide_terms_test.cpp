@@ -1,4 +1,4 @@
-// Bodies of four particles that are stiff against each other beside other parts, held together by wide terms.
+// Stiff bodies of four particles beside other blocks; wide terms hold them together.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 using testing::Random;
 
-constexpr Index kRows = 60;  // of the first part; behind it two bodies
+constexpr Index kRows = 60;  // of the first block; two bodies follow
 
 // Springs of 1e4 N/m between the particles of each body.
 LinearSystem system_with_bodies(Random& random) {
@@ -39,7 +39,7 @@ LinearSystem system_with_bodies(Random& random) {
         system.matrix.subtract(system.matrix.slot(j, i), spring);
       }
     }
-  system.metric.assign(kRows + 8, 0.1);
+  system.norm_weights.assign(kRows + 8, 0.1);
   system.parts = {{.begin = 0, .end = kRows},
                   {.begin = kRows, .end = kRows + 4, .is_small = true},
                   {.begin = kRows + 4, .end = kRows + 8, .is_small = true}};
@@ -55,7 +55,7 @@ LinearSystem system_with_bodies(Random& random) {
   }
   Index members = kRows;
   for (const Index count : {20, 6}) {
-    Grouping& grouping = system.groupings.emplace_back();
+    Aggregates& grouping = system.aggregate_levels.emplace_back();
     for (Index i = 0; i < members; ++i) grouping.of.push_back(i * count / members);
     for (Index body = 0; body < 8; ++body) grouping.of.push_back(count + body);
     grouping.count = count + 8;
@@ -77,7 +77,7 @@ TEST(WideTerms, AreSolvedWithStiffBodies) {
   const LinearReport report = cg.solve(b, {1e-6}, 1000, x);
   EXPECT_TRUE(report.definite);
   EXPECT_LT(energy(testing::flat(x) - expected), 1e-5 * energy(expected));
-  // Bodies alone, which the coarsest level solves, take the iterations of two or three eigenvalues.
+  // Without wide terms the coarsest level solves the bodies: iterations as for two or three eigenvalues.
   LinearSystem bodies = system;
   std::erase_if(bodies.wide_terms, [](const WideTerm&) { return true; });
   std::vector<Vec3> of_bodies(b.size(), Vec3::Zero()), y(b.size());

@@ -1,6 +1,6 @@
 #include "support/exact_motion.hpp"
 
-// GCC 12 takes the release of a shared number for a use after it.
+// GCC 12 warns of a use after free when a shared number is released.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wuse-after-free"
@@ -19,10 +19,10 @@
 #include <stdexcept>
 #include <vector>
 
-// The first contact of what is apart at t = 0 is one of a vertex with a face, an edge with an edge, or, where faces or
-// edges are degenerate or edges parallel, a vertex with an edge or a vertex. Each is a set of conditions e(t) = 0,
-// g(t) ≥ 0, h(t) > 0 on polynomials of at most fourth degree, which are looked at in interval arithmetic first and
-// decided in integers where that does not suffice. What crosses from the start on is found at t = 0.
+// If two simplices are apart at t = 0, their first contact is of a vertex with a face, an edge with an edge, or, for
+// degenerate faces or edges or parallel edges, a vertex with an edge or a vertex. Each contact is a set of conditions
+// e(t) = 0, g(t) ≥ 0, h(t) > 0 on polynomials of at most fourth degree. Interval arithmetic tries them first; integers
+// decide the rest. If the simplices cross from the start, the contact is found at t = 0.
 namespace weft::support {
 namespace {
 
@@ -33,8 +33,8 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t kMaxDegree = 4;
 
-/// Σ c[i] t^i (1 − t)^(degree − i): one sign in all c is the sign in all of [0, 1], products are convolutions, and for
-/// z = t / (1 − t) the zeros are those of Σ c[i] z^i.
+/// Σ c[i] t^i (1 − t)^(degree − i). If all c have one sign, that is the sign in all of [0, 1]; products are
+/// convolutions; for z = t / (1 − t) the zeros are those of Σ c[i] z^i.
 template <class N>
 struct Polynomial {
   std::size_t degree = 0;
@@ -96,7 +96,7 @@ bool surely_zero(const Integer& x) {
   return CGAL::is_zero(x);
 }
 
-/// Sign of all coefficients, 0 where they differ or one is in doubt.
+/// Common sign of all coefficients; 0 if they differ or one is uncertain.
 template <class N>
 int common_sign(const Polynomial<N>& p) {
   const int sign = sure_sign(p.c[0]);
@@ -105,7 +105,7 @@ int common_sign(const Polynomial<N>& p) {
   return sign;
 }
 
-/// A moment of contact: all of `zero` vanish, none of `not_negative` is below zero, `positive` is above.
+/// Conditions for contact: all of `zero` vanish, none of `not_negative` is below zero, `positive` is above zero.
 template <class N>
 struct Conditions {
   bool impossible = false;  ///< one of `zero` has no root in [0, 1]; the rest may be missing
@@ -118,7 +118,7 @@ struct Conditions {
   }
 };
 
-/// p in the face a b c, which is a proper triangle.
+/// Conditions for p to lie in the non-degenerate face a b c.
 template <class N>
 Conditions<N> vertex_face(const Path<N>& p, const Path<N>& a, const Path<N>& b, const Path<N>& c) {
   const Path<N> ab = b - a, ac = c - a, ap = p - a;
@@ -126,13 +126,13 @@ Conditions<N> vertex_face(const Path<N>& p, const Path<N>& a, const Path<N>& b, 
   Conditions<N> k;
   k.require_zero(dot(n, ap));
   if (k.impossible) return k;
-  // |n|² times the barycentric coordinates.
+  // Barycentric coordinates times |n|².
   k.not_negative = {dot(n, cross(ab, ap)), dot(n, cross(ap, ac)), dot(n, cross(c - b, p - b))};
   k.positive = dot(n, n);
   return k;
 }
 
-/// The edges p q and a b, which are not parallel, cross.
+/// Conditions for the non-parallel edges p q and a b to cross.
 template <class N>
 Conditions<N> edge_edge(const Path<N>& p, const Path<N>& q, const Path<N>& a, const Path<N>& b) {
   const Path<N> d = q - p, e = b - a, w = a - p;
@@ -140,14 +140,14 @@ Conditions<N> edge_edge(const Path<N>& p, const Path<N>& q, const Path<N>& a, co
   Conditions<N> k;
   k.require_zero(dot(n, w));
   if (k.impossible) return k;
-  // |n|² times the places on the edges.
+  // Parameters of the crossing on the edges, times |n|².
   const Polynomial<N> on_pq = dot(n, cross(w, e)), on_ab = dot(n, cross(w, d));
   k.positive = dot(n, n);
   k.not_negative = {on_pq, k.positive - on_pq, on_ab, k.positive - on_ab};
   return k;
 }
 
-/// p on the edge a b, which has a length.
+/// Conditions for p to lie on the edge a b, which has a positive length.
 template <class N>
 Conditions<N> vertex_edge(const Path<N>& p, const Path<N>& a, const Path<N>& b) {
   const Path<N> e = b - a, ap = p - a;
@@ -167,7 +167,7 @@ Conditions<N> vertex_vertex(const Path<N>& p, const Path<N>& a) {
   return k;
 }
 
-/// Corners 0.. of one simplex against corners of the other, by their place in the list of all points.
+/// Corners of one simplex against corners of the other, by their index in the list of all points.
 struct Feature {
   enum Kind { kVertexFace, kEdgeEdge, kVertexEdge, kVertexVertex } kind;
   std::vector<std::size_t> a, b;
@@ -193,7 +193,7 @@ std::vector<std::vector<std::size_t>> edges_of(std::size_t first, std::size_t co
   return {{first, first + 1}, {first + 1, first + 2}, {first + 2, first}};
 }
 
-// All pairs of features of points 0 .. na − 1 against na .. na + nb − 1; those that decide most often come first.
+// All pairs of features of points 0 .. na − 1 with points na .. na + nb − 1; those that most often decide come first.
 std::vector<Feature> make_features(std::size_t na, std::size_t nb) {
   std::vector<Feature> list;
   for (std::size_t i = 0; i < na && nb == 3; ++i) list.push_back({Feature::kVertexFace, {i}, {na, na + 1, na + 2}});
@@ -220,8 +220,8 @@ const std::vector<Feature>& features(int na, int nb) {
 
 enum class Answer { apart, touch, unknown };
 
-/// The conditions on a part of [0, 1], with the coefficients divided by the binomial ones, as de Casteljau needs them.
-struct Part {
+/// The conditions on a part of [0, 1]; coefficients are over the binomial ones, as de Casteljau's algorithm needs.
+struct Subinterval {
   Conditions<Interval> conditions;
   double begin, width;
 };
@@ -249,7 +249,7 @@ void keep_half(Polynomial<Interval>& p, bool second) {
   }
 }
 
-Part half_of(Part part, bool second) {
+Subinterval half_of(Subinterval part, bool second) {
   for_all(part.conditions, [&](Polynomial<Interval>& p) { keep_half(p, second); });
   part.width *= 0.5;
   if (second) part.begin += part.width;
@@ -261,7 +261,8 @@ bool surely_apart(const Conditions<Interval>& k) {
          std::any_of(k.not_negative.begin(), k.not_negative.end(), [](const auto& p) { return common_sign(p) < 0; });
 }
 
-// One equation with a change of sign, all else strictly fulfilled throughout; or all fulfilled at the beginning.
+// Whether contact is certain: one equation changes its sign and all other conditions hold strictly throughout, or all
+// hold at the beginning.
 bool surely_touching(const Conditions<Interval>& k) {
   const auto throughout = [](const auto& p) { return common_sign(p) > 0; };
   const auto at_start = [](const auto& p) { return sure_sign(p.at_start()) > 0; };
@@ -273,10 +274,10 @@ bool surely_touching(const Conditions<Interval>& k) {
          std::all_of(k.not_negative.begin(), k.not_negative.end(), throughout) && throughout(k.positive);
 }
 
-// A moment of contact in a part that has one, to rounding.
-double narrow(Part part) {
+// A time of contact in a subinterval that has one, to rounding.
+double bisect_to_contact(Subinterval part) {
   while (part.width > 1e-16 && sure_sign(part.conditions.zero[0].at_start()) != 0) {
-    const Part first = half_of(part, false);
+    const Subinterval first = half_of(part, false);
     const auto& e = first.conditions.zero[0];
     if (sure_sign(e.at_end()) == 0) return first.begin + first.width;
     part = sure_sign(e.at_start()) != sure_sign(e.at_end()) ? first : half_of(part, true);
@@ -284,20 +285,20 @@ double narrow(Part part) {
   return part.begin;
 }
 
-Answer look(Conditions<Interval> k, double& time) {
-  constexpr int kMaxParts = 64;  // a root takes two parts for each bit; beyond 2⁻³⁰ integers are quicker
+Answer test_intervals(Conditions<Interval> k, double& time) {
+  constexpr int kMaxSubintervals = 64;  // a root needs two subintervals per bit; beyond 2⁻³⁰ integers are faster
   if (k.impossible) return Answer::apart;
   for_all(k, to_bernstein);
-  std::vector<Part> parts{{std::move(k), 0, 1}};
+  std::vector<Subinterval> parts{{std::move(k), 0, 1}};
   for (int count = 0; !parts.empty(); ++count) {
-    const Part part = std::move(parts.back());
+    const Subinterval part = std::move(parts.back());
     parts.pop_back();
     if (surely_apart(part.conditions)) continue;
     if (surely_touching(part.conditions)) {
-      time = narrow(part);
+      time = bisect_to_contact(part);
       return Answer::touch;
     }
-    if (count >= kMaxParts) return Answer::unknown;
+    if (count >= kMaxSubintervals) return Answer::unknown;
     parts.push_back(half_of(part, true));
     parts.push_back(half_of(part, false));
   }
@@ -322,8 +323,8 @@ Roots::Polynomial_1 in_z(const Polynomial<Integer>& p) {
   return {p.c.begin(), p.c.begin() + static_cast<std::ptrdiff_t>(p.degree) + 1};
 }
 
-// A moment at which all is fulfilled. Where `zero` vanishes identically, contact is there at t = 0 or begins where one
-// of the others reaches zero: in a contact of simpler features, which is sought as well.
+// A time at which all conditions hold. If `zero` vanishes identically, contact exists at t = 0, or it begins where
+// another condition reaches zero: that is a contact of simpler features, which are tested as well.
 std::optional<double> decide(const Conditions<Integer>& k) {
   if (k.impossible) return {};
   if (fulfilled(k, [](const auto& p) { return sure_sign(p.at_start()); })) return 0.0;
@@ -348,7 +349,7 @@ std::optional<double> decide(const Conditions<Integer>& k) {
 
 // --- Points ----------------------------------------------------------------------------------------------------------
 
-// Paths relative to the first point, so that the place in space costs no digits; a difference rounds once.
+// Paths relative to the first point, so that the position in space costs no digits; each difference rounds once.
 std::vector<Path<Interval>> interval_paths(const MovingSimplex& a, const MovingSimplex& b) {
   std::vector<Path<Interval>> paths;
   for (const MovingSimplex* s : {&a, &b}) {
@@ -372,7 +373,7 @@ Integer scaled(double x, int shift) {
 }
 
 std::vector<Path<Integer>> integer_paths(const MovingSimplex& a, const MovingSimplex& b) {
-  int shift = 0;  // makes an integer of every coordinate; contact does not depend on the scale
+  int shift = 0;  // makes every coordinate an integer; contact does not depend on the scale
   for (const MovingSimplex* s : {&a, &b}) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(s->count); ++i) {
       for (int d = 0; d < 3; ++d) {
@@ -391,7 +392,7 @@ std::vector<Path<Integer>> integer_paths(const MovingSimplex& a, const MovingSim
   return paths;
 }
 
-// Whether the boxes of all that a and b sweep are disjoint.
+// Whether the boxes around the swept paths of a and b are disjoint.
 bool boxes_apart(const std::vector<const Vec3*>& a, const std::vector<const Vec3*>& b) {
   for (int d = 0; d < 3; ++d) {
     const auto less = [d](const Vec3* p, const Vec3* q) { return (*p)[d] < (*q)[d]; };
@@ -402,7 +403,7 @@ bool boxes_apart(const std::vector<const Vec3*>& a, const std::vector<const Vec3
   return false;
 }
 
-// Ends of the ways of some points out of all.
+// Start and end positions of the selected points.
 std::vector<const Vec3*> ends(const std::vector<std::size_t>& points, const MovingSimplex& a, const MovingSimplex& b) {
   std::vector<const Vec3*> list;
   for (std::size_t i : points) {
@@ -415,7 +416,7 @@ std::vector<const Vec3*> ends(const std::vector<std::size_t>& points, const Movi
   return list;
 }
 
-// Whether an edge of a goes through the triangle b at the start, with its ends on different sides or one in the plane.
+// Whether an edge of a pierces the triangle b at the start: its ends are on different sides, or one is in the plane.
 bool pierces_at_start(const MovingSimplex& a, const MovingSimplex& b) {
   if (b.count != 3) return false;
   const auto point = [](const Vec3& x) { return Kernel::Point_3(x.x(), x.y(), x.z()); };
@@ -448,7 +449,7 @@ Contact find_contact(const MovingSimplex& a, const MovingSimplex& b) {
     for (const Feature& feature : features(a.count, b.count)) {
       if (boxes_apart(ends(feature.a, a, b), ends(feature.b, a, b))) continue;
       double time = -1;
-      const Answer answer = look(conditions(feature, paths), time);
+      const Answer answer = test_intervals(conditions(feature, paths), time);
       if (answer == Answer::touch) return {true, time, false};
       if (answer == Answer::unknown) open.push_back(&feature);
     }

@@ -20,13 +20,13 @@ struct Random {
   double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); }
   int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine); }
   bool heads() { return whole(0, 1) == 1; }
-  /// 10^low to 10^high, all decades alike.
+  /// A number from 10^low to 10^high, logarithmically uniform.
   double decade(double low, double high) { return std::pow(10.0, between(low, high)); }
   Vec3 vector(double size = 1) {
     const double x = between(-size, size), y = between(-size, size), z = between(-size, size);
     return {x, y, z};
   }
-  /// Three whole numbers up to `size`.
+  /// Three integers of absolute value up to `size`.
   Vec3 grid(int size) {
     const int x = whole(-size, size), y = whole(-size, size), z = whole(-size, size);
     return {double(x), double(y), double(z)};
@@ -38,7 +38,7 @@ struct Random {
     }
   }
   Corners corners() { return {vector(), vector(), vector()}; }
-  /// Weights of three points, whole multiples of 1/16 that sum to 1; zeros are common.
+  /// Weights of three points, integer multiples of 1/16 that sum to 1; zeros are common.
   std::array<double, 3> weights() {
     const int u = heads() ? 0 : whole(0, 16), v = heads() ? 16 - u : whole(0, 16 - u);
     return {(16 - u - v) / 16.0, u / 16.0, v / 16.0};
@@ -64,7 +64,7 @@ void for_all_points(MotionQuery& q, const Change& change) {
   }
 }
 
-// Gives a query of size 1 a size and a place. Rounds, unless `exact`: then both are such that 2⁻⁸ remains exact.
+// Scales and shifts a query of size 1. Rounds, unless `exact`: then scale and shift keep multiples of 2⁻⁸ exact.
 void place(MotionQuery& q, Random& random, bool exact = false) {
   double size = random.decade(-6, 3);
   Vec3 shift = random.heads() ? Vec3(random.vector(random.decade(-6, 3))) : Vec3(Vec3::Zero());
@@ -91,7 +91,7 @@ MotionQuery random_query(Random& random) {
   return q;
 }
 
-// On a grid of 1/16, b has corners on whole numbers: a point of b and one of a are the same.
+// Coordinates are multiples of 1/16 and the corners of b are integers: a point of b coincides with a point of a.
 MotionQuery touching_query(Random& random) {
   Corners b{random.grid(8), random.grid(8), random.grid(8)};
   const Vec3 contact = mix(random.weights(), b);
@@ -99,7 +99,7 @@ MotionQuery touching_query(Random& random) {
   const double side = random.heads() ? 1 : -1;
   const auto above = [&] {
     Vec3 v = random.grid(8);
-    if (random.whole(0, 3) == 0) return v;  // or through the plane
+    if (random.whole(0, 3) == 0) return v;  // or a motion through the plane
     return side * n.dot(v) < 0 ? Vec3(-v) : v;
   };
   Corners a{contact, contact + above(), contact + above()};
@@ -123,13 +123,13 @@ MotionQuery touching_query(Random& random) {
   return q;
 }
 
-// A unit vector across two others.
+// A unit vector perpendicular to two others.
 Vec3 across(const Vec3& u, const Vec3& v) {
   const Vec3 n = u.cross(v);
   return n.norm() > 0 ? Vec3(n.normalized()) : Vec3(Vec3::UnitZ());
 }
 
-// Corner or edge of a at the distance `gap` above a point of b; a lies on that side of the face, or of the edge.
+// A corner or edge of a at the distance `gap` above a point of b; all of a lies on that side of the face or edge.
 MotionQuery close_query(Random& random, double gap) {
   Corners b = random.corners();
   const Vec3 n = across(b[1] - b[0], b[2] - b[0]);
@@ -141,7 +141,7 @@ MotionQuery close_query(Random& random, double gap) {
     const Vec3 at = mix(random.weights(), b) + gap * n;
     return {still({at, at + above(n), at + above(n)}), still(b)};
   }
-  // Edges: both triangles hang back from the plane between them.
+  // Edges: both triangles extend away from the plane between them.
   const Vec3 along = random.vector(), m = across(b[1] - b[0], along);
   const Vec3 at = b[0] + random.between(0, 1) * (b[1] - b[0]);
   b[2] = at - above(m);
@@ -240,7 +240,7 @@ MotionQuery needle_query(Random& random) {
   return q;
 }
 
-// In metres: neither gap nor motion is scaled with the size.
+// Gap and motion are in metres: they do not scale with the size.
 MotionQuery near_miss_query(Random& random) {
   const double size = random.decade(-2, 1), gap = random.decade(-9, -3), motion = gap * random.decade(-1, 1);
   MotionQuery q = close_query(random, gap / size);
@@ -256,10 +256,10 @@ MotionQuery near_miss_query(Random& random) {
 
 MotionQuery fast_query(Random& random) {
   MotionQuery q{still(random.corners()), still(random.corners())};
-  const Vec3 way = random.decade(1, 3) * random.unit();
+  const Vec3 displacement = random.decade(1, 3) * random.unit();
   const double when = random.between(0, 1.2);
-  for (Vec3& x : q.a.t0) x += random.vector(0.1) - when * way;
-  for (Vec3& x : q.a.t1) x += random.vector(0.1) + (1 - when) * way;
+  for (Vec3& x : q.a.t0) x += random.vector(0.1) - when * displacement;
+  for (Vec3& x : q.a.t1) x += random.vector(0.1) + (1 - when) * displacement;
   move_each(q.b, random, random.decade(-3, 0));
   return q;
 }
@@ -267,14 +267,14 @@ MotionQuery fast_query(Random& random) {
 MotionQuery grazing_rotation_query(Random& random) {
   const double gap = random.heads() ? 0 : random.decade(-9, -1);
   MotionQuery q = close_query(random, gap);
-  // About a point near the contact or a corner farther off; before and after the place of contact.
+  // Rotates about a point near the contact or a corner farther away, before or after the place of contact.
   const Vec3 centre = q.a.t0[random.whole(0, 2)] + random.vector(random.decade(-3, 0));
   const Vec3 axis = random.unit();
-  const double angle = random.decade(-3, 0) * std::numbers::pi, share = random.between(-0.2, 1);
+  const double angle = random.decade(-3, 0) * std::numbers::pi, fraction = random.between(-0.2, 1);
   const Corners at = q.a.t0;
   for (std::size_t k = 0; k < 3; ++k) {
-    q.a.t0[k] = centre + Eigen::AngleAxisd(-share * angle, axis) * (at[k] - centre);
-    q.a.t1[k] = centre + Eigen::AngleAxisd((1 - share) * angle, axis) * (at[k] - centre);
+    q.a.t0[k] = centre + Eigen::AngleAxisd(-fraction * angle, axis) * (at[k] - centre);
+    q.a.t1[k] = centre + Eigen::AngleAxisd((1 - fraction) * angle, axis) * (at[k] - centre);
   }
   if (random.heads()) move(q.b, random.vector(random.decade(-4, -1)));
   return q;
@@ -348,7 +348,7 @@ MotionQuery make_query(QueryFamily family, std::mt19937& engine) {
 }
 
 double distance_at(const MovingSimplex& a, const MovingSimplex& b, double t) {
-  // An edge counts as a triangle with its second end twice.
+  // An edge counts as a triangle whose second end occurs twice.
   std::array<Corners, 2> x;
   for (std::size_t side = 0; side < 2; ++side) {
     const MovingSimplex& s = side == 0 ? a : b;
@@ -357,18 +357,19 @@ double distance_at(const MovingSimplex& a, const MovingSimplex& b, double t) {
       x[side][k] = (1 - t) * s.t0[corner] + t * s.t1[corner];
     }
   }
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance_sq = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t side = 0; side < 2; ++side) {
       const Corners& face = x[1 - side];
-      least = std::min(least, collision::closest_vertex_face(x[side][i], face[0], face[1], face[2]).distance_sq);
+      min_distance_sq =
+          std::min(min_distance_sq, collision::closest_vertex_face(x[side][i], face[0], face[1], face[2]).distance_sq);
     }
     for (std::size_t j = 0; j < 3; ++j) {
       const auto points = collision::closest_edge_edge(x[0][i], x[0][(i + 1) % 3], x[1][j], x[1][(j + 1) % 3]);
-      least = std::min(least, points.distance_sq);
+      min_distance_sq = std::min(min_distance_sq, points.distance_sq);
     }
   }
-  return std::sqrt(least);
+  return std::sqrt(min_distance_sq);
 }
 
 }  // namespace weft::support

@@ -1,4 +1,4 @@
-// Random and constructed queries to continuous detection: two triangles without a common vertex, in linear motion.
+// Random and constructed queries for continuous collision detection: two moving triangles without a common vertex.
 #pragma once
 
 #include <array>
@@ -8,17 +8,17 @@
 
 namespace weft::support {
 
-/// What is special about a query. Sizes go from 1e-6 to 1e3 m and places up to 1e3 m from the origin, unless said.
+/// Kind of a query. Unless stated otherwise, sizes are 1e-6 to 1e3 m, and places up to 1e3 m from the origin.
 enum class QueryFamily {
-  random,            ///< motions of a thousandth of the size to three times the size
-  touching,          ///< exactly, at t = 0: vertex or edges on face, edge or vertex; then away, along or through
-  nearly_touching,   ///< the same up to rounding, on either side
-  parallel_edges,    ///< stay parallel, or turn
-  one_plane,         ///< exactly, all the way or at the start; or in parallel planes
+  random,    ///< motions from a thousandth of the size to three times the size
+  touching,  ///< touch exactly at t = 0: vertex or edges on face, edge or vertex; then move away, along or through
+  nearly_touching,   ///< touch up to rounding, on either side
+  parallel_edges,    ///< edges that stay parallel, or turn
+  one_plane,         ///< exactly in one plane, throughout or at the start; or in parallel planes
   degenerate,        ///< a point, or three points in a line, for at least one side
-  needles,           ///< a height of 1e-3 to 1e-9 of the length
+  needles,           ///< heights of 1e-3 to 1e-9 of the length
   near_misses,       ///< 1e-9 to 1e-3 m apart, sizes 1e-2 to 10 m, motions a tenth to ten times the gap
-  fast,              ///< through or past in 10 to 1000 times the size
+  fast,              ///< motion through or past each other by 10 to 1000 times the size
   grazing_rotation,  ///< one corner sweeps past a feature while its triangle turns by up to half a turn
 };
 inline constexpr std::array kQueryFamilies = {
@@ -32,7 +32,7 @@ struct MotionQuery {
 };
 MotionQuery make_query(QueryFamily family, std::mt19937& engine);
 
-/// Least distance between a feature of a and one of b at time t, in double precision; not zero where a pierces b.
+/// Minimum distance between a feature of a and one of b at time t, in double precision; not zero if a pierces b.
 double distance_at(const MovingSimplex& a, const MovingSimplex& b, double t);
 
 }  // namespace weft::support

@@ -19,7 +19,7 @@ using Point = Kernel::Point_3;
 using Segment = Kernel::Segment_3;
 using Triangle = Kernel::Triangle_3;
 
-/// A face with what is needed to judge it.
+/// A face with the data needed to judge it.
 struct Face {
   JudgedFace id;
   std::array<Index, 3> vertices;
@@ -46,7 +46,7 @@ Point to_point(const JudgedObject& object, Index vertex) {
   return {p.x(), p.y(), p.z()};
 }
 
-// Sorts the faces of the scene into those of cloths, of obstacles, and without area.
+// Faces of the scene: those of cloths, of obstacles, and those without area.
 struct Faces {
   std::vector<Face> cloth, obstacles;
   std::vector<JudgedFace> degenerate;
@@ -76,7 +76,7 @@ std::vector<Box> boxes_of(const std::vector<Face>& faces) {
   return boxes;
 }
 
-// How many vertices two faces share, and the corner (of a, of b) of the last of them.
+// The number of vertices that two faces share, and the corner (of a, of b) of the last shared one.
 struct Shared {
   int count = 0;
   std::size_t of_a = 0, of_b = 0;
@@ -93,13 +93,14 @@ Shared shared_corners(const Face& a, const Face& b) {
   return shared;
 }
 
-// The closed boxes are compared first: most neighbours in a sheet are told apart by them, and comparisons are exact.
+// Compares the closed boxes first: they separate most neighbours in a sheet, and the comparison is exact.
 bool reaches(const Segment& edge, const Face& face) {
   const Triangle triangle = face.triangle();
   return CGAL::do_overlap(edge.bbox(), triangle.bbox()) && CGAL::do_intersect(edge, triangle);
 }
 
-// Pieces of rope. Two with a common end meet elsewhere if the other end of one is on the other: one is folded onto it.
+// Pieces of rope. Two pieces with a common end meet elsewhere if the other end of one lies on the other, that is, if
+// one is folded onto the other.
 bool intersect_with_segment(const Face& segment, const Face& other) {
   const Segment own = segment.segment();
   if (!other.is_segment()) return CGAL::do_intersect(own, other.triangle());
@@ -116,8 +117,8 @@ bool intersect(const Face& a, const Face& b) {
   const Shared shared = shared_corners(a, b);
   if (shared.count == 0) return CGAL::do_intersect(a.triangle(), b.triangle());
   if (shared.count > 1) return false;
-  // Two faces that share one vertex meet elsewhere too exactly if the opposite edge of one reaches the other: their
-  // common line leaves the shared vertex and ends on one of these edges.
+  // Two faces that share one vertex meet elsewhere exactly if the edge opposite to it in one reaches the other face:
+  // their common line leaves the shared vertex and ends on one of these edges.
   return reaches(a.edge_opposite(shared.of_a), b) || reaches(b.edge_opposite(shared.of_b), a);
 }
 
@@ -133,7 +134,7 @@ Judgement judge(std::span<const JudgedObject> objects) {
     const Face &a = *box_a.handle(), &b = *box_b.handle();
     if (intersect(a, b)) judgement.pairs.push_back({std::min(a.id, b.id), std::max(a.id, b.id)});
   };
-  // Both calls reorder the boxes and meet each pair of overlapping closed boxes once.
+  // Both calls reorder the boxes and report each pair of overlapping closed boxes once.
   CGAL::box_intersection_d(cloth.begin(), cloth.end(), obstacles.begin(), obstacles.end(), test);
   CGAL::box_self_intersection_d(cloth.begin(), cloth.end(), test);
   std::sort(judgement.pairs.begin(), judgement.pairs.end());

@@ -1,4 +1,4 @@
-// The judge: which triangles of a scene intersect, decided by exact predicates that share no code with the collision
+// The judge: finds the intersecting triangles of a scene by exact predicates. Shares no code with the collision
 // modules.
 #pragma once
 
@@ -14,14 +14,14 @@
 
 namespace weft::support {
 
-/// One object as it lies in space. The spans must outlive the judging.
+/// One object at its position in space. The spans must outlive the call of judge().
 struct JudgedObject {
   std::string name;
-  bool is_cloth = true;             ///< or rope; false: an obstacle, which may intersect other obstacles
+  bool is_cloth = true;             ///< also for ropes; false: an obstacle, which may intersect other obstacles
   std::span<const Vec3> positions;  ///< one per vertex [m]
   std::span<const std::array<Index, 3>> triangles;
   std::span<const std::uint8_t> passed_through =
-      {};  ///< of each 1 where cloth may be: it is not judged; empty: all are
+      {};  ///< per face: 1 if cloth may pass through it, so that it is not judged; empty: all are judged
 };
 
 /// A face of an object of the list.
@@ -38,22 +38,22 @@ struct IntersectingPair {
 };
 
 struct Judgement {
-  std::vector<IntersectingPair> pairs;  ///< sorted, each once
-  std::vector<JudgedFace> degenerate;   ///< faces without area; they have no inside to intersect and are not judged
+  std::vector<IntersectingPair> pairs;  ///< sorted, each pair once
+  std::vector<JudgedFace> degenerate;   ///< faces without area: they have no interior to intersect and are not judged
 };
 
 /// A face (a, b, b) is a piece of rope: the segment between its ends.
 ///
-/// All intersecting pairs of cloth with the same cloth, another cloth or an obstacle. Exact for the given doubles;
-/// touching counts. Faces of one object that share two or three vertices are skipped, since they meet anyway; of those
-/// that share one vertex, the edge opposite to it in each is held against the other face. Throws
-/// std::invalid_argument for positions that are not finite and for vertices that do not exist.
+/// Finds all intersecting pairs of cloth with the same cloth, another cloth or an obstacle. Exact for the given
+/// doubles; touching counts. Skips faces of one object that share two or three vertices, since these always meet. If
+/// faces share one vertex, tests the edge opposite to it in each against the other face. Throws std::invalid_argument
+/// for positions that are not finite and for vertices that do not exist.
 Judgement judge(std::span<const JudgedObject> objects);
 
-/// The objects of a snapshot, which must live on; characters count as obstacles, invisible objects too are judged.
+/// The objects of a snapshot, which must outlive them. Characters are obstacles; invisible objects are judged too.
 std::vector<JudgedObject> objects_of(const frame::FrameSnapshot& snapshot);
 
-/// Number of pairs between two kinds of object, by name, such as {"ball", "sheet", 12}; sorted by name.
+/// Number of pairs between two objects, by name, such as {"ball", "sheet", 12}; sorted by name.
 struct PairCount {
   std::string a, b;
   std::size_t count = 0;

@@ -1,4 +1,4 @@
-// Measures of meshes by which tests judge them.
+// Measures of the quality of meshes.
 #pragma once
 
 #include <algorithm>
@@ -11,29 +11,29 @@
 
 namespace weft::support {
 
-/// Volume [m³] inside a watertight mesh; positive where the triangles are counter-clockwise seen from outside.
+/// Volume [m³] inside a watertight mesh; positive if the triangles are counter-clockwise seen from outside.
 inline double enclosed_volume(std::span<const mesh::Triangle> triangles, std::span<const Vec3> positions) {
-  // Signed tetrahedra over each triangle. Their common tip lies on the mesh: far from it, large terms would cancel.
+  // Signed tetrahedra over the triangles. Their common apex is on the mesh: from afar, large terms would cancel.
   double sum = 0;
   for (const mesh::Triangle& t : triangles)
     sum += mesh::area_vector(t, positions).dot(positions[t[0]] - positions[0]) / 3;
   return sum;
 }
 
-/// Manifold without border: encloses a volume.
+/// Whether the mesh is manifold without border, so that it encloses a volume.
 inline bool watertight(const mesh::TopologyReport& report) {
   return report.manifold() && report.border.empty();
 }
 
-/// Smallest angle of a triangle [degrees]; negative where it is clockwise.
+/// Smallest angle of a triangle [degrees]; negative if the triangle is clockwise.
 inline double smallest_angle(const mesh::Triangle& triangle, std::span<const Vec2> points) {
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
     const Vec2& p = points[triangle[k]];
     const Vec2 a = points[triangle[(k + 1) % 3]] - p, b = points[triangle[(k + 2) % 3]] - p;
-    least = std::min(least, std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
+    minimum = std::min(minimum, std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
   }
-  return least * 180 / std::numbers::pi;
+  return minimum * 180 / std::numbers::pi;
 }
 
 }  // namespace weft::support

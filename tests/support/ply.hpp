@@ -1,4 +1,4 @@
-// Reads what `--meshes` writes.
+// Reads files that `--meshes` writes.
 #pragma once
 
 #include <array>
@@ -18,11 +18,11 @@ namespace weft::support {
 struct PlyMesh {
   std::vector<Vec3> positions;
   std::vector<std::array<Index, 3>> triangles;
-  std::size_t passed_through = 0;  // of the triangles, at their end: cloth may be there
+  std::size_t passed_through = 0;  // number of triangles, at the end of the list, that cloth may pass through
 };
 
-/// Bit for bit. Throws std::runtime_error where the file is not as long as its header says or a face is no triangle of
-/// its vertices.
+/// Reads a file bit for bit. Throws std::runtime_error if the length of the file differs from its header, or if a face
+/// is not a triangle of its vertices.
 inline PlyMesh read_ply(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -45,7 +45,7 @@ inline PlyMesh read_ply(const std::filesystem::path& path) {
     mesh.passed_through = std::stoul(bytes.substr(said + comment.size()));
   expect(mesh.passed_through <= mesh.triangles.size());
   std::size_t at = after("end_header\n");
-  // A value of heat may follow each position; it is not read.
+  // A heat value may follow each position; it is not read.
   const std::size_t vertex_size = sizeof(Vec3) + (bytes.find("property float ") < at ? sizeof(float) : 0);
   expect(bytes.size() == at + vertex_size * mesh.positions.size() + 13 * mesh.triangles.size() + 8 * edges);
   for (Vec3& position : mesh.positions) {
@@ -58,7 +58,7 @@ inline PlyMesh read_ply(const std::filesystem::path& path) {
     for (const Index v : triangle) expect(v >= 0 && static_cast<std::size_t>(v) < mesh.positions.size());
     at += 13;
   }
-  // Pieces of rope, as the simulation has them.
+  // Reads pieces of rope as faces (a, b, b), as the simulation represents them.
   for (; edges > 0; --edges, at += 8) {
     std::array<Index, 2> ends;
     std::memcpy(ends.data(), &bytes[at], 8);

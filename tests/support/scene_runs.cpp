@@ -19,7 +19,7 @@ scene::Scene checked(scene::LoadResult loaded) {
 }
 
 void measure_stretch(MeasuredFrame& frame, const scene::Cloth& cloth, const std::vector<Vec3>& x) {
-  if (rectangle_particles(cloth) == 0) {  // no lattice: what the simulation says
+  if (rectangle_particles(cloth) == 0) {  // no rectangular grid: uses the simulation's value
     frame.max_stretch = std::max(frame.max_stretch, 1 + frame.report.max_strain);
     return;
   }

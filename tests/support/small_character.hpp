@@ -1,12 +1,12 @@
-// A character as small as a file can hold it.
+// A minimal character file.
 #pragma once
 
 #include <string>
 
 namespace weft::support {
 
-/// A rod along y that a joint at its middle bends, as ASCII X: no other text format with a skin is as short. (Numbers
-/// have decimals because assimp takes "1,0" for 1.0.)
+/// A rod along y with a joint at its middle, as ASCII X, the shortest text format with skinning. (Numbers have decimals
+/// because assimp reads "1,0" as 1.0.)
 inline std::string rod_file() {
   return R"(xof 0303txt 0032
 Frame Root { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }

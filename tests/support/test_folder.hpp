@@ -1,4 +1,4 @@
-// An empty folder for the files of one test, and checks of what is thrown.
+// An empty folder for the files of one test, and checks of thrown errors.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 
 namespace weft::support {
 
-/// Fixture with a folder of its own, gone when the test ends.
+/// Fixture with its own folder, which is removed when the test ends.
 class TestFolder : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -39,7 +39,7 @@ MovingSimplex placed(MovingSimplex s, double scale, double shift) {
   return s;
 }
 
-// The same answer whichever side, corner or direction of time comes first.
+// Whether a and b meet; expects the same answer for any order of sides, corners and time.
 bool meet(const MovingSimplex& a, const MovingSimplex& b) {
   const bool found = find_contact(a, b).found;
   EXPECT_EQ(find_contact(b, a).found, found);
@@ -51,13 +51,14 @@ bool meet(const MovingSimplex& a, const MovingSimplex& b) {
   return found;
 }
 
-// A right triangle in the plane z = 0, and one that hangs above with its lowest corner at height z.
+// A right triangle in the plane z = 0, and a triangle above it whose lowest corner is at height z.
 const Corners kGround = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
 Corners hanging_corners(double z) {
   return {Vec3(1, 1, z), Vec3(1, 1, z + 1), Vec3(2, 1, z + 1)};
 }
 
-// A way of `reach` along `direction` meets; one that is shorter by 2⁻⁴⁰ does not. Directions have one entry.
+// Expects that b, moved by `reach` along `direction`, meets a, and that a motion shorter by 2⁻⁴⁰ does not. Directions
+// have one non-zero entry.
 void expect_first_contact(const Corners& a, const Corners& b, const Vec3& direction, double reach) {
   EXPECT_TRUE(meet(still(a), moved(b, reach * direction)));
   EXPECT_FALSE(meet(still(a), moved(b, (reach - 0x1p-40) * direction)));
@@ -67,7 +68,7 @@ void expect_first_contact(const Corners& a, const Corners& b, const Vec3& direct
 
 TEST(ExactMotion, FindsTheFirstContactOfVertexAndFace) {
   expect_first_contact(kGround, hanging_corners(2), {0, 0, -1}, 2);
-  // On an edge and at a corner of the floor.
+  // Contacts on an edge and at a corner of the ground.
   expect_first_contact(kGround, {Vec3(1, 0, 1), Vec3(1, 0, 2), Vec3(2, 0, 2)}, {0, 0, -1}, 1);
   expect_first_contact(kGround, {Vec3(0, 4, 1), Vec3(1, 4, 2), Vec3(1, 4, 3)}, {0, 0, -1}, 1);
 }
@@ -83,13 +84,13 @@ TEST(ExactMotion, FindsContactInOnePlaneAndInOneLine) {
   expect_first_contact(kGround, beside, {1, 0, 0}, 1);
   const Corners facing{Vec3(-1, 1, 0), Vec3(-1, 2, 0), Vec3(-2, 2, 0)};  // parallel edges
   expect_first_contact(kGround, facing, {1, 0, 0}, 1);
-  const Corners needle_a{Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(2, 2, 2)};  // both without area, in one line
+  const Corners needle_a{Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(2, 2, 2)};  // both have no area and lie in one line
   const Corners needle_b{Vec3(3, 3, 3), Vec3(5, 5, 5), Vec3(4, 4, 4)};
   EXPECT_TRUE(meet(still(needle_a), moved(needle_b, {-1, -1, -1})));
   EXPECT_FALSE(meet(still(needle_a), moved(needle_b, {-0.5, -0.5, -0.5})));
   const Corners point{Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)};
   expect_first_contact(kGround, point, {0, 0, -1}, 1);
-  const Corners bar{Vec3(0, 1, 0), Vec3(2, 1, 0), Vec3(1, 1, 0)};  // a point lands on it between its corners
+  const Corners bar{Vec3(0, 1, 0), Vec3(2, 1, 0), Vec3(1, 1, 0)};  // a corner lands on it between its corners
   expect_first_contact(bar, {Vec3(1.5, 1, 1), Vec3(1.5, 1, 1), Vec3(1.5, 1, 1)}, {0, 0, -1}, 1);
   EXPECT_TRUE(meet(moved(point, {2, 0, 0}), moved({Vec3(3, 1, 1), Vec3(3, 1, 1), Vec3(3, 1, 1)}, {-2, 0, 0})));
   EXPECT_FALSE(meet(moved(point, {2, 0, 0}), moved({Vec3(3, 1, 2), Vec3(3, 1, 2), Vec3(3, 1, 2)}, {-2, 0, 0})));
@@ -103,7 +104,7 @@ TEST(ExactMotion, SlidingAlongInOnePlaneIsContactOnlyWhereTheyOverlap) {
 }
 
 TEST(ExactMotion, TheWholeWayThroughCounts) {
-  // Apart at both ends, and at the start of contact as at its end.
+  // Separated at both ends; in contact only at the start; in contact only at the end.
   EXPECT_TRUE(meet(still(kGround), moved(hanging_corners(2), {0, 0, -7})));
   EXPECT_TRUE(meet(still(kGround), moved(hanging_corners(0), {0, 0, 5})));
   EXPECT_TRUE(meet(still(kGround), moved(hanging_corners(-1), {0, 0, -5})));
@@ -112,14 +113,14 @@ TEST(ExactMotion, TheWholeWayThroughCounts) {
 }
 
 TEST(ExactMotion, GrazingIsContactAndPassingByIsNot) {
-  // With s = t − 1/2: the face has the height s x, the corner is at x = 1 + s, z = s + depth; above it by depth − s².
+  // With s = t − 1/2: the face has the height s x, the corner is at x = 1 + s, z = s − depth: below it by depth + s².
   const auto corner_at = [](double s, double depth) -> Corners {
     return {Vec3(1 + s, 1, s - depth), Vec3(1 + s, 1, s + 2), Vec3(2 + s, 1, s + 3)};
   };
   const auto face_at = [](double s) -> Corners { return {Vec3(0, 0, 0), Vec3(4, 0, 4 * s), Vec3(0, 4, 0)}; };
   const MovingSimplex face{3, face_at(-0.5), face_at(0.5)};
   const auto touches_from_below = [&](double depth) {
-    // Mirrored in z, since the corner must come from the side where s² leads away.
+    // The rest of the triangle is below the face: the corner must come from the side where s² leads away.
     MovingSimplex low{3, corner_at(-0.5, depth), corner_at(0.5, depth)};
     for (auto* x : {&low.t0, &low.t1}) {
       (*x)[1].z() -= 6;
@@ -136,13 +137,13 @@ TEST(ExactMotion, AnEdgeIsHeldAgainstATriangle) {
   const MovingSimplex face = still(kGround);
   EXPECT_TRUE(meet(edge({1, 1, 1}, {1, 2, 3}, {1, 1, 0}, {1, 2, 3}), face));
   EXPECT_FALSE(meet(edge({1, 1, 1}, {1, 2, 3}, {1, 1, 0x1p-40}, {1, 2, 3}), face));
-  EXPECT_TRUE(meet(edge({1, 1, 1}, {1, 1, -1}, {1, 1, 1}, {1, 1, -1}), face));   // crosses from the start on
-  EXPECT_TRUE(meet(edge({5, 1, 1}, {5, 1, -1}, {1, 1, 1}, {1, 1, -1}), face));   // comes in from the side
+  EXPECT_TRUE(meet(edge({1, 1, 1}, {1, 1, -1}, {1, 1, 1}, {1, 1, -1}), face));   // crosses from the start
+  EXPECT_TRUE(meet(edge({5, 1, 1}, {5, 1, -1}, {1, 1, 1}, {1, 1, -1}), face));   // enters from the side
   EXPECT_FALSE(meet(edge({5, 1, 1}, {5, 1, -1}, {4, 1, 1}, {4, 1, -1}), face));  // stops outside
 }
 
 TEST(ExactMotion, FacesAboutOneVertexMeetBesideIt) {
-  // Two faces with the origin in common; the second folds down about it, through the first or past it.
+  // Two faces share the origin; the second folds down about it, through the first or past it.
   const Corners flap{Vec3(0, 0, 0), Vec3(1, 2, 1), Vec3(2, 1, 1)};
   const auto fold = [&](double z) {
     const MovingSimplex b{3, flap, {flap[0], Vec3(1, 2, z), Vec3(2, 1, z)}};
@@ -155,8 +156,7 @@ TEST(ExactMotion, FacesAboutOneVertexMeetBesideIt) {
   EXPECT_FALSE(fold(0x1p-40));
 }
 
-// --- Random queries on a coarse grid, where touching is common
-// --------------------------------------------------------
+// --- Random queries on a coarse grid, where contact is common ------------------------------------
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
@@ -190,7 +190,8 @@ bool segments_intersect(const Corners& x, int count, const Kernel::Triangle_3& f
   return false;
 }
 
-// Exact where the positions are. Two degenerate ones, which CGAL does not take, count as apart, as do points.
+// Whether a and b intersect at time t; exact if the positions are. CGAL does not accept two degenerate triangles:
+// these, and points, count as apart.
 bool intersect_at(const MovingSimplex& a, const MovingSimplex& b, double t) {
   const Corners x = at(a, t), y = at(b, t);
   const Kernel::Triangle_3 face_a(point(x[0]), point(x[1]), point(x[2])), face_b(point(y[0]), point(y[1]), point(y[2]));
@@ -209,11 +210,11 @@ TEST(ExactMotion, AgreesWithStandingTrianglesAtSampledTimes) {
       const Contact contact = find_contact(a, b);
       ++(contact.found ? met : apart);
       in_integers += contact.integers_used;
-      // What intersects at some moment of the way is found. Times of k/32 leave the coordinates exact.
+      // Finds every intersection at sampled times. Times k/32 keep the coordinates exact.
       for (int k = 0; k <= 32 && !contact.found; ++k)
         ASSERT_FALSE(intersect_at(a, b, k / 32.0)) << "query " << query << " at " << k / 32.0;
-      // What is found is a contact: at that time they intersect, or are apart by no more than rounding (1e-7: the
-      // rounding of the time of a double root; 1e-14 elsewhere).
+      // A contact that is found is real: at that time they intersect, or are apart by rounding only (1e-7 from the
+      // rounding of the time of a double root; 1e-14 otherwise).
       if (contact.found && !intersect_at(a, b, contact.time)) {
         ASSERT_LE(distance_at(a, b, contact.time), 1e-7) << "query " << query;
       }

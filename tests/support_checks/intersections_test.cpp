@@ -13,7 +13,7 @@ namespace {
 using Triangles = std::vector<std::array<Index, 3>>;
 
 const Triangles kOneFace = {{0, 1, 2}};
-// A right triangle with corner at the origin, in the plane z = 0.
+// A right triangle in the plane z = 0 with its right-angled corner at the origin.
 const std::vector<Vec3> kFloor = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
 JudgedObject cloth(const std::vector<Vec3>& positions, const Triangles& triangles = kOneFace) {
@@ -27,14 +27,14 @@ std::size_t pairs_of(const std::vector<JudgedObject>& objects) {
   return judge(objects).pairs.size();
 }
 
-// Two faces of one cloth without a common vertex.
+// Number of pairs for two faces of one cloth without a common vertex.
 std::size_t pairs_within_cloth(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   std::vector<Vec3> positions = a;
   positions.insert(positions.end(), b.begin(), b.end());
   return pairs_of({cloth(positions, {{0, 1, 2}, {3, 4, 5}})});
 }
 
-// The same pair as two objects and as one gives the same answer.
+// Number of pairs for two objects; expects the same for two faces of one object.
 std::size_t pairs_between(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   const std::size_t count = pairs_of({cloth(a), cloth(b)});
   EXPECT_EQ(pairs_within_cloth(a, b), count);
@@ -43,7 +43,7 @@ std::size_t pairs_between(const std::vector<Vec3>& a, const std::vector<Vec3>& b
   return count;
 }
 
-// kFloor's neighbour above it, its lowest corner at height z over the inside of the floor.
+// A triangle above kFloor with its lowest corner at height z over the inside of the floor.
 std::vector<Vec3> hanging(double z) {
   return {{0.25, 0.25, z}, {0.25, 0.25, z + 1}, {0.5, 0.25, z + 1}};
 }
@@ -63,10 +63,10 @@ TEST(Judge, PiecesOfRopeThatPassThroughAFaceOrMeetAreFound) {
   ASSERT_EQ(judgement.pairs.size(), 1u);
   EXPECT_EQ(judgement.pairs[0], (IntersectingPair{{0, 1}, {1, 0}}));
   EXPECT_TRUE(judgement.degenerate.empty());
-  // A loop whose last piece crosses the first one, and one that only comes near it.
+  // A loop whose last piece crosses the first one, and a loop whose last piece only comes near it.
   EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1, 0}}, chain)}), 1u);
   EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1, 1e-9}}, chain)}), 0u);
-  // Neighbours meet where one is folded onto the other; so does what begins there.
+  // Neighbours meet if one is folded onto the other; the next piece, which starts there, meets it too.
   EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {0.5, 0, 0}, {0.5, 1, 0}}, chain)}), 2u);
 }
 
@@ -78,7 +78,7 @@ TEST(Judge, TouchingCountsAndTheLeastGapDoesNot) {
 }
 
 TEST(Judge, TouchingOnASlantedPlaneIsDecidedExactly) {
-  // In the plane x + y + z = 0.75 in exact numbers; one unit in the last place of z is on or off it.
+  // The triangle is in the plane x + y + z = 0.75, exactly; changing the last digit of z moves the point off it.
   const std::vector<Vec3> slanted = {{0.75, 0, 0}, {0, 0.75, 0}, {0, 0, 0.75}};
   const auto above = [](double z) { return std::vector<Vec3>{{0.25, 0.25, z}, {1, 1, 1}, {1, 1.25, 1}}; };
   EXPECT_EQ(pairs_between(slanted, above(0.25)), 1u);

@@ -18,7 +18,7 @@ struct Outcome {
 
 class JudgeToolTest : public TestFolder {
  protected:
-  // Writes one face whose lowest corner lies at height z over the inside of the face of `floor`.
+  // Writes one face with its lowest corner at height z over the inside of the face of `floor`.
   void write_spike(const std::string& name, double z) {
     mesh::write_ply(folder_ / name, std::vector<Vec3>{{0.25, 0.25, z}, {0.25, 0.25, z + 1}, {0.5, 0.25, z + 1}},
                     std::vector<std::array<Index, 3>>{{0, 1, 2}});
@@ -60,7 +60,7 @@ TEST_F(JudgeToolTest, ObstaclesAreNotHeldAgainstEachOther) {
   EXPECT_EQ(run("--obstacle ball --obstacle half_pipe").exit_code, 0);
 }
 
-// A hand whose first face, which goes through the sheet, is left out of contact: it comes last, and is not judged.
+// The first face of a hand passes through the sheet and is excluded: it comes last in the file and is not judged.
 TEST_F(JudgeToolTest, FacesThatClothPassesThroughAreLeftOut) {
   write_floor("sheet_00000.ply");
   const std::vector<Vec3> places{{0.25, 0.25, -0.1}, {0.25, 0.25, 1}, {0.5, 0.25, 1}, {0.25, 0.5, 1}};

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds and runs tests with one member of Numerics changed, to see which tests notice.
+# Changes one member of Numerics, builds, and runs tests, to see which tests detect the change.
 # Usage: change_numerics.sh 'newton.patience *= 10' [CTEST_OPTION...]; in the folder of the project, after a build.
 set -eu
 [ $# -ge 1 ] || { echo "usage: $0 'GROUP.MEMBER *= 10' [CTEST_OPTION...]" >&2; exit 2; }

@@ -1,4 +1,4 @@
-// Writes the generated parts of the documentation anew: weft_docs ROOT, or `ninja docs`.
+// Rewrites the generated parts of the documentation: weft_docs ROOT, or `ninja docs`.
 #include <cstdio>
 #include <exception>
 #include <fstream>

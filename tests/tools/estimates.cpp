@@ -1,5 +1,5 @@
-// What runs say of their error (weft run --error) against what it is: twelve scenes, three integrators, five steps.
-// `weft_estimates DIR` writes estimates.md, estimates.csv and estimates.svg there.
+// Compares the error that runs report (weft run --error) with their true error: twelve scenes, three integrators, five
+// steps. `weft_estimates DIR` writes estimates.md, estimates.csv and estimates.svg there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,16 +22,16 @@ namespace weft::bench {
 namespace {
 
 constexpr double kSteps[] = {0.04, 0.02, 0.01, 0.005, 0.0025};  // [s]
-// Of the truth: an eighth of the shortest step, with a tenth of newton_tolerance.
+// Reference runs use an eighth of the shortest step, and a tenth of newton_tolerance.
 constexpr double kTruthCut = 8, kTruthNewton = 0.1;
-constexpr double kShift = 1e-6;  // of the start of every second truth [m]
-constexpr double kFactor = 3;    // aim: estimates are within it
+constexpr double kShift = 1e-6;  // shift of the start of every second reference run [m]
+constexpr double kFactor = 3;    // goal: estimates are within this factor
 
 struct Case {
   const char *name, *cloth, *rest;
 };
 constexpr const char* kFree = "[contact]\nself = false\nobstacles = false\n";
-// Of no fabric, as the map of bench/stability.cpp.
+// Not a fabric; the same material as the map of bench/stability.cpp.
 constexpr const char* kSoft =
     "material = { density = 0.2, stretch = 200, max_stretch = 0, shear = 60, bend = 1e-3, bend_viscosity = 5e-6, "
     "stretch_viscosity = 0.2, shear_viscosity = 0.1, bend_friction = 0 }\n";
@@ -73,27 +73,27 @@ scene::Scene scene_of(const Case& one) {
   return loaded.scene;
 }
 
-/// What the scene comes to: runs of both methods of second order, each from the start and from one moved by a
-/// micrometre. Where paths part they are samples of what may come.
-std::vector<Trajectory> truths_of(scene::Scene scene) {
+/// Reference runs of the scene: both second-order methods, each from the start and from a start moved by a micrometre.
+/// If the motion is chaotic, they are samples of possible results.
+std::vector<Trajectory> reference_runs_of(scene::Scene scene) {
   scene.time.step = std::end(kSteps)[-1] / kTruthCut;
   scene.solver.newton_tolerance *= kTruthNewton;
-  std::vector<Trajectory> truths;
+  std::vector<Trajectory> references;
   for (double shift : {0.0, kShift}) {
     for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += shift;
     for (scene::Integrator integrator : {scene::Integrator::implicit_midpoint, scene::Integrator::bdf2}) {
       scene.time.integrator = integrator;
-      truths.push_back(follow(scene));
+      references.push_back(follow(scene));
     }
   }
-  return truths;
+  return references;
 }
 
-// Root of the mean square of what the run differs by from the truths.
-double distance(const Trajectory& run, const std::vector<Trajectory>& truths, Quantity quantity) {
+// Root mean square of the difference between the run and the reference runs.
+double distance(const Trajectory& run, const std::vector<Trajectory>& references, Quantity quantity) {
   double sum = 0;
-  for (const Trajectory& truth : truths) sum += std::pow(at(compare(run, truth), quantity), 2);
-  return std::sqrt(sum / static_cast<double>(truths.size()));
+  for (const Trajectory& reference : references) sum += std::pow(at(compare(run, reference), quantity), 2);
+  return std::sqrt(sum / static_cast<double>(references.size()));
 }
 
 struct Row {
@@ -101,28 +101,29 @@ struct Row {
   scene::Integrator integrator;
   double step;
   std::string failure = {};
-  bool doubtful = false;
-  double told = 0, is = 0, known = 0;  // [m]: estimate, distance to the truths, of one of them to all
-  double centre_told = 0, centre_is = 0;
+  bool is_lower_bound = false;
+  // Estimate; distance to the reference runs; distance of one reference run to all [m].
+  double reported = 0, actual = 0, reference_spread = 0;
+  double centre_reported = 0, centre_actual = 0;
   std::array<double, kErrorSources> parts{};
 
-  double ratio() const { return told / is; }
+  double ratio() const { return reported / actual; }
   bool near() const { return failure.empty() && ratio() > 1 / kFactor && ratio() < kFactor; }
 };
 
-Row row_of(const Case& one, scene::Scene scene, const std::vector<Trajectory>& truths) {
+Row row_of(const Case& one, scene::Scene scene, const std::vector<Trajectory>& references) {
   Row row{one.name, scene.time.integrator, scene.time.step};
   try {
     const Trajectory run = follow(scene);
     const ErrorEstimate estimate = estimate_error(scene, run);
-    row.doubtful = estimate.doubtful();
-    row.told = at(estimate.all, Quantity::position);
-    row.centre_told = at(estimate.all, Quantity::centre);
+    row.is_lower_bound = estimate.is_lower_bound();
+    row.reported = at(estimate.all, Quantity::position);
+    row.centre_reported = at(estimate.all, Quantity::centre);
     for (const ErrorPart& part : estimate.parts)
       row.parts[static_cast<std::size_t>(part.source)] = at(part.errors, Quantity::position);
-    row.is = distance(run, truths, Quantity::position);
-    row.centre_is = distance(run, truths, Quantity::centre);
-    row.known = distance(truths.front(), truths, Quantity::position);
+    row.actual = distance(run, references, Quantity::position);
+    row.centre_actual = distance(run, references, Quantity::centre);
+    row.reference_spread = distance(references.front(), references, Quantity::position);
   } catch (const Error& error) {
     row.failure = error.what();
   }
@@ -135,10 +136,10 @@ Table table_of(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     std::vector<std::string> fields{row.name, name_of(row.integrator), fmt::format("{:g}", 1e3 * row.step)};
     if (row.failure.empty()) {
-      fields.push_back(row.doubtful ? "yes" : "no");
-      for (double number : {row.told, row.parts[0], row.parts[1], row.parts[3], row.is, row.known})
+      fields.push_back(row.is_lower_bound ? "yes" : "no");
+      for (double number : {row.reported, row.parts[0], row.parts[1], row.parts[3], row.actual, row.reference_spread})
         fields.push_back(fmt::format("{:.2g}", number));
-      for (double number : {row.ratio(), row.centre_told, row.centre_is})
+      for (double number : {row.ratio(), row.centre_reported, row.centre_actual})
         fields.push_back(fmt::format("{:.2g}", number));
     }
     fields.resize(table[0].size() - 1);
@@ -148,7 +149,7 @@ Table table_of(const std::vector<Row>& rows) {
   return table;
 }
 
-// Ratios: a row for each scene and integrator, a column for each step.
+// Table of ratios: one row for each scene and integrator, one column for each step.
 Table ratios_of(const std::vector<Row>& rows) {
   Table table{{"estimate / truth", "integrator"}};
   for (double step : kSteps) table[0].push_back(fmt::format("{:g} ms", 1e3 * step));
@@ -156,7 +157,8 @@ Table ratios_of(const std::vector<Row>& rows) {
     std::vector<std::string> fields{rows[i].name, name_of(rows[i].integrator)};
     for (std::size_t k = 0; k < std::size(kSteps); ++k) {
       const Row& row = rows[i + k];
-      fields.push_back(row.failure.empty() ? fmt::format("{:.2f}{}", row.ratio(), row.doubtful ? " ?" : "") : "failed");
+      fields.push_back(row.failure.empty() ? fmt::format("{:.2f}{}", row.ratio(), row.is_lower_bound ? " ?" : "")
+                                           : "failed");
     }
     table.push_back(std::move(fields));
   }
@@ -171,8 +173,8 @@ std::string plot_of(const std::vector<Row>& rows) {
     Curve curve{name_of(integrator), kColors[static_cast<std::size_t>(integrator)], Marker::circle, false, {}, false};
     for (const Row& row : rows) {
       if (row.integrator != integrator || !row.failure.empty()) continue;
-      curve.points.emplace_back(row.is, row.told);
-      low = std::min(low, row.is), high = std::max(high, row.is);
+      curve.points.emplace_back(row.actual, row.reported);
+      low = std::min(low, row.actual), high = std::max(high, row.actual);
     }
     panel.curves.push_back(std::move(curve));
   }
@@ -190,12 +192,12 @@ void measure(const std::filesystem::path& folder) {
   std::vector<Row> rows;
   for (const Case& one : kCases) {
     scene::Scene scene = scene_of(one);
-    const std::vector<Trajectory> truths = truths_of(scene);
+    const std::vector<Trajectory> references = reference_runs_of(scene);
     for (scene::Integrator integrator : kIntegrators) {
       for (double step : kSteps) {
         scene.time.integrator = integrator;
         scene.time.step = step;
-        rows.push_back(row_of(one, scene, truths));
+        rows.push_back(row_of(one, scene, references));
         std::cout << fmt::format("{}, {}, {:g} ms: {}\n", one.name, name_of(integrator), 1e3 * step,
                                  rows.back().failure.empty() ? fmt::format("{:.2f}", rows.back().ratio()) : "failed")
                   << std::flush;
@@ -204,12 +206,13 @@ void measure(const std::filesystem::path& folder) {
   }
   const auto made = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.failure.empty(); });
   const auto near = std::ranges::count_if(rows, &Row::near);
-  const auto doubted = std::ranges::count_if(rows, [](const Row& row) { return row.failure.empty() && row.doubtful; });
-  const auto warned =
-      std::ranges::count_if(rows, [](const Row& row) { return row.failure.empty() && !row.near() && row.doubtful; });
+  const auto doubtful_runs =
+      std::ranges::count_if(rows, [](const Row& row) { return row.failure.empty() && row.is_lower_bound; });
+  const auto warned = std::ranges::count_if(
+      rows, [](const Row& row) { return row.failure.empty() && !row.near() && row.is_lower_bound; });
   const std::string counts = fmt::format(
       "Within a factor of {:g}: {} of {} ({} of the others say that paths part); {} say so in all; {} failed.", kFactor,
-      near, made, warned, doubted, rows.size() - static_cast<std::size_t>(made));
+      near, made, warned, doubtful_runs, rows.size() - static_cast<std::size_t>(made));
   const std::string text = fmt::format(
       "# Estimates against truth\n\nEstimates of `weft run --error` over the distance to runs of second order with "
       "steps an eighth of the shortest. ?: the run says that paths part. {}\n\n![plot](estimates.svg)\n\n{}",

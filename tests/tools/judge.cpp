@@ -22,11 +22,11 @@ using namespace weft;
 struct Request {
   std::filesystem::path folder;
   std::vector<std::string> obstacles;
-  int begin = 0, end = std::numeric_limits<int>::max();  // frames, half-open
-  bool list = false;                                     // print each pair of faces
+  int begin = 0, end = std::numeric_limits<int>::max();  // range of frames, end excluded
+  bool list = false;                                     // whether to print each pair of faces
 };
 
-// Object name and file, by frame.
+// Files by frame and object name.
 using Frames = std::map<int, std::map<std::string, std::filesystem::path>>;
 
 Frames find_frames(const Request& request) {
@@ -43,7 +43,7 @@ Frames find_frames(const Request& request) {
   return frames;
 }
 
-// A missing file would hide intersections, and a misspelt obstacle would be judged as cloth.
+// Checks the files: a missing file would hide intersections, and a misspelt obstacle would be judged as cloth.
 void check_complete(const Frames& frames, const Request& request) {
   const auto& first = frames.begin()->second;
   for (const auto& [frame, files] : frames) {
@@ -56,7 +56,7 @@ void check_complete(const Frames& frames, const Request& request) {
   }
 }
 
-// Prints what one frame holds; returns its number of pairs.
+// Prints the intersections of one frame; returns its number of pairs.
 std::size_t judge_frame(int frame, const std::map<std::string, std::filesystem::path>& files, const Request& request) {
   std::vector<support::PlyMesh> meshes;
   for (const auto& [name, file] : files) meshes.push_back(support::read_ply(file));

@@ -1,5 +1,5 @@
-// weft_measure: simulates scenes without drawing them and prints what each frame costs and shows; with --table a row
-// for each scene, as Markdown.
+// weft_measure: simulates scenes without rendering and prints cost and measures of each frame; with --table one row per
+// scene, as Markdown.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -22,8 +22,8 @@ struct Request {
   std::vector<std::string> scenes;
   std::vector<std::string> overrides;
   weft::support::RunPlan plan;
-  int every = 1;    // frames between two lines
-  int threads = 1;  // so that CPU seconds mean the same everywhere
+  int every = 1;    // frames per printed line
+  int threads = 1;  // 1, so that CPU seconds are comparable
 };
 
 void print(const MeasuredFrame& frame) {
@@ -37,7 +37,7 @@ void print(const MeasuredFrame& frame) {
   std::fflush(stdout);
 }
 
-// Of the frames from the first one with surfaces near each other: there a simulation costs what it costs.
+// Median time of the frames from the first near pair on: these are the costly frames.
 double median_after_contact_ms(const std::vector<MeasuredFrame>& frames) {
   const auto first = std::find_if(frames.begin(), frames.end(), [](const auto& f) { return f.report.proximities > 0; });
   std::vector<double> ms;
@@ -97,7 +97,7 @@ void print_row(const std::string& scene, const std::vector<MeasuredFrame>& frame
   std::fflush(stdout);
 }
 
-// Heights are those of the last frame.
+// Heights are from the last frame.
 void print_summary(const std::vector<MeasuredFrame>& frames) {
   const Summary sum(frames);
   const double steps = static_cast<double>(frames.size()) - 1;

@@ -1,4 +1,4 @@
-// Put before a program by LD_PRELOAD, libavcodec has no encoder of any name, as on a machine where it was built so.
+// Loaded with LD_PRELOAD, this makes libavcodec find no encoder by name, as on a machine whose build has none.
 struct AVCodec;
 
 const struct AVCodec* avcodec_find_encoder_by_name(const char* name) {

@@ -1,5 +1,5 @@
-// weft_panels PATTERN EDGE_LENGTH FILE.svg: the flat panels of a sewing pattern as they are meshed, seams coloured, and
-// how good their triangles are.
+// weft_panels PATTERN EDGE_LENGTH FILE.svg: draws the flat meshed panels of a sewing pattern with coloured seams, and
+// prints the quality of their triangles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,23 +29,23 @@ std::array<Vec2, 3> corners_of(const garment::Garment& garment, std::size_t t) {
   return {m[0], m[1], m[2]};
 }
 
-/// Smallest angles of all triangles, in classes of 5 degrees, and the share of halves of squares.
+/// Smallest angles of all triangles, in classes of 5 degrees, and the fraction of triangles that are halves of squares.
 std::string quality(const garment::Garment& garment, double spacing) {
   std::array<int, 12> classes{};
-  double least = 180, mean = 0, squares = 0, area = 0;
+  double min_angle = 180, mean = 0, squares = 0, area = 0;
   const std::size_t count = garment.sheet.triangles.size();
   for (std::size_t t = 0; t < count; ++t) {
     const auto corners = corners_of(garment, t);
     const double angle = support::smallest_angle({0, 1, 2}, corners), size = mesh::rest_area(garment.sheet, t);
     ++classes[std::min<std::size_t>(11, static_cast<std::size_t>(angle / 5))];
-    least = std::min(least, angle);
+    min_angle = std::min(min_angle, angle);
     mean += angle / static_cast<double>(count);
     area += size;
     if (std::abs(angle - 45) < 1e-6 && std::abs(2 * size / (spacing * spacing) - 1) < 1e-6) squares += size;
   }
   std::string text =
       fmt::format("{} triangles, {:.0f} % of the area in squares; smallest angles: least {:.1f}, mean {:.1f} degrees;",
-                  count, 100 * squares / area, least, mean);
+                  count, 100 * squares / area, min_angle, mean);
   for (std::size_t k = 0; k < classes.size(); ++k)
     if (classes[k] > 0) text += fmt::format(" {}-{}: {}", 5 * k, 5 * k + 5, classes[k]);
   return text;
@@ -71,7 +71,7 @@ std::string picture(const garment::Pattern& pattern, const garment::Garment& gar
     for (std::size_t t = 0; t < garment.panel_of.size(); ++t)
       if (garment.panel_of[t] == static_cast<Index>(p))
         for (const Vec2& c : corners_of(garment, t)) low = low.cwiseMin(c), high = high.cwiseMax(c);
-    if (p % 2 == 0) left = kGap, top += height + (p > 0 ? kGap : 0), height = 0;  // two in a row
+    if (p % 2 == 0) left = kGap, top += height + (p > 0 ? kGap : 0), height = 0;  // two panels per row
     const auto place = [&](const Vec2& c) {
       return fmt::format("{:.0f} {:.0f}", kPixelsPerMetre * (left + c.x() - low.x()),
                          kPixelsPerMetre * (top + kGap + high.y() - c.y()));
@@ -112,7 +112,7 @@ int main(int count, char** arguments) try {
   }
   const double spacing = std::stod(arguments[2]);
   const garment::Pattern pattern = garment::load_pattern(arguments[1], arguments[1]);
-  // Where it starts does not show: any wearer does.
+  // The place of the start is not drawn, so any wearer will do.
   scene::Scene scene;
   scene.characters.emplace_back().source = scene::Mannequin{};
   environment::Wearers wearers(scene);

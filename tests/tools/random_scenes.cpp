@@ -1,5 +1,5 @@
-// Small random scenes of one sheet that falls on a body, each run as it is, turned by 90°, mirrored, and with four
-// times the frames at equal steps: what the runs differ by against the errors that they print.
+// Runs small random scenes of one sheet that falls on a body, each as it is, turned by 90°, mirrored, and with four
+// times the frames at equal steps: compares the differences between runs with the errors that they report.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -20,7 +20,7 @@ using weft::scene::Scene;
 using weft::support::MeasuredFrame;
 using Positions = std::vector<Vec3>;
 
-constexpr int kFrames = 16;  // 0.6 s, the impact included
+constexpr int kFrames = 16;  // 0.6 s, including the impact
 
 double uniform(std::mt19937& random, double from, double to) {
   return from + (to - from) * static_cast<double>(random()) / static_cast<double>(std::mt19937::max());

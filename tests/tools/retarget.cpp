@@ -1,4 +1,4 @@
-// weft_retarget: takes motions of other skeletons over to a body and prints how well its bones and feet follow.
+// weft_retarget: transfers motions of other skeletons to a body and prints how well its bones and feet follow.
 #include "character/retarget.hpp"
 
 #include <fmt/format.h>
@@ -33,23 +33,23 @@ double angle(const Vec3& a, const Vec3& b) {
 }
 
 struct Follows {
-  double angle = 0;                  // largest between a bone and that of the motion [degrees]
-  std::string bone;                  // that has it
-  double arm = 0;                    // likewise of arms alone
-  double trunk = 0, trunk_when = 0;  // likewise from the hips to between the shoulders
-  double slip = 0;                   // largest way of the joint of the toes during a contact, level [m]
-  double theirs = 0;                 // likewise of the motion itself, by the ratio of the legs [m]
-  double toes = 0;                   // likewise of the middle of the skin of the toes, or of the foot without toes [m]
-  double below = 0, above = 0;       // of the lowest vertex under and over the floor, with a foot on it [m]
+  double angle = 0;                  // largest angle between a bone and that of the motion [degrees]
+  std::string bone;                  // the bone with that angle
+  double arm = 0;                    // largest angle of arms only
+  double trunk = 0, trunk_when = 0;  // largest angle of the line from the hips to between the shoulders, and its time
+  double slip = 0;                   // largest horizontal displacement of the toe joint during a contact [m]
+  double theirs = 0;                 // the same for the motion itself, scaled by the ratio of leg lengths [m]
+  double toes = 0;                   // the same for the middle of the skin of the toes, or of the foot without toes [m]
+  double below = 0, above = 0;       // of the lowest vertex below and above the floor, while a foot is on it [m]
   std::size_t steps = 0, keys = 0;
   double when = 0;
-  // Root of the mean square by which a hand is elsewhere against the other hand, or the hips, than that of the motion
-  // in the proportions of the body, over the keys in which it is near it [m].
+  // Root mean square of the difference between the hand's offset to the other hand, or to the hips, and that of the
+  // motion scaled to the body, over the keys in which the hand is near it [m].
   double hands = 0, hips = 0;
   std::size_t hands_keys = 0, hips_keys = 0;
 };
 
-/// Height of the lowest vertex of the feet.
+/// Height of the lowest vertex of the feet [m].
 double lowest(const Rig& body, const Pose& pose) {
   static const VertexMask kFeet = vertices_of(body.character, body.joints, joints_of_part("feet"));
   std::vector<Vec3> x(kFeet.size());
@@ -60,7 +60,7 @@ double lowest(const Rig& body, const Pose& pose) {
   return lowest;
 }
 
-/// The mean place of the vertices that a joint moves, level.
+/// Mean horizontal position of the vertices that a joint moves [m].
 Vec3 middle_of_skin(const Rig& body, Joint joint, const Pose& pose) {
   const VertexMask mask = vertices_below(body.character, body.joints[place_of(joint)]);
   std::vector<Vec3> x(mask.size());
@@ -88,7 +88,7 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   }
   Follows result;
   result.keys = times.size();
-  // Both faces at the first key.
+  // The directions to the left of both skeletons at the first key.
   const auto left = [](const Skeleton& s, const Posture& p) -> Vec3 {
     const Vec3 v = s.across_hips(p).normalized() + s.across_shoulders(p).normalized();
     return v - v.dot(kUp) * kUp;
@@ -99,8 +99,8 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   std::vector<bool> standing(times.size(), false);
   const double ratio = a.leg_length(at.front()) / b.leg_length(from.front());
   const auto level_way = [](const std::vector<Posture>& postures, Joint joint, std::size_t k0, std::size_t k1) {
-    const Vec3 way = postures[k1].places[place_of(joint)] - postures[k0].places[place_of(joint)];
-    return (way - way.dot(kUp) * kUp).norm();
+    const Vec3 displacement = postures[k1].places[place_of(joint)] - postures[k0].places[place_of(joint)];
+    return (displacement - displacement.dot(kUp) * kUp).norm();
   };
   for (const bool right : {false, true}) {
     const Joint toes = on_side(a.has(Joint::left_toes) ? Joint::left_toes : Joint::left_foot, right);
@@ -145,7 +145,7 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   return result;
 }
 
-/// How well hands that are together, or at the hips with bent arms, stay so.
+/// Measures how well hands that touch each other, or the hips with bent arms, stay there.
 void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const Clip& ours, Follows& result) {
   constexpr double kTogether = 0.24, kAtHips = 0.5, kBent = 60;  // lengths of the arm; degrees
   const Skeleton a(body), b(motion);
@@ -180,25 +180,25 @@ void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const
       hands += (hand(p, false) - hand(p, true) - a.arm_length(p) / arm * (face * apart)).squaredNorm();
     }
     for (const bool right : {false, true}) {
-      const Vec3 way = hand(q, right) - b.middle_of_hips(q);
+      const Vec3 offset = hand(q, right) - b.middle_of_hips(q);
       const double bend =
           angle(b.bone(q, on_side(Joint::left_upper_arm, right)), b.bone(q, on_side(Joint::left_lower_arm, right)));
-      if (bend < kBent || way.norm() > kAtHips * arm) continue;
+      if (bend < kBent || offset.norm() > kAtHips * arm) continue;
       ++result.hips_keys;
-      hips += (hand(p, right) - a.middle_of_hips(p) - trunk * (face * way)).squaredNorm();
+      hips += (hand(p, right) - a.middle_of_hips(p) - trunk * (face * offset)).squaredNorm();
     }
   }
   result.hands = std::sqrt(hands / std::max<double>(1, static_cast<double>(result.hands_keys)));
   result.hips = std::sqrt(hips / std::max<double>(1, static_cast<double>(result.hips_keys)));
 }
 
-/// Prints between which angles elbows, knees, upper arms and upper legs bend in the motion, and on the body: least and
-/// most of both sides, over all keys; arms and legs against the trunk.
+/// Prints the ranges of the angles of elbows, knees, upper arms and upper legs in the motion and on the body: minimum
+/// and maximum over both sides and all keys; upper arms and legs relative to the trunk.
 void report_ranges(const Rig& body, const Rig& motion, const Clip& theirs, const Clip& ours) {
   struct Bend {
     const char* name;
     Joint joint;
-    std::optional<Joint> against;  // none: the trunk
+    std::optional<Joint> against;  // none: relative to the trunk
   };
   const Bend kBends[] = {{"elbow", Joint::left_lower_arm, Joint::left_upper_arm},
                          {"knee", Joint::left_lower_leg, Joint::left_upper_leg},
@@ -236,7 +236,7 @@ Character without_names(Character character) {
   return character;
 }
 
-/// Prints which joints of a skeleton are others where its nodes have no names, and returns those found.
+/// Prints which joints of a skeleton differ if its nodes have no names, and returns the joints found without names.
 std::vector<Index> compare_without_names(const Character& character) {
   const auto named = find_joints(character), found = find_joints(without_names(character));
   const auto name = [&](Index node) { return node < 0 ? "none" : character.nodes[node].name.c_str(); };
@@ -252,13 +252,13 @@ void report_without_names(const Character& body, const Character& motion, const 
   if (found[0] < 0) return;
   const Clip got = retarget({body, ours}, {nameless, found}, nameless.clips.front(), kUp).clip;
   std::vector<Vec3> a(body.mesh.positions.size()), b(a.size());
-  double furthest = 0;
+  double max_distance = 0;
   for (int k = 0; k <= 10; ++k) {
     skin(body, pose_at(body, expected, expected.duration * k / 10), a);
     skin(body, pose_at(body, got, expected.duration * k / 10), b);
-    for (std::size_t v = 0; v < a.size(); ++v) furthest = std::max(furthest, (a[v] - b[v]).norm());
+    for (std::size_t v = 0; v < a.size(); ++v) max_distance = std::max(max_distance, (a[v] - b[v]).norm());
   }
-  std::printf("    without names off by %.3g mm\n", 1e3 * furthest);
+  std::printf("    without names off by %.3g mm\n", 1e3 * max_distance);
 }
 
 void report(const Character& body, const std::string& file, bool nameless) {
@@ -285,7 +285,7 @@ void report(const Character& body, const std::string& file, bool nameless) {
       short_name.c_str(), f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, 1e3 * f.toes,
       1e3 * f.theirs, f.angle, f.bone.c_str(), f.arm, f.trunk, f.trunk_when, 1e3 * f.hands, f.hands_keys, 1e3 * f.hips,
       f.hips_keys, seconds, missing.empty() ? "" : (" without" + missing).c_str());
-  for (const std::string& doubt : result.doubts) std::printf("    %s\n", doubt.c_str());
+  for (const std::string& warning : result.doubts) std::printf("    %s\n", warning.c_str());
   report_ranges({body, ours}, {motion.character, theirs}, clip, result.clip);
   if (nameless) report_without_names(body, motion.character, result.clip);
 }

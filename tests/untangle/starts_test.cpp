@@ -1,4 +1,4 @@
-// Starts that cross: which are taken apart, to where, and which are refused.
+// Starts with intersections: which are untangled, to which side, and which are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,16 +58,16 @@ std::string refusal(const scene::Scene& scene) {
   return "";
 }
 
-double longest_way(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) {
-  double most = 0;
+double max_displacement(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) {
+  double max_distance = 0;
   for (std::size_t s = 0; s < a.states.size(); ++s)
     for (std::size_t i = 0; i < a.states[s].positions.size(); ++i)
-      most = std::max(most, (a.states[s].positions[i] - b.states[s].positions[i]).norm());
-  return most;
+      max_distance = std::max(max_distance, (a.states[s].positions[i] - b.states[s].positions[i]).norm());
+  return max_distance;
 }
 
-/// Crosses at first, by the exact judge, and no longer when the run begins, nor in the frames that follow; the same
-/// without `start` is refused.
+/// Expects that the given start intersects, by the exact judge, but neither the first frame nor the following ones; and
+/// that the scene is refused without `start`.
 frame::SnapshotPtr expect_untangled(const scene::Scene& scene, std::size_t least_before = 1) {
   const frame::SnapshotPtr given = simulation::view_start(scene).snapshot;
   EXPECT_GE(judged_pairs(*given), least_before);
@@ -94,14 +94,14 @@ TEST(UntangledStart, ASheetThroughABallGoesOverToTheSmallerSide) {
     scene.cloths.push_back(sheet("sheet", {0, 0, height}));
     add_obstacle(scene, "ball", scene::Sphere{0.2});
     const frame::SnapshotPtr first = expect_untangled(scene, 50);
-    // The particle in the middle is on that pole, no farther off than cloth is thick.
+    // The middle particle is at that pole, no farther away than the cloth's thickness.
     const Vec3& middle = first->states[0].positions[12 + 25 * 12];
     EXPECT_NEAR(middle.z(), std::copysign(0.2, height), 0.004);
-    EXPECT_LT(longest_way(*first, *simulation::view_start(scene).snapshot), 0.2);
+    EXPECT_LT(max_displacement(*first, *simulation::view_start(scene).snapshot), 0.2);
   }
 }
 
-// A region of one particle has the size of the cells around it: as a point it would be in a body that goes through.
+// A region of one particle has the size of the cells around it: as a point it would be inside a piercing body.
 TEST(UntangledStart, OneParticleOfACoarseMeshGetsOutOfABall) {
   scene::Scene scene = empty_scene();
   scene.cloths.push_back(sheet("sheet", {0, 0, 0.02}, 0.6, 7));
@@ -123,7 +123,7 @@ TEST(UntangledStart, CrossedSheetsAreOnOneSideOfEachOther) {
   scene.cloths = {sheet("a", {0, 0, 0}), sheet("b", {0, 0, 0.2}, 0.6)};
   scene.cloths[1].pose.rotation = turned(80, Vec3(1, 0.2, 0));
   const frame::SnapshotPtr first = expect_untangled(scene);
-  EXPECT_LT(longest_way(*first, *simulation::view_start(scene).snapshot), 0.25);
+  EXPECT_LT(max_displacement(*first, *simulation::view_start(scene).snapshot), 0.25);
 }
 
 TEST(UntangledStart, ACrumpledSheetThatCrossesItselfIsSmoothedWhereItDoes) {
@@ -171,7 +171,7 @@ TEST(UntangledStart, OfASceneThatIsApartNothingMoves) {
   scene::Scene scene = empty_scene();
   scene.cloths.push_back(sheet("sheet", {0, 0, 0.21}));
   add_obstacle(scene, "ball", scene::Sphere{0.2});
-  EXPECT_EQ(longest_way(*Simulation(scene).snapshot(), *simulation::view_start(scene).snapshot), 0);
+  EXPECT_EQ(max_displacement(*Simulation(scene).snapshot(), *simulation::view_start(scene).snapshot), 0);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace weft::simulation::testing {
 
-/// Drop over reach of the tip, H/W, against Γ = ρ g L³ / B: the planar inextensible elastica under its own weight,
-/// clamped level, solved by shooting. Limits: Γ/8 and √(Γ/2).
+/// Ratio H/W of drop to reach of the tip for Γ = ρ g L³ / B: the planar inextensible elastica under its own weight,
+/// clamped horizontally, solved by shooting. Limits: Γ/8 and √(Γ/2).
 struct ElasticaPoint {
   double gamma, drop_over_reach;
 };
@@ -23,7 +23,7 @@ inline const char* name_of(scene::ClothShape shape) {
   return shape == scene::ClothShape::aligned_triangles ? "aligned" : "crossed";
 }
 
-/// What makes a strip as heavy as Γ says.
+/// The quantity that is changed to reach Γ.
 enum class Route { length, rigidity, density };
 inline constexpr Route kRoutes[] = {Route::length, Route::rigidity, Route::density};
 
@@ -35,7 +35,7 @@ struct Overhang {
   double gamma() const { return density * 9.81 * std::pow(length, 3) / rigidity; }
 };
 
-/// The strip above, Γ = 29, changed in one way.
+/// The strip above, Γ = 29, with one quantity changed to reach `gamma`.
 inline Overhang overhang(double gamma, Route route) {
   Overhang strip;
   const double change = gamma / strip.gamma();
@@ -45,7 +45,7 @@ inline Overhang overhang(double gamma, Route route) {
   return strip;
 }
 
-/// `cells` from the last held column, where the clamp acts, to the tip, two across.
+/// A strip with `cells` cells from the last held column, where the clamp acts, to the tip, and two across.
 inline scene::Scene cantilever(scene::ClothShape shape, const Overhang& strip, int cells) {
   scene::Scene scene = sheet_alone(1, 3, 0);
   const double l = strip.length / cells;
@@ -56,7 +56,7 @@ inline scene::Scene cantilever(scene::ClothShape shape, const Overhang& strip, i
   cloth.particles_warp = 3;
   cloth.pose.position = {0.5 * cloth.size.x() - l, 0, 0};  // the last held column is at x = 0
   cloth.material.density = strip.density;
-  // At Γ = 100 the weight of 1 N/m at most stretches the strip by 0.05 % on average, at less Γ by less.
+  // At Γ = 100 the weight of at most 1 N/m stretches the strip by 0.05 % on average; at smaller Γ by less.
   cloth.material.stretch_weft = cloth.material.stretch_warp = cloth.material.shear = 1000;
   cloth.material.bend = strip.rigidity;
   cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
@@ -66,14 +66,13 @@ inline scene::Scene cantilever(scene::ClothShape shape, const Overhang& strip, i
   return scene;
 }
 
-/// H/W of the tip's middle.
+/// H/W of the middle of the tip.
 inline double drop_over_reach(const std::vector<Vec3>& x, int cells) {
   const Vec3& tip = x[2 * (cells + 2) - 1];
   return -tip.z() / tip.x();
 }
 
-/// H/W when the strip has come to rest in a run. Implicit Euler with steps longer than the strip's swings takes their
-/// energy out.
+/// H/W once the strip is at rest in a run. Implicit Euler with steps longer than the strip's swings damps its energy.
 inline double drop_over_reach_of_run(scene::Scene scene, int cells) {
   scene.time = {.duration = 20, .fps = 5, .step = 0.2};
   scene.solver.newton_tolerance = 1e-5;

@@ -1,4 +1,4 @@
-// A strip that overhangs its clamp against the heavy elastica: all of the curve, by three routes, for every mesh.
+// Compares a strip that overhangs its clamp with the heavy elastica: the whole curve, by three routes, for every mesh.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -38,14 +38,14 @@ TEST_P(Cantilever, ApproachesTheElasticaInSecondOrder) {
       model.find_rest(model.free_along({0, 1, 2}));
       errors.push_back(testing::drop_over_reach(model.x, cells) / point.drop_over_reach - 1);
     }
-    // From differences, so that what stretch does to the limit does not count.
+    // The order follows from differences, so that the effect of stretch on the limit cancels.
     const double coarse = errors[0] - errors[1], fine = errors[1] - errors[2];
     const double limit = errors[2] - fine / 3, order = std::log2(std::abs(coarse / fine));
     std::printf("  gamma %5g: %7.3f %% %7.3f %% %7.3f %% -> %7.3f %%  %.2f\n", point.gamma, 100 * errors[0],
                 100 * errors[1], 100 * errors[2], 100 * limit, order);
-    // 0.05 % of stretch on average at gamma = 100, and what higher orders leave in the extrapolation.
+    // 0.05 % of stretch on average at gamma = 100, plus the error of the extrapolation from higher orders.
     EXPECT_LT(std::abs(limit), 2e-3) << "gamma " << point.gamma;
-    // Where the errors are within the stretch there is nothing to take an order from.
+    // If the errors are as small as the stretch, no order can be observed.
     if (std::abs(coarse) > 7e-4) {
       EXPECT_GT(order, 1.7) << "gamma " << point.gamma;
     }

@@ -1,4 +1,4 @@
-// A strip that overhangs its clamp against the heavy elastica, light and heavy; all of the curve: cantilever_slow.cpp.
+// Compares an overhanging strip with the heavy elastica, light and heavy; cantilever_slow.cpp tests the whole curve.
 #include "validation/cantilever.hpp"
 
 #include <cstdio>
@@ -21,7 +21,7 @@ TEST(CantileverStrip, LightOrHeavyFollowsTheElastica) {
     }
 }
 
-// As a user pins it: the border cell is held, its inner row is where the clamp acts.
+// Pinned as a user pins it: the border cell is held, and the clamp acts at its inner row.
 TEST(CantileverStrip, ComesToTheElasticaInSecondOrder) {
   const testing::ElasticaPoint& point = testing::kHeavyElastica[4];
   for (ClothShape shape : {ClothShape::quads, ClothShape::aligned_triangles, ClothShape::crossed_triangles}) {
@@ -35,7 +35,7 @@ TEST(CantileverStrip, ComesToTheElasticaInSecondOrder) {
       std::printf(" %.3f %%", 100 * errors.back());
     }
     std::printf("\n");
-    // Half a cell of clamp would be 7 % and 3.4 % with 16 and 32.
+    // If the clamp acted half a cell away, the error would be 7 % and 3.4 % with 16 and 32 cells.
     EXPECT_LT(std::abs(errors[1]), 0.01) << testing::name_of(shape);
     EXPECT_LT(std::abs(errors[2]), 0.0025) << testing::name_of(shape);
   }
@@ -48,7 +48,7 @@ TEST(CantileverOfCrossedTriangles, HangsAsDeepWhateverItsThreadsStretch) {
                                              testing::overhang(10, testing::Route::density), kCells);
     scene::Material& material = scene.cloths[0].material;
     material.stretch_weft = material.stretch_warp = material.shear = stretch;
-    // 0.4 % at most; where each triangle kept its own lengths -11 % at 1e5 N/m.
+    // Measured: at most 0.4 %; if each triangle kept its own lengths, -11 % at 1e5 N/m.
     const double expected = testing::kHeavyElastica[4].drop_over_reach;
     EXPECT_NEAR(testing::drop_over_reach_of_run(scene, kCells), expected, 0.01 * expected) << stretch;
   }

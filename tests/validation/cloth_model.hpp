@@ -1,5 +1,5 @@
-// The cloth of a scene as its forces and masses alone: rest found by Newton's method with the exact Jacobian, stability
-// by its inertia, and free vibrations. For what a run cannot be asked: an unstable equilibrium, a spectrum.
+// The cloth of a scene as forces and masses only: equilibrium by Newton's method with the exact Jacobian, stability by
+// the inertia of the Jacobian, and free vibrations. For what a run cannot show: an unstable equilibrium, a spectrum.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@
 
 namespace weft::simulation::testing {
 
-/// The first cloth of a scene, elastic only.
+/// The first cloth of a scene, without damping.
 class ClothModel {
  public:
   explicit ClothModel(const scene::Scene& scene)
@@ -52,7 +52,7 @@ class ClothModel {
     for (const auto& force : forces_) force->hold(held_);
   }
 
-  /// Coordinates of the particles that no pin holds, along these axes: 3 i + axis.
+  /// Indices 3 i + axis of the coordinates of unpinned particles along these axes.
   std::vector<Eigen::Index> free_along(const std::vector<int>& axes) const {
     std::vector<Eigen::Index> dofs;
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -61,7 +61,7 @@ class ClothModel {
     return dofs;
   }
 
-  /// −∂f/∂x of these coordinates, exact.
+  /// Exact −∂f/∂x for these coordinates.
   Eigen::SparseMatrix<double> stiffness(const std::vector<Eigen::Index>& dofs) {
     matrix_.set_zero();
     const std::vector<Vec3> zero(x.size(), Vec3::Zero());
@@ -82,14 +82,14 @@ class ClothModel {
     return stiffness;
   }
 
-  /// Whether every small displacement along these coordinates costs energy: Sylvester's law of inertia.
+  /// Whether every small displacement along these coordinates needs energy, by Sylvester's law of inertia.
   bool stable(const std::vector<Eigen::Index>& dofs) {
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(stiffness(dofs));
     return factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0;
   }
 
-  /// Brings these coordinates to rest under gravity: Newton's method with the exact Jacobian, shifted where that is
-  /// indefinite, each step cut until the energy falls.
+  /// Moves these coordinates to equilibrium under gravity: Newton's method with the exact Jacobian, shifted if that is
+  /// indefinite; each step is shortened until the energy falls.
   void find_rest(const std::vector<Eigen::Index>& dofs) {
     const double weight = std::accumulate(masses.begin(), masses.end(), 0.0) * gravity_.norm();
     double shift = 0;
@@ -109,14 +109,16 @@ class ClothModel {
       const Eigen::VectorXd step = factors.solve(f);
       const std::vector<Vec3> start = x;
       const double before = energy(), slope = f.dot(step);
-      double share = 1;
-      for (;; share *= 0.5) {
+      double step_fraction = 1;
+      for (;; step_fraction *= 0.5) {
         for (std::size_t d = 0; d < dofs.size(); ++d)
-          coordinate(x, dofs[d]) = coordinate(start, dofs[d]) + share * step[static_cast<Eigen::Index>(d)];
-        // Near the rest the energy is the same up to rounding: the whole step is then right.
-        if (slope < 1e-12 * std::abs(before) || energy() < before - 1e-4 * share * slope || share < 1e-6) break;
+          coordinate(x, dofs[d]) = coordinate(start, dofs[d]) + step_fraction * step[static_cast<Eigen::Index>(d)];
+        // Near equilibrium the energy is constant up to rounding: then the full step is right.
+        if (slope < 1e-12 * std::abs(before) || energy() < before - 1e-4 * step_fraction * slope ||
+            step_fraction < 1e-6)
+          break;
       }
-      shift = share == 1 ? 0.1 * shift : shift;
+      shift = step_fraction == 1 ? 0.1 * shift : shift;
       if (shift < least_shift) shift = 0;
     }
     ADD_FAILURE() << "no rest: a force of " << force(dofs).norm() << " N is left of a weight of " << weight << " N";
@@ -124,10 +126,10 @@ class ClothModel {
 
   struct Mode {
     double frequency;  ///< ω [rad/s]
-    double share;      ///< of the mass that a push of all of it would set in motion in this mode [1]
+    double share;      ///< fraction of the mass that a uniform push would set in motion in this mode [1]
   };
 
-  /// The slowest small vibrations, slowest first: K φ = ω² M φ by subspace iteration (Bathe, "Finite Element
+  /// The vibrations of lowest frequency, in ascending order: K φ = ω² M φ by subspace iteration (Bathe, "Finite Element
   /// Procedures", 1996, 11.6).
   std::vector<Mode> modes(const std::vector<Eigen::Index>& dofs, int count) {
     const Eigen::SparseMatrix<double> k = stiffness(dofs);
@@ -171,8 +173,8 @@ class ClothModel {
     return sum;
   }
   Eigen::VectorXd force(const std::vector<Eigen::Index>& dofs) const {
-    std::vector<solver::Quad<double>> places, still(x.size()), sum(x.size());
-    for (const Vec3& place : x) places.push_back(solver::quad_of<double>(place));
+    std::vector<solver::PaddedVec3<double>> places, still(x.size()), sum(x.size());
+    for (const Vec3& place : x) places.push_back(solver::padded<double>(place));
     for (const auto& force : forces_) force->add({places, still, sum});
     std::vector<Vec3> f(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) f[i] = masses[i] * gravity_ + solver::vec3_of(sum[i]);
@@ -188,7 +190,7 @@ class ClothModel {
   std::vector<char> held_;
 
  public:
-  std::vector<Vec3> x;         ///< positions [m]; at the start those of the scene
+  std::vector<Vec3> x;         ///< positions [m]; initially those of the scene
   std::vector<double> masses;  ///< [kg]
 };
 

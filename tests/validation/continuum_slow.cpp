@@ -1,4 +1,4 @@
-// Stiffness of quads and triangles against the continuum, on meshes of every kind.
+// Compares the stiffness of quads and triangles with the continuum, on meshes of every kind.
 #include <gtest/gtest.h>
 
 #include <Eigen/Sparse>
@@ -20,7 +20,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr std::array<int, 4> kCells{8, 16, 32, 64};  // along a side of one metre
 
-/// A square metre of cloth at rest: its mesh, what acts in it, and the area of each particle.
+/// A square metre of cloth at rest: mesh, forces, and the area of each particle.
 struct Sample {
   mesh::Mesh mesh;
   std::vector<std::unique_ptr<Force>> forces;
@@ -35,7 +35,7 @@ struct Material {
 
 using Make = std::function<Sample(int cells, bool membrane)>;
 
-// Quads whose spacing grows along weft and shrinks along warp by this factor from one end to the other.
+// Quads whose spacing grows along weft, and shrinks along warp, by this factor from one end to the other.
 Sample quads(double grading, int cells, bool membrane) {
   mesh::Grid grid = testing::grid_of_squares({1, 1}, cells);
   grid.weft_grading = grading;
@@ -53,7 +53,7 @@ Sample quads(double grading, int cells, bool membrane) {
 Sample triangles(const testing::Meshing& meshing, int cells, bool membrane) {
   Sample sample;
   sample.mesh = meshing.make({1, 1}, cells);
-  const mesh::Sheet sheet = mesh::make_sheet_of(sample.mesh);
+  const mesh::Sheet sheet = mesh::make_sheet_from_mesh(sample.mesh);
   sample.areas = lumped_masses(sheet, 1);
   if (membrane)
     sample.forces.push_back(std::make_unique<TriangleMembrane>(sheet, 0, Material{}.stretch, Material{}.shear));
@@ -62,7 +62,7 @@ Sample triangles(const testing::Meshing& meshing, int cells, bool membrane) {
   return sample;
 }
 
-/// K d = f for small displacements d of the sample, as many numbers per particle as `axes` selects.
+/// Solves K d = f for small displacements d, with `axes` coordinates per particle from `first_axis` on.
 class Statics {
  public:
   Statics(const Sample& sample, int first_axis, int axes)
@@ -79,7 +79,7 @@ class Statics {
     });
   }
 
-  /// Holds what belongs to a particle at a value.
+  /// Prescribes the displacement of a particle.
   void hold(std::size_t particle, const Vec3& displacement) {
     held_[particle] = 1;
     values_.segment(static_cast<Eigen::Index>(particle) * axes_, axes_) = displacement.segment(first_axis_, axes_);
@@ -134,7 +134,7 @@ bool on_border(const Vec2& uv, int axis) {
   return uv[axis] < 1e-9 || uv[axis] > 1 - 1e-9;
 }
 
-/// A sheet held all around, loaded so that the continuum moves by d sin πu sin πv: compliance against it, less one.
+/// Relative error of the compliance of a sheet held along all sides, loaded for a motion of d sin πu sin πv.
 double membrane_error(const Make& make, int cells, const Vec2& d) {
   const Sample sample = make(cells, true);
   Statics statics(sample, 0, 2);
@@ -155,7 +155,7 @@ double membrane_error(const Make& make, int cells, const Vec2& d) {
   return dot(loads, statics.solve(loads)) / dot(loads, exact) - 1;
 }
 
-/// A plate on supports along two sides, free along the others, or on supports all around.
+/// Error of a plate on supports along two sides and free along the others, or on supports along all sides.
 double plate_error(const Make& make, int cells, bool along_u, bool along_v) {
   const Sample sample = make(cells, false);
   Statics statics(sample, 2, 1);
@@ -171,8 +171,8 @@ double plate_error(const Make& make, int cells, bool along_u, bool along_v) {
   return dot(loads, statics.solve(loads)) / dot(loads, exact) - 1;
 }
 
-/// A plate that is held flat up to `clamp` along weft, under an even load: compliance against that of a beam that is
-/// clamped there, less one. `held`: by particle.
+/// Error of a plate held flat up to `clamp` along weft, under an even load: its compliance relative to that of a beam
+/// clamped there, less one. `held` has an entry per particle.
 double cantilever_error(const Sample& sample, double clamp, const std::vector<char>& held) {
   for (const auto& force : sample.forces) force->hold(held);
   Statics statics(sample, 2, 1);
@@ -187,21 +187,21 @@ double cantilever_error(const Sample& sample, double clamp, const std::vector<ch
   return dot(loads, statics.solve(loads)) / dot(loads, exact) - 1;
 }
 
-/// Particles up to here along weft.
+/// Holds the particles up to `clamp` along weft.
 std::vector<char> held_up_to(const Sample& sample, double clamp) {
   std::vector<char> held;
   for (const Vec2& uv : sample.mesh.uv) held.push_back(uv.x() <= clamp + 1e-9);
   return held;
 }
 
-/// Quads, of which the first two columns are held.
+/// Error of quads whose first two columns are held.
 double clamped_quads_error(double grading, int cells) {
   const Sample sample = quads(grading, cells, false);
   const double clamp = sample.mesh.uv[1].x();
   return cantilever_error(sample, clamp, held_up_to(sample, clamp));
 }
 
-/// Triangles, held up to a column at about a quarter, which is put in line.
+/// Error of triangles held up to a column at about a quarter; the column is moved into a straight line.
 double clamped_triangles_error(const testing::Meshing& meshing, int cells) {
   Sample sample;
   sample.mesh = meshing.make({1, 1}, cells);
@@ -217,19 +217,19 @@ double clamped_triangles_error(const testing::Meshing& meshing, int cells) {
     sample.mesh.positions[k].x() += clamp - sample.mesh.uv[k].x();
     sample.mesh.uv[k].x() = clamp;
   }
-  // Triangles that this has flattened go.
+  // Removes triangles that this has flattened.
   std::vector<Vec2> places;
   for (const Vec2& uv : sample.mesh.uv)
     places.push_back(uv.cwiseProduct(Vec2(static_cast<double>(columns), static_cast<double>(rows))));
   testing::make_delaunay(sample.mesh.topology.triangles, places);
-  const mesh::Sheet sheet = mesh::make_sheet_of(sample.mesh);
+  const mesh::Sheet sheet = mesh::make_sheet_from_mesh(sample.mesh);
   sample.areas = lumped_masses(sheet, 1);
   const std::vector<char> held = held_up_to(sample, clamp);
   sample.forces.push_back(std::make_unique<TriangleBend>(sheet, 0, Material{}.bend, held));
   return cantilever_error(sample, clamp, held);
 }
 
-/// Particles that bending at the border may reach: three rows of them.
+/// Particles that bending at the border can affect: three rows.
 std::vector<char> near_border(const Sample& sample) {
   std::vector<char> near(sample.areas.size());
   for (std::size_t i = 0; i < near.size(); ++i)
@@ -244,8 +244,8 @@ std::vector<char> near_border(const Sample& sample) {
   return near;
 }
 
-/// A plate clamped along its border to the ridge w = sin(4 ξ + 0.3), ξ at an angle from the weft, and loaded to keep
-/// it: deviation from it against what the load does.
+/// Error of a plate that is clamped along its border to the ridge w = sin(4 ξ + 0.3), ξ at an angle to the weft, and
+/// loaded to keep that shape: deviation relative to the displacement that the load causes.
 double ridge_error(const Make& make, int cells, double degrees) {
   const Sample sample = make(cells, false);
   Statics statics(sample, 2, 1);
@@ -268,8 +268,7 @@ double ridge_error(const Make& make, int cells, double degrees) {
   return std::sqrt(error / deflection);
 }
 
-/// Prints the errors at all resolutions with the order observed over the last two halvings, and holds the last within 1
-/// %.
+/// Prints errors at all resolutions and the order over the last two halvings; expects the last error within 1 %.
 void report(const std::string& mesh, const char* what, const std::function<double(int)>& error_at) {
   std::printf("%-19s %-22s", mesh.c_str(), what);
   std::vector<double> errors;
@@ -291,7 +290,7 @@ void report_all(const std::string& mesh, const Make& make) {
   report(mesh, "bent along weft", [&](int n) { return plate_error(make, n, true, false); });
   report(mesh, "bent along warp", [&](int n) { return plate_error(make, n, false, true); });
   report(mesh, "plate on four sides", [&](int n) { return plate_error(make, n, true, true); });
-  // Of coarser meshes the held rows leave too little.
+  // On coarser meshes the held rows would leave too few free particles.
   report(mesh, "ridge across 45°", [&](int n) { return ridge_error(make, 2 * n, 45); });
   report(mesh, "ridge across -45°", [&](int n) { return ridge_error(make, 2 * n, -45); });
 }

@@ -1,4 +1,4 @@
-// Cusick's drape test (bench/fabric_tests.hpp): what it is held by, which meshes agree, and what was measured.
+// Cusick's drape test (bench/fabric_tests.hpp): its supports, agreement of meshes, and measured fabrics.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,10 +17,10 @@ namespace weft::simulation {
 namespace {
 
 using bench::cusick::Drape, bench::cusick::Specimen, bench::cusick::rings;
-using bench::cusick::kPlates, bench::cusick::kSpecimen;
+using bench::cusick::kPlateRadius, bench::cusick::kSpecimenRadius;
 using scene::ClothShape;
 
-/// Has come to rest.
+/// Drapes the specimen and expects it to be at rest.
 Drape drape_to_rest(const scene::Scene& scene, const std::vector<mesh::Triangle>& triangles) {
   const Drape found = bench::cusick::drape(scene, triangles);
   EXPECT_LT(found.kinetic_energy, 1e-7);
@@ -33,7 +33,7 @@ class Cusick : public support::TestFolder {
     return bench::cusick::scene_of(disc, material, folder_ / "disc.obj");
   }
 
-  /// Of two specimens.
+  /// Mean drape coefficient of two specimens.
   double mean_coefficient(const char* name, const scene::Material& material) {
     double mean = 0;
     std::printf("%s:", name);
@@ -48,29 +48,29 @@ class Cusick : public support::TestFolder {
   }
 };
 
-// Of a plate with ν = 0, clamped at 9 cm and free at 15 cm, the rim sags by 1.940715e-6 m⁴ q / B: the radial solution
-// A + B r² + C ln r + D r² ln r + q r⁴ / 64 B.
+// The rim of a plate with ν = 0, clamped at 9 cm and free at 15 cm, sags by 1.940715e-6 m⁴ q / B: the radial solution A
+// + B r² + C ln r + D r² ln r + q r⁴ / 64 B.
 TEST_F(Cusick, PlatesClampAtTheirEdge) {
   constexpr double kSag = 1.940715e-6;
   for (int free : {8, 12, 16}) {
     const Specimen disc = rings(free, 1);
     scene::Material material;
-    material.bend = 10;  // so that it sags by micrometres
+    material.bend = 10;  // stiff, so that it sags by micrometres only
     testing::ClothModel model(scene_of(disc, material));
     model.find_rest(model.free_along({0, 1, 2}));
     double sag = 0, count = 0;
     for (const Vec3& x : model.x)
-      if (x.head<2>().norm() > kSpecimen - 1e-6) sag -= x.z(), ++count;
+      if (x.head<2>().norm() > kSpecimenRadius - 1e-6) sag -= x.z(), ++count;
     sag *= material.bend / (count * material.density * 9.81);
     std::printf("%d rings: %.3f %%\n", free, 100 * (sag / kSag - 1));
-    // In second order, 2.1 % with eight rings.
+    // Second order: 2.1 % with eight rings.
     EXPECT_NEAR(free * free * (sag / kSag - 1), 1.36, 0.05);
   }
 }
 
-// Published figures are met within 10 %, but for polyester (tests/bench/README.md#fabrics). Ranges are as wide as 24
-// points, so that a fabric may wander there unseen: each is held to what it came to as well, within the 0.9 points by
-// which four specimens differ.
+// All fabrics but polyester match published figures within 10 % (tests/bench/README.md#fabrics). Ranges are up to 24
+// points wide, so a change could go unnoticed: each fabric must also match its own earlier result within 0.9 points,
+// the spread of four specimens.
 TEST_F(Cusick, FabricsDrapeAsMeasured) {
   const std::map<std::string, double> found = {{"cotton", 0.780}, {"poplin", 0.846}, {"denim", 0.875},
                                                {"jersey", 0.329}, {"wool", 0.546},   {"suiting", 0.739},
@@ -99,23 +99,23 @@ TEST_F(Cusick, CoefficientIsThatOfAFinerMesh) {
       found.back() += 0.5 * d.coefficient;
     }
   }
-  // Measured: 66.9, 73.0 and 76.4 %. Finer cells hold narrower folds by their friction.
+  // Measured: 66.9, 73.0 and 76.4 %. Finer cells keep narrower folds by bending friction.
   EXPECT_NEAR(found[1], found[2], 0.05);
 }
 
-/// A square specimen of the same area, which can be cut of quads as well. Quads and aligned triangles share all of
-/// their particles, those that the plates hold among them; crossed triangles have about as many in a coarser grid.
+/// A square specimen of the same area, which can also consist of quads. Quads and aligned triangles have the same
+/// particles, including those between the plates; crossed triangles have about as many in a coarser grid.
 scene::Scene square(ClothShape shape, const scene::Material& material) {
   const int particles = shape == ClothShape::crossed_triangles ? 41 : 57;
-  scene::Scene scene = testing::sheet_alone(kSpecimen * std::sqrt(std::numbers::pi), particles, 0);
-  // A plate out of level by 0.3 degrees tells all of them alike to which side to fold.
+  scene::Scene scene = testing::sheet_alone(kSpecimenRadius * std::sqrt(std::numbers::pi), particles, 0);
+  // A plate tilted by 0.3 degrees makes all of them fold to the same side.
   scene.physics.gravity = 9.81 * Vec3(0.005, 0.003, -1).normalized();
   scene::Cloth& cloth = scene.cloths[0];
   cloth.shape = shape;
   cloth.material = material;
   const environment::Environment environment(scene);
   const std::vector<Vec3>& x = environment.cloths[0].start;
-  const double reach = kPlates + 0.5 * cloth.size.x() / (particles - 1);
+  const double reach = kPlateRadius + 0.5 * cloth.size.x() / (particles - 1);
   std::vector<std::size_t> held;
   for (std::size_t i = 0; i < x.size(); ++i)
     if (x[i].norm() < reach) held.push_back(i);
@@ -123,7 +123,7 @@ scene::Scene square(ClothShape shape, const scene::Material& material) {
   return scene;
 }
 
-// Measured: aligned within 2.4 points, crossed, whose cells are 1.4 times as wide, within 5.4, both of leather.
+// Measured: aligned within 2.4 points; crossed, whose cells are 1.4 times as wide, within 5.4; both for leather.
 TEST_F(Cusick, QuadsDrapeAsTrianglesDo) {
   for (const char* fabric : {"silk", "wool", "leather", "denim"}) {
     std::printf("%s, square:", fabric);

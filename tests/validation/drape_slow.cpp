@@ -1,4 +1,4 @@
-// The sheet that falls on a sphere: how high it comes to lie, whether it rests, and how much its threads give.
+// A sheet that falls on a sphere: its final height, whether it rests, and how much its threads stretch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,9 +12,9 @@ namespace {
 
 struct SphereDrape {
   double height = 0;      // mean over all particles in the last frame [m]
-  double hem_height = 0;  // mean over the border
-  double stretch = 1;     // largest in any frame
-  double rms_speed = 0;   // largest of the last second [m/s]
+  double hem_height = 0;  // mean over the border in the last frame [m]
+  double stretch = 1;     // maximum over all frames
+  double rms_speed = 0;   // maximum of the last second [m/s]
   double cpu_s = 0;
 };
 
@@ -51,8 +51,9 @@ SphereDrape drape_with(double step_factor, double start_noise = 0) {
   return drape;
 }
 
-// What the folds do with the hem changes from run to run, for the sheet buckles into them: started with noise of some
-// micrometres it comes to lie between 0.1527 and 0.1547 m high, without, symmetric as it is, between 0.151 and 0.158 m.
+// The folds change the hem from run to run, because the sheet buckles into them: if the start has noise of some
+// micrometres, the sheet ends between 0.1527 and 0.1547 m high; without noise, symmetric as it is, between 0.151 and
+// 0.158 m.
 double mean_height(double step_factor, const std::vector<double>& start_noises) {
   double sum = 0;
   for (double noise : start_noises) sum += drape_with(step_factor, noise).height;
@@ -62,9 +63,9 @@ double mean_height(double step_factor, const std::vector<double>& start_noises) 
 TEST(SphereDrape, LiesAsHighAsWithAnEighthOfTheStep) {
   const double fine = mean_height(1.0 / 8, {1e-6, 2e-6}), shipped = mean_height(1, {1e-6, 2e-6, 4e-6, 8e-6});
   std::printf("mean height %.6f m, with an eighth of the step %.6f m\n", shipped, fine);
-  // Spread of single runs 0.5 %, so of the difference of these means 0.4 %.
+  // Single runs differ by 0.5 %, so the difference of these means by 0.4 %.
   EXPECT_NEAR(shipped, fine, 0.01 * fine);
-  for (double factor : {2.0, 4.0}) drape_with(factor);  // for their figures
+  for (double factor : {2.0, 4.0}) drape_with(factor);  // only prints their figures
 }
 
 TEST(SphereDrape, ComesToRestWithItsThreadsHardlyStretched) {

@@ -1,4 +1,4 @@
-// The guarantee held against whole scenes: no frame has an intersection, at the scene's own step and at longer ones.
+// Checks the guarantee on whole scenes: no frame has an intersection, with the scene's own step and with longer ones.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace weft::simulation::testing {
 
-/// A scene, the factor on its step, and how many of its frames are run: negative for all of them.
+/// A scene, the factor on its step, and the number of frames to run; negative: all.
 struct SceneRun {
   const char* scene;
   int factor;
@@ -28,7 +28,7 @@ inline std::string name_of_run(const ::testing::TestParamInfo<SceneRun>& run) {
   return run.param.scene + ("_x" + std::to_string(run.param.factor));
 }
 
-/// Of the scenes whose films have finer meshes than tests can afford.
+/// Overrides for scenes whose films have finer meshes than tests can afford.
 inline std::vector<std::string> coarser(const std::string& scene) {
   if (scene == "falling_band") return {"cloth.band.particles=[17,161]"};
   if (scene == "ball_through_cloth") return {"cloth.sheet.particles=61"};
@@ -45,7 +45,7 @@ inline scene::Scene scene_of(const SceneRun& run) {
   return scene;
 }
 
-/// Judges each frame by exact predicates and prints the count.
+/// Judges each frame with exact predicates, prints the number of intersections and expects none.
 inline void expect_no_intersections(const SceneRun& run) {
 #ifndef NDEBUG
   GTEST_SKIP() << "takes hours with sanitizers";

@@ -1,4 +1,4 @@
-// The frames of each scene in which most happens; every_frame_slow.cpp has all of them.
+// The first frames of each scene, with its main events; every_frame_slow.cpp tests all frames.
 #include "validation/every_frame.hpp"
 
 namespace weft::simulation {
@@ -12,8 +12,8 @@ TEST_P(FirstFrames, HaveNoIntersection) {
   testing::expect_no_intersections(GetParam());
 }
 
-// Until the band has folded, the ball is through, the sheet lies, the first of the eight sheets have landed; whole runs
-// show the band at its own step, and the eight sheets at theirs and at twice that.
+// Runs until the band has folded, the ball is through, the sheet lies, and the first of the eight sheets have landed.
+// Whole runs test the band with its own step, and the eight sheets with theirs and with twice that.
 INSTANTIATE_TEST_SUITE_P(Of, FirstFrames,
                          ::testing::Values(SceneRun{"falling_band", 4, 36}, SceneRun{"ball_through_cloth", 1, 36},
                                            SceneRun{"ball_through_cloth", 4, 36}, SceneRun{"sphere_drape", 1, 20},

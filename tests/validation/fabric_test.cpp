@@ -1,4 +1,4 @@
-// The tests of the laboratory find in a fabric what it is made of; how all fabrics drape: cusick_slow.cpp.
+// Simulated laboratory tests recover the parameters of a fabric; cusick_slow.cpp tests how all fabrics drape.
 #include <gtest/gtest.h>
 
 #include "bench/fabric_tests.hpp"
@@ -11,9 +11,9 @@ TEST(CantileverOfAFabric, FindsItsRigidityAndMoreWithItsFriction) {
   scene::Material wool = scene::find_fabric("wool")->material;
   const double with_friction = cantilever(wool).rigidity;
   wool.bend_friction = 0;
-  // 0.2 % off: the overhang is found to 1e-3, the strip has 40 cells.
+  // Measured: 0.2 % off. The overhang is accurate to 1e-3, and the strip has 40 cells.
   EXPECT_NEAR(cantilever(wool).rigidity, wool.bend, 0.01 * wool.bend);
-  // 18 % more: laboratories measure more by cantilever than by KES, too.
+  // Measured: 18 % more. Laboratories also measure more by cantilever than by KES.
   EXPECT_GT(with_friction, 1.1 * wool.bend);
 }
 
@@ -23,7 +23,7 @@ TEST(StripOfAFabric, StretchesAtTheLoadsOfFastAndKesAsThoseSay) {
     const scene::Measurements& m = fabric.measured;
     const double weft = extension(fabric.material, Direction::weft, scene::kExtensionLoad),
                  warp = extension(fabric.material, Direction::warp, scene::kExtensionLoad);
-    // One limit for both directions. Stretch and limit have two digits, 2 % off at most.
+    // Both directions have one limit. Stretch and limit have two digits: at most 2 % off.
     const double mean = 0.5 * (m.extension_weft.value + m.extension_warp.value);
     EXPECT_NEAR(0.5 * (weft + warp), mean, 0.03 * mean) << name;
     const double worn = extension(fabric.material, Direction::warp, scene::kWornLoad);

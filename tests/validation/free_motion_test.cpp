@@ -1,4 +1,4 @@
-// Cloth by itself keeps what mechanics says it keeps, and falls and is blown along as a body does, at default settings.
+// Free cloth conserves what mechanics demands, and falls and drifts in wind as a rigid body does, at default settings.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,16 +27,16 @@ TEST(FreeCloth, KeepsItsMomentumInEveryMethod) {
   scene::Scene scene = testing::sheet_alone(0.2, 9, 0);
   scene.cloths[0].material.stretch_viscosity = scene.cloths[0].material.shear_viscosity = 0.5;
   scene.cloths[0].material.bend_viscosity = 1e-6;
-  scene.cloths[0].material.bend_friction = 0;  // Newton does not resolve its kink at rest to 1e-8
+  scene.cloths[0].material.bend_friction = 0;  // Newton's method cannot resolve its kink at rest to 1e-8
   const environment::Environment environment(scene);
   ClothSystem system(scene, environment);
-  // Crumpled and in motion, so that all forces act.
+  // Crumpled and moving, so that all forces act.
   integrator::State start{environment.cloths[0].start, forces::testing::random_vectors(81, 1, 2)};
   const auto noise = forces::testing::random_vectors(81, 0.001, 1);
   for (std::size_t i = 0; i < 81; ++i) start.x[i] += noise[i];
   for (Vec3& v : start.v) v += Vec3(0.5, -0.3, 0.2);
   const Vec3 before = momentum(system.masses(), start.v);
-  const double size = 0.2 * 0.2 * 0.2;  // mass, at about 1 m/s
+  const double size = 0.2 * 0.2 * 0.2;  // momentum scale: the mass times about 1 m/s
 
   for (Method method : {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2}) {
     integrator::Stepper stepper(method, {1e-8, 100, 1e-4, 1000});
@@ -48,9 +48,9 @@ TEST(FreeCloth, KeepsItsMomentumInEveryMethod) {
       stepper.accept(now, next, 0.002);
       std::swap(now, next);
     }
-    // A residual of 1e-8 of the inertia in each of twenty steps, during which the forces turn all velocities round.
+    // A residual of 1e-8 of the inertia in each of twenty steps, during which the forces reverse all velocities.
     EXPECT_LT((momentum(system.masses(), now.v) - before).norm(), 2e-7 * size) << static_cast<int>(method);
-    // The motion was not just a translation.
+    // The motion was more than a translation.
     EXPECT_LT(system.elastic_energy(now.x), 0.5 * energy);
   }
 }
@@ -71,10 +71,10 @@ TEST_P(FreeFall, LeavesAFlatSheetFlatByEveryMethodAtDefaultSettings) {
     for (int k = 1; k <= 25; ++k) simulation.advance();
     const std::vector<Vec3>& end = testing::sheet_of(simulation.snapshot());
     const double fallen = end[0].z() - start[0].z();
-    // What the shares of the weight of the versions before left: 0.1 to 0.5 m.
+    // Residuals relative to the weight would allow 0.1 to 0.5 m.
     for (std::size_t i = 0; i < end.size(); ++i)
       ASSERT_LT((end[i] - start[i] - Vec3(0, 0, fallen)).norm(), 1e-6) << name_of(integrator) << ' ' << i;
-    // Euler's method is ahead by half a step.
+    // Euler's method leads by half a step.
     EXPECT_NEAR(fallen, -0.5 * 9.81, 0.5 * 9.81 * 0.011);
   }
 }
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(, FreeFall,
                                                               scene::ClothShape::crossed_triangles)));
 
 TEST(ReleasedCloth, FallsAsFromAStart) {
-  // The history of a step at rest would cost BDF2 half a step of gravity for good: 20 mm here.
+  // The history of a step at rest would cost BDF2 half a step of gravity permanently: 20 mm here.
   for (scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.3, 5, 0);
     scene.time.step = 0.01;
@@ -98,7 +98,7 @@ TEST(ReleasedCloth, FallsAsFromAStart) {
     const double t = 0.4, h = 0.01, g = 9.81;
     double expected = -0.5 * g * t * t;
     if (integrator == scene::Integrator::implicit_euler) expected -= 0.5 * g * h * t;
-    if (integrator == scene::Integrator::bdf2) expected -= 0.75 * g * h * h;  // its first step is one of Euler's
+    if (integrator == scene::Integrator::bdf2) expected -= 0.75 * g * h * h;  // its first step is an Euler step
     EXPECT_NEAR(testing::sheet_of(simulation.snapshot())[12].z(), expected, 1e-5) << name_of(integrator);
   }
 }
@@ -120,14 +120,14 @@ TEST(SteadyAir, TerminalVelocityHangsNotOnTheStep) {
           speed = 25 * (before - z);
           before = z;
         }
-        // m g = ½ ρ c A v²; after 2 s, eleven times v / g and more, nothing is missing.
+        // m g = ½ ρ c A v². After 2 s, at least eleven times v / g, the speed is the terminal speed.
         const double expected = std::sqrt(2 * scene.cloths[0].material.density * 9.81 / (1.2 * drag));
         EXPECT_NEAR(speed, expected, 1e-3 * expected) << name_of(integrator) << ' ' << drag << ' ' << step;
       }
 }
 
-// In gusts so large that they are the same wherever the sheet comes in two seconds it falls as in still air beside
-// them.
+// The gusts are so large that they are the same everywhere on the sheet's path of two seconds: it falls relative to
+// them as in still air.
 TEST(GustsInARun, CarryASheetThatFalls) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.2, 5, 0);
@@ -145,7 +145,7 @@ TEST(GustsInARun, CarryASheetThatFalls) {
       before = z;
     }
     const double in_still_air = std::sqrt(2 * scene.cloths[0].material.density * 9.81 / 1.2);
-    // The field changes by 1e-4 of itself on the way of some metres.
+    // Over the path of some metres the field changes by 1e-4 of itself.
     EXPECT_NEAR(speed, in_still_air - gust, 1e-3 * in_still_air) << name_of(integrator);
   }
 }

@@ -1,5 +1,5 @@
-// Coulomb's law: a patch of cloth on a slope sticks or slides by tan(angle) against the coefficient, and slides as far
-// as a block does.
+// Coulomb's law: a patch of cloth on a slope sticks or slides, depending on whether tan(angle) exceeds the coefficient,
+// and slides as far as a block.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,15 +13,14 @@ namespace weft::simulation {
 namespace {
 
 constexpr double kGravity = 9.81;
-constexpr double kStep = 0.002;  // Euler shortens a way of v² / 2 μ g by half a step's v: 1 % of 0.1 m here
+constexpr double kStep = 0.002;  // [s]; Euler shortens a path of v² / 2 μ g by v times half a step: 1 % of 0.1 m here
 
-/// A patch of 0.2 m that lies on a plane, turned down the slope about the y axis. No air, so that nothing but friction
-/// holds it.
+/// A patch of 0.2 m on a plane inclined about the y axis. There is no air, so only friction holds it.
 scene::Scene patch_on_slope(double angle, double friction, double speed) {
   scene::Scene scene = testing::sheet_alone(0.2, 11, 0);
   scene.time.fps = 50;
   scene.time.step = kStep;
-  scene.solver.newton_tolerance = 1e-4;  // of the weight: far below the 2 % that is asked for
+  scene.solver.newton_tolerance = 1e-4;  // relative to the weight: far below the tested 2 %
   scene.solver.linear_tolerance = 1e-3;
   scene.contact.self = scene.contact.obstacles = true;
   const Quat turned(Eigen::AngleAxisd(angle, Vec3::UnitY()));
@@ -37,7 +36,7 @@ scene::Scene patch_on_slope(double angle, double friction, double speed) {
   return scene;
 }
 
-/// The same at default settings.
+/// The same patch at default settings.
 scene::Scene incline(double angle, double friction, int particles) {
   scene::Scene scene = patch_on_slope(angle, friction, 0);
   scene.time.fps = 25;
@@ -48,67 +47,68 @@ scene::Scene incline(double angle, double friction, int particles) {
 }
 
 /// Mean position along the slope [m] in each frame.
-std::vector<double> ways_down(const scene::Scene& scene, int frames) {
+std::vector<double> distances_down(const scene::Scene& scene, int frames) {
   Simulation simulation(scene);
   const Vec3 down = scene.obstacles[0].pose.rotation * Vec3::UnitX();
-  std::vector<double> ways;
+  std::vector<double> distances;
   for (int k = 0; k <= frames; ++k) {
     if (k > 0) simulation.advance();
-    double way = 0;
+    double distance = 0;
     const auto& x = testing::sheet_of(simulation.snapshot());
-    for (const Vec3& p : x) way += down.dot(p) / static_cast<double>(x.size());
-    ways.push_back(way);
+    for (const Vec3& p : x) distance += down.dot(p) / static_cast<double>(x.size());
+    distances.push_back(distance);
   }
-  return ways;
+  return distances;
 }
 
 class Friction : public ::testing::TestWithParam<double> {};
 
 TEST_P(Friction, HoldsClothOnASlopeTwoPercentBelowTheCoefficient) {
   const double mu = GetParam();
-  const auto way = ways_down(patch_on_slope(std::atan(0.98 * mu), mu, 0), 50);
-  const double speed = 50 * (way[50] - way[49]);
-  // README, "stick speed": sticking contacts creep by up to this.
+  const auto distance = distances_down(patch_on_slope(std::atan(0.98 * mu), mu, 0), 50);
+  const double speed = 50 * (distance[50] - distance[49]);
+  // README, "stick speed": sticking contacts creep by up to this speed.
   EXPECT_LT(speed, 2e-4);
-  EXPECT_LT(way[50] - way[0], 1e-3);
+  EXPECT_LT(distance[50] - distance[0], 1e-3);
 }
 
 TEST_P(Friction, LetsClothSlideOnASlopeTwoPercentAboveTheCoefficient) {
   const double mu = GetParam(), angle = std::atan(1.02 * mu);
-  const auto way = ways_down(patch_on_slope(angle, mu, 0), 50);
-  const double acceleration = 50 * ((way[50] - way[49]) - (way[25] - way[24])) / 0.5;
+  const auto distance = distances_down(patch_on_slope(angle, mu, 0), 50);
+  const double acceleration = 50 * ((distance[50] - distance[49]) - (distance[25] - distance[24])) / 0.5;
   const double expected = kGravity * (std::sin(angle) - mu * std::cos(angle));
   EXPECT_NEAR(acceleration, expected, 0.03 * expected);
 }
 
 TEST_P(Friction, StopsSlidingClothWhereCoulombsLawSays) {
   const double mu = GetParam(), speed = 1;
-  const auto way = ways_down(patch_on_slope(0, mu, speed), static_cast<int>(50 * 1.5 * speed / (mu * kGravity)));
+  const auto distance =
+      distances_down(patch_on_slope(0, mu, speed), static_cast<int>(50 * 1.5 * speed / (mu * kGravity)));
   const double expected = speed * speed / (2 * mu * kGravity);
-  EXPECT_NEAR(way.back() - way[0], expected, 0.02 * expected);
+  EXPECT_NEAR(distance.back() - distance[0], expected, 0.02 * expected);
 }
 
 constexpr double kDegree = 0.017453292519943295;
 
 class Incline : public ::testing::TestWithParam<scene::Response> {};
 
-// Just above the angle of friction the force that drives is a hundredth of the weight. A block loses nothing by a fall:
-// whatever the slope gives it up to rest, friction takes the share mu of, and while it falls it gains mu times that
-// height. Euler's method is ahead by half a step in 1.6 s.
+// Just above the angle of friction the driving force is a hundredth of the weight. A fall costs a block nothing: of the
+// height that the slope gives it before it rests, friction takes the fraction mu, and during the fall it gains mu times
+// that height. Euler's method leads by half a step in 1.6 s.
 TEST_P(Incline, IsSlidDownAsABlockDoes) {
   for (double mu : {0.1, 0.3, 0.6})
     for (double steeper : {0.5, 1.0, 5.0, 45 - std::atan(mu) / kDegree})
       for (const auto& [particles, fall] : {std::pair(11, 0.0), {11, 0.001}, {21, 0.0}, {21, 0.001}}) {
-        if (steeper > 5 && particles > 11) continue;  // it has slid, at any mesh
+        if (steeper > 5 && particles > 11) continue;  // it slides on any mesh
         const double angle = std::atan(mu) + steeper * kDegree;
         scene::Scene scene = incline(angle, mu, particles);
         scene.contact.response = GetParam();
         scene::Cloth& cloth = scene.cloths[0];
         cloth.pose.position += cloth.pose.rotation * Vec3(0, 0, fall);
-        const auto way = ways_down(scene, 40);
+        const auto distance = distances_down(scene, 40);
         const double expected = 0.5 * kGravity * (std::sin(angle) - mu * std::cos(angle)) * 1.6 * 1.61;
-        // Of Euler's own distance 0.74 % is the most that was off, where friction 0.6 stops a fall.
-        EXPECT_NEAR(way[40] - way[0], expected, 0.01 * expected)
+        // Measured: at most 0.74 % off Euler's own distance, where friction 0.6 stops a fall.
+        EXPECT_NEAR(distance[40] - distance[0], expected, 0.01 * expected)
             << "friction " << mu << ", " << angle / kDegree << " degrees, after a fall of " << fall << " m, "
             << particles;
       }
@@ -118,8 +118,8 @@ TEST_P(Incline, HoldsClothADegreeBelowTheAngleOfFriction) {
   for (double mu : {0.1, 0.3, 0.6}) {
     scene::Scene scene = incline(std::atan(mu) - kDegree, mu, 11);
     scene.contact.response = GetParam();
-    const auto way = ways_down(scene, 25);
-    EXPECT_LT(25 * (way[25] - way[24]), 2e-4) << "friction " << mu;  // the stick speed
+    const auto distance = distances_down(scene, 25);
+    EXPECT_LT(25 * (distance[25] - distance[24]), 2e-4) << "friction " << mu;  // the stick speed
   }
 }
 

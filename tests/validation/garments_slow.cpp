@@ -1,4 +1,4 @@
-// The garments that ship, sewn and worn by a stand-in body: they fit, and nothing ever intersects.
+// The shipped garments, sewn and worn by a simple body: they fit, and nothing ever intersects.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,12 +16,12 @@ namespace {
 
 constexpr int kAround = 32;
 
-/// A ring of a limb or of the trunk: an ellipse about `centre`, spanned by two half axes.
+/// Cross-section of a limb or of the trunk: an ellipse around `centre` with the half axes a and b.
 struct Ring {
   Vec3 centre, a, b;
 };
 
-// A closed tube through rings, as an OBJ file; its ends are cones.
+// Writes a closed tube through rings as an OBJ file; its ends are cones.
 void write_tube(const std::filesystem::path& file, const std::vector<Ring>& rings, const Vec3& begin, const Vec3& end) {
   std::ofstream out(file);
   const auto vertex = [&](const Vec3& x) { out << "v " << x.x() << " " << x.y() << " " << x.z() << "\n"; };
@@ -43,7 +43,7 @@ void write_tube(const std::filesystem::path& file, const std::vector<Ring>& ring
   }
 }
 
-// Heights, half widths and half depths for 1.75 m, chest 0.88, waist 0.68, hip 0.94 m.
+// Height, half width and half depth [m] of each ring, for a height of 1.75 m, chest 0.88, waist 0.68, hip 0.94 m.
 constexpr std::array<std::array<double, 3>, 16> kTrunk{{{0.77, 0.10, 0.06},
                                                         {0.80, 0.155, 0.105},
                                                         {0.86, 0.170, 0.125},
@@ -63,7 +63,7 @@ constexpr std::array<std::array<double, 3>, 16> kTrunk{{{0.77, 0.10, 0.06},
 
 class Worn : public support::TestFolder {
  protected:
-  // Arms at 45 degrees.
+  // The arms point down at 45 degrees.
   std::string body() {
     std::vector<Ring> trunk;
     for (const auto& [z, a, b] : kTrunk) trunk.push_back({{0, 0, z}, {a, 0, 0}, {0, b, 0}});
@@ -73,8 +73,9 @@ class Worn : public support::TestFolder {
       const Vec3 along(side * std::numbers::sqrt2 / 2, 0, -std::numbers::sqrt2 / 2);
       const Vec3 up(side * std::numbers::sqrt2 / 2, 0, std::numbers::sqrt2 / 2), shoulder(side * 0.15, 0, 1.392);
       std::vector<Ring> arm, leg;
-      for (const auto& [way, r] : {std::pair(-0.03, 0.036), {0.0, 0.044}, {0.3, 0.036}, {0.55, 0.027}, {0.7, 0.03}})
-        arm.push_back({shoulder + way * along, side * r * Vec3::UnitY(), r * up});
+      for (const auto& [along_arm, r] :
+           {std::pair(-0.03, 0.036), {0.0, 0.044}, {0.3, 0.036}, {0.55, 0.027}, {0.7, 0.03}})
+        arm.push_back({shoulder + along_arm * along, side * r * Vec3::UnitY(), r * up});
       for (const auto& [z, r] : {std::pair(0.08, 0.036), {0.33, 0.052}, {0.46, 0.052}, {0.6, 0.068}, {0.86, 0.078}})
         leg.push_back({{side * 0.092, 0, z}, {r, 0, 0}, {0, r, 0}});
       const std::string name = side < 0 ? "right" : "left";
@@ -111,12 +112,12 @@ class Worn : public support::TestFolder {
       double length = 0;
       for (std::size_t k = 1; k < seam.vertices.size(); ++k)
         length += (at(seam.vertices[k]) - at(seam.vertices[k - 1])).norm();
-      // As chords: an arc of 0.2 m radius loses (25 mm)² / (24 · 0.04 m²) of its length, below 1e-3.
+      // Lengths are chords: an arc of 0.2 m radius loses (25 mm)² / (24 · 0.04 m²) of its length, below 1e-3.
       worst = std::max(worst, std::abs(2 * length / (seam.length_a + seam.length_b) - 1));
     }
     EXPECT_NEAR(area, pattern, 0.01 * pattern);
     EXPECT_LT(worst, 0.01);
-    // It is worn and has not fallen.
+    // The body wears it: it has not fallen.
     double mean = 0;
     for (const Vec3& p : x) mean += p.z() / static_cast<double>(x.size());
     EXPECT_GT(mean, 0.6);
@@ -136,8 +137,8 @@ TEST_F(Worn, TheDressFits) {
   wear("dress");
 }
 
-/// Positions of the points of a panel's edge at equal shares of its length, told by where they are in the flat panel:
-/// nothing is asked of the seams that the mesh was made with.
+/// Positions of points at equal fractions of the length of a panel's edge, found by their place in the flat panel:
+/// independent of the seams with which the mesh was made.
 std::vector<Vec3> places_along(const garment::Pattern& pattern, const garment::Garment& garment,
                                const std::string& edge, std::size_t segments, const std::vector<Vec3>& x) {
   const auto [p, e] = pattern.find(edge);
@@ -158,7 +159,7 @@ std::vector<Vec3> places_along(const garment::Pattern& pattern, const garment::G
   return places;
 }
 
-/// Largest distance of the two sides of a seam [m].
+/// Maximum distance between the two sides of a seam [m].
 double opening(const garment::Pattern& pattern, const garment::Garment& garment, std::size_t seam,
                const std::vector<Vec3>& x) {
   const std::size_t segments = garment.seams[seam].vertices.size() - 1;
@@ -174,7 +175,7 @@ double opening(const garment::Pattern& pattern, const garment::Garment& garment,
   return std::min(one_way, widest());
 }
 
-// On the mannequin, and coarse: 30 mm in the cloth, 25 mm in the body.
+// On the mannequin, with coarse meshes: 30 mm in the cloth, 25 mm in the body.
 class OnTheMannequin : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(OnTheMannequin, FitsAtRestWithItsSeamsClosed) {
@@ -217,7 +218,7 @@ TEST_P(OnTheMannequin, FitsAtRestWithItsSeamsClosed) {
   EXPECT_LT(worst_area, 0.01);
   EXPECT_LT(worst_seam, 0.01);
   EXPECT_LT(widest, 1e-4);
-  // It is worn and has not slipped down.
+  // The body wears it: it has not slipped down.
   double mean = 0;
   for (const Vec3& p : x) mean += p.z() / static_cast<double>(x.size());
   EXPECT_GT(mean, 0.6);

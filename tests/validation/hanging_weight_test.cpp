@@ -1,4 +1,4 @@
-// A mass on a thread: the stiffness limit, however much heavier the mass is.
+// A mass on a thread: only the thread's stiffness limits its extension, however large the mass ratio is.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -9,13 +9,13 @@ namespace weft::simulation {
 namespace {
 
 TEST(HangingWeight, StretchesItsThreadsByItsWeightOverTheirStiffness) {
-  // 20 rows of 1 kg carry 10 to 100,000 kg; what iterates locally is wrong by metres here (Macklin et al., "Small
+  // 20 rows of 1 kg carry 10 to 100,000 kg; local iterative solvers are wrong by metres here (Macklin et al., "Small
   // Steps in Physics Simulation", 2019).
   constexpr double kWidth = 0.01, kLength = 0.2, kStiffness = 1e9;
   for (double mass : {10.0, 1e3, 1e5}) {
     scene::Scene scene = testing::sheet_alone(1, 2, 0);
     testing::solve_tightly(scene);
-    scene.solver.newton_tolerance = 1e-7;  // below 1e-9 the rounding of k · length shows
+    scene.solver.newton_tolerance = 1e-7;  // below 1e-9 the rounding of k · length is visible
     scene.time.step = 0.02;
     scene::Cloth& chain = scene.cloths[0];
     chain.size = {kWidth, kLength};

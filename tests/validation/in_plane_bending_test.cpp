@@ -1,4 +1,4 @@
-// A strip bent in its own plane against beam theory: elements that lock would be too stiff.
+// Compares a strip bent in its own plane with beam theory: elements with locking would be too stiff.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,9 +15,8 @@ using scene::ClothShape;
 constexpr double kBeamLength = 0.1, kBeamWidth = 0.01;  // from the held column to the tip [m]
 constexpr double kStretch = 1000, kShear = 1000;        // [N/m]
 
-/// How far the tip of a strip sags in its plane under gravity across, over what a beam does: ν = 0, EI = k w³ / 12, and
-/// a shear stiffness of 5/6 · (μ / 2) w (Timoshenko). The particles of the first column are held, and nothing bends out
-/// of the plane.
+/// In-plane sag of the tip of a strip under transverse gravity, relative to a beam: ν = 0, EI = k w³ / 12, and a shear
+/// stiffness of 5/6 · (μ / 2) w (Timoshenko). The first column is held, and nothing bends out of the plane.
 double sag_over_beam(ClothShape shape, int across) {
   scene::Scene scene = testing::sheet_alone(1, 3, 0);
   scene.physics.gravity = {0, -9.81e-3, 0};  // small displacements
@@ -42,9 +41,9 @@ double sag_over_beam(ClothShape shape, int across) {
   return sag / beam;
 }
 
-// Constant strain makes triangles too stiff here, on coarse meshes by half; with n cells across the sag is short by
-// 1 / (1 + c / n²), which is no locking: c = 2 for quads, the trapezoidal rule's error of the second moment of area
-// Σ y² (measured: 3.5 for aligned, 1 for crossed triangles).
+// Constant strain makes triangles too stiff here, on coarse meshes by half. With n cells across, the sag has the factor
+// 1 / (1 + c / n²), which is not locking: c = 2 for quads, from the trapezoidal rule's error in the second moment of
+// area Σ y² (measured: 3.5 for aligned, 1 for crossed triangles).
 TEST(InPlaneBending, ApproachesBeamTheoryInSecondOrder) {
   for (const auto& [shape, c] : {std::pair(ClothShape::quads, 2.0), std::pair(ClothShape::aligned_triangles, 3.5),
                                  std::pair(ClothShape::crossed_triangles, 1.0)}) {

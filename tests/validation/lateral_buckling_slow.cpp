@@ -1,4 +1,4 @@
-// A narrow strip held level by its end, its width upright: from a certain weight on it falls over sideways.
+// A narrow strip held horizontally by its end, its width vertical: above a critical weight it buckles sideways.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,15 +14,15 @@ namespace {
 
 using scene::ClothShape;
 
-// Γ = ρ g L³ / B at which a narrow strip with ν = 0 buckles: q L³ = 12.854 √(EI GJ) (Prandtl; the factor from the first
-// zero, 2.14229, of the Bessel function J_(-1/6)) with q = ρ g w, EI = B w and, of a plate, GJ = 2 B w.
+// Γ = ρ g L³ / B at which a narrow strip with ν = 0 buckles: q L³ = 12.854 √(EI GJ) (Prandtl; the factor follows from
+// 2.14229, the first zero of the Bessel function J_(-1/6)) with q = ρ g w, EI = B w and, for a plate, GJ = 2 B w.
 constexpr double kOnset = 18.18;
 
 constexpr double kStripLength = 0.1;  // [m]
 constexpr double kRigidity = 1e-4;    // [N·m]
 
 struct Strip {
-  int along, across;  // cells from the last held column to the tip, and over the width
+  int along, across;  // number of cells from the last held column to the tip, and over the width
 };
 
 double spacing(const Strip& cells) {
@@ -39,7 +39,7 @@ scene::Scene upright_strip(ClothShape shape, const Strip& cells, double gamma) {
   cloth.particles_warp = cells.across + 1;
   cloth.pose.rotation = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX());  // warp upward
   cloth.material.density = gamma * kRigidity / (9.81 * std::pow(kStripLength, 3));
-  // Of the narrowest strip, 2.5 mm, k w² / 12 is 500 times B: it hardly sags.
+  // For the narrowest strip, 2.5 mm, k w² / 12 is 500 times B: it hardly sags.
   cloth.material.stretch_weft = cloth.material.stretch_warp = cloth.material.shear = 1e5;
   cloth.material.bend = kRigidity;
   cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
@@ -49,8 +49,8 @@ scene::Scene upright_strip(ClothShape shape, const Strip& cells, double gamma) {
   return scene;
 }
 
-// The upright strip, sagged by its weight in its own plane, is at rest whatever its weight. Whether it would stay there
-// is decided by the Jacobian across that plane.
+// The upright strip, sagging in its own plane, is in equilibrium for any weight. The out-of-plane Jacobian decides
+// whether the equilibrium is stable.
 bool stands(ClothShape shape, const Strip& cells, double gamma) {
   testing::ClothModel model(upright_strip(shape, cells, gamma));
   model.find_rest(model.free_along({0, 2}));
@@ -68,8 +68,8 @@ double onset(ClothShape shape, const Strip& cells) {
   return 0.5 * (low + high);
 }
 
-// The clamp keeps the strip's end from warping, which makes it stiffer in proportion to w / L: the narrowest comes
-// within 3 %, the line through the last two meets theory at w = 0.
+// The clamp prevents warping of the strip's end, which adds a stiffness in proportion to w / L: the narrowest strip is
+// within 3 %, and the line through the last two meets the theory at w = 0.
 TEST(LateralBuckling, BeginsAtTheWeightOfTheory) {
   for (ClothShape shape : {ClothShape::quads, ClothShape::aligned_triangles, ClothShape::crossed_triangles}) {
     std::printf("%s: w/L, onset\n", testing::name_of(shape));
@@ -98,7 +98,7 @@ TEST(LateralBuckling, HardlyDependsOnTheCellsAcross) {
 
 constexpr Strip kOfRun{20, 2};
 
-/// Largest distance from its plane after 5 s of a run, of a strip that was given a push of 1 mm/s.
+/// Maximum distance from its plane after a run of 5 s, for a strip with an initial push of 1 mm/s.
 double way_aside(double gamma) {
   scene::Scene scene = upright_strip(ClothShape::quads, kOfRun, gamma);
   scene.time = {.duration = 5, .fps = 10, .step = 0.05};

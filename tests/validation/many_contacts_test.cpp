@@ -1,5 +1,5 @@
-// Scenes of which contact is the greater part: sheets in layers, ribbons in a heap, a belt, a wrung tube. Coarse
-// meshes, so that they are quick; each scene moves as far as a fine one.
+// Scenes dominated by contact: layered sheets, a heap of ribbons, a belt, a wrung tube. Meshes are coarse, so that runs
+// are quick; each scene moves as far as a fine one.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 class ManyContacts : public support::TestFolder {
  protected:
-  /// Writes a tube about the y axis as an OBJ file and returns the keys of a cloth that has its shape.
+  /// Writes a tube about the y axis as an OBJ file and returns the keys of a cloth with this shape.
   std::string tube(double radius, double length, int around, int along) const {
     std::string text;
     for (int j = 0; j < along; ++j) {
@@ -36,9 +36,9 @@ class ManyContacts : public support::TestFolder {
     return fmt::format("[[cloth]]\nname = 'tube'\nshape = 'mesh'\nrest = 'mesh'\nfile = '{}'\n", file.string());
   }
 
-  /// Runs the scene and judges all of its frames by exact predicates. Without contact the surfaces of the same scene
-  /// must intersect, or it would show nothing. One of its 80 to 120 steps may be halved: of six starts of the ribbons,
-  /// 0.7 mm apart in height, one has such a step.
+  /// Runs the scene and judges all frames with exact predicates. Without contact the same scene must have
+  /// intersections, otherwise the test would show nothing. One of its 80 to 120 steps may be halved: one of six starts
+  /// of the ribbons, 0.7 mm apart in height, has such a step.
   static void expect_apart(const std::string& text) {
 #ifndef NDEBUG
     GTEST_SKIP() << "takes long with sanitizers";
@@ -104,12 +104,12 @@ TEST_F(ManyContacts, OfNineRibbonsThatFallIntoAHalfPipeKeepThemApart) {
   expect_apart(text);
 }
 
-// The rollers stand inside of a ring, go outward until it is taut, and turn all the time.
+// The rollers stand inside the ring, move outward until it is taut, and turn all the time.
 TEST_F(ManyContacts, OfABeltRoundThreeTurningRollersKeepThemApart) {
   constexpr double kRing = 0.3, kRoller = 0.06;  // radii [m]
   constexpr double kInside = kRing - kRoller - 0.005;
-  // Distance from the middle at which the path around the rollers is as long as the ring: 2 pi kRoller + 3 sqrt(3)
-  // kTaut.
+  // Distance from the middle at which the path around the rollers is as long as the ring, solving 2 pi kRing = 2 pi
+  // kRoller + 3 sqrt(3) taut.
   const double taut = 2 * std::numbers::pi * (kRing - kRoller) / (3 * std::numbers::sqrt3);
   std::string text = "[time]\nduration = 1.2\n" + tube(kRing, 0.12, 64, 5) + "material = { friction = 0.6 }\n";
   for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Ropes against theory: how they hang, swing, fall, and hold on a drum.
+// Compares ropes with theory: hanging, vibration, fall, and friction on a drum.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ std::string rope(const std::string& name, const std::string& keys) {
 }
 
 TEST(Ropes, HangAsACatenaryAndPullAtTheirEndsWithItsForce) {
-  // From a V, so that the start is not the answer; 60 pieces of 25 mm. Lumped masses lie on the curve but for the sag
-  // of a piece, (25 mm)² / 8 a = 0.2 mm; the run has settled to less than that.
+  // The rope starts as a V, not at the solution; it has 60 pieces of 25 mm. Lumped masses lie on the curve up to the
+  // sag of a piece, (25 mm)² / 8 a = 0.2 mm; the remaining motion is smaller.
   constexpr double kSpan = 1, kLength = 1.5, kMass = 0.05, kStretch = 2000, kPiece = kLength / 60;
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 4\nstep = 0.02\n" +
@@ -35,14 +35,14 @@ TEST(Ropes, HangAsACatenaryAndPullAtTheirEndsWithItsForce) {
   for (int k = 0; k < 50; ++k) u -= (std::sinh(u) - kLength / kSpan * u) / (std::cosh(u) - kLength / kSpan);
   const double a = kSpan / (2 * u);
   for (const Vec3& place : x) EXPECT_NEAR(place.z(), a * (std::cosh(place.x() / a) - std::cosh(u)), 1e-3);
-  // Of the first piece: the weight of what hangs below its middle, and the pull at the lowest point.
+  // Tension of the first piece: the weight of what hangs below its middle, and the tension at the lowest point.
   const double pull = kStretch * ((x[1] - x[0]).norm() / kPiece - 1);
   const double expected = kMass * kGravity * std::hypot(a, 0.5 * (kLength - kPiece));
   EXPECT_NEAR(pull / expected, 1, 0.01);
 }
 
 TEST(Ropes, SwingWithTheFrequencyOfATautString) {
-  // 40 pieces and steps of 2 ms leave 3e-4 each of the frequency, 5 Hz.
+  // 40 pieces and steps of 2 ms each cause an error of 3e-4 in the frequency, 5 Hz.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 0.6\nfps = 250\nstep = 0.002\nintegrator = \"implicit_midpoint\"\n"
       "[physics]\ngravity = [0, 0, 0]\nair_density = 0\n[contact]\nself = false\n" +
@@ -65,7 +65,7 @@ TEST(Ropes, SwingWithTheFrequencyOfATautString) {
 }
 
 TEST(Ropes, FallFreelyHoweverTheyBendAndSwingWithinThemselves) {
-  // The midpoint rule is exact for the motion of the centre; what is left is what the solver leaves.
+  // The midpoint rule is exact for the motion of the centre; only the solver's residual remains.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 0.4\nstep = 0.005\nintegrator = \"implicit_midpoint\"\n[physics]\nair_density = 0\n"
       "[contact]\nself = false\n[solver]\nnewton_tolerance = 1e-6\nlinear_tolerance = 1e-3\n" +
@@ -91,7 +91,7 @@ TEST(Ropes, FallFreelyHoweverTheyBendAndSwingWithinThemselves) {
   }
 }
 
-/// A rope over half of a fixed drum, with a coefficient of 0.2 between both and masses at its ends.
+/// A rope over half of a fixed drum, with a friction coefficient of 0.2 and masses at its ends.
 scene::Scene over_a_drum(double light, double heavy) {
   constexpr double kRadius = 0.1, kCourse = 0.1035;  // of the drum, and of the rope's middle around it [m]
   std::string points = fmt::format("[{}, 0, -0.5]", -kCourse);
@@ -109,14 +109,14 @@ scene::Scene over_a_drum(double light, double heavy) {
                   kRadius));
 }
 
-// How far the heavy end goes down in 0.8 s, after what the rope stretches in the first 0.1 s [m].
+// How far the heavy end descends between 0.1 s, when the rope has stretched, and 0.8 s [m].
 double descent(const scene::Scene& scene) {
   const std::vector<MeasuredFrame> frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
   return frames[2].cloths.at(0).back().z() - frames.back().cloths.at(0).back().z();
 }
 
 TEST(Ropes, SlipOverADrumFromTheRatioOfLoadsOnThatEulerAndEytelweinHave) {
-  // e^(μ π) = 1.874. A rope that is 3 % beyond accelerates by g (r − 1.874) / (1 + r), 0.19 m/s²: 5 cm in 0.7 s.
+  // e^(μ π) = 1.874. A mass ratio r 3 % beyond accelerates by g (r − 1.874) / (1 + r), 0.19 m/s²: 5 cm in 0.7 s.
   const double ratio = std::exp(0.2 * std::numbers::pi);
   EXPECT_LT(descent(over_a_drum(0.5, 0.97 * 0.5 * ratio)), 0.01);
   EXPECT_GT(descent(over_a_drum(0.5, 1.03 * 0.5 * ratio)), 0.03);
@@ -130,7 +130,7 @@ TEST(Ropes, StayOnTheSideOfAnotherRopeOnWhichTheyFall) {
   const std::vector<MeasuredFrame> frames = support::run_scene(scene, {.keep_positions = true});
   for (const MeasuredFrame& frame : frames) {
     EXPECT_EQ(frame.pairs, 0U) << frame.between;
-    // Where the upper one crosses the other, seen from above; its ends hang down and swing below.
+    // Where the upper rope crosses the other, seen from above; its ends hang down and swing below.
     const std::vector<Vec3>&held = frame.cloths.at(0), &falling = frame.cloths.at(1);
     std::optional<Vec3> over;
     for (std::size_t i = 1; i < falling.size(); ++i) {

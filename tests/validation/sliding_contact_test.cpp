@@ -1,5 +1,5 @@
-// Contact at default settings against mechanics: energy of cloth that slides without friction on a curved surface,
-// momentum of sheets that collide, motion that does not depend on where the axes point.
+// Compares contact at default settings with mechanics: energy of cloth that slides without friction on a curved
+// surface, momentum of colliding sheets, and independence of the direction of the axes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,20 +40,20 @@ std::string half_pipe(const std::string& integrator) {
          "segments = 512\nposition = [0, 0, 1]\nfriction = 0\n";
 }
 
-/// Part of the energy of its fall that the patch has as motion at the bottom.
+/// Fraction of the energy of its fall that the patch has as kinetic energy at the bottom.
 double kept_at_the_bottom(const std::string& integrator) {
-  double most = 0, fall = 0, bottom = 0;
+  double max_energy = 0, fall = 0, bottom = 0;
   run_scene(scene_of_text(half_pipe(integrator)), {.judged = false, .keep_positions = true},
             [&](const MeasuredFrame& frame) {
               const Vec3 at = centre(frame.cloths[0]);
               if (frame.report.frame == 0) bottom = 1 - std::hypot(at.y(), 1 - at.z()), fall = at.z() - bottom;
-              most = std::max(most, frame.report.kinetic_energy);
+              max_energy = std::max(max_energy, frame.report.kinetic_energy);
             });
-  return most / (0.2 * 0.06 * 0.06 * 9.81 * fall);
+  return max_energy / (0.2 * 0.06 * 0.06 * 9.81 * fall);
 }
 
-// Implicit Euler damps a swing of frequency ω, ω² = g/R, by exp(−ω² h t) in energy: 0.933 down to the bottom at 10 ms.
-// With contact directions of where a step begins 0.38 of it was left.
+// Implicit Euler damps a swing of frequency ω, ω² = g/R, by exp(−ω² h t) in energy: 0.933 down to the bottom with 10
+// ms. (Measured with contact normals of the start of each step: 0.38.)
 TEST(SlidingContact, LosesInAHalfPipeWhatTheMethodDampsAlone) {
   const double quarter = 0.5 * std::numbers::pi * std::sqrt(0.5 / 9.81);
   const double euler = std::exp(-9.81 / 0.5 * 0.01 * quarter);
@@ -61,7 +61,8 @@ TEST(SlidingContact, LosesInAHalfPipeWhatTheMethodDampsAlone) {
   EXPECT_GT(kept_at_the_bottom("bdf2"), 0.97);
 }
 
-// A sheet falls flat on a table, and stops. BDF2 that takes this for smooth throws it back with 0.48 of the energy.
+// A sheet falls flat on a table, and stops. (Measured: if BDF2 takes the impact for smooth motion, the sheet rebounds
+// with 0.48 of the energy.)
 TEST(SlidingContact, FlatSheetDoesNotBounceOffATable) {
   for (const std::string integrator : {"implicit_euler", "implicit_midpoint", "bdf2"}) {
     for (const int fps : {100, 200}) {
@@ -75,14 +76,14 @@ TEST(SlidingContact, FlatSheetDoesNotBounceOffATable) {
         largest = std::max(largest, frame.report.kinetic_energy);
         last = std::max(frame.report.kinetic_energy, frame.report.frame > 0.33 * fps ? last : 0.0);
       });
-      // It arrives after 0.29 s. 3e-3 of the energy was seen 40 ms later, on the way from the gap to the contact.
+      // It arrives after 0.29 s. Measured 40 ms later, while it moves from the gap to the contact: 3e-3 of the energy.
       EXPECT_GT(largest, 0.02);
       EXPECT_LT(last, 0.01 * largest) << integrator << ", " << fps;
     }
   }
 }
 
-// Rounding alone is left: 1e-14 of it was seen.
+// Only rounding remains: measured 1e-14 of the momentum.
 TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
   for (const auto& [friction, integrator] : {std::pair("0", "implicit_euler"), std::pair("0.3", "implicit_euler"),
                                              std::pair("0", "bdf2"), std::pair("0.3", "bdf2")}) {
@@ -96,9 +97,9 @@ TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
         "5]\nvelocity = [0.3, 0, -1]\n" +
         material + "[[cloth]]\nname = \"still\"\nsize = [0.25, 0.25]\nparticles = [13, 13]\nposition = [0, 0, 0]\n" +
         material);
-    // Centres of mass move evenly before and after; a particle of the border has half of the mass, one of a corner a
-    // quarter.
-    std::vector<Vec3> momentum_h;  // of a frame [kg m]
+    // Centres of mass move at constant velocity before and after; a border particle has half of the mass, a corner
+    // particle a quarter.
+    std::vector<Vec3> momentum_h;  // momentum times the frame's length, per frame [kg m]
     Vec3 before = Vec3::Zero();
     double rubbed = 0;
     run_scene(scene, {.judged = true, .keep_positions = true}, [&](const MeasuredFrame& frame) {
@@ -117,15 +118,15 @@ TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
       rubbed = std::max(rubbed, centre(frame.cloths[1]).norm());
     });
     EXPECT_GT(rubbed, 0.01) << "the sheet at rest was never hit";
-    // Positions of the snapshots are exact to 1e-16 m, steps of 0.04 s at 1 m/s. BDF2 solves for impacts in single
-    // precision: 2e-7 of it was seen.
-    const double most = std::string(integrator) == "bdf2" ? 1e-6 : 1e-9;
-    EXPECT_LT((momentum_h.back() - momentum_h.front()).norm(), most * momentum_h.front().norm())
+    // Positions in snapshots are exact to 1e-16 m, at 1 m/s over frames of 0.04 s. BDF2 solves for impacts in single
+    // precision: measured 2e-7 of the momentum.
+    const double tolerance = std::string(integrator) == "bdf2" ? 1e-6 : 1e-9;
+    EXPECT_LT((momentum_h.back() - momentum_h.front()).norm(), tolerance * momentum_h.front().norm())
         << friction << integrator;
   }
 }
 
-/// A napkin that falls onto a bar, all of it turned about the vertical by so many degrees.
+/// A napkin falls onto a bar; the whole scene is turned about the vertical by `turn` degrees.
 scene::Scene napkin(int turn) {
   return scene_of_text(
       "[time]\nduration = 0.4\n[[cloth]]\nname = \"napkin\"\nsize = [0.4, 0.4]\nparticles = [17, 17]\nposition = [0, "
@@ -137,22 +138,23 @@ scene::Scene napkin(int turn) {
       std::to_string(turn) + "]\n[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n");
 }
 
-// What the solver leaves hangs on the axes, and is told within a factor of three (`weft bench estimates`).
+// The solver's residual depends on the axes; the run reports it within a factor of three (`weft bench estimates`).
 TEST(SlidingContact, MovesTheSameWhereverTheAxesPoint) {
   const auto run = [](int turn) { return run_scene(napkin(turn), {.judged = false, .keep_positions = true}); };
   const auto straight = run(0), turned = run(90);
-  double said = 0;  // by both runs [m]
+  double reported = 0;  // error reported by both runs [m]
   for (std::size_t k = 0; k < straight.size(); ++k) {
-    said += straight[k].report.solver_error + turned[k].report.solver_error;
+    reported += straight[k].report.solver_error + turned[k].report.solver_error;
     double sum = 0;
     const auto &x = straight[k].cloths[0], &y = turned[k].cloths[0];
     for (std::size_t i = 0; i < x.size(); ++i) sum += (y[i] - Vec3(-x[i].y(), x[i].x(), x[i].z())).squaredNorm();
-    EXPECT_LE(std::sqrt(sum / static_cast<double>(x.size())), 3 * said + 1e-9) << "frame " << k;
+    EXPECT_LE(std::sqrt(sum / static_cast<double>(x.size())), 3 * reported + 1e-9) << "frame " << k;
   }
 }
 
-// The steps decide how exact a run is, not the solver: that was 160 times as far off where this napkin crumpled to one
-// side. And where it falls symmetrically nothing stretches it: 0.3 % is twice what finer tolerances show.
+// The step size decides the accuracy of a run, not the solver (measured once: an error 160 times as large where this
+// napkin crumpled to one side). In a symmetric fall nothing stretches the napkin: 0.3 % is twice the strain with finer
+// tolerances.
 TEST(SlidingContact, TheSolverLeavesLessThanAThirdOfTheErrorOfTheSteps) {
   double steps = 0, solver = 0, strain = 0;
   for (const MeasuredFrame& frame : run_scene(napkin(0), {.judged = true})) {

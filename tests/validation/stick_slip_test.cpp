@@ -1,7 +1,7 @@
-// A clamped strip is pressed down on a floor: does its tip stick or slip? The test of Romero, Ly, Rasheed,
+// A clamped strip is pressed down on a floor: does its tip stick or slip? The test is from Romero, Ly, Rasheed,
 // Charrondiere, Lazarus, Neukirch and Bertails-Descoubes, "Physical validation of simulators in computer graphics"
-// (2021), with the coefficients of the weightless elastica: clamped above, free to turn at its tip, which stays
-// straight under the clamp.
+// (2021), with the coefficients of the weightless elastica: clamped at the top, its tip free to turn and always
+// straight below the clamp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,25 +13,25 @@ namespace weft::simulation {
 namespace {
 
 struct Point {
-  double depth;     // way of the clamp downward over the length of the strip
-  double friction;  // that holds the tip: horizontal over vertical force
+  double depth;     // downward displacement of the clamp, relative to the length of the strip
+  double friction;  // coefficient needed to hold the tip: horizontal over vertical force
 };
-// Solved by shooting. At 0.33 the tip lies flat on the floor; deeper, it touches along a line.
+// Solved by shooting. At 0.33 the tip lies flat on the floor; at larger depths it touches along a line.
 constexpr Point kElastica[] = {
     {0.01, 0.044854}, {0.05, 0.103545}, {0.15, 0.195916}, {0.25, 0.280705}, {0.33, 0.356079}};
 
 constexpr double kFreeLength = 0.5;  // from the tip to the clamp [m]
-constexpr int kStripCells = 20;      // thresholds come out 0.5 to 0.9 % low; 1.4 to 2.1 % with half of them
+constexpr int kStripCells = 20;      // thresholds are 0.5 to 0.9 % low; 1.4 to 2.1 % with half as many cells
 constexpr double kFps = 25;
-constexpr int kLowered = 25;   // frame at which the clamp has come down
-constexpr int kReleased = 35;  // frame at which the tip, held till then, is left to friction
+constexpr int kLowered = 25;   // frame at which the clamp has reached its depth
+constexpr int kReleased = 35;  // frame at which the tip, held until then, is left to friction
 
-/// A strip upright on the floor, held by its two upper rows: the clamp acts at the lower one.
+/// An upright strip on the floor, held by its two upper rows: the clamp acts at the lower one.
 scene::Scene pressed_strip(double depth, double friction) {
   scene::Scene scene = testing::sheet_alone(1, 3, 0);
   scene.time = {.duration = 3, .fps = kFps, .step = 0.01};
   scene.physics.gravity = Vec3::Zero();
-  // Relative to the inertia alone where nothing has weight.
+  // Relative to the inertia only, because nothing has weight.
   scene.solver.newton_tolerance = 1e-4;
   scene.solver.linear_tolerance = 1e-3;
   scene.contact.obstacles = true;
@@ -44,7 +44,7 @@ scene::Scene pressed_strip(double depth, double friction) {
   strip.size = {2 * spacing, height};
   strip.particles_weft = 3;
   strip.particles_warp = kStripCells + 2;
-  // The load of 22 B / L² shortens it by 2e-5 of its length, the least depth being 1e-2.
+  // The force of 22 B / L² shortens it by 2e-5 of its length; the smallest depth is 1e-2.
   strip.material.stretch_weft = strip.material.stretch_warp = 5000;
   strip.material.bend = 1e-3;
   strip.material.bend_viscosity = 2e-4;
@@ -54,7 +54,7 @@ scene::Scene pressed_strip(double depth, double friction) {
   strip.material.drag = 0;
   strip.pose.rotation = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX());  // warp upward
   strip.pose.position = {0, 0, 0.5 * height + 0.5 * strip.material.thickness};
-  strip.velocity = {0, 0.02, 0};  // tells it to which side to buckle
+  strip.velocity = {0, 0.02, 0};  // sets the side to which it buckles
 
   scene::Pin clamp, tip;
   clamp.low = {0, (kStripCells - 0.1) / (kStripCells + 1)};
@@ -65,7 +65,7 @@ scene::Scene pressed_strip(double depth, double friction) {
   return scene;
 }
 
-/// How far the tip goes in the second after its release [m].
+/// How far the tip moves in the second after its release [m].
 double way_of_tip(const scene::Scene& scene) {
   Simulation simulation(scene);
   for (int k = 0; k < kReleased + static_cast<int>(kFps); ++k) simulation.advance();
@@ -78,7 +78,7 @@ TEST(StickSlip, TipSlipsTwoPercentBelowTheFrictionThatTheElasticaNeeds) {
 }
 
 TEST(StickSlip, TipSticksTwoPercentAboveTheFrictionThatTheElasticaNeeds) {
-  // README, "stick speed": contacts that stick creep by up to 2e-4 m/s.
+  // README, "stick speed": sticking contacts creep by up to 2e-4 m/s.
   for (const Point& point : kElastica)
     EXPECT_LT(way_of_tip(pressed_strip(point.depth, 1.02 * point.friction)), 2e-4) << "depth " << point.depth;
 }

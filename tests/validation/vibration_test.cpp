@@ -1,4 +1,4 @@
-// Natural frequencies of what has closed forms: membrane, plate, chain and cantilever.
+// Natural frequencies with closed forms: membrane, plate, chain and cantilever.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,7 +73,7 @@ TEST_P(Vibration, OfATautMembrane) {
   cloth.start_scale = {1.02, 1.02};
   testing::ClothModel model(scene);
   std::vector<double> exact;
-  // Threads stretched by λ pull with k (λ - 1): in the coordinates of the rest shape ω² = k (1 - 1/λ) λ(m, n) / ρ.
+  // Threads stretched by λ have the tension k (λ - 1): in rest coordinates ω² = k (1 - 1/λ) λ(m, n) / ρ.
   for (double square : wave_numbers_sq(cloth.size))
     exact.push_back(std::sqrt(cloth.material.stretch_weft * (1 - 1 / 1.02) * square / kClothDensity));
   expect("membrane", model.modes(model.free_along({2}), 3), exact);
@@ -89,7 +89,7 @@ TEST_P(Vibration, OfASupportedPlate) {
   expect("plate", model.modes(model.free_along({2}), 3), exact);
 }
 
-/// A strip that hangs from its upper row. It resists bending just enough to stay straight across.
+/// A strip that hangs from its upper row. Its bending stiffness only just keeps it straight across.
 scene::Scene chain(ClothShape shape) {
   scene::Scene scene = testing::sheet_alone(1, 3, 0);
   scene::Cloth& cloth = scene.cloths[0];
@@ -98,8 +98,8 @@ scene::Scene chain(ClothShape shape) {
   cloth.particles_warp = 51;
   cloth.pose.rotation = Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitX());  // warp upward
   cloth.material.density = kClothDensity;
-  cloth.material.stretch_weft = cloth.material.stretch_warp = 5000;  // 1 N/m at the top: 0.01 % on average
-  cloth.material.bend = 1e-7;                                        // ends of √(B / T) = 0.3 mm
+  cloth.material.stretch_weft = cloth.material.stretch_warp = 5000;  // 1 N/m at the top: 0.01 % of stretch on average
+  cloth.material.bend = 1e-7;                                        // boundary layers of √(B / T) = 0.3 mm
   cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
   scene::Pin top;
   top.low = {0, 1};
@@ -111,9 +111,9 @@ TEST_P(Vibration, OfAHangingChain) {
   testing::ClothModel model(chain(GetParam()));
   model.find_rest(model.free_along({0, 2}));
   std::vector<double> exact;
-  for (double zero : {2.40483, 5.52008, 8.65373})  // of the Bessel function J0
+  for (double zero : {2.40483, 5.52008, 8.65373})  // zeros of the Bessel function J0
     exact.push_back(0.5 * zero * std::sqrt(9.81 / 0.5));
-  // Each has a twin hardly faster, in which the ribbon twists: the same tension drives it.
+  // Each mode has a slightly faster twin in which the ribbon twists, driven by the same tension.
   std::vector<Mode> sways = model.modes(model.free_along({1}), 6);
   std::erase_if(sways, [](const Mode& mode) { return mode.share < 0.02; });
   expect("chain", sways, exact);
@@ -136,8 +136,8 @@ double cantilever_mode(double beta, double s) {
   return std::cosh(beta * s) - std::cos(beta * s) - sigma * (std::sinh(beta * s) - std::sin(beta * s));
 }
 
-// A run of a cantilever that was given a push: its frequency from the way through zero, up, of its share in the mode,
-// over ten periods of a hundred steps. The midpoint rule is slow by (ω h)² / 12 = 0.03 % there.
+// A run of a cantilever after a push: its frequency follows from the upward zero crossings of its component in the
+// mode, over ten periods of a hundred steps. The midpoint rule is slow by (ω h)² / 12 = 0.03 % here.
 TEST(VibrationOfARun, HasThePhaseOfItsModes) {
   const testing::Overhang strip;
   for (double beta : {1.87510, 4.69409}) {
@@ -154,14 +154,14 @@ TEST(VibrationOfARun, HasThePhaseOfItsModes) {
     std::vector<double> ups;  // [frames]
     for (int k = 1; ups.size() < 11 && k < 1300; ++k) {
       simulation.advance();
-      double share = 0;
+      double amplitude = 0;
       for (const Vec3& x : testing::sheet_of(simulation.snapshot())) {
         if (x.x() < 0) continue;
-        const double mass = x.x() > (1 - 1e-3) * strip.length ? 0.5 : 1;  // of the last column, in that of the others
-        share += mass * x.z() * cantilever_mode(beta, x.x() / strip.length);
+        const double mass = x.x() > (1 - 1e-3) * strip.length ? 0.5 : 1;  // half in the last column
+        amplitude += mass * x.z() * cantilever_mode(beta, x.x() / strip.length);
       }
-      if (before < 0 && share >= 0) ups.push_back(k - share / (share - before));
-      before = share;
+      if (before < 0 && amplitude >= 0) ups.push_back(k - amplitude / (amplitude - before));
+      before = amplitude;
     }
     ASSERT_EQ(ups.size(), 11u);
     const double found = 10 * 100 / (ups.back() - ups.front()) * exact;

@@ -1,4 +1,4 @@
-// Codecs for cutting.
+// Codecs for editing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 using support::expect_error;
 using CodecTest = support::TestFolder;
 
-/// Noise, which no lossy codec keeps.
+/// Noise, which no lossy codec preserves.
 image::Image noise(int seed) {
   image::Image image(33, 21);
   std::uint32_t state = 77 + static_cast<std::uint32_t>(seed);
@@ -68,7 +68,7 @@ TEST_F(CodecTest, LosslessOnesKeepEveryByte) {
   }
 }
 
-// 10 bits and half of the colours' columns: a ramp comes back to within 3 levels, seen is 2.
+// 10 bits and half of the chroma columns: a ramp is decoded to within 3 levels (measured: 2).
 TEST_F(CodecTest, SamePicturesGiveTheSameBytesInEveryKindOfFile) {
   const std::vector<image::Image> pictures{ramp(), ramp()};
   for (const auto& [codec, ending] : {std::pair{Codec::automatic, ".mkv"},

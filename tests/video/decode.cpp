@@ -32,7 +32,7 @@ image::Image to_rgb(const AVFrame& frame) {
   return image;
 }
 
-// Takes the frames that the decoder has ready.
+// Receives the frames that the decoder has ready.
 void receive(AVCodecContext& codec, AVFrame& frame, AVRational unit, DecodedVideo& video) {
   while (avcodec_receive_frame(&codec, &frame) == 0) {
     const AVRational time = av_mul_q({static_cast<int>(frame.best_effort_timestamp), 1}, unit);

@@ -1,4 +1,4 @@
-// Reads a video file as a player does, for tests.
+// Reads a video file as a player does.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 namespace weft::video {
 
 struct DecodedFrame {
-  AVRational time;  ///< when it is shown [s], exact
+  AVRational time;  ///< presentation time [s], exact
   AVColorRange range;
   AVColorSpace matrix;
   AVColorPrimaries primaries;
@@ -24,10 +24,10 @@ struct DecodedVideo {
   int width = 0, height = 0;  ///< pixels
   AVPixelFormat pixel_format = AV_PIX_FMT_NONE;
   std::map<std::string, std::string> metadata;
-  std::vector<DecodedFrame> frames;  ///< in the order of showing
+  std::vector<DecodedFrame> frames;  ///< in presentation order
 };
 
-/// Decodes all frames. Records a test failure and returns what it has where libav reports an error.
+/// Decodes all frames. If libav reports an error, records a test failure and returns the frames so far.
 DecodedVideo decode(const std::filesystem::path& file);
 
 /// Names of the file's outermost MP4 boxes, in order.

@@ -13,7 +13,7 @@ namespace {
 
 class DecoderTest : public support::TestFolder {
  protected:
-  // Colours that change slowly, so that the way of enlarging the chroma planes hardly counts.
+  // The colours change slowly, so that the interpolation of the chroma planes has little effect.
   void write(const char* name, int frames, int width = 96, int height = 64) const {
     Settings settings;
     settings.width = width;
@@ -36,8 +36,8 @@ class DecoderTest : public support::TestFolder {
   }
 };
 
-// The formula of BT.709 with the nearest chroma sample; 5 levels: half a pixel of slope, 2 levels a pixel and weighted
-// up to 1.9, and rounding.
+// The formula of BT.709 with the nearest chroma sample. Tolerance 5 levels: half a pixel of a slope of 2 levels a
+// pixel, weighted by up to 1.9, and rounding.
 TEST_F(DecoderTest, PicturesAreThoseOfTheFormulaInOrder) {
   write("a.mp4", 7);
   const DecodedVideo expected = decode(folder_ / "a.mp4");

@@ -22,7 +22,7 @@ using support::read_bytes;
 
 using EncoderTest = support::TestFolder;
 
-constexpr int kBits = 8;        // of the frame number that a numbered picture shows
+constexpr int kBits = 8;        // number of bits of the frame number in a numbered picture
 constexpr int kPatchSide = 16;  // pixels; a macroblock, so that the codec keeps each patch apart
 
 Settings small(double fps = 25) {
@@ -33,7 +33,7 @@ Settings small(double fps = 25) {
   return settings;
 }
 
-// A picture that shows a number as a row of white and black patches over a moving colour.
+// A picture that encodes a number as a row of white and black patches on a changing colour.
 image::Image numbered(int number) {
   image::Image image(kBits * kPatchSide, 4 * kPatchSide);
   for (int y = 0; y < image.height; ++y) {
@@ -47,7 +47,7 @@ image::Image numbered(int number) {
   return image;
 }
 
-// The number that a decoded picture shows, read in the middle of each patch.
+// Reads the number of a decoded picture, in the middle of each patch.
 int number_of(const image::Image& image) {
   int number = 0;
   for (int bit = 0; bit < kBits; ++bit) {
@@ -70,7 +70,7 @@ void expect_numbers(const DecodedVideo& video, int frames) {
 }
 
 TEST_F(EncoderTest, ExactlyTheFramesThatWentInComeOutInOrder) {
-  // 1: less than the encoder's look-ahead; 130: three key frame distances.
+  // 1: fewer than the look-ahead of the encoder; 130: three key frame intervals.
   for (const int frames : {1, 2, 130}) {
     encode_numbers(folder_ / "a.mp4", small(), frames);
     expect_numbers(decode(folder_ / "a.mp4"), frames);
@@ -134,7 +134,7 @@ TEST_F(EncoderTest, DecodedColoursAreThoseOfThePicture) {
   encoder.finish();
   const DecodedVideo video = decode(folder_ / "a.mp4");
   ASSERT_EQ(video.frames.size(), images.size());
-  // Lowest seen: 41.0 dB. The BT.601 matrix gives 28.1 dB, full instead of limited range 27.7 dB.
+  // Lowest measured: 41.0 dB. The BT.601 matrix gives 28.1 dB, full instead of limited range 27.7 dB.
   for (std::size_t k = 0; k < images.size(); ++k) EXPECT_GT(psnr(video.frames[k].image, images[k]), 37) << k;
 }
 
@@ -165,7 +165,7 @@ TEST_F(EncoderTest, OddSizesGrowByOne) {
   EXPECT_EQ(video.width, 64);
   EXPECT_EQ(video.height, 48);
   ASSERT_EQ(video.frames.size(), 3u);
-  // The red column at the edge goes on in the added one; 20 levels are far below the 255 of a black or stale column.
+  // The added column repeats the red column at the edge; 20 levels are far below the 255 of a black or stale column.
   EXPECT_NEAR(video.frames[1].image.pixel(63, 20)[0], video.frames[1].image.pixel(62, 20)[0], 20);
   EXPECT_GT(video.frames[1].image.pixel(63, 47)[0], 200);
 }
@@ -195,7 +195,7 @@ TEST_F(EncoderTest, SameFramesSameBytes) {
   EXPECT_EQ(read_bytes(folder_ / "a.mp4"), read_bytes(folder_ / "b.mp4"));
 }
 
-// x264's macroblock tree hangs on memory that it has not written, at sizes such as these.
+// The macroblock tree of x264 depends on uninitialised memory, at sizes such as these.
 TEST_F(EncoderTest, WhatWasInMemoryBeforeHasNoInfluence) {
   for (const auto& [width, height] : {std::pair{64, 36}, {160, 90}, {400, 226}, {720, 404}}) {
     Settings settings;
@@ -203,7 +203,7 @@ TEST_F(EncoderTest, WhatWasInMemoryBeforeHasNoInfluence) {
     settings.height = height;
     std::set<std::string> videos;
     for (const int filling : {0, 85, 170, 255}) {
-      mallopt(M_PERTURB, filling);  // what malloc() returns is filled with the complement
+      mallopt(M_PERTURB, filling);  // malloc() fills its memory with the complement
       Encoder encoder(folder_ / "a.mp4", settings);
       image::Image image(width, height);
       for (int frame = 0; frame < 12; ++frame) {
@@ -233,13 +233,13 @@ TEST_F(EncoderTest, TheFinalNameAppearsOnlyWhenFinished) {
 }
 
 TEST_F(EncoderTest, WhatIsOnDiskBeforeTheEndCanBePlayed) {
-  // What a killed process leaves behind: the temporary file as it is in the middle of the run.
+  // A killed process leaves its temporary file in the state of the middle of the run.
   Encoder encoder(folder_ / "a.mp4", small());
   for (int k = 0; k < 100; ++k) encoder.add(numbered(k));
   ASSERT_EQ(files().size(), 1u);
   std::filesystem::copy_file(folder_ / files()[0], folder_ / "killed.mp4");
   const DecodedVideo video = decode(folder_ / "killed.mp4");
-  // x264's preset looks 10 frames ahead and keeps 3 for reordering.
+  // The preset of x264 looks 10 frames ahead and keeps 3 for reordering.
   ASSERT_GE(video.frames.size(), 85u);
   for (std::size_t k = 0; k < video.frames.size(); ++k) {
     EXPECT_EQ(number_of(video.frames[k].image), static_cast<int>(k));
@@ -280,7 +280,7 @@ TEST_F(EncoderTest, PlacesThatCannotBeWrittenAreNamedAtTheStart) {
   expect_error(ExitCode::output_failed, "Not a directory", [&] { Encoder(folder_ / "file" / "a.mp4", small()); });
   expect_error(ExitCode::output_failed, "expected the name of a file to write, got a folder or a device",
                [&] { Encoder(folder_, small()); });
-  // The kernel's own file system takes no files, even from root.
+  // The proc file system does not allow new files, not even for root.
   expect_error(ExitCode::output_failed,
                "/proc/self/fd/a.mp4: cannot be written: ", [&] { Encoder("/proc/self/fd/a.mp4", small()); });
 }
@@ -311,7 +311,7 @@ TEST_F(EncoderTest, AVideoWithoutFramesIsRefused) {
   expect_error(ExitCode::output_failed, "expected one frame or more, got none", [&] { encoder.finish(); });
 }
 
-// While it lives, files of this process cannot grow past `bytes`: a full disk that needs no disk.
+// While an object of this class exists, files of this process cannot grow beyond `bytes`; this simulates a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -8,7 +8,7 @@
 namespace weft::video {
 namespace {
 
-// Y', Cb, Cr of an 8-bit colour, by ITU-R BT.709-6 items 3.2 to 3.4 in limited range.
+// Y', Cb, Cr of an 8-bit colour in limited range (ITU-R BT.709-6, items 3.2 to 3.4).
 std::array<double, 3> bt709(int red, int green, int blue) {
   const double r = red / 255.0, g = green / 255.0, b = blue / 255.0;
   const double luma = 0.2126 * r + 0.7152 * g + 0.0722 * b;
@@ -37,7 +37,7 @@ TEST(FrameConverter, ColoursFollowTheStandardInLimitedRange) {
         fill(image, red, green, blue);
         converter.convert(image, *frame);
         const auto expected = bt709(red, green, blue);
-        // Largest residual seen: 0.506 of a level; 0.5 is rounding, the rest swscale's 15-bit coefficients.
+        // Measured: at most 0.506 of a level; 0.5 is rounding, the rest comes from swscale's 15-bit coefficients.
         for (int plane = 0; plane < 3; ++plane) {
           EXPECT_NEAR(sample(*frame, plane, 3, 5), expected[plane], 0.52)
               << red << " " << green << " " << blue << " plane " << plane;
@@ -48,7 +48,7 @@ TEST(FrameConverter, ColoursFollowTheStandardInLimitedRange) {
 }
 
 TEST(FrameConverter, ChromaLiesOnTheLeftColumnAndBetweenTwoRows) {
-  // Blue rises by 8 a column in one picture and a row in the other, so half a pixel moves Cb by 1.76 levels.
+  // Blue increases by 8 per column or per row, so that half a pixel changes Cb by 1.76 levels.
   FrameConverter converter(32, 32, "test");
   const FramePtr frame = converter.make_frame();
   for (const bool along_x : {true, false}) {

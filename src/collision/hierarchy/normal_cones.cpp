@@ -8,8 +8,8 @@ namespace weft::collision {
 
 namespace {}  // namespace
 
-bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis, std::span<const Vec3> x_t0,
-                 std::span<const Vec3> x_t1) {
+bool is_star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis, std::span<const Vec3> x_t0,
+                    std::span<const Vec3> x_t1) {
   Vec3 centre_t0 = Vec3::Zero(), centre_t1 = Vec3::Zero();
   for (const auto& edge : contour) {
     centre_t0 += x_t0[edge[0]];
@@ -225,8 +225,8 @@ void NormalCones<K>::update(const Tree<K>& tree, std::span<const Vec3> x_t0, std
 }
 
 template <int K>
-bool NormalCones<K>::nothing_near(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                                  double detection_distance) const {
+bool NormalCones<K>::has_nothing_near(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0,
+                                      std::span<const Vec3> x_t1, double detection_distance) const {
   const Cone& own = cones_[slot(tree, ref)];
   const Subtree& subtree = subtrees_[slot(tree, ref)];
   const double needed = detection_distance * (1 + kRoundoff);
@@ -234,14 +234,14 @@ bool NormalCones<K>::nothing_near(const Tree<K>& tree, Ref ref, std::span<const 
   std::vector<const Cone*> cones{&own};
   for (const Ref leaf : subtree.ring) cones.push_back(&cones_[slot(tree, leaf)]);
   const Cone all = join(cones);
-  return all.cosine > 0 && all.cosine * all.altitude > needed && star_shaped(subtree.contour, all.axis, x_t0, x_t1);
+  return all.cosine > 0 && all.cosine * all.altitude > needed && is_star_shaped(subtree.contour, all.axis, x_t0, x_t1);
 }
 
 /// Marks flat regions top-down. The traversal never enters a marked subtree, so what is below it stays unmarked.
 template <int K>
 void NormalCones<K>::mark_flat_regions(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0,
                                        std::span<const Vec3> x_t1, double detection_distance) {
-  const bool is_flat = nothing_near(tree, ref, x_t0, x_t1, detection_distance);
+  const bool is_flat = has_nothing_near(tree, ref, x_t0, x_t1, detection_distance);
   auto& flags = ref >= 0 ? regions_.node : regions_.leaf;
   flags[ref >= 0 ? ref : ~ref] = static_cast<std::uint8_t>(is_flat);
   if (is_flat || ref < 0) return;

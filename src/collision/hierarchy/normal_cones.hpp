@@ -66,8 +66,8 @@ class NormalCones {
   static Cone join(std::span<const Cone* const> cones);
   void fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                 Cone& cone) const;
-  bool nothing_near(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                    double detection_distance) const;
+  bool has_nothing_near(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                        double detection_distance) const;
   void mark_flat_regions(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                          double detection_distance);
 
@@ -78,7 +78,7 @@ class NormalCones {
 
 /// Whether a closed chain of directed edges, seen against the unit axis, runs around its centre exactly once and
 /// counter-clockwise throughout the linear motion.
-bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis, std::span<const Vec3> x_t0,
-                 std::span<const Vec3> x_t1);
+bool is_star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis, std::span<const Vec3> x_t0,
+                    std::span<const Vec3> x_t1);
 
 }  // namespace weft::collision

@@ -60,7 +60,9 @@ class NearestQuery {
     double distance_sq;
   };
 
-  bool is_candidate(double distance_sq) const { return distance_sq < kNone && distance_sq <= (1 + kAsNear) * best_sq_; }
+  bool is_candidate(double distance_sq) const {
+    return distance_sq < kNone && distance_sq <= (1 + kNearestTolerance) * best_sq_;
+  }
 
   void visit_leaf(const typename Tree<K>::Leaf& leaf) {
     const auto lower_bound_sq = box_distances_sq(leaf.bounds, p_);

@@ -12,11 +12,11 @@ namespace weft::collision {
 using DistanceSq = std::function<double(Index)>;
 
 /// Triangles count as nearest if their squared distance exceeds the minimum by at most this fraction.
-inline constexpr double kAsNear = 1e-6;
+inline constexpr double kNearestTolerance = 1e-6;
 
-/// Replaces `out` by the nearest triangles to p (within kAsNear), sorted by number; empty if every triangle is
-/// excluded. Branch and bound: subtrees whose bounds are farther than the best triangle so far are skipped. Triangles
-/// must lie inside their bounds; larger bounds only cost time.
+/// Replaces `out` by the nearest triangles to p (within kNearestTolerance), sorted by number; empty if every triangle
+/// is excluded. Branch and bound: subtrees whose bounds are farther than the best triangle so far are skipped.
+/// Triangles must lie inside their bounds; larger bounds only cost time.
 template <int K>
 void nearest_triangles(const Tree<K>& tree, const Vec3& p, const DistanceSq& distance_sq, std::vector<Index>& out);
 

@@ -13,7 +13,7 @@ namespace weft::collision {
 struct Regions {
   std::vector<std::uint8_t> node, leaf;  ///< by number; 1: nothing is near
 
-  bool nothing_near(std::int32_t ref) const { return (ref >= 0 ? node[ref] : leaf[~ref]) != 0; }
+  bool has_nothing_near(std::int32_t ref) const { return (ref >= 0 ? node[ref] : leaf[~ref]) != 0; }
 };
 
 /// How to traverse. The options do not change which pairs are found, except that pairs inside `regions` are skipped,

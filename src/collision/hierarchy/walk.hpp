@@ -130,7 +130,7 @@ class Walk {
     open(ref);
   }
   void open(Ref ref) {
-    if (how_.regions != nullptr && how_.regions->nothing_near(ref)) {
+    if (how_.regions != nullptr && how_.regions->has_nothing_near(ref)) {
       if constexpr (kListed) how_.list->closed.push_back(ref);
       return;
     }

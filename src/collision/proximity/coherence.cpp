@@ -74,7 +74,7 @@ int CoherentDetection::update(BroadPhase& broad_phase, ProximityFinder& finder, 
   for (std::size_t w = 0; w < wanted_.size(); ++w)
     if (!is_still_valid(wanted_[w], kept_[w])) outdated.push_back(w);
   for (std::size_t s = 0; s < surfaces_.size(); ++s)
-    broad_phase.refit(s, x_t0, x_t1, 0.5 * (parameters_.reach + parameters_.budget));
+    broad_phase.refit(s, x_t0, x_t1, 0.5 * (parameters_.detection_distance + parameters_.budget));
   if (!outdated.empty()) search_again(outdated, broad_phase, finder, x_t0);
   proximities_.clear();
   largest_motion_ = 0;
@@ -121,7 +121,7 @@ bool CoherentDetection::is_still_valid(const SurfacePair& pair, KeptResult& kept
       const double motion =
           relative_motion(groups_[pair.a][g].cone - g_then.cone, groups_[pair.b][h].cone - h_then.cone);
       const double gap = (g_then.low - h_then.high).cwiseMax(h_then.low - g_then.high).maxCoeff();
-      if (gap > parameters_.reach + motion) continue;
+      if (gap > parameters_.detection_distance + motion) continue;
       if (motion > parameters_.budget) return false;
       kept.motion = std::max(kept.motion, motion);
     }
@@ -151,7 +151,7 @@ void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, Broa
     for (const Group& group : groups_[b]) kept.groups_b.push_back({group.low, group.high, group.cone});
   }
 
-  const double radius = parameters_.reach + parameters_.budget;
+  const double radius = parameters_.detection_distance + parameters_.budget;
   finder.gather(all, with_themselves, x_t0, radius, parameters_.min_fold);
   std::vector<Proximity> found;
   finder.find(x_t0, radius, found);
@@ -172,7 +172,7 @@ void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, Broa
 }
 
 void CoherentDetection::append_proximities(const KeptResult& kept, std::span<const Vec3> x) {
-  const double limit = parameters_.reach + 2 * kept.motion;
+  const double limit = parameters_.detection_distance + 2 * kept.motion;
   for (Proximity p : kept.proximities) {
     Vec3 difference = Vec3::Zero();
     for (std::size_t i = 0; i < 4; ++i) difference += p.weights[i] * x[p.vertices[i]];

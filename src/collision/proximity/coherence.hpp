@@ -1,6 +1,6 @@
 // Keeps detection results while nothing moves much relative to its neighbours (seed, "Detection Process").
 //
-//   CoherentDetection detection(surfaces, {{0, 0}, {0, 1}}, x, {.reach = …, .budget = …});
+//   CoherentDetection detection(surfaces, {{0, 0}, {0, 1}}, x, {.detection_distance = …, .budget = …});
 //   each step:  if (detection.update(broad_phase, finder, x_t0, x_t1) > 0) … detection.candidates() have changed
 //               detection.proximities()
 //
@@ -35,9 +35,9 @@ struct SurfacePair {
 };
 
 struct CoherenceParameters {
-  double reach = 0;     ///< detection distance of near pairs [m]
-  double budget = 0;    ///< relative motion up to which a result stays valid [m]
-  double min_fold = 0;  ///< of edges, as for ProximityFinder::gather
+  double detection_distance = 0;  ///< detection distance of near pairs [m]
+  double budget = 0;              ///< relative motion up to which a result stays valid [m]
+  double min_fold = 0;            ///< of edges, as for ProximityFinder::gather
 };
 
 class CoherentDetection {

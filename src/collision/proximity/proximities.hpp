@@ -48,7 +48,7 @@ class ProximityFinder {
               double radius, double min_fold = 0);
   /// As above, with candidates without a common vertex only. Pairs that share one or two vertices are added here, for
   /// each surface of `deformable`. `clear`: not 0 for triangles that are clear by `radius` (see
-  /// Separation::open_triangles).
+  /// Separation::find_clear_triangles).
   void gather(const PairList& apart, std::span<const Surface> deformable, std::span<const Vec3> x, double radius,
               double min_fold, std::span<const std::uint8_t> clear);
 

@@ -54,13 +54,13 @@ class Search {
   Search(const Sides& t0, const Sides& t1, double end_gap)
       : t0_(t0), t1_(t1), end_gap_(end_gap), centres_(between_centres(t0)) {}
 
-  std::optional<Vec3> find(Certificates which, int halvings) {
+  std::optional<Vec3> find(PlaneKinds which, int halvings) {
     const Vec3 of_a = orient_to_side_a(normal(t0_.a)), of_b = orient_to_side_a(normal(t0_.b));
     const Vec3 later_of_a = normal(t1_.a), later_of_b = normal(t1_.b);
     if (try_constant_direction(of_a) || try_constant_direction(of_b) || try_constant_direction(centres_) ||
         try_constant_direction(orient_to_side_a(later_of_a)) || try_constant_direction(orient_to_side_a(later_of_b)))
       return found_;
-    const bool turning = which == Certificates::all;
+    const bool turning = which == PlaneKinds::all;
     if (turning && (try_turning_direction(of_a, orient_as_at_start(later_of_a, t0_.a)) ||
                     try_turning_direction(of_b, orient_as_at_start(later_of_b, t0_.b)) ||
                     try_turning_direction(centres_, between_centres(t1_))))
@@ -120,8 +120,8 @@ bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0
   return gap_along(n, pair, x_t1) >= numerics.separation.least_gap && gap_along(n, pair, x_t0) >= kRoundoff;
 }
 
-std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                                     Certificates which) {
+std::optional<Vec3> find_separating_plane(const CornerPair& pair, std::span<const Vec3> x_t0,
+                                          std::span<const Vec3> x_t1, PlaneKinds which) {
   return Search(sides_of(pair, x_t0), sides_of(pair, x_t1), numerics.separation.least_gap)
       .find(which, numerics.separation.halvings);
 }

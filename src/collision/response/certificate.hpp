@@ -29,7 +29,7 @@ double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x)
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
 /// Which planes are tried: only those of constant direction, or also those that turn.
-enum class Certificates { constant, all };
+enum class PlaneKinds { constant, all };
 
 /// Searches for a separating plane, in order of increasing cost: one of constant direction, then one that turns with
 /// the pair, then both in halves of the trajectory, at most Numerics::Separation::halvings times. Face normals separate
@@ -42,8 +42,8 @@ enum class Certificates { constant, all };
 /// plane of constant direction would cut one of them if their width times sin(θ/2) exceeds d.
 ///
 /// Returns the direction at the end of the step, rounded to single precision for storage.
-std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                                     Certificates which = Certificates::all);
+std::optional<Vec3> find_separating_plane(const CornerPair& pair, std::span<const Vec3> x_t0,
+                                          std::span<const Vec3> x_t1, PlaneKinds which = PlaneKinds::all);
 
 /// The closest pair of features of two sides.
 struct ClosestFeatures {

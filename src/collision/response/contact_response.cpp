@@ -54,10 +54,6 @@ void ContactResponse::prepare(std::span<const Vec3> x_t0, std::span<const Vec3> 
   if (walls_) walls_->prepare(x_t0, x_t1);
 }
 
-int ContactResponse::most_solves() const {
-  return walls_ ? numerics.walls.solves : 1;
-}
-
 std::span<const PrescribedParticle> ContactResponse::prescribed() const {
   return walls_ ? walls_->prescribed() : std::span<const PrescribedParticle>();
 }
@@ -76,10 +72,11 @@ void ContactResponse::add_forces(std::span<const Vec3> x_end, const ContactLag& 
   if (walls_) walls_->add_forces(x_end, force);
 }
 
-void ContactResponse::add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
-                                          std::span<Vec3> friction, std::span<double> limit) const {
-  springs_.add_parts_of_forces(x_end, lag, push, friction, limit);
-  if (walls_) walls_->add_parts_of_forces(x_end, push, friction, limit);
+void ContactResponse::add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag,
+                                                     std::span<Vec3> push, std::span<Vec3> friction,
+                                                     std::span<double> limit) const {
+  springs_.add_normal_and_friction_forces(x_end, lag, push, friction, limit);
+  if (walls_) walls_->add_normal_and_friction_forces(x_end, push, friction, limit);
 }
 
 void ContactResponse::add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag,

@@ -30,15 +30,12 @@ class ContactResponse {
   /// Adds a wall for a corner of a cloth triangle that would meet an obstacle. Only with velocity constraints.
   void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
   /// As VelocityConstraints::lean; false with springs.
-  bool lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
-    return walls_ && walls_->lean(x_t1, by, predicted);
+  bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
+    return walls_ && walls_->predict_wall_contacts(x_t1, by, predicted);
   }
   /// Call when all contacts known before the first solve are added.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Maximum number of solves in one step, with contacts added, or walls set and released, in between. Failing pairs
-  /// are then pushed apart.
-  int most_solves() const;
   /// Particles that the walls constrain in the next solve.
   std::span<const PrescribedParticle> prescribed() const;
   /// After a solve that led to x_end: sets and releases walls. Returns how many particles have changed constraints.
@@ -53,8 +50,8 @@ class ContactResponse {
                    std::span<Vec3> right_side, solver::LinearSystem& system) const {
     return springs_.add_impacts(x_end, lag, start, right_side, system);
   }
-  void add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
-                           std::span<Vec3> friction, std::span<double> limit) const;
+  void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
+                                      std::span<Vec3> friction, std::span<double> limit) const;
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;

@@ -143,18 +143,18 @@ void update_friction(const Contact& contact, const Vec3& slip, FrictionLag& lag)
   const bool turned = slip.dot(lag.slip) < 0;
   lag.slip = slip;
   if (lag.sticks) {
-    const Vec3 held_at = sticking_slip(contact, lag.drag);
-    lag.drag += friction_slope(contact, held_at, lag.drag) * (slip - held_at);
-    const double ratio = lag.drag.norm() / contact.static_friction;
+    const Vec3 held_at = sticking_slip(contact, lag.relative_friction);
+    lag.relative_friction += friction_slope(contact, held_at, lag.relative_friction) * (slip - held_at);
+    const double ratio = lag.relative_friction.norm() / contact.static_friction;
     if (ratio < 1) return;
-    lag.drag /= ratio;
+    lag.relative_friction /= ratio;
     lag.sticks = false;
     ++lag.slide_starts;
   } else if (slip.squaredNorm() < 1) {
-    lag.drag = friction_against_load(contact, slip);
+    lag.relative_friction = friction_against_load(contact, slip);
     lag.sticks = true;
   } else if (turned && lag.slide_starts < numerics.contact.returns) {
-    lag.drag = Vec3::Zero();
+    lag.relative_friction = Vec3::Zero();
     lag.sticks = true;
   }
 }
@@ -181,7 +181,7 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
     const double depth = contact.range - contact.normal.dot(relative);
     const double force = tangent_force(normal_force_at(contact, lag.depths[c]), lag.depths[c], depth);
     lag.depths[c] = depth_for_force(contact, force, std::max(depth, lag.depths[c]));
-    if (lag.updates < numerics.newton.patience) lag.loads[c] = force;
+    if (lag.updates < numerics.newton.patience) lag.normal_forces[c] = force;
     if (!contact.against_obstacle || contact.static_friction == 0) return;
     if (lag.updates < numerics.newton.patience)
       update_friction(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
@@ -193,12 +193,12 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
   });
   for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
     lag.depths.push_back(std::max(0.0, contacts_[c].depth));
-    lag.loads.push_back(normal_force_at(contacts_[c], lag.depths.back()).force);
+    lag.normal_forces.push_back(normal_force_at(contacts_[c], lag.depths.back()).force);
     lag.frictions.emplace_back();
     if (lag.updates > 0) continue;  // contacts found later have no meaningful first iterate
     FrictionLag& friction = lag.frictions.back();
     friction.slip = slip_of(contacts_[c], relative_end(contacts_[c], x_end)) / stick_slip_;
-    friction.drag = friction_against_load(contacts_[c], friction.slip);
+    friction.relative_friction = friction_against_load(contacts_[c], friction.slip);
   }
   ++lag.updates;
 }
@@ -220,17 +220,17 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   response.slope = normal_force.slope;
   response.force = normal_force.force * contact.normal;
   const bool follows = law == Law::exact && lag.updates < numerics.newton.patience;
-  const double friction_load = follows ? normal_force.force : lag.loads[index];
-  if (contact.static_friction == 0 || friction_load == 0) return response;
+  const double friction_normal_force = follows ? normal_force.force : lag.normal_forces[index];
+  if (contact.static_friction == 0 || friction_normal_force == 0) return response;
 
   const FrictionLag& friction = lag.frictions[index];
   const Vec3 slip = slip_of(contact, relative) / stick_slip_;
   const bool sticks = law == Law::tangent && friction.sticks;
-  response.slip = sticks ? sticking_slip(contact, friction.drag) : slip;
-  response.friction_per_slip = friction_load / stick_slip_;
+  response.slip = sticks ? sticking_slip(contact, friction.relative_friction) : slip;
+  response.friction_per_slip = friction_normal_force / stick_slip_;
   Vec3 w = friction_against_load(contact, response.slip);
-  if (sticks) w += friction_slope(contact, response.slip, friction.drag) * (slip - response.slip);
-  response.force -= friction_load * w;
+  if (sticks) w += friction_slope(contact, response.slip, friction.relative_friction) * (slip - response.slip);
+  response.force -= friction_normal_force * w;
   return response;
 }
 
@@ -257,8 +257,9 @@ void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactL
     for (int k = 0; k < 4; ++k) force[contact->particles[k]] += contact->weights[k] * push;
 }
 
-void ContactSet::add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
-                                     std::span<Vec3> friction, std::span<double> limit) const {
+void ContactSet::add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag,
+                                                std::span<Vec3> push, std::span<Vec3> friction,
+                                                std::span<double> limit) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
     const Response response = respond(c, Law::exact, x_end, lag);
@@ -289,7 +290,8 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const C
       if (!response.active) continue;
       Mat3 stiffness = response.slope * contact.normal * contact.normal.transpose();
       if (response.friction_per_slip > 0)
-        stiffness += response.friction_per_slip * friction_slope(contact, response.slip, lag.frictions[c].drag);
+        stiffness +=
+            response.friction_per_slip * friction_slope(contact, response.slip, lag.frictions[c].relative_friction);
       list.push_back({&contact, response.force, end_rate * stiffness});
     }
   });

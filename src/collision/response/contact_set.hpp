@@ -31,7 +31,8 @@ struct Contact {
 
 /// State of the friction of a contact between iterations.
 struct FrictionLag {
-  Vec3 drag = Vec3::Zero();  ///< w: friction divided by normal force, against the slip; an unknown of its own
+  Vec3 relative_friction =
+      Vec3::Zero();          ///< w: friction divided by normal force, against the slip; an unknown of its own
   Vec3 slip = Vec3::Zero();  ///< at the last update, divided by the stick slip
   bool sticks = false;       ///< true: friction is linearised at w; false: at the slip
   int slide_starts = 0;      ///< how often it began to slide in this step
@@ -40,7 +41,7 @@ struct FrictionLag {
 /// State of the contacts of a step, one entry for each, between Newton iterations.
 struct ContactLag {
   std::vector<double> depths;          ///< depth at which each law is linearised [m]
-  std::vector<double> loads;           ///< normal forces that limit friction [N]; they lag behind the positions
+  std::vector<double> normal_forces;   ///< normal forces that limit friction [N]; they lag behind the positions
   std::vector<FrictionLag> frictions;  ///< initially those of the first iterate; zero for contacts found later
   int updates = 0;                     ///< since the start of the step
 };
@@ -83,8 +84,8 @@ class ContactSet {
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
 
   /// As add_forces, but separates normal forces (`push`) and friction, and adds the maximum friction to `limit` [N].
-  void add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
-                           std::span<Vec3> friction, std::span<double> limit) const;
+  void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
+                                      std::span<Vec3> friction, std::span<double> limit) const;
 
   /// Adds the velocity jumps due to impacts, in a step that ends at x_end, as a linear system whose unknowns are the
   /// jumps: adds terms to `system` and `right_side` [N/s]. Returns false if there is no impact. A contact that closes

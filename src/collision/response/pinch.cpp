@@ -26,7 +26,7 @@ std::vector<Triangle> PinchedPairs::faces_near(const Key& key, const BroadPhase&
 
 bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const {
   return std::ranges::all_of(faces_near(key, surfaces, x), [&](const Triangle& face) {
-    return find_certificate({key.cloth, face}, x, x).has_value();
+    return find_separating_plane({key.cloth, face}, x, x).has_value();
   });
 }
 

@@ -54,8 +54,8 @@ std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodie
   return found;
 }
 
-std::optional<CornerPair> first_fresh(const PinchedPairs& pinched, const PinchedPairs& before,
-                                      const BroadPhase& surfaces) {
+std::optional<CornerPair> find_new_pinch(const PinchedPairs& pinched, const PinchedPairs& before,
+                                         const BroadPhase& surfaces) {
   for (const auto& [key, origin] : pinched.origins()) {
     const std::size_t cloth = pinched.body_of(key.cloth[0]), obstacle = key.body;
     const auto same = [&](const auto& other) {

@@ -23,7 +23,7 @@ std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodie
                                 std::span<const Vec3> x);
 
 /// A pair of `pinched` whose obstacle did not pinch that cloth in `before`, with an arbitrary face of the obstacle.
-std::optional<CornerPair> first_fresh(const PinchedPairs& pinched, const PinchedPairs& before,
-                                      const BroadPhase& surfaces);
+std::optional<CornerPair> find_new_pinch(const PinchedPairs& pinched, const PinchedPairs& before,
+                                         const BroadPhase& surfaces);
 
 }  // namespace weft::collision

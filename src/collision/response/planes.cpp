@@ -127,7 +127,7 @@ void Planes::append_closer(double radius, std::span<const float> moved, PairList
 
 void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                           std::span<const float> moved, std::span<const std::uint8_t> changed,
-                          std::vector<CornerPair>& failing, const CarriedStarts* carried, Certificates which) {
+                          std::vector<CornerPair>& failing, const CarriedStarts* carried, PlaneKinds which) {
   moved_.resize(triangles_.size());
   changed_.resize(triangles_.size());
   parallel_for(triangles_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
@@ -160,7 +160,7 @@ void Planes::find_failing(std::size_t begin, std::size_t end, const Trajectory& 
 
     const Vec3 n(plane.n[0], plane.n[1], plane.n[2]);
     if (plane.is_known() && separates(n, pair, start, x_t1)) continue;
-    const std::optional<Vec3> found = find_certificate(pair, start, x_t1, which);
+    const std::optional<Vec3> found = find_separating_plane(pair, start, x_t1, which);
     if (!found) {
       is_separated_[p] = 0;
       failing.push_back(pair);

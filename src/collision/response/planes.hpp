@@ -43,7 +43,7 @@ class Planes {
   void find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                     std::span<const float> moved, std::span<const std::uint8_t> changed,
                     std::vector<CornerPair>& failing, const CarriedStarts* carried = nullptr,
-                    Certificates which = Certificates::all);
+                    PlaneKinds which = PlaneKinds::all);
 
   /// Saves the planes that differ from those that watch() finds for these pairs at the reference. A new object that
   /// watches the same pairs needs nothing else.
@@ -62,7 +62,7 @@ class Planes {
   struct Trajectory {
     std::span<const Vec3> reference, x_t0, x_t1;
     const CarriedStarts* carried;
-    Certificates which;
+    PlaneKinds which;
   };
   void find_failing(std::size_t begin, std::size_t end, const Trajectory& trajectory, std::vector<CornerPair>& failing);
 

@@ -51,7 +51,7 @@ void Separation::append_closer(double radius, std::span<const Vec3> x, PairList&
   planes_.append_closer(radius, moved, out);
 }
 
-std::vector<std::uint8_t> Separation::open_triangles(double distance, std::span<const Vec3> x) const {
+std::vector<std::uint8_t> Separation::find_clear_triangles(double distance, std::span<const Vec3> x) const {
   std::vector<std::uint8_t> vertices(reference_.size(), 0), triangles(triangles_.size(), 0);
   stars_.mark_clear(distance, x, vertices);
   for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -61,7 +61,7 @@ std::vector<std::uint8_t> Separation::open_triangles(double distance, std::span<
 
 std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                                      const PinchedPairs* pinched, const CarriedStarts* carried,
-                                                     Certificates which) {
+                                                     PlaneKinds which) {
   failing_.clear();
   moved_.resize(x_t0.size());
   changed_.resize(x_t0.size());
@@ -183,7 +183,7 @@ bool Separation::release_pins(const CornerPair& pair, Step& step) {
     for (Index v : corners) {
       if (step.movable[v] != kPinned) continue;
       step.movable[v] = kFree;
-      step.report.gave_way.push_back({v, pair});
+      step.report.obstructed_pins.push_back({v, pair});
       changed = true;
     }
   }
@@ -307,7 +307,8 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
     const bool is_final = round_ > by_halves;
     for (const CornerPair& pair : failing_) {
       if (round_ <= rounds && !has_carried_vertex(pair)) {
-        if (find_certificate(pair, step.start_of(pair), x_t1)) continue;  // an earlier push of this round was enough
+        if (find_separating_plane(pair, step.start_of(pair), x_t1))
+          continue;  // an earlier push of this round was enough
         if (push_apart(pair, step) && (changed = true)) continue;
         if (release_pins(pair, step) && (changed = true) && push_apart(pair, step)) continue;
       }

@@ -8,9 +8,9 @@
 #include "collision/hierarchy/surface.hpp"
 #include "collision/response/carried_starts.hpp"
 #include "collision/response/certificate.hpp"
-#include "collision/response/fans.hpp"
 #include "collision/response/pinch.hpp"
 #include "collision/response/planes.hpp"
+#include "collision/response/vertex_stars.hpp"
 #include "core/types.hpp"
 
 namespace weft::collision {
@@ -19,17 +19,17 @@ namespace weft::collision {
 enum Movable : std::uint8_t { kFixed = 0, kFree = 1, kPinned = 2 };
 
 /// A pinned particle that had to move, and the pair that would have met otherwise.
-struct GivenWay {
+struct ObstructedPin {
   Index particle;
   CornerPair pair;
 };
 
 struct SeparationReport {
-  bool separated = false;          ///< every pair has a separating plane
-  int corrected_pairs = 0;         ///< pairs that needed a correction
-  double largest_push = 0;         ///< [m]
-  std::vector<GivenWay> gave_way;  ///< pinned particles that could not be held in place
-  CornerPair stuck{};              ///< if not `separated`: a pair that could not be separated
+  bool separated = false;                      ///< every pair has a separating plane
+  int corrected_pairs = 0;                     ///< pairs that needed a correction
+  double largest_push = 0;                     ///< [m]
+  std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that could not be held in place
+  CornerPair stuck{};                          ///< if not `separated`: a pair that could not be separated
 };
 
 /// Vertices that only move together: those of a rigid body and its frame particles.
@@ -78,7 +78,7 @@ class Separation {
 
   /// Per triangle, 1 if all triangles of its surface that share a vertex with it are farther from it than `distance` at
   /// x [m], except where they share the vertex.
-  std::vector<std::uint8_t> open_triangles(double distance, std::span<const Vec3> x) const;
+  std::vector<std::uint8_t> find_clear_triangles(double distance, std::span<const Vec3> x) const;
 
   /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1; changes no positions. x_t0 must
   /// be free of intersections except those of `pinched`, which are skipped. Pairs with an obstacle that turns are
@@ -86,8 +86,7 @@ class Separation {
   /// calls with unchanged ends are reused.
   std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                            const PinchedPairs* pinched = nullptr,
-                                           const CarriedStarts* carried = nullptr,
-                                           Certificates which = Certificates::all);
+                                           const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
 
   /// Changes x_t1 of movable vertices until every pair has a separating plane. If that fails, adds pairs of cloth and
   /// obstacle to `pinched`, if given. `is_continued`: keep the carriers that the last call found, for other pairs.
@@ -133,7 +132,7 @@ class Separation {
   std::span<const double> masses_;  // of the particles
   std::vector<Vec3> reference_;
   Planes planes_;
-  Fans stars_;
+  VertexStars stars_;
   std::vector<float> moved_;                 // per vertex: bound of its distance from the reference at both ends [m]
   std::vector<Vec3> tested_t0_, tested_t1_;  // per vertex: position at the last test [m]
   std::vector<std::uint8_t> changed_;        // per vertex: has moved since the last test

@@ -146,7 +146,8 @@ void VelocityConstraints::hold(TouchingParticle& particle, const Vec3& u, Active
   }
 }
 
-bool VelocityConstraints::lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
+bool VelocityConstraints::predict_wall_contacts(std::span<const Vec3> x_t1, double by,
+                                                std::vector<Vec3>& predicted) const {
   bool any = false;
   for (Index particle : remembered_) {
     if (touched_of_[particle] >= 0) continue;
@@ -334,8 +335,8 @@ void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3
   }
 }
 
-void VelocityConstraints::add_parts_of_forces(std::span<const Vec3> x_end, std::span<Vec3> push,
-                                              std::span<Vec3> friction, std::span<double> limit) const {
+void VelocityConstraints::add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push,
+                                                         std::span<Vec3> friction, std::span<double> limit) const {
   for (const TouchingParticle& particle : touched_) {
     if (particle.memory.state != State::sliding || particle.friction_normal_force == 0) continue;
     const Index i = particle.particle;

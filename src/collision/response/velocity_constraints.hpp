@@ -58,7 +58,7 @@ class VelocityConstraints {
   /// triangles, whose walls are found only where the triangle would meet an obstacle; without a prediction the first
   /// solve would release them in every step. `predicted`: x_t1, these particles moved by `by` [m] towards their former
   /// wall.
-  bool lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const;
+  bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const;
 
   /// Chooses the walls that hold in the first solve: those that held at the end of the last step, and those that the
   /// particle would pass on the way from x_t0 to x_t1.
@@ -78,8 +78,8 @@ class VelocityConstraints {
   /// force += friction of the sliding particles at x_end [N].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
   /// Adds that friction, its normal forces, and its maximum for these normal forces [N].
-  void add_parts_of_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
-                           std::span<double> limit) const;
+  void add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
+                                      std::span<double> limit) const;
   /// As add_forces; also adds −∂f/∂x to the matrix, in the definite form of ContactSet::linearise. `end_rate`: change
   /// of x_end per change of the unknown.
   void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,

@@ -1,6 +1,6 @@
-// bench_bullet: a scene of one cloth, a sphere and a floor as Bullet's soft body, for comparison: what a frame costs,
-// and meshes for weft_judge. Mesh, masses, obstacles and friction are those of the scene; the material is Bullet's,
-// rigid threads and soft bending, as classic soft bodies have it.
+// bench_bullet: simulates a scene of one cloth, a sphere and a floor with Bullet's soft body, for comparison: prints
+// the cost of a frame, and writes meshes for weft_judge. Mesh, masses, obstacles and friction are those of the scene;
+// the material is Bullet's, with rigid threads and soft bending, as usual for soft bodies.
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
@@ -30,17 +30,17 @@ struct Request {
   std::vector<std::string> overrides;
   std::filesystem::path meshes;
   int end = 76;           // frame after the last one
-  int steps = 10;         // a frame
-  int iterations = 10;    // of the position solver, a step
-  double margin = 0.005;  // that nodes keep from obstacles [m]
-  double bending = 0.1;   // stiffness of links across two edges, a share
+  int steps = 10;         // per frame
+  int iterations = 10;    // of the position solver, per step
+  double margin = 0.005;  // distance that nodes keep from obstacles [m]
+  double bending = 0.1;   // stiffness of links across two edges, relative to Bullet's maximum
 };
 
 btVector3 bullet(const Vec3& v) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
 }
 
-/// Bullet's world; destroyed in the right order by being declared in it.
+/// Bullet's world; the order of the members is the order of construction.
 struct World {
   btSoftBodyRigidBodyCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
@@ -86,7 +86,7 @@ void add_cloth(World& world, const Request& request, const scene::Scene& scene, 
   btSoftBodyWorldInfo& info = world.world.getWorldInfo();
   info.m_gravity = bullet(scene.physics.gravity);
   info.air_density = 0;
-  // Obstacles are sampled on a grid: with the default, 0.25 m, a ball of 0.2 m loses a quarter of its radius.
+  // Bullet samples obstacles on a grid: with the default of 0.25 m, a ball of 0.2 m loses a quarter of its radius.
   info.m_sparsesdf.Initialize();
   info.m_sparsesdf.setDefaultVoxelsz(0.02F);
   info.m_sparsesdf.Reset();
@@ -109,7 +109,7 @@ void add_cloth(World& world, const Request& request, const scene::Scene& scene, 
   world.world.addSoftBody(&cloth);
 }
 
-// As `weft run --meshes` does.
+// Writes meshes as `weft run --meshes` does.
 void write_meshes(const Request& request, const frame::FrameSnapshot& start, const btSoftBody& cloth, int frame) {
   if (request.meshes.empty()) return;
   for (std::size_t s = 0; s < start.surfaces.size(); ++s) {

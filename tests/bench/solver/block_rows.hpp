@@ -1,4 +1,4 @@
-// Sparse rows of blocks of any size, and their products: what the assembled solvers work on.
+// Sparse rows of blocks of any size, and their products, for the assembled solvers.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace weft::bench {
 
-/// Row i holds the entries [start[i], start[i + 1]), columns ascending.
+/// Row i has the entries [start[i], start[i + 1]), columns ascending.
 template <class Block>
 struct BlockRows {
   Index columns = 0;

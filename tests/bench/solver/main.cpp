@@ -1,8 +1,8 @@
 // Linear solvers on systems of 10³ to 2·10⁵ particles, one thread, as CSV and Markdown tables:
 //   bench_solver FILE.csv [MOST_PARTICLES [SOLVER]]
-// CHOLMOD is as fast as its BLAS, which is named below the tables: with the Debian package libopenblas0-serial five
-// times as fast as with the reference. Solutions that take more than 120 s, or would by the smaller system, are
-// missing.
+// The speed of CHOLMOD depends on its BLAS, which is named below the tables: with the Debian package
+// libopenblas0-serial it is five times that with the reference BLAS. Solves that take more than 120 s, or would do so
+// by extrapolation from the smaller system, are omitted.
 #include <fmt/core.h>
 #include <malloc.h>
 
@@ -22,8 +22,8 @@
 namespace weft::bench {
 namespace {
 
-constexpr double kMostSeconds = 120;  // of one solution
-constexpr double kGrowth = 1.7;       // assumed exponent of the time over particles, where a larger system is foreseen
+constexpr double kMaxSeconds = 120;  // of one solve [s]
+constexpr double kGrowth = 1.7;  // assumed exponent of the time over particles, to predict the time of a larger system
 
 double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   double sum = 0;
@@ -31,7 +31,7 @@ double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   return sum;
 }
 
-/// Bytes that malloc has handed out.
+/// Bytes that malloc has allocated.
 double bytes_in_use() {
   const auto info = mallinfo2();
   return static_cast<double>(info.uordblks + info.hblkhd);
@@ -41,10 +41,10 @@ struct Solution {
   int iterations = 0;
   double seconds = 0;
   bool reached = false;
-  double residual = 0;  // computed anew
+  double residual = 0;  // computed from b and x, not by recurrence
 };
 
-// Conjugate gradients from zero until ‖b − A x‖₂ is below these shares of ‖b‖₂.
+// Conjugate gradients from zero until ‖b − A x‖₂ is below each of these fractions of ‖b‖₂.
 std::vector<Solution> solve(const SheetSystem& sheet, Inverse& inverse, std::span<const double> tolerances) {
   const std::size_t n = sheet.b.size();
   std::vector<Vec3> x(n, Vec3::Zero()), r = sheet.b, z(n), p(n), q(n);
@@ -68,7 +68,7 @@ std::vector<Solution> solve(const SheetSystem& sheet, Inverse& inverse, std::spa
     now.reached = true;
     while (next < tolerances.size() && now.residual <= tolerances[next]) solutions[next++] = now;
     now.reached = false;
-    if (next == tolerances.size() || now.seconds > kMostSeconds) break;
+    if (next == tolerances.size() || now.seconds > kMaxSeconds) break;
     inverse.apply(r, z);
     const double rz_next = dot(r, z);
     for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + (rz_next / rz) * p[i];
@@ -81,7 +81,7 @@ std::vector<Solution> solve(const SheetSystem& sheet, Inverse& inverse, std::spa
   return solutions;
 }
 
-// ConjugateGradient itself, which chooses between the two lines before it.
+// ConjugateGradient itself, which chooses between the two solvers above it in the table.
 constexpr const char* kProgram = "the program";
 constexpr const char* kDirect = "CHOLMOD, supernodal";
 
@@ -97,7 +97,7 @@ struct Row {
   int particles;
   double megabytes, analysis, setup;
   Solution loose, tight;
-  // Contacts change the pattern: only where there are none the analysis is that of the step before.
+  // Contacts change the pattern: only without contacts the analysis of the previous step is valid.
   double total(const Solution& s) const {
     return setup + (pose == Pose::lying && solver == kDirect ? analysis : 0) + s.seconds;
   }
@@ -107,15 +107,15 @@ constexpr double kTolerances[] = {0.1, 1e-6};
 constexpr int kMostIterations = 20000;
 constexpr int kSides[] = {32, 63, 127, 250, 447};
 
-// Whether the system before, of the same kind and fewer particles, lets a solution in kMostSeconds be expected.
-bool promising(std::span<const Row> rows, const Entry& entry, Pose pose, double stiffness, int particles) {
+// Whether the previous system, of the same kind with fewer particles, predicts a solve within kMaxSeconds.
+bool is_expected_in_time(std::span<const Row> rows, const Entry& entry, Pose pose, double stiffness, int particles) {
   const auto before = std::find_if(rows.rbegin(), rows.rend(), [&](const Row& r) {
     return r.solver == entry.name && r.pose == pose && r.stiffness == stiffness;
   });
   if (particles == kSides[0] * kSides[0]) return true;
   if (before == rows.rend() || !before->tight.reached) return false;
   return before->total(before->tight) * std::pow(static_cast<double>(particles) / before->particles, kGrowth) <
-         kMostSeconds;
+         kMaxSeconds;
 }
 
 const std::vector<Entry>& entries() {
@@ -142,31 +142,31 @@ Row measure_program(const SheetSystem& sheet, Pose pose, double stiffness) {
   solver::ConjugateGradient solver;
   for (Solution* solution : {&row.loose, &row.tight}) {
     const double tolerance = solution == &row.loose ? kTolerances[0] : kTolerances[1];
-    // The levels of this precision, which are kept from step to step.
+    // Sets up the multigrid levels of this precision, which are kept from step to step.
     solver.prepare(system);
     solver.solve(sheet.b, {tolerance}, 1, x);
-    // It goes by errors: the share of them that leaves the share asked for in ours is found first.
-    double share = tolerance;
+    // ConjugateGradient stops by error: first finds the tolerance that gives the required residual.
+    double relative_error = tolerance;
     do {
       ++system.parts.front().version;
       const double start = thread_cpu_seconds();
       solver.prepare(system);
       row.setup = thread_cpu_seconds() - start;
-      const solver::LinearReport report = solver.solve(sheet.b, {share}, kMostIterations, x);
+      const solver::LinearReport report = solver.solve(sheet.b, {relative_error}, kMostIterations, x);
       solution->seconds = thread_cpu_seconds() - start - row.setup;
       solution->iterations = report.iterations;
       multiply(sheet.system, x, q);
       for (std::size_t i = 0; i < q.size(); ++i) q[i] = sheet.b[i] - q[i];
       solution->residual = std::sqrt(dot(q, q) / dot(sheet.b, sheet.b));
       solution->reached = solution->residual <= tolerance;
-      share *= 0.7 * std::min(1.0, tolerance / solution->residual);
-    } while (!solution->reached && solution->seconds < kMostSeconds);
+      relative_error *= 0.7 * std::min(1.0, tolerance / solution->residual);
+    } while (!solution->reached && solution->seconds < kMaxSeconds);
   }
   row.megabytes = (bytes_in_use() - before) / 1e6;
   return row;
 }
 
-// One solver on one system; memory is what it holds beside the matrix while it solves.
+// Measures one solver on one system. Memory is what the solver allocates beside the matrix during the solve.
 Row measure(const Entry& entry, const SheetSystem& sheet, Pose pose, double stiffness) {
   Row row{entry.name, pose, stiffness, sheet.side * sheet.side, 0, 0, 0, {}, {}};
   if (!entry.make) return measure_program(sheet, pose, stiffness);
@@ -185,7 +185,7 @@ Row measure(const Entry& entry, const SheetSystem& sheet, Pose pose, double stif
   return row;
 }
 
-// Slope of log seconds over log particles by least squares, of the systems where 1e-6 was reached.
+// Slope of log seconds over log particles by least squares, over the systems solved to 1e-6.
 double exponent(std::span<const Row> rows, const std::string& solver, Pose pose, double stiffness) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const Row& row : rows) {
@@ -225,7 +225,7 @@ void print_tables(std::span<const Row> rows) {
     }
 }
 
-// The library that BLAS comes from, as the loader has it.
+// Prints the BLAS library that the loader has mapped.
 void print_blas() {
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);)
@@ -249,18 +249,18 @@ void write_csv(std::span<const Row> rows, const std::string& file) {
 
 }  // namespace
 
-void run(int most, const std::string& only, const std::string& csv) {
+void run(int max_particles, const std::string& only, const std::string& csv) {
   set_thread_count(1);
-  mallopt(M_MMAP_THRESHOLD, 1 << 16);  // freed blocks go back, so that what is in use is what is held
+  mallopt(M_MMAP_THRESHOLD, 1 << 16);  // returns freed blocks to the system, so that bytes in use are bytes held
   std::vector<Row> rows;
   for (const int side : kSides)
     for (const Pose pose : {Pose::hanging, Pose::lying})
       for (const double k : {10.0, 1e3, 1e6}) {
-        if (side * side > most) continue;
+        if (side * side > max_particles) continue;
         const SheetSystem sheet = sheet_system(side, k, pose);
         for (const Entry& entry : entries()) {
           if (entry.name.find(only) == std::string::npos) continue;
-          if (!promising(rows, entry, pose, k, side * side)) continue;
+          if (!is_expected_in_time(rows, entry, pose, k, side * side)) continue;
           rows.push_back(measure(entry, sheet, pose, k));
           write_csv(rows, csv);
         }

@@ -9,8 +9,8 @@
 namespace weft::bench {
 namespace {
 
-constexpr Index kDense = 100;            // blocks on the last level at most
-constexpr double kSingularShift = 1e-9;  // for motion that constraints leave to no particle, of the mean diagonal
+constexpr Index kMaxDenseBlocks = 100;   // maximum number of blocks on the last level
+constexpr double kSingularShift = 1e-9;  // for motions that constraints forbid; relative to the mean diagonal
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -21,7 +21,7 @@ using Square = Eigen::Matrix<double, N, N>;
 template <int N>
 using Column = Eigen::Matrix<double, N, 1>;
 
-/// A matrix, and one sweep over its rows from either end.
+/// A matrix, with one sweep over its rows in each direction.
 template <int N>
 struct Level {
   BlockRows<Square<N>> matrix;
@@ -47,7 +47,7 @@ struct Level {
       if (matrix.column[s] == static_cast<Index>(i)) return matrix.value[s];
   }
 
-  // x = (D + L)⁻¹ b, and what that leaves, b − A x, which is −U x.
+  // Computes x = (D + L)⁻¹ b and the residual b − A x, which is −U x.
   void sweep_down(std::span<const Column<N>> b, std::span<Column<N>> x, std::span<Column<N>> of_b) const {
     const Index rows = matrix.rows();
     for (Index i = 0; i < rows; ++i) {
@@ -98,7 +98,8 @@ void add_from(const BlockRows<Weight>& p, const std::vector<Coarse>& coarse, std
     }
 }
 
-/// Coarse levels have N functions a node; weights of interpolation are blocks W0 from the particles, W between others.
+/// Coarse levels have N functions per node. Interpolation weights are blocks W0 from the first coarse level to the
+/// particles, and W between coarse levels.
 template <int N, class W0, class W>
 class Multigrid : public Inverse {
  public:
@@ -163,7 +164,7 @@ class Multigrid : public Inverse {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// Every second particle of each line, and the last one.
+/// Coarsens to every second particle of each line, and the last one.
 class Geometric final : public Multigrid<3, double, double> {
  public:
   void factorise(const SheetSystem& sheet) override {
@@ -172,7 +173,7 @@ class Geometric final : public Multigrid<3, double, double> {
     to_particles_ = bilinear(side);
     side = side / 2 + 1;
     add_level(particles_.matrix, to_particles_);
-    while (coarse_.back().matrix.rows() > kDense) {
+    while (coarse_.back().matrix.rows() > kMaxDenseBlocks) {
       to_fine_.push_back(bilinear(side));
       side = side / 2 + 1;
       add_level(coarse_.back().matrix, to_fine_.back());
@@ -183,7 +184,7 @@ class Geometric final : public Multigrid<3, double, double> {
  private:
   static BlockRows<double> bilinear(int side) {
     const int coarse = side / 2 + 1;
-    // Even places lie on coarse ones, odd ones between two; with an even side the last place is coarse itself.
+    // Even places coincide with coarse ones, odd ones lie between two; of an even side, the last place is coarse too.
     const auto line = [&](int i) -> std::vector<std::pair<int, double>> {
       if (i % 2 == 0) return {{i / 2, 1.0}};
       if (i == side - 1) return {{coarse - 1, 1.0}};
@@ -208,8 +209,8 @@ class Geometric final : public Multigrid<3, double, double> {
 
 /// Aggregates of 3 × 3 particles, then of 3 × 3 aggregates; P = (I − 4/(3 ρ) D⁻¹ A) P₀ (Vaněk, Mandel & Brezina,
 /// "Algebraic Multigrid by Smoothed Aggregation for Second and Fourth Order Elliptic Problems", 1996). With N = 6, P₀
-/// holds the turns about the middle of each aggregate beside the translations (for cloth: Tamstorf, Jones & McCormick,
-/// 2015).
+/// holds the rotations about the centre of each aggregate as well as the translations (for cloth: Tamstorf, Jones &
+/// McCormick, 2015).
 template <int N>
 class Aggregation final : public Multigrid<N, Eigen::Matrix<double, 3, N>, Square<N>> {
  public:
@@ -219,7 +220,7 @@ class Aggregation final : public Multigrid<N, Eigen::Matrix<double, 3, N>, Squar
     std::vector<Vec3> centres = sheet.x;
     this->to_particles_ = smoothed(this->particles_, tentative<3>(side, centres, &sheet.system));
     this->add_level(this->particles_.matrix, this->to_particles_);
-    while (this->coarse_.back().matrix.rows() > kDense) {
+    while (this->coarse_.back().matrix.rows() > kMaxDenseBlocks) {
       this->to_fine_.push_back(smoothed(this->coarse_.back(), tentative<N>(side, centres, nullptr)));
       this->add_level(this->coarse_.back().matrix, this->to_fine_.back());
     }
@@ -227,7 +228,7 @@ class Aggregation final : public Multigrid<N, Eigen::Matrix<double, 3, N>, Squar
   }
 
  private:
-  // Moves of the aggregates as the particles, or the aggregates below, feel them. Replaces side and centres.
+  // Displacements of particles or finer aggregates for rigid motions of aggregates. Replaces side and centres.
   template <int M>
   static BlockRows<Eigen::Matrix<double, M, N>> tentative(int& side, std::vector<Vec3>& centres,
                                                           const solver::LinearSystem* system) {
@@ -277,7 +278,7 @@ class Aggregation final : public Multigrid<N, Eigen::Matrix<double, 3, N>, Squar
     return p;
   }
 
-  // Of D⁻¹ A, by a few power iterations.
+  // Spectral radius of D⁻¹ A, by a few power iterations.
   template <int M>
   static double spectral_radius(const Level<M>& level) {
     const std::size_t rows = at(level.matrix.rows());

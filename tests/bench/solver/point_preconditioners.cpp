@@ -10,20 +10,20 @@
 namespace weft::bench {
 namespace {
 
-// Vectors as the program's inner loops have them, and back.
-class InQuads {
+// Converts vectors to the padded form of the program's inner loops, and back.
+class InPaddedVec3s {
  public:
   template <class Body>
   void apply(std::span<const Vec3> r, std::span<Vec3> z, const Body& body) {
     r_.clear();
-    for (const Vec3& v : r) r_.push_back(solver::quad_of<double>(v));
+    for (const Vec3& v : r) r_.push_back(solver::padded<double>(v));
     z_.resize(r.size());
-    body(std::span<const solver::Quad<double>>(r_), std::span<solver::Quad<double>>(z_));
+    body(std::span<const solver::PaddedVec3<double>>(r_), std::span<solver::PaddedVec3<double>>(z_));
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = solver::vec3_of(z_[i]);
   }
 
  private:
-  std::vector<solver::Quad<double>> r_, z_;
+  std::vector<solver::PaddedVec3<double>> r_, z_;
 };
 
 class OfTheProgram final : public Inverse {
@@ -32,7 +32,7 @@ class OfTheProgram final : public Inverse {
   void analyse(const SheetSystem& sheet) override {
     if (levels_) return;
     without_levels_ = sheet.system;
-    without_levels_.groupings.clear();
+    without_levels_.aggregate_levels.clear();
   }
   void factorise(const SheetSystem& sheet) override {
     preconditioner_.prepare(levels_ ? sheet.system : without_levels_);
@@ -46,11 +46,11 @@ class OfTheProgram final : public Inverse {
   bool levels_;
   solver::LinearSystem without_levels_;
   solver::Preconditioner<double> preconditioner_;
-  InQuads vectors_;
+  InPaddedVec3s vectors_;
 };
 
-// L Lᵀ with the pattern of the matrix, row by row; where a pivot fails, once more with a larger diagonal (Manteuffel,
-// "An Incomplete Factorization Technique for Positive Definite Linear Systems", 1980).
+// L Lᵀ with the pattern of the matrix, row by row; if a pivot fails, retries with a larger diagonal (Manteuffel, "An
+// Incomplete Factorization Technique for Positive Definite Linear Systems", 1980).
 class BlockIncompleteCholesky final : public Inverse {
  public:
   void factorise(const SheetSystem& sheet) override {
@@ -95,7 +95,7 @@ class BlockIncompleteCholesky final : public Inverse {
       for (std::size_t s = lower_.start[i]; s <= last; ++s) {
         const auto j = static_cast<std::size_t>(lower_.column[s]);
         Mat3 sum = a.value[a.start[i] + s - lower_.start[i]];
-        // Columns that both rows have.
+        // Columns common to both rows.
         std::size_t p = lower_.start[i], q = lower_.start[j];
         while (p < s && q + 1 < lower_.start[j + 1]) {
           if (lower_.column[p] == lower_.column[q])
@@ -112,7 +112,7 @@ class BlockIncompleteCholesky final : public Inverse {
         sum += shift * a.value[a.start[i] + s - lower_.start[i]];
         const Eigen::LLT<Mat3> pivot(sum);
         if (pivot.info() != Eigen::Success) return false;
-        lower_.value[s] = pivot.matrixL().solve(Mat3::Identity());  // diagonal blocks are kept inverted
+        lower_.value[s] = pivot.matrixL().solve(Mat3::Identity());  // diagonal blocks are stored inverted
       }
     }
     return true;
@@ -122,7 +122,7 @@ class BlockIncompleteCholesky final : public Inverse {
   BlockRows<Mat3> lower_;
 };
 
-// The sum that ConjugateGradient goes over to, with its weight.
+// The weighted sum of levels and factor to which ConjugateGradient switches.
 class LevelsAndFactor final : public Inverse {
  public:
   void factorise(const SheetSystem& sheet) override {
@@ -146,7 +146,7 @@ class LevelsAndFactor final : public Inverse {
   const solver::LinearSystem* system_ = nullptr;
   solver::Preconditioner<double> levels_;
   solver::IncompleteCholesky factor_;
-  InQuads vectors_;
+  InPaddedVec3s vectors_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The solvers that are compared: preconditioners of conjugate gradients, and direct factorisations.
+// The compared solvers: preconditioners of conjugate gradients, and direct factorisations.
 #pragma once
 
 #include <memory>
@@ -9,26 +9,26 @@
 
 namespace weft::bench {
 
-/// z = P⁻¹ r for r that obeys the constraints, and so does z.
+/// z = P⁻¹ r; r must satisfy the constraints, and z does too.
 class Inverse {
  public:
   virtual ~Inverse() = default;
-  /// What depends on the pattern alone and can be kept from step to step.
+  /// Prepares what depends on the pattern only and can be kept from step to step.
   virtual void analyse(const SheetSystem&) {}
   virtual void factorise(const SheetSystem& sheet) = 0;
   virtual void apply(std::span<const Vec3> r, std::span<Vec3> z) = 0;
 };
 
 std::unique_ptr<Inverse> block_jacobi();
-/// The program's to begin with.
+/// The program's initial preconditioner.
 std::unique_ptr<Inverse> additive_multilevel();
-/// Block IC(0): the pattern of the matrix.
+/// Block IC(0): has the pattern of the matrix.
 std::unique_ptr<Inverse> incomplete_cholesky();
-/// The program's where more than a tenth is asked for: the additive levels, and its incomplete factor beside.
+/// The program's preconditioner for tolerances below a tenth: the additive levels plus its incomplete factor.
 std::unique_ptr<Inverse> levels_and_factor();
-/// One V-cycle; coarse grids of every second particle, bilinear between.
+/// One V-cycle; coarse grids have every second particle, with bilinear interpolation.
 std::unique_ptr<Inverse> geometric_multigrid();
-/// One V-cycle of smoothed aggregation; 3: aggregates are translated, 6: they also turn.
+/// One V-cycle of smoothed aggregation. `functions`: 3 for translations of aggregates, 6 for rotations as well.
 std::unique_ptr<Inverse> aggregation_multigrid(int functions);
 std::unique_ptr<Inverse> cholmod();
 

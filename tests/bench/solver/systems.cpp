@@ -12,14 +12,14 @@ namespace weft::bench {
 namespace {
 
 constexpr double kStep = 0.01;             // [s]
-constexpr double kSlope = 1.2;             // of a fold, at most [rad]
+constexpr double kSlope = 1.2;             // maximum slope of a fold [rad]
 constexpr double kFolds = 6;               // per metre
 constexpr double kGravity = 9.81;          // [m/s²]
-constexpr double kContactStiffness = 100;  // of one contact, as scenes have it [N/m]
-constexpr double kShearOfStretch = 0.03;   // shear stiffness of soft cloth, of the stretching one
-constexpr double kMostShear = 30;          // [N/m]: threads that do not stretch still turn against each other
+constexpr double kContactStiffness = 100;  // of one contact, as in scenes [N/m]
+constexpr double kShearOfStretch = 0.03;   // shear stiffness of soft cloth relative to its stretch stiffness
+constexpr double kMaxShear = 30;           // [N/m]; even inextensible threads can rotate against each other
 
-// A fold is an arc of known angle, so that chords keep their length: the sheet is bent but not stretched along u.
+// A fold is an arc of known angle, so chords keep their length: the sheet bends but does not stretch along u.
 std::vector<Vec3> folded(const mesh::Grid& grid, double weight, double stiffness) {
   std::vector<Vec3> x(static_cast<std::size_t>(grid.size()));
   Vec3 at_u = Vec3::Zero();
@@ -27,7 +27,7 @@ std::vector<Vec3> folded(const mesh::Grid& grid, double weight, double stiffness
     Vec3 at = at_u;
     for (int j = 0; j < grid.nv; ++j) {
       x[static_cast<std::size_t>(grid.index(i, j))] = at;
-      const double below = (grid.nv - 1 - j) * grid.lv;  // cloth that hangs from this edge [m]
+      const double below = (grid.nv - 1 - j) * grid.lv;  // length of cloth below this edge [m]
       at += Vec3(0, 0, -grid.lv * (1 + weight * below / stiffness));
     }
     const double theta = kSlope * std::sin(2 * M_PI * kFolds * (i + 0.5) * grid.lu);
@@ -36,7 +36,7 @@ std::vector<Vec3> folded(const mesh::Grid& grid, double weight, double stiffness
   return x;
 }
 
-// Waves across the folds, of 12 cm and 6 mm high: threads of both directions bend, and are stretched by up to 5 %.
+// Waves across the folds, 12 cm long and 6 mm high: threads of both directions bend, and stretch by up to 5 %.
 void crumple(const mesh::Grid& grid, std::span<Vec3> x) {
   for (int j = 0; j < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i)
@@ -44,7 +44,8 @@ void crumple(const mesh::Grid& grid, std::span<Vec3> x) {
           0.006 * std::sin(2 * M_PI * (4 * i * grid.lu + 7 * j * grid.lv)) * Vec3(1, 1, 0);
 }
 
-// Where folds touch the floor behind the sheet (y least), and each crest a side of the next fold at every second row.
+// Adds contacts where folds touch the floor behind the sheet (minimum y), and of each crest with a side of the next
+// fold in every second row.
 void add_contacts(const mesh::Grid& grid, std::span<const Vec3> x, solver::LinearSystem& system) {
   const Mat3 along_y = kContactStiffness * Vec3::UnitY() * Vec3::UnitY().transpose();
   const Mat3 along_x = kContactStiffness * Vec3::UnitX() * Vec3::UnitX().transpose();
@@ -67,7 +68,7 @@ void add_contacts(const mesh::Grid& grid, std::span<const Vec3> x, solver::Linea
 }  // namespace
 
 SheetSystem sheet_system(int side, double stiffness, Pose pose) {
-  const double shear = std::min(kMostShear, kShearOfStretch * stiffness);
+  const double shear = std::min(kMaxShear, kShearOfStretch * stiffness);
   const scene::Scene scene = support::scene_of_text(
       fmt::format("[time]\nduration = 1\n[[cloth]]\nname = \"sheet\"\nsize = [1, 1]\nparticles = [{0}, {0}]\n"
                   "material = {{ stretch = {1}, shear = {2} }}\n",
@@ -86,14 +87,14 @@ SheetSystem sheet_system(int side, double stiffness, Pose pose) {
   sheet.b = still;
   problem.linearise({sheet.x, still, sheet.x, 1 / kStep, 1}, 0, sheet.b);
   sheet.system = problem.linear_system();
-  for (const double mass : cloth.masses()) sheet.system.metric.push_back(mass / (kStep * kStep));
+  for (const double mass : cloth.masses()) sheet.system.norm_weights.push_back(mass / (kStep * kStep));
   if (pose == Pose::hanging)
     for (int i : {0, side - 1}) sheet.system.constraints.push_back({grid.index(i, 0), Mat3::Zero()});
   else
     add_contacts(grid, sheet.x, sheet.system);
 
-  // Weight, and as much again at random for patches of each size from a particle to the whole sheet, so that motion of
-  // all wavelengths is asked for.
+  // The weight, plus random forces of the same size on patches of every size from a particle to the whole sheet, to
+  // excite all wavelengths.
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> noise(-kGravity, kGravity);
   for (Vec3& entry : sheet.b) entry = Vec3(0, 0, -kGravity);

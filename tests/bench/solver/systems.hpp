@@ -1,4 +1,4 @@
-// Linear systems of implicit Euler as the program builds them, on folded sheets of any size.
+// Linear systems of implicit Euler, as the program builds them, for folded sheets of any size.
 #pragma once
 
 #include <vector>
@@ -9,18 +9,18 @@ namespace weft::bench {
 
 struct SheetSystem {
   solver::LinearSystem system;
-  std::vector<Vec3> b;  ///< [N], obeys the constraints
-  std::vector<Vec3> x;  ///< where it is linearised [m]
+  std::vector<Vec3> b;  ///< [N], satisfies the constraints
+  std::vector<Vec3> x;  ///< positions of the linearisation [m]
   int side = 0;         ///< particles along each side
 };
 
 enum class Pose {
-  hanging,  ///< from two corners
-  lying,    ///< folds on a floor and against each other: contacts, nothing held
+  hanging,  ///< hangs from two corners
+  lying,    ///< lies in folds on a floor and against itself: contacts, nothing held
 };
 
-/// A sheet of cotton, 1 m × 1 m, of side × side particles and the stiffness of its threads [N/m], 10 ms a step,
-/// laid in folds of 17 cm, stretched along the warp by its own weight.
+/// A cotton sheet of 1 m × 1 m with side × side particles, this thread stiffness [N/m] and steps of 10 ms, in folds of
+/// 17 cm and stretched along the warp by its own weight.
 SheetSystem sheet_system(int side, double stiffness, Pose pose);
 
 /// q = S (A + terms) p, with S the constraints of the system.

@@ -1,4 +1,4 @@
-// The broad phase with each of its options against brute force over all pairs, as sets, while surfaces move.
+// Compares the broad phase, with each of its options, with brute force over all pairs, as sets, while surfaces move.
 #include "collision/hierarchy/broad_phase.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr int kSteps = 40;
 /// Pairs without and with one common vertex.
 using BothLists = std::array<Pairs, 2>;
 
-/// Every pair of triangles, of one surface or of two, whose moving k-DOPs overlap, without any hierarchy.
+/// All pairs of triangles, within one surface or between two, whose moving k-DOPs overlap; uses no hierarchy.
 template <int K>
 BothLists brute_force(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                       double margin = kMargin) {
@@ -60,7 +60,7 @@ BothLists all_pairs(BroadPhase& broad_phase, std::size_t surfaces) {
   return found;
 }
 
-/// All sampled settings that promise exactly the same pairs.
+/// All sampled settings that must give exactly the same pairs.
 std::vector<BroadPhaseOptions> exact_options(int directions) {
   std::vector<BroadPhaseOptions> all;
   for (const int children : {2, 4, 8})
@@ -91,12 +91,12 @@ TYPED_TEST(BroadPhasePairs, OfMovingSurfacesEqualBruteForceAtEveryStepForAllTree
   std::vector<BroadPhase> broad_phases;
   for (const BroadPhaseOptions& options : settings) broad_phases.emplace_back(surfaces, motion.at(0), options);
 
-  std::size_t least = 1000000, most = 0;
+  std::size_t min_count = 1000000, max_count = 0;
   for (int step = 0; step < kSteps; ++step) {
     const std::vector<Vec3> x_t0 = motion.at(step), x_t1 = motion.at(step + 1);
     const BothLists expected = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1);
-    least = std::min(least, expected[0].size());
-    most = std::max(most, expected[0].size());
+    min_count = std::min(min_count, expected[0].size());
+    max_count = std::max(max_count, expected[0].size());
     for (std::size_t i = 0; i < settings.size(); ++i) {
       for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phases[i].refit(s, x_t0, x_t1, kMargin);
       EXPECT_EQ(all_pairs(broad_phases[i], surfaces.size()), expected)
@@ -104,12 +104,12 @@ TYPED_TEST(BroadPhasePairs, OfMovingSurfacesEqualBruteForceAtEveryStepForAllTree
           << settings[i].open_longer_side << ", list " << settings[i].separation_list;
     }
   }
-  // The scene comes and goes.
-  EXPECT_GT(most, 2 * least);
+  // The number of pairs varies during the motion.
+  EXPECT_GT(max_count, 2 * min_count);
 }
 
-/// Pairs that are surely within reach whatever the rounding: bounds with a margin smaller by far more than float keeps.
-constexpr double kSurely = kMargin - 2e-6;
+/// Margin for pairs that must be listed whatever the rounding: smaller by far more than the rounding of float [m].
+constexpr double kRequiredMargin = kMargin - 2e-6;
 
 TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
   const FoldingSlidingFlying motion(9);
@@ -123,26 +123,26 @@ TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
     BroadPhase broad_phase(surfaces, motion.at(0), options);
     std::size_t kept = 0;
     for (int step = 0; step < kSteps; ++step) {
-      // Rests in every second stretch.
+      // The motion pauses in every second period.
       const auto at = [&](int s) { return motion.at(s % 8 < 4 ? s : s - s % 4); };
       const std::vector<Vec3> x_t0 = at(step), x_t1 = at(step + 1);
       for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, x_t0, x_t1, kMargin);
-      const BothLists least = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kSurely);
-      const BothLists most = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kMargin * 1.13);
+      const BothLists required = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kRequiredMargin);
+      const BothLists allowed = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kMargin * 1.13);
       const BothLists found = all_pairs(broad_phase, surfaces.size());
       for (const std::size_t l : {0U, 1U}) {
-        EXPECT_TRUE(std::ranges::includes(found[l], least[l])) << step;
-        EXPECT_TRUE(std::ranges::includes(most[l], found[l])) << step;
-        kept += found[l].size() - least[l].size();
+        EXPECT_TRUE(std::ranges::includes(found[l], required[l])) << step;
+        EXPECT_TRUE(std::ranges::includes(allowed[l], found[l])) << step;
+        kept += found[l].size() - required[l].size();
       }
     }
     EXPECT_GT(kept, 0U) << "no bound was ever left as it was";
   }
 }
 
-/// Pairs without a common vertex that come nearer to each other than `reach` on the way: feature by feature, at times
-/// close together.
-Pairs near_on_the_way(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double reach) {
+/// Pairs without a common vertex that come closer than `reach` during the motion, feature by feature, at close samples.
+Pairs near_during_motion(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                         double reach) {
   Pairs near;
   for (int k = 0; k <= 16; ++k) {
     std::vector<Vec3> x(x_t0.size());
@@ -156,7 +156,7 @@ Pairs near_on_the_way(const MovingScene& scene, std::span<const Vec3> x_t0, std:
   return near;
 }
 
-// On a way to any place of the boxes between two corners, and from and to anywhere within the margin.
+// For a trajectory to any place in the boxes between two corners, starting and ending within the margin.
 TYPED_TEST(BroadPhasePairs, HoldAllThatComeNearOnTheWayToAnywhereBetweenTwoCorners) {
   const FoldingSlidingFlying motion(5);
   const std::vector<Surface> surfaces = motion.scene().surfaces();
@@ -173,13 +173,13 @@ TYPED_TEST(BroadPhasePairs, HoldAllThatComeNearOnTheWayToAnywhereBetweenTwoCorne
       low.push_back(one[v].cwiseMin(other[v]));
       high.push_back(one[v].cwiseMax(other[v]));
       const auto off = [&] { return 2 * unit(generator) - 1; };
-      const double share = unit(generator);
+      const double fraction = unit(generator);
       start.push_back(x_t0[v] + kMargin * Vec3(off(), off(), off()));
-      end.push_back(low[v] + share * (high[v] - low[v]) + kMargin * Vec3(off(), off(), off()));
+      end.push_back(low[v] + fraction * (high[v] - low[v]) + kMargin * Vec3(off(), off(), off()));
     }
     for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, Motion(x_t0, low, high), kMargin);
     const Pairs found = all_pairs(broad_phase, surfaces.size())[0];
-    const Pairs meeting = near_on_the_way(motion.scene(), start, end, 1e-4);
+    const Pairs meeting = near_during_motion(motion.scene(), start, end, 1e-4);
     EXPECT_TRUE(std::ranges::includes(found, meeting)) << step;
     near_of_all += meeting.size();
   }

@@ -1,4 +1,4 @@
-// How near two triangles are, feature by feature.
+// Distance of two triangles, feature by feature.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace weft::collision::testing {
 
-/// Least distance of two features of the triangles that have no common vertex; infinite where there are none.
+/// Minimum distance of features of the two triangles that have no common vertex; infinite if there are none.
 inline double feature_distance(const Triangle& a, const Triangle& b, std::span<const Vec3> x) {
   const auto at = [&](Index v) -> const Vec3& { return x[v]; };
   double least_sq = 1e300;

@@ -1,4 +1,4 @@
-// What normal cones leave out against brute force over all features: nothing within reach, at any time of the step.
+// Compares the pairs that normal cones skip with brute force: none is within the detection distance during the step.
 #include "collision/hierarchy/normal_cones.hpp"
 
 #include <gtest/gtest.h>
@@ -19,30 +19,30 @@ using testing::random_vec;
 using testing::TestMesh;
 using Pairs = std::set<TrianglePair>;
 
-/// Feature distance, the least over the linear motion, at nine times.
+/// Minimum feature distance during the linear motion, sampled at nine times.
 double least_distance(const Triangle& a, const Triangle& b, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<Vec3> x(x_t0.size(), Vec3::Zero());
-  double least = 1e300;
+  double minimum = 1e300;
   for (int i = 0; i <= 8; ++i) {
     for (const Triangle& t : {a, b})
       for (const Index v : t) {
         const auto n = static_cast<std::size_t>(v);
         x[n] = x_t0[n] + i / 8.0 * (x_t1[n] - x_t0[n]);
       }
-    least = std::min(least, feature_distance(a, b, x));
+    minimum = std::min(minimum, feature_distance(a, b, x));
   }
-  return least;
+  return minimum;
 }
 
-struct LeftOut {
-  std::size_t pairs = 0;         ///< listed without cones, not with them
-  std::size_t within_reach = 0;  ///< of these
+struct SkippedPairs {
+  std::size_t pairs = 0;         ///< pairs listed only without cones
+  std::size_t within_reach = 0;  ///< how many of these are within the detection distance
 };
 
-/// Pairs that the cones leave out for one step.
+/// Pairs that the cones skip in one step.
 template <int K>
-LeftOut left_out(const Surface& surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double reach,
-                 const TreeShape& shape) {
+SkippedPairs find_skipped_pairs(const Surface& surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                                double reach, const TreeShape& shape) {
   Tree<K> tree(surface, x_t0, shape);
   tree.refit(x_t0, x_t1, reach / 2);
   NormalCones<K> cones(tree);
@@ -53,7 +53,7 @@ LeftOut left_out(const Surface& surface, std::span<const Vec3> x_t0, std::span<c
   how.regions = &cones.regions();
   self_pairs(tree, with_cones, how);
 
-  LeftOut result;
+  SkippedPairs result;
   for (const auto list : {&CandidatePairs::apart, &CandidatePairs::one_shared}) {
     const Pairs expected((all.*list).begin(), (all.*list).end());
     const Pairs found((with_cones.*list).begin(), (with_cones.*list).end());
@@ -68,12 +68,12 @@ LeftOut left_out(const Surface& surface, std::span<const Vec3> x_t0, std::span<c
   return result;
 }
 
-LeftOut left_out(const TestMesh& mesh, double reach) {
-  return left_out<6>(mesh.surface(), mesh.x, mesh.x, reach, {4, 4});
+SkippedPairs find_skipped_pairs(const TestMesh& mesh, double reach) {
+  return find_skipped_pairs<6>(mesh.surface(), mesh.x, mesh.x, reach, {4, 4});
 }
 
-/// A strip of 4 × n vertices that winds around the z axis `turns` times, `pitch` up per turn: seen from above it covers
-/// itself, and yet all its normals are nearly upright.
+/// A strip of 4 × n vertices that winds around the z axis `turns` times and rises by `pitch` a turn: seen from above it
+/// covers itself, although all its normals are nearly upright.
 TestMesh spiral_stair(int n, double turns, double pitch) {
   TestMesh mesh;
   for (int i = 0; i < n; ++i)
@@ -90,13 +90,13 @@ TestMesh spiral_stair(int n, double turns, double pitch) {
   return mesh;
 }
 
-/// A flat sheet of n × n vertices over the unit square with a slit along x = ½ through the first `rows` rows of quads,
-/// whose sides are `gap` apart.
+/// A flat sheet of n × n vertices over the unit square. A slit along x = ½ cuts the first `rows` rows of quads; its
+/// sides are `gap` apart.
 TestMesh slit_sheet(int n, int rows, double gap) {
   TestMesh mesh = folded_sheet(n, 1, 0);
   for (Vec3& p : mesh.x) p[2] = 0;
   const Index middle = n / 2;
-  // The vertices of the slit twice: triangles on its right get copies.
+  // Duplicates the vertices of the slit: triangles on its right get the copies.
   for (Index j = 0; j < rows; ++j) {
     const Index left = middle + n * j, right = static_cast<Index>(mesh.x.size());
     mesh.x.push_back(mesh.x[left] + Vec3{gap / 2, 0, 0});
@@ -115,13 +115,13 @@ TEST(NormalCones, LeaveOutNothingWithinReachOfFoldingSheetsAtAnyStepTreeAndReach
   std::size_t pairs = 0;
   for (int step = 0; step < 30; step += 3) {
     const std::vector<Vec3> x_t0 = motion.at(step), x_t1 = motion.at(step + 1);
-    for (const double reach : {0.005, 0.02, 0.04}) {  // the altitudes are 0.031
-      const std::array<LeftOut, 3> all{
-          left_out<6>(surfaces[0], x_t0, x_t1, reach, {8, 8}),
-          left_out<18>(surfaces[1], x_t0, x_t1, reach, {2, 3}),
-          left_out<26>(surfaces[2], x_t0, x_t1, reach, {4, 1}),
+    for (const double reach : {0.005, 0.02, 0.04}) {  // altitudes of the triangles are 0.031
+      const std::array<SkippedPairs, 3> all{
+          find_skipped_pairs<6>(surfaces[0], x_t0, x_t1, reach, {8, 8}),
+          find_skipped_pairs<18>(surfaces[1], x_t0, x_t1, reach, {2, 3}),
+          find_skipped_pairs<26>(surfaces[2], x_t0, x_t1, reach, {4, 1}),
       };
-      for (const LeftOut& one : all) {
+      for (const SkippedPairs& one : all) {
         EXPECT_EQ(one.within_reach, 0U) << "step " << step << " reach " << reach;
         pairs += one.pairs;
       }
@@ -139,7 +139,7 @@ TEST(NormalCones, LeaveOutNothingWithinReachOfASheetThatCrumplesAtRandom) {
     for (Vec3& p : x_t0) p += amount * random_vec(generator);
     for (Vec3& p : x_t1) p += amount * random_vec(generator);
     for (const double reach : {0.0, 0.01, 0.03}) {
-      const LeftOut result = left_out<6>(mesh.surface(), x_t0, x_t1, reach, {2, 2});
+      const SkippedPairs result = find_skipped_pairs<6>(mesh.surface(), x_t0, x_t1, reach, {2, 2});
       EXPECT_EQ(result.within_reach, 0U) << amount << " " << reach;
       pairs += result.pairs;
     }
@@ -147,50 +147,50 @@ TEST(NormalCones, LeaveOutNothingWithinReachOfASheetThatCrumplesAtRandom) {
   EXPECT_GT(pairs, 100U);
 }
 
-// All its normals are nearly upright; only the contour test tells that it covers itself.
+// All normals are nearly upright; only the contour test shows that the strip covers itself.
 TEST(NormalCones, MissNothingThatLiesOverItselfOnASpiralStair) {
-  const LeftOut result = left_out(spiral_stair(120, 3, 0.01), 0.02);
+  const SkippedPairs result = find_skipped_pairs(spiral_stair(120, 3, 0.01), 0.02);
   EXPECT_EQ(result.within_reach, 0U);
 }
 
-// All its normals are equal; only the border tells that there is a slit.
+// All normals are equal; only the border shows that there is a slit.
 TEST(NormalCones, MissNothingThatLiesAcrossASlit) {
-  const LeftOut result = left_out(slit_sheet(17, 8, 0.004), 0.01);
+  const SkippedPairs result = find_skipped_pairs(slit_sheet(17, 8, 0.004), 0.01);
   EXPECT_EQ(result.within_reach, 0U);
   EXPECT_GT(result.pairs, 100U);
 }
 
 TEST(NormalCones, SeeWhatHappensOnlyDuringTheStep) {
-  // Half a turn in its plane along straight lines: equal normals at both ends, and all points meet in between.
+  // Half a turn in the plane along straight lines: the normals are equal at both ends, and all points coincide halfway.
   TestMesh mesh = folded_sheet(12, 1, 0);
   for (Vec3& p : mesh.x) p[2] = 0;
   std::vector<Vec3> x_t1;
   for (const Vec3& p : mesh.x) x_t1.emplace_back(1 - p[0], 1 - p[1], 0);
-  EXPECT_GT((left_out<6>(mesh.surface(), mesh.x, mesh.x, 0.01, {4, 4}).pairs), 0U);
-  EXPECT_EQ((left_out<6>(mesh.surface(), mesh.x, x_t1, 0.01, {4, 4}).pairs), 0U);
+  EXPECT_GT((find_skipped_pairs<6>(mesh.surface(), mesh.x, mesh.x, 0.01, {4, 4}).pairs), 0U);
+  EXPECT_EQ((find_skipped_pairs<6>(mesh.surface(), mesh.x, x_t1, 0.01, {4, 4}).pairs), 0U);
 }
 
 TEST(NormalCones, LeaveNothingOutOnceTheReachExceedsTheAltitudes) {
   TestMesh mesh = folded_sheet(17, 1, 0);
   for (Vec3& p : mesh.x) p[2] = 0;
   const double altitude = std::sqrt(0.5) / 16;
-  EXPECT_GT(left_out(mesh, 0.99 * altitude).pairs, 100U);
-  EXPECT_EQ(left_out(mesh, 1.01 * altitude).pairs, 0U);
+  EXPECT_GT(find_skipped_pairs(mesh, 0.99 * altitude).pairs, 100U);
+  EXPECT_EQ(find_skipped_pairs(mesh, 1.01 * altitude).pairs, 0U);
 }
 
 TEST(NormalCones, MissNothingAcrossANotchInAStarShapedBorder) {
-  // A notch from the lower border towards the centre: seen from there the whole border runs forward.
+  // A notch from the lower border towards the centre: seen from the centre, the whole border turns in one direction.
   TestMesh sheet = slit_sheet(9, 3, 0.002);
   for (Vec3& p : sheet.x)
     if (p[1] < 0.375 && std::abs(p[0] - 0.5) < 0.01) p[0] += (p[0] < 0.5 ? -0.1 : 0.1) * (0.375 - p[1]);
   for (int leaf : {1, 8}) {
-    // The notch is 0.027 wide where it begins; triangles at it are no lower than 0.07.
-    const LeftOut result = left_out<6>(sheet.surface(), sheet.x, sheet.x, 0.04, {2, leaf});
+    // The notch is 0.027 wide at its beginning; the triangles beside it have altitudes of at least 0.07.
+    const SkippedPairs result = find_skipped_pairs<6>(sheet.surface(), sheet.x, sheet.x, 0.04, {2, leaf});
     EXPECT_EQ(result.within_reach, 0U);
   }
 }
 
-// Half a ball and the ring around it face all ways; small patches of it do not.
+// Normals of half a ball and the ring around it point in all directions; those of small patches do not.
 TEST(NormalCones, EndAtARightAngle) {
   const mesh::Mesh ball = mesh::make_sphere(0.5, 24);
   const TestMesh mesh{ball.positions, {ball.topology.triangles.begin(), ball.topology.triangles.end()}};
@@ -198,7 +198,7 @@ TEST(NormalCones, EndAtARightAngle) {
   NormalCones<6> cones(tree);
   cones.update(tree, mesh.x, mesh.x, 1e-4);
   const Regions& regions = cones.regions();
-  for (const auto half : std::span(tree.nodes()[0].child).first(2)) EXPECT_FALSE(regions.nothing_near(half));
+  for (const auto half : std::span(tree.nodes()[0].child).first(2)) EXPECT_FALSE(regions.has_nothing_near(half));
   EXPECT_GT(std::ranges::count(regions.node, 1) + std::ranges::count(regions.leaf, 1), 10);
 }
 
@@ -218,18 +218,18 @@ TEST(StarShaped, HoldsForAChainThatRunsAroundItsCentreOnceAndAlwaysForward) {
   std::vector<std::array<Index, 2>> edges;
   for (Index i = 0; i < 12; ++i) edges.push_back({i, (i + 1) % 12});
   const std::vector<Vec3> star = chain(once, radii);
-  EXPECT_TRUE(star_shaped(edges, Vec3::UnitZ(), star, star));
-  EXPECT_FALSE(star_shaped(edges, -Vec3::UnitZ(), star, star)) << "seen from behind it runs backward";
+  EXPECT_TRUE(is_star_shaped(edges, Vec3::UnitZ(), star, star));
+  EXPECT_FALSE(is_star_shaped(edges, -Vec3::UnitZ(), star, star)) << "seen from behind it runs backward";
   const std::vector<Vec3> wound = chain(twice, radii);
-  EXPECT_FALSE(star_shaped(edges, Vec3::UnitZ(), wound, wound)) << "runs around twice";
+  EXPECT_FALSE(is_star_shaped(edges, Vec3::UnitZ(), wound, wound)) << "runs around twice";
   std::vector<double> hooked = once;
   std::swap(hooked[4], hooked[5]);
   const std::vector<Vec3> hook = chain(hooked, radii);
-  EXPECT_FALSE(star_shaped(edges, Vec3::UnitZ(), hook, hook));
-  // In between the two, half a turn about the centre, all points meet there.
+  EXPECT_FALSE(is_star_shaped(edges, Vec3::UnitZ(), hook, hook));
+  // Halfway through half a turn about the centre, all points coincide there.
   std::vector<double> turned;
   for (const double angle : once) turned.push_back(angle + M_PI);
-  EXPECT_FALSE(star_shaped(edges, Vec3::UnitZ(), star, chain(turned, radii)));
+  EXPECT_FALSE(is_star_shaped(edges, Vec3::UnitZ(), star, chain(turned, radii)));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Candidate pairs of the hierarchy against brute force over all pairs, as sets.
+// Compares candidate pairs of the hierarchy with brute force over all pairs, as sets.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -33,18 +33,16 @@ using Setups = ::testing::Types<Setup<6, 2, 1>, Setup<6, 4, 3>, Setup<6, 8, 8>, 
                                 Setup<18, 4, 8>, Setup<18, 8, 2>, Setup<26, 2, 5>, Setup<26, 4, 4>, Setup<26, 8, 8>>;
 TYPED_TEST_SUITE(HierarchyPairs, Setups);
 
-/// Everything by definition and in double: the intervals of a triangle along each direction, at the start of its path
-/// and at the end.
+/// Brute force in double: the intervals of a triangle along each direction, at the start and the end of its path.
 template <int K>
 class BruteForce {
  public:
   BruteForce(const TestMesh& mesh, std::span<const Vec3> x_t1, double margin)
       : mesh_(mesh), x_t1_(x_t1), margin_(margin) {}
 
-  /// Largest over all directions of the gap that is left at both ends [m], margins taken off; the bounds overlap where
-  /// it is not positive.
+  /// Maximum gap over all directions and both ends [m], less the margins; the bounds overlap if it is not positive.
   double gap(const Triangle& a, const BruteForce& other, const Triangle& b) const {
-    double most = -1e300;
+    double max_gap = -1e300;
     for (int d = 0; d < K; d += 2) {
       const auto& dir = kDirections<K>;
       const auto row = static_cast<std::size_t>(d);
@@ -56,9 +54,9 @@ class BruteForce {
         above = std::min(above, a_low - b_high);
         below = std::min(below, b_low - a_high);
       }
-      most = std::max({most, above, below});
+      max_gap = std::max({max_gap, above, below});
     }
-    return most;
+    return max_gap;
   }
 
  private:
@@ -77,17 +75,17 @@ class BruteForce {
   double margin_;
 };
 
-/// The list as a set; every pair must be there once.
+/// The list as a set; fails if a pair occurs twice.
 Pairs as_set(const PairList& list) {
   const Pairs set(list.begin(), list.end());
   EXPECT_EQ(set.size(), list.size()) << "a pair is listed twice";
   return set;
 }
 
-/// Outward rounding to float may add pairs whose bounds miss each other by a few 1e-7 of the coordinates, none further.
-void expect_between(const Pairs& least, const Pairs& found, const Pairs& most) {
-  EXPECT_TRUE(std::includes(found.begin(), found.end(), least.begin(), least.end()));
-  EXPECT_TRUE(std::includes(most.begin(), most.end(), found.begin(), found.end()));
+/// Outward rounding to float may add pairs whose bounds are apart by a few 1e-7 of the coordinates, but no others.
+void expect_between(const Pairs& required, const Pairs& found, const Pairs& allowed) {
+  EXPECT_TRUE(std::includes(found.begin(), found.end(), required.begin(), required.end()));
+  EXPECT_TRUE(std::includes(allowed.begin(), allowed.end(), found.begin(), found.end()));
 }
 
 template <class S>
@@ -95,21 +93,21 @@ void expect_self_pairs(const TestMesh& mesh, const typename S::TreeType& tree, s
                        double margin) {
   constexpr double kRounding = 1e-6;  // 4 roundings of 2^-23 at coordinates up to 2
   const BruteForce<S::K> brute(mesh, x_t1, margin);
-  std::array<Pairs, 2> least, most;
+  std::array<Pairs, 2> required, allowed;
   for (std::size_t a = 0; a < mesh.triangles.size(); ++a) {
     for (std::size_t b = a + 1; b < mesh.triangles.size(); ++b) {
       const std::size_t shared = testing::shared_count(mesh.triangles[a], mesh.triangles[b]);
       if (shared > 1) continue;
       const double gap = brute.gap(mesh.triangles[a], brute, mesh.triangles[b]);
       const TrianglePair pair{static_cast<Index>(a), static_cast<Index>(b)};
-      if (gap <= 0) least[shared].insert(pair);
-      if (gap <= kRounding) most[shared].insert(pair);
+      if (gap <= 0) required[shared].insert(pair);
+      if (gap <= kRounding) allowed[shared].insert(pair);
     }
   }
   CandidatePairs found;
   self_pairs(tree, found);
-  expect_between(least[0], as_set(found.apart), most[0]);
-  expect_between(least[1], as_set(found.one_shared), most[1]);
+  expect_between(required[0], as_set(found.apart), allowed[0]);
+  expect_between(required[1], as_set(found.one_shared), allowed[1]);
 }
 
 TYPED_TEST(HierarchyPairs, OfASoupWithEqualAndDegenerateTrianglesEqualBruteForce) {
@@ -136,7 +134,7 @@ TYPED_TEST(HierarchyPairs, OfAMovingMeshEqualBruteForceAfterEachRefit) {
 
 TYPED_TEST(HierarchyPairs, OfTwoSurfacesEqualBruteForce) {
   const TestMesh cloth = folded_sheet(13, 2, 0.05), body = triangle_soup(9, 30, 150, 0.2);
-  // One numbering for both: the vertices and triangles of the body follow those of the cloth.
+  // Both surfaces share one numbering: the vertices and triangles of the body follow those of the cloth.
   TestMesh both = cloth;
   const auto first_vertex = static_cast<Index>(cloth.x.size());
   const auto first_triangle = static_cast<Index>(cloth.triangles.size());
@@ -159,20 +157,20 @@ TYPED_TEST(HierarchyPairs, OfTwoSurfacesEqualBruteForce) {
   EXPECT_TRUE(found.one_shared.empty());
 
   const BruteForce<TypeParam::K> brute_a(both, x_t1, 0.01), brute_b(both, x_t1, 0.02);
-  Pairs least, most;
+  Pairs required, allowed;
   for (Index i = 0; i < first_triangle; ++i) {
     for (Index j = first_triangle; j < static_cast<Index>(both.triangles.size()); ++j) {
       const double gap = brute_a.gap(both.triangles[i], brute_b, both.triangles[j]);
-      if (gap <= 0) least.insert({i, j});
-      if (gap <= 1e-6) most.insert({i, j});
+      if (gap <= 0) required.insert({i, j});
+      if (gap <= 1e-6) allowed.insert({i, j});
     }
   }
-  EXPECT_GT(least.size(), 50U);
-  expect_between(least, as_set(found.apart), most);
+  EXPECT_GT(required.size(), 50U);
+  expect_between(required, as_set(found.apart), allowed);
 }
 
 TYPED_TEST(HierarchyPairs, CoverTouchingTrianglesAtLargeCoordinates) {
-  // Each triangle touches the next at one point, a kilometre from the origin, where a float is 6e-5 m coarse.
+  // Each triangle touches the next in one point, 1 km from the origin, where float has a resolution of 6e-5 m.
   TestMesh mesh;
   for (int i = 0; i < 40; ++i) {
     const Vec3 corner = Vec3{1000, -900, 0} + 0.1 * i * Vec3{1, 1, 1} / 3;
@@ -217,8 +215,8 @@ TYPED_TEST(HierarchyPairs, ComeInTheSameOrderEveryTime) {
 
 TEST(Hierarchy, HoldsEveryTriangleOnceInNodesAndLeavesOfItsShapeAndParentsBeforeChildren) {
   const TestMesh mesh = folded_sheet(30, 3, 0.01);
-  for (int most = 1; most <= kLanes; ++most) {
-    const TreeShape shape{std::max(2, most), most};
+  for (int capacity = 1; capacity <= kLanes; ++capacity) {
+    const TreeShape shape{std::max(2, capacity), capacity};
     const Tree<18> tree(mesh.surface(), mesh.x, shape);
     std::multiset<Index> held;
     for (const auto& leaf : tree.leaves()) {
@@ -238,7 +236,7 @@ TEST(Hierarchy, HoldsEveryTriangleOnceInNodesAndLeavesOfItsShapeAndParentsBefore
 }
 
 TEST(Hierarchy, ListsPairsInTheSameOrderOnAnyNumberOfThreads) {
-  // Leaves enough for threads, in a sheet that lies over itself.
+  // A sheet in layers, with enough leaves for several threads.
   const TestMesh sheet = folded_sheet(64, 3, 0.01);
   Tree<6> tree(sheet.surface(), sheet.x), other = tree;
   tree.refit(sheet.x, sheet.x, 0.004);
@@ -279,7 +277,7 @@ TEST(Hierarchy, RefusesIndicesOutsideTheSurfaceAndShapesWithoutLanes) {
 }
 
 TEST(SplitLongestSide, PutsCutTrianglesOnTheSideWithFewerUncutOnes) {
-  // Along x from 0 to 10 with the plane at 5: three below, one cut, two above.
+  // Intervals along x from 0 to 10, plane at 5: three are below, one is cut, two are above.
   const std::array<std::pair<double, double>, 6> spans{{{0, 1}, {4, 6}, {1, 2}, {8, 10}, {2, 3}, {6, 7}}};
   std::vector<KDop<6>> bounds;
   for (const auto& [low, high] : spans) bounds.push_back(swept_point<6>({low, 0, 0}, {high, 1, 1}, 0));
@@ -289,7 +287,7 @@ TEST(SplitLongestSide, PutsCutTrianglesOnTheSideWithFewerUncutOnes) {
 }
 
 TEST(SplitLongestSide, UsesTheDirectionWhoseFacesAreFurthestApart) {
-  // Along the diagonal of x and y: only the 18-DOP has that direction, where the set is 14 long, not 10.
+  // Points along the diagonal of x and y: only the 18-DOP has that direction, in which the set is 14 long, not 10.
   std::vector<KDop<18>> bounds;
   for (int i = 0; i < 4; ++i) {
     const Vec3 p{2.5 * i, 2.5 * i, 3.0 * (i % 2)};

@@ -1,4 +1,4 @@
-// Queries of a single hierarchy against brute force over all triangles.
+// Compares queries of a single hierarchy with brute force over all triangles.
 #include "collision/hierarchy/query.hpp"
 
 #include <gtest/gtest.h>
@@ -22,13 +22,13 @@ double distance_sq(const Vec3& p, const Triangle& t, std::span<const Vec3> x) {
   return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]).distance_sq;
 }
 
-/// Largest gap along an axis between the box of a triangle's corners at several times and the one from low to high.
+/// Maximum gap along an axis between the box of a triangle's corners at these times and the box from `low` to `high`.
 double box_gap(std::initializer_list<std::span<const Vec3>> times, const Triangle& t, const Vec3& low,
                const Vec3& high) {
-  Vec3 least = Vec3::Constant(kNone), most = Vec3::Constant(-kNone);
+  Vec3 corner_min = Vec3::Constant(kNone), corner_max = Vec3::Constant(-kNone);
   for (const std::span<const Vec3> x : times)
-    for (const Index v : t) least = least.cwiseMin(x[v]), most = most.cwiseMax(x[v]);
-  return std::max((least - high).maxCoeff(), (low - most).maxCoeff());
+    for (const Index v : t) corner_min = corner_min.cwiseMin(x[v]), corner_max = corner_max.cwiseMax(x[v]);
+  return std::max((corner_min - high).maxCoeff(), (low - corner_max).maxCoeff());
 }
 
 template <class K>
@@ -37,14 +37,14 @@ using AllK =
     ::testing::Types<std::integral_constant<int, 6>, std::integral_constant<int, 18>, std::integral_constant<int, 26>>;
 TYPED_TEST_SUITE(HierarchyQuery, AllK);
 
-/// A tree, the motion that it was fitted to, and a place on the way or within the margin of it.
+/// A tree, the motion to which it was fitted, and positions during the motion or within its margin.
 template <int K>
 struct Fit {
   const Tree<K>& tree;
   std::span<const Vec3> x_t0, x_t1, x;
 };
 
-/// Calls check(fit) for each surface in motion, several shapes of trees and both ways of fitting.
+/// Calls check(fit) for each moving surface, several tree shapes, and both kinds of refit.
 template <int K, class Check>
 void for_all_fits(const Check& check) {
   const FoldingSlidingFlying motion(12);
@@ -68,28 +68,28 @@ void for_all_fits(const Check& check) {
 
 TYPED_TEST(HierarchyQuery, ForTheNearestTrianglesFindsThemAndAllTiesOfThoseThatCount) {
   std::mt19937 generator(7);
-  std::size_t looked_at = 0, all = 0, ties = 0;
+  std::size_t measured = 0, all = 0, ties = 0;
   for_all_fits<TypeParam::value>([&](const auto& fit) {
     const Surface& surface = fit.tree.surface();
     for (int i = 0; i < 40; ++i) {
-      // Anywhere, or on a vertex, where all triangles around it tie.
+      // The point is anywhere, or at a vertex, where all triangles around it are equally near.
       const Index vertex = surface.first_vertex + static_cast<Index>(generator() % 1000) % surface.vertex_count;
       const Vec3 p = i % 2 == 0 ? random_vec(generator) : fit.x[vertex];
-      // Every third triangle does not count in every third query.
+      // In every third query, every third triangle is excluded.
       const auto measure = [&](Index t) {
         return i % 3 == 0 && t % 3 == 0 ? kNone : distance_sq(p, surface.triangles[t - surface.first_triangle], fit.x);
       };
-      double least = kNone;
+      double minimum = kNone;
       std::vector<Index> expected, found;
       const auto count = static_cast<Index>(surface.triangles.size());
       for (Index t = surface.first_triangle; t < surface.first_triangle + count; ++t)
-        least = std::min(least, measure(t));
+        minimum = std::min(minimum, measure(t));
       for (Index t = surface.first_triangle; t < surface.first_triangle + count; ++t)
-        if (measure(t) <= (1 + kAsNear) * least) expected.push_back(t);
+        if (measure(t) <= (1 + kNearestTolerance) * minimum) expected.push_back(t);
       nearest_triangles(
           fit.tree, p,
           [&](Index t) {
-            ++looked_at;
+            ++measured;
             return measure(t);
           },
           found);
@@ -99,7 +99,7 @@ TYPED_TEST(HierarchyQuery, ForTheNearestTrianglesFindsThemAndAllTiesOfThoseThatC
     }
   });
   EXPECT_GT(ties, 100U);
-  EXPECT_LT(4 * looked_at, all) << "most triangles are ruled out by their bounds";
+  EXPECT_LT(4 * measured, all) << "most triangles are ruled out by their bounds";
 }
 
 TYPED_TEST(HierarchyQuery, ForTheNearestOfTrianglesNoneOfWhichCountFindsNone) {
@@ -132,7 +132,7 @@ TYPED_TEST(HierarchyQuery, ForABoxFindsAllThatMeetItAndNoneBeyondItsBounds) {
         const bool listed = std::ranges::binary_search(found, surface.first_triangle + static_cast<Index>(n));
         const bool meets = box_gap({fit.x}, t, low, high) <= 0;
         EXPECT_TRUE(listed || !meets);
-        // A lazy fit may be an eighth of the margin larger.
+        // A lazy refit may exceed the margin by an eighth.
         EXPECT_TRUE(!listed || box_gap({fit.x_t0, fit.x_t1}, t, low, high) <= 1.126 * kMargin);
         met += meets;
       }

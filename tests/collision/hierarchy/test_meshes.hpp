@@ -1,4 +1,4 @@
-// Small surfaces for the tests of the hierarchy and of the proximities.
+// Small surfaces for the tests of the hierarchy and of near pairs.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct TestMesh {
   Surface surface() const { return {triangles, 0, 0, static_cast<Index>(x.size())}; }
 };
 
-/// Common vertices; one that a triangle names twice counts once.
+/// Number of common vertices; a vertex that a triangle names twice counts once.
 inline std::size_t shared_count(const Triangle& a, const Triangle& b) {
   const std::set<Index> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
   return static_cast<std::size_t>(std::count_if(of_a.begin(), of_a.end(), [&](Index v) { return of_b.contains(v); }));
@@ -29,14 +29,13 @@ inline Vec3 random_vec(std::mt19937& generator) {
   return {a, b, c};
 }
 
-/// Triangles between random ones of few vertices: many share a vertex or an edge, some are equal or name a vertex
-/// twice.
+/// Triangles between few random vertices: many share a vertex or an edge, some are equal or name a vertex twice.
 inline TestMesh triangle_soup(unsigned seed, int vertices, int triangles, double size) {
   std::mt19937 generator(seed);
   TestMesh mesh;
   for (int v = 0; v < vertices; ++v) {
     const Vec3 centre = random_vec(generator);
-    // In clusters of five, so that triangles of one cluster are small.
+    // Vertices form clusters of five, so that triangles within a cluster are small.
     for (int i = 0; i < 5; ++i) mesh.x.push_back(centre + size * random_vec(generator));
   }
   const auto pick = [&](int count) { return static_cast<Index>(generator() % static_cast<unsigned>(count)); };
@@ -47,7 +46,7 @@ inline TestMesh triangle_soup(unsigned seed, int vertices, int triangles, double
   return mesh;
 }
 
-/// A sheet of n × n vertices over the unit square, in `layers` layers `gap` apart, folded to and fro.
+/// A sheet of n × n vertices over the unit square, folded back and forth into `layers` layers that are `gap` apart.
 inline TestMesh folded_sheet(int n, int layers, double gap) {
   TestMesh mesh;
   for (int j = 0; j < n; ++j) {

@@ -1,4 +1,4 @@
-// Surfaces in motion, for the tests and measurements of what changes from step to step.
+// Moving surfaces, for tests and measurements of what changes from step to step.
 #pragma once
 
 #include <cmath>
@@ -7,9 +7,9 @@
 
 namespace weft::collision::testing {
 
-inline constexpr double kMargin = 0.01;  ///< that bounds are wider by [m]
+inline constexpr double kMargin = 0.01;  ///< by which bounds are enlarged [m]
 
-/// Several meshes in one numbering.
+/// Several meshes with a common numbering.
 struct MovingScene {
   std::vector<Triangle> triangles;
   std::vector<Index> first_triangle{0}, first_vertex{0};  ///< of each surface, with the totals at the end
@@ -35,9 +35,8 @@ struct MovingScene {
   }
 };
 
-/// A sheet that rolls up and opens again, a sheet that slides over it and flutters, and a ball of triangles that flies
-/// through the place of both, comes back and rests for a while. Steps are those of a simulation: a few per cent of the
-/// size each.
+/// A sheet rolls up and opens again, a second sheet slides over it and flutters, and a ball of triangles flies through
+/// both, returns and rests for a while. Steps are as large as in a simulation: a few per cent of the size each.
 class FoldingSlidingFlying {
  public:
   explicit FoldingSlidingFlying(int n) : sheet_(folded_sheet(n, 1, 0)), ball_(triangle_soup(4, 20, 60, 0.1)) {

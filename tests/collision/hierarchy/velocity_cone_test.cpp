@@ -1,4 +1,4 @@
-// Velocity cones against the motions they are made of.
+// Compares velocity cones with the motions that they enclose.
 #include "collision/hierarchy/velocity_cone.hpp"
 
 #include <gtest/gtest.h>
@@ -33,11 +33,11 @@ TEST(VelocityCone, BoundsEachRelativeMotionOfTwoSets) {
   for (int i = 0; i < 500; ++i) {
     const double scale = std::pow(10.0, i % 9 - 6);
     const Motions a = random_motions(generator, scale, i % 3 == 0 ? 1 : 0.1), b = random_motions(generator, scale, 0.3);
-    double most = 0;
+    double max_speed = 0;
     for (const Vec3& u : a.each)
-      for (const Vec3& v : b.each) most = std::max(most, (u - v).norm());
-    EXPECT_LE(most, relative_motion(a.cone, b.cone));
-    EXPECT_GE(most, 0.3 * relative_motion(a.cone, b.cone)) << "the bound is of no use";
+      for (const Vec3& v : b.each) max_speed = std::max(max_speed, (u - v).norm());
+    EXPECT_LE(max_speed, relative_motion(a.cone, b.cone));
+    EXPECT_GE(max_speed, 0.3 * relative_motion(a.cone, b.cone)) << "the bound is of no use";
   }
 }
 

@@ -1,4 +1,4 @@
-// Kept detection results against brute force and against fresh searches, step by step.
+// Compares reused detection results with brute force and with fresh searches, step by step.
 #include "collision/proximity/coherence.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using Pairs = std::set<TrianglePair>;
 constexpr double kWidestReach = 0.02, kBudget = 0.01;
 constexpr int kSheet = 15;
 
-/// A folded sheet and one above it fall fast together and flutter a little; a third comes up from below.
+/// A folded sheet and one above it fall fast together and flutter slightly; a third rises from below.
 class Falling {
  public:
   Falling() {
@@ -52,7 +52,7 @@ ClosestPoints of_features(const Proximity& p, std::span<const Vec3> x) {
                                               : closest_edge_edge(at(0), at(1), at(2), at(3));
 }
 
-/// The point of side a.
+/// The closest point on side a.
 Vec3 place(const Proximity& p, std::span<const Vec3> x) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < 4; ++i)
@@ -64,7 +64,7 @@ const std::vector<SurfacePair> kAllPairs{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2},
 
 class CoherentDetectionTest : public ::testing::Test {
  protected:
-  /// With a search of its own: nothing of it depends on what the detection does to the other one.
+  /// A separate search, which is independent of what the detection does to its own.
   struct Search {
     BroadPhase broad_phase;
     ProximityFinder finder;
@@ -74,13 +74,13 @@ class CoherentDetectionTest : public ::testing::Test {
             ProximityFinder(motion_.scene().triangles, static_cast<Index>(motion_.at(0).size()))};
   }
   CoherentDetection make_detection(const std::vector<SurfacePair>& wanted) const {
-    return {surfaces_, wanted, motion_.at(0), {.reach = kWidestReach, .budget = kBudget}};
+    return {surfaces_, wanted, motion_.at(0), {.detection_distance = kWidestReach, .budget = kBudget}};
   }
   int update(CoherentDetection& detection, const std::vector<Vec3>& x_t0, const std::vector<Vec3>& x_t1) {
     return detection.update(kept_.broad_phase, kept_.finder, x_t0, x_t1);
   }
 
-  /// What is within reach of these pairs of surfaces, by a search from the start.
+  /// Finds near pairs of these pairs of surfaces by a fresh search.
   void find(const std::vector<SurfacePair>& wanted, const std::vector<Vec3>& x_t0, const std::vector<Vec3>& x_t1,
             CandidatePairs& candidates, std::vector<Proximity>& out) {
     candidates.clear();
@@ -138,7 +138,7 @@ TEST_F(CoherentDetectionTest, MissesNothingWithinReachAndKeepsClosestPointsWithi
       EXPECT_TRUE(std::ranges::any_of(detection.proximities(), stands_for));
     }
   }
-  // The first two move together, the third arrives: both kinds of steps are there, and the bound is used, not idle.
+  // The first two move together and the third arrives: both kinds of steps occur, and the reuse bound has an effect.
   EXPECT_GT(45 * 6 - found_anew, 60);
   EXPECT_GT(found_anew, 20);
   EXPECT_GT(largest_error, 1e-6);
@@ -158,7 +158,7 @@ TEST_F(CoherentDetectionTest, HoldsForAnySteadyCommonMotionAndNotForARelativeOne
   EXPECT_EQ(update(passing, moved({3, 0, 0}), moved({6, 0, 0})), 1);
 }
 
-// What was expected at the start of the step holds for what the solve makes of it only as far as the cones tell.
+// Results predicted at the start of the step stay valid for the solved end only within the velocity cones.
 TEST_F(CoherentDetectionTest, UpdatedWithinAStepHoldsAllCandidatesOfTheMotionThatCameOut) {
   CoherentDetection detection = make_detection(kAllPairs);
   const std::vector<Vec3> x_t0 = motion_.at(30);
@@ -166,7 +166,7 @@ TEST_F(CoherentDetectionTest, UpdatedWithinAStepHoldsAllCandidatesOfTheMotionTha
   std::vector<Vec3> x_t1 = motion_.at(31);
   for (Vec3& p : x_t1) p[2] += 0.0005;
   EXPECT_EQ(update(detection, x_t0, x_t1), 0);
-  // One vertex of the second sheet ends in the layers of the first.
+  // One vertex of the second sheet ends between the layers of the first.
   x_t1[kSheet * kSheet + kSheet * kSheet / 2][2] -= 0.06;
   EXPECT_GT(update(detection, x_t0, x_t1), 0);
   CandidatePairs needed;
@@ -185,7 +185,7 @@ TEST_F(CoherentDetectionTest, LooksAtWantedPairsOfSurfacesOnly) {
     find(wanted, x_t0, x_t1, needed, fresh);
     expect_all(detection.candidates(), needed);
     ASSERT_FALSE(fresh.empty());
-    // Just found, they are those of a search with the same reach.
+    // After a fresh search they equal a search with the same detection distance.
     const auto vertices = [](std::span<const Proximity> list) {
       std::multiset<std::array<Index, 4>> all;
       for (const Proximity& p : list) all.insert(p.vertices);
@@ -195,14 +195,15 @@ TEST_F(CoherentDetectionTest, LooksAtWantedPairsOfSurfacesOnly) {
   }
 }
 
-// Two triangles with a common edge, folded shut: candidates have no such pairs.
+// Two triangles with a common edge, folded shut: candidate pairs do not include them.
 TEST(CoherentDetectionOfAFold, LooksUpTrianglesWithACommonEdgeOfWhatMayMeetItself) {
   const TestMesh fold{{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 0.5, 0.01}}, {{0, 1, 2}, {1, 0, 3}}};
   const Surface surface = fold.surface();
   BroadPhase broad_phase(std::span(&surface, 1), fold.x);
   ProximityFinder finder(fold.triangles, 4);
-  CoherentDetection with(std::span(&surface, 1), {{0, 0}}, fold.x, {.reach = kWidestReach, .budget = kBudget}),
-      without(std::span(&surface, 1), {}, fold.x, {.reach = kWidestReach, .budget = kBudget});
+  CoherentDetection with(std::span(&surface, 1), {{0, 0}}, fold.x,
+                         {.detection_distance = kWidestReach, .budget = kBudget}),
+      without(std::span(&surface, 1), {}, fold.x, {.detection_distance = kWidestReach, .budget = kBudget});
   with.update(broad_phase, finder, fold.x, fold.x);
   without.update(broad_phase, finder, fold.x, fold.x);
   ASSERT_EQ(with.proximities().size(), 1U);

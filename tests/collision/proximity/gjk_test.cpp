@@ -1,4 +1,4 @@
-// GJK against the closed forms over all features, with crossing found apart, for triangles and quads of all kinds.
+// Compares GJK with the closed forms over all features, for all kinds of triangles and quads, crossing or not.
 #include "collision/proximity/gjk.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using testing::random_vec;
 using Polygon = std::vector<Vec3>;
 
-/// Whether the segment goes through the triangle, in long double, by the signs of five volumes.
+/// Whether the segment pierces the triangle, in long double, from the signs of five volumes.
 bool pierces(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   using Wide = Eigen::Matrix<long double, 3, 1>;
   const auto volume = [](const Vec3& o, const Vec3& u, const Vec3& v, const Vec3& w) {
@@ -39,13 +39,13 @@ double triangle_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
   return std::sqrt(least_sq);
 }
 
-/// Distance of two plane polygons: the least of their fans of triangles.
-double distance_of_fans(const Polygon& a, const Polygon& b) {
-  double least = 1e300;
+/// Distance of two planar polygons: the minimum over all pairs of triangles of which they consist.
+double distance_of_triangulations(const Polygon& a, const Polygon& b) {
+  double minimum = 1e300;
   for (std::size_t i = 1; i + 1 < a.size(); ++i)
     for (std::size_t j = 1; j + 1 < b.size(); ++j)
-      least = std::min(least, triangle_distance({a[0], a[i], a[i + 1]}, {b[0], b[j], b[j + 1]}));
-  return least;
+      minimum = std::min(minimum, triangle_distance({a[0], a[i], a[i + 1]}, {b[0], b[j], b[j + 1]}));
+  return minimum;
 }
 
 double size_of(const Polygon& a, const Polygon& b) {
@@ -55,7 +55,7 @@ double size_of(const Polygon& a, const Polygon& b) {
   return size;
 }
 
-/// A triangle or a plane convex quad of some kind: ordinary, needle, nearly or exactly a segment, a point.
+/// A triangle or a planar convex quad of some kind: ordinary, needle, nearly or exactly a segment, a point.
 Polygon random_polygon(std::mt19937& generator, int kind) {
   const Vec3 o = random_vec(generator), e = random_vec(generator);
   const double flatness[] = {1, 1e-4, 1e-9, 0};
@@ -65,14 +65,14 @@ Polygon random_polygon(std::mt19937& generator, int kind) {
   return {o, o + e, o + e + 0.7 * f, o + f};
 }
 
-/// Distance as a part of the size, the gap of the bounds, and the points by weights, against brute force.
+/// Compares with brute force the distance relative to the size, the gap of the bounds, and the weighted points.
 void expect_right(const Polygon& a, const Polygon& b, double tolerance) {
   const ConvexClosest found = closest_convex(a, b);
-  const double expected = distance_of_fans(a, b), size = size_of(a, b);
+  const double expected = distance_of_triangulations(a, b), size = size_of(a, b);
   EXPECT_NEAR(found.distance, expected, tolerance * size);
   EXPECT_LE(found.lower_bound, expected + tolerance * size);
   EXPECT_LE(found.lower_bound, found.distance);
-  // The direction of a short difference is known to 1e-16 size / distance only, and tilts the plane by that angle.
+  // The direction of a short difference is known only to 1e-16 size / distance, and tilts the plane by that angle.
   EXPECT_GE(found.lower_bound, expected - tolerance * size - 1e-15 * size * size / std::max(expected, 1e-300));
   Vec3 difference = Vec3::Zero();
   double sum_a = 0, sum_b = 0;
@@ -91,7 +91,7 @@ void expect_right(const Polygon& a, const Polygon& b, double tolerance) {
   EXPECT_LE((difference - found.difference).norm(), tolerance * size);
 }
 
-/// Largest errors measured over 600,000 pairs as in the first test, 7e-16 and 1.5e-15 of the size, times 30.
+/// Relative tolerances: 30 times the maximum errors over 600,000 pairs of the first test, 7e-16 and 1.5e-15.
 constexpr double kOrdinary = 2e-14, kNeedle = 5e-14;
 
 TEST(Gjk, EqualsTheClosedFormsForTrianglesAndQuadsOfAllKindsAndScales) {
@@ -128,7 +128,7 @@ TEST(Gjk, OfTouchingPolygonsIsZero) {
   std::mt19937 generator(23);
   for (int i = 0; i < 2000; ++i) {
     Polygon a = random_polygon(generator, i % 2 == 0 ? 0 : 4), b = random_polygon(generator, 0);
-    // A corner of b on a corner, on an edge, or inside a; the rest beyond the plane of a.
+    // A corner of b touches a corner, an edge or the inside of a; the rest of b is beyond the plane of a.
     const Vec3 n = (a[1] - a[0]).cross(a[2] - a[0]);
     const Vec3 place = i % 3 == 0 ? a[1] : i % 3 == 1 ? Vec3(0.5 * (a[0] + a[1])) : Vec3((a[0] + a[1] + a[2]) / 3);
     const Vec3 shift = place - b[0];
@@ -146,9 +146,9 @@ TEST(Gjk, FarFromTheOriginLosesOnlyTheDigitsOfTheCoordinates) {
     const Vec3 away = 1e3 * random_vec(generator);
     for (Vec3& p : a) p = 1e-3 * p + away;
     for (Vec3& p : b) p = 1e-3 * p + away;
-    // Corners are what they are after rounding; differences of near numbers are exact. Planarity of the quad is lost at
-    // 1e-13 m, which is what the two may differ by.
-    EXPECT_NEAR(closest_convex(a, b).distance, distance_of_fans(a, b), 3e-13) << i;
+    // Differences of nearby numbers are exact. Rounding of the corners makes the quad non-planar by 1e-13 m, by which
+    // the two results may differ.
+    EXPECT_NEAR(closest_convex(a, b).distance, distance_of_triangulations(a, b), 3e-13) << i;
   }
 }
 

@@ -1,4 +1,4 @@
-// Proximities against brute force over all features, as sets.
+// Compares near pairs with brute force over all features, as sets.
 #include "collision/proximity/proximities.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using testing::TestMesh;
 
 using Edge = std::array<Index, 2>;
 
-/// Vertices of a pair of features, each side sorted: what identifies it.
+/// Identifies a pair of features by its vertices, each side sorted.
 using Key = std::pair<std::vector<Index>, std::vector<Index>>;
 
 Key key(const Proximity& p) {
@@ -82,7 +82,7 @@ std::vector<Proximity> find(const TestMesh& mesh, double reach) {
   return out;
 }
 
-/// A sheet in layers with every vertex moved a little, so that no two features are equally close.
+/// A layered sheet with every vertex moved slightly, so that no two features are equally close.
 TestMesh rough_layers(unsigned seed, int n = 12, double roughness = 0.02) {
   TestMesh mesh = folded_sheet(n, 3, 0.03);
   std::mt19937 generator(seed);
@@ -90,9 +90,9 @@ TestMesh rough_layers(unsigned seed, int n = 12, double roughness = 0.02) {
   return mesh;
 }
 
-/// Scenes with rounding ties (aligned layers), with none, with crossing surfaces, and with edges at the border.
+/// Scenes with distances equal up to rounding (aligned layers), without any, with crossing surfaces, with border edges.
 std::vector<TestMesh> scenes() {
-  // Of equal triangles one is enough: features are known by their vertices here.
+  // Keeps one of several equal triangles: features are identified by their vertices here.
   TestMesh soup = testing::triangle_soup(4, 12, 60, 0.3);
   std::set<std::set<Index>> seen;
   std::erase_if(soup.triangles, [&](const Triangle& t) { return !seen.insert({t.begin(), t.end()}).second; });
@@ -145,12 +145,12 @@ TEST(Proximities, InsideAFaceOrInsideBothEdgesAreThoseOfBruteForce) {
 }
 
 TEST(Proximities, OnAnEdgeOrCornerAreThoseWhereNoFaceAroundIsCloser) {
-  // Without ties the rule has one outcome: the vertex lies in the region of space nearest to that edge or corner.
+  // Without equal distances the rule has one result: the vertex lies in the region nearest to that edge or corner.
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const TestMesh mesh = rough_layers(seed);
     const double reach = 0.05;
     using Support = std::pair<Index, std::set<Index>>;  // vertex; edge or corner
-    std::map<Support, std::vector<bool>> nearest;       // by face around: the closest point is there
+    std::map<Support, std::vector<bool>> nearest;       // for each face around: whether the closest point is there
     for (Index v = 0; v < static_cast<Index>(mesh.x.size()); ++v) {
       std::set<std::set<Index>> supports;
       for (const Triangle& t : mesh.triangles) {
@@ -195,8 +195,8 @@ TEST(Proximities, OnAnEdgeOrCornerAreThoseWhereNoFaceAroundIsCloser) {
 }
 
 TEST(Proximities, RepresentTheLeastDistanceOfEveryFeaturePair) {
-  // The claim of proximities.hpp, walked as its argument goes: from any pair within reach of triangles without a common
-  // vertex, to the faces around the closest point, ends at a listed pair that is no farther.
+  // Checks the claim of proximities.hpp by the steps of its proof: start at any near pair of triangles without a common
+  // vertex, go to the faces around the closest point, and end at a listed pair that is no farther apart.
   constexpr double kRounding = 1e-12;
   for (const TestMesh& mesh : scenes()) {
     const double reach = 0.05;
@@ -204,7 +204,7 @@ TEST(Proximities, RepresentTheLeastDistanceOfEveryFeaturePair) {
     for (const Proximity& p : find(mesh, reach)) listed.insert(key(p));
     const AllPairs all(mesh);
 
-    // Least distance of a listed pair between features around the given corners, by adding rings of neighbours.
+    // Minimum distance of a listed pair between features around the given corners; adds rings of neighbours.
     const auto represented = [&](Index v, const Triangle& face, double distance) {
       std::set<std::pair<Index, Triangle>> seen, open{{v, face}};
       while (!open.empty()) {
@@ -263,7 +263,7 @@ bool has_one(const Triangle& t, const Triangle& s) {
   return std::ranges::any_of(s, [&](Index v) { return has_vertex(t, v); });
 }
 
-// Triangles that gather() need not look at with their neighbours, by the room that fans have.
+// Triangles for which gather() can skip the neighbours, by the clearance of the vertex stars.
 TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
   int open_of_all = 0, creased_of_all = 0;
   for (const double roughness : {0.005, 0.02, 0.04}) {
@@ -273,7 +273,7 @@ TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
     Separation separation(mesh.triangles, std::span(&surface, 1));
     separation.watch({}, mesh.x);
     for (const double distance : {0.005, 0.02, 0.03}) {
-      const std::vector<std::uint8_t> open = separation.open_triangles(distance, mesh.x);
+      const std::vector<std::uint8_t> open = separation.find_clear_triangles(distance, mesh.x);
       const auto sides_of_open = [&](const Key& key) {
         for (std::size_t t = 0; t < open.size(); ++t)
           for (const auto& [one, other] : {std::pair(key.first, key.second), std::pair(key.second, key.first)})
@@ -298,7 +298,7 @@ TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
 }
 
 TEST(Proximities, OfAVertexOverASharedEdgeAndOverACornerAreListedOnce) {
-  // A square of two triangles, and a small triangle whose first vertex hovers over the diagonal, or over a corner.
+  // A square of two triangles, and a small triangle with its first vertex over the diagonal or over a corner.
   TestMesh mesh;
   mesh.x = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.3, 0.3, 0.01}, {0.3, 0.35, 0.5}, {0.35, 0.3, 0.5}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}};
@@ -318,7 +318,7 @@ TEST(Proximities, OfAVertexOverASharedEdgeAndOverACornerAreListedOnce) {
 }
 
 TEST(Proximities, WedgeTellsWhetherAFaceNextToTheEdgeIsCloser) {
-  // Two roofs, one upside down over the other, ridges crossed: both ridges see each other in their wedges.
+  // Two roofs, one upside down over the other, ridges crossed: each ridge lies in the wedge of the other.
   TestMesh mesh;
   mesh.x = {{-1, 0, 0}, {1, 0, 0}, {0, -1, -1}, {0, 1, -1}, {0, -1, 0.1}, {0, 1, 0.1}, {-1, 0, 1.1}, {1, 0, 1.1}};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {4, 5, 6}, {4, 7, 5}};
@@ -334,7 +334,7 @@ TEST(Proximities, WedgeTellsWhetherAFaceNextToTheEdgeIsCloser) {
   EXPECT_NEAR(p.outside_wedge[0], -std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(p.outside_wedge[1], -std::sqrt(0.5), 1e-12);
 
-  // The lower one turned into a valley: its faces come closer to the upper ridge than the valley's line does.
+  // The lower roof becomes a valley: its faces are closer to the upper ridge than the valley line is.
   mesh.x[2][2] = mesh.x[3][2] = 0.05;
   p = ridge(find(mesh, 0.15));
   EXPECT_NEAR(p.outside_wedge[0], 0.05 / std::hypot(1, 0.05), 1e-12);

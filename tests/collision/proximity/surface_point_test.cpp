@@ -1,4 +1,5 @@
-// The nearest point of a surface: against what is known of a box, and by hierarchy against all triangles, bit by bit.
+// Compares the nearest point of a surface with the known result for a box; the search by hierarchy equals that over all
+// triangles, bit by bit.
 #include "collision/proximity/surface_point.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace {
 
 using testing::random_vec;
 
-// Of a box the signed distance is known: outside that to the nearest point of the box, inside minus the least depth.
+// The signed distance to a box is known: outside, the distance to its nearest point; inside, minus the minimum depth.
 TEST(NearestPoint, TellsTheSignedDistanceToABox) {
   const Vec3 half(0.1, 0.2, 0.05);
   const mesh::Mesh box = mesh::make_box(2 * half, 0, 1);
@@ -23,11 +24,11 @@ TEST(NearestPoint, TellsTheSignedDistanceToABox) {
     const Vec3 beyond = p.cwiseAbs() - half;
     const double expected = beyond.maxCoeff() < 0 ? beyond.maxCoeff() : beyond.cwiseMax(0.0).norm();
     const SurfacePoint found = nearest_point(p, box.topology.triangles, box.positions);
-    EXPECT_NEAR(found.height, expected, 1e-15) << p.transpose();  // a few roundings of 0.3
+    EXPECT_NEAR(found.height, expected, 1e-15) << p.transpose();  // a few roundings of coordinates of 0.3
   }
 }
 
-/// Surfaces in one numbering with a broad phase that was fitted to a motion, and positions within its margin.
+/// Surfaces with a common numbering, a broad phase fitted to a motion, and positions within its margin.
 struct Fitted {
   testing::MovingScene scene;
   std::vector<Vec3> x;
@@ -54,7 +55,7 @@ testing::TestMesh as_test_mesh(const mesh::Mesh& mesh) {
   return {mesh.positions, {mesh.topology.triangles.begin(), mesh.topology.triangles.end()}};
 }
 
-/// Boxes with many ties, still; spheres and sheets, one of which faces one way; and a soup with triangles that are
+/// Still boxes with many equally near faces; spheres and sheets, one of them one-sided; a soup with triangles that are
 /// equal or have no area.
 std::vector<Fitted> fitted() {
   const auto box = as_test_mesh(mesh::make_box(Vec3(0.8, 0.6, 0.4), 0, 4)),
@@ -77,7 +78,7 @@ TEST(NearestPoint, ByHierarchyHasTheBitsOfThatOfAllTriangles) {
   for (const Fitted& scene : fitted())
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
       for (int i = 0; i < 500; ++i) {
-        // Anywhere, at a vertex, and in the middle of a box or sphere, from which several faces are as far.
+        // The point is anywhere, at a vertex, or in the middle of a box or sphere, where several faces are equally far.
         const Index vertex =
             scene.surfaces[s].first_vertex + static_cast<Index>(generator() % 1000) % scene.surfaces[s].vertex_count;
         const Vec3 p = i % 10 == 0 ? scene.x[vertex] : i % 10 == 1 ? Vec3(0, 0, 0.01 * i) : random_vec(generator);
@@ -105,7 +106,7 @@ TEST(NearestPoint, LooksAtFacesOfOneDirectionAloneWhereThereAreAny) {
   EXPECT_GT(none, 50);
 }
 
-// Deep inside and near a side, the way back is still through the bottom where cloth came in.
+// The point is deep inside and near a side, but the way back leads through the bottom, where the cloth entered.
 TEST(NearestPoint, OfOneDirectionIsNotThatOfTheNearestSide) {
   const Fitted scene({as_test_mesh(mesh::make_box(Vec3(0.2, 0.2, 0.1), 0, 1))}, 1, 0, 0);
   const SurfacePoint found = nearest_point({0.09, 0, -0.02}, scene.broad_phase, 0, scene.x, -Vec3::UnitZ());
@@ -115,7 +116,7 @@ TEST(NearestPoint, OfOneDirectionIsNotThatOfTheNearestSide) {
 
 TEST(TrianglesNear, AreThoseWhoseBoxesAreWithinReachInTheirOrder) {
   std::mt19937 generator(7);
-  std::size_t most = 0;
+  std::size_t max_ties = 0;
   for (const Fitted& scene : fitted())
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
       for (int i = 0; i < 100; ++i) {
@@ -131,14 +132,14 @@ TEST(TrianglesNear, AreThoseWhoseBoxesAreWithinReachInTheirOrder) {
         for (const Triangle& u : scene.surfaces[s].triangles)
           if ((low(t) - high(u)).maxCoeff() < reach && (low(u) - high(t)).maxCoeff() < reach) expected.push_back(u);
         EXPECT_EQ(triangles_near(t, scene.broad_phase, s, scene.x, reach), expected);
-        most = std::max(most, expected.size());
+        max_ties = std::max(max_ties, expected.size());
       }
-  EXPECT_GT(most, 10U);
+  EXPECT_GT(max_ties, 10U);
 }
 
-// An edge from below goes through the middle of a face: half way along the edge, wherever the face is cut.
+// An edge from below pierces the middle of a face, halfway along the edge, wherever the face is split.
 TEST(IsInside, CountsWhatLetsOutOverWhatLetsInSoThatPartsMayOverlap) {
-  // Two boxes that have [-0.1, 0.1] in common along x, as one surface, and another below.
+  // Two boxes that overlap for x in [-0.1, 0.1], as one surface, and another box below.
   testing::TestMesh both = as_test_mesh(mesh::make_box(Vec3(0.4, 0.2, 0.2), 0, 2));
   const testing::TestMesh box = both;
   const auto count = static_cast<Index>(box.x.size());
@@ -161,8 +162,8 @@ TEST(IsInside, CountsWhatLetsOutOverWhatLetsInSoThatPartsMayOverlap) {
 
 TEST(NearestPoint, OfSomeFacesAloneIsThatOfThese) {
   const Fitted scene({as_test_mesh(mesh::make_box(Vec3(0.2, 0.2, 0.2), 0, 1))}, 1, 0, 0);
-  const auto looks_up = [&](const Triangle& face) { return face_normal(face, scene.x).z() > 0.5; };
-  const SurfacePoint found = nearest_point({0.09, 0, -0.02}, scene.broad_phase, 0, scene.x, Vec3::Zero(), looks_up);
+  const auto faces_up = [&](const Triangle& face) { return face_normal(face, scene.x).z() > 0.5; };
+  const SurfacePoint found = nearest_point({0.09, 0, -0.02}, scene.broad_phase, 0, scene.x, Vec3::Zero(), faces_up);
   EXPECT_NEAR(found.height, -0.12, 1e-15);
 }
 
@@ -174,8 +175,8 @@ TEST(FindCrossing, TellsWhereOnTheFirstTriangleAndNothingForTrianglesApart) {
   for (int c = 0; c < 3; ++c) place += (*weights)[c] * x[c];
   EXPECT_NEAR(place[2], 0, 1e-15);
   EXPECT_NEAR(place[1], 0, 1e-15);
-  // The two triangles have a segment along x in common, of which this is the middle.
-  const double end = 5.0 / 10;  // where the edge from the first to the last corner comes through
+  // The two triangles intersect in a segment along x; this is its midpoint.
+  const double end = 5.0 / 10;  // where the edge from the first to the last corner pierces the other triangle
   EXPECT_NEAR(place[0], 0.5 * end, 1e-15);
   EXPECT_FALSE(
       find_crossing({0, 2, 2}, {3, 4, 5}, std::vector<Vec3>{{0, 0, 1}, {0, 0, 3}, {5, 0, 9}, x[3], x[4], x[5]}));

@@ -1,4 +1,4 @@
-// A step seen from an obstacle that turns: a thin blade sweeps into cloth that is a tenth of a millimetre before it.
+// A step in the frame of a turning obstacle: a thin blade sweeps into cloth that is 0.1 mm in front of it.
 #include "collision/response/carried_starts.hpp"
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kGap = 1e-4;  // [m]
 
-/// Vertices 0 to 5 are two triangles of cloth, one beside the other's face; 6 to 8 a blade of 0.6 m along x, which
-/// turns about z and moves along x in the step.
+/// Vertices 0 to 5 are two triangles of cloth, one beside the face of the other. Vertices 6 to 8 are a blade of 0.6 m
+/// along x, which turns about z and moves along x during the step.
 class BeforeATurningBlade : public ::testing::TestWithParam<double> {
  protected:
   BeforeATurningBlade() {
@@ -40,7 +40,7 @@ class BeforeATurningBlade : public ::testing::TestWithParam<double> {
 TEST_P(BeforeATurningBlade, ClothThatIsCarriedAlongIsApartThroughout) {
   for (int v = 0; v < 6; ++v) x_t1_[v] = blade_.turn * x_t0_[v] + blade_.shift;
   for (const CornerPair& pair : {kInner, kOuter}) {
-    const auto seen = find_certificate(pair, carried_.of(pair, x_t0_), x_t1_);
+    const auto seen = find_separating_plane(pair, carried_.of(pair, x_t0_), x_t1_);
     ASSERT_TRUE(seen);
     EXPECT_NEAR(std::abs(seen->dot(blade_.turn.col(1))), 1, 1e-6) << "a plane that turns with the blade";
     EXPECT_FALSE(separates(*seen, pair, x_t0_, x_t1_)) << "one that keeps its direction does not";

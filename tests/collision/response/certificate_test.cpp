@@ -1,5 +1,5 @@
-// Planes that separate two triangles for a whole step, and turn with them. Certificates of random motions are held
-// against exact predicates in separation_exact_test.cpp.
+// Planes that separate two triangles for a whole step and turn with them. For random motions, separation_exact_test.cpp
+// compares the certificates with exact predicates.
 #include "collision/response/certificate.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr CornerPair kPair{{0, 1, 2}, {3, 4, 5}};
 
-/// Two triangles 12 mm wide, one a millimetre above the other.
+/// Two triangles, 12 mm wide, one 1 mm above the other.
 std::vector<Vec3> layers() {
   std::vector<Vec3> x;
   for (const double z : {1e-3, 0.0})
@@ -27,7 +27,7 @@ std::vector<Vec3> turned(std::vector<Vec3> x, double angle) {
   return x;
 }
 
-/// Of 10,000 directions all over the sphere, whether any separates by itself.
+/// Whether any of 10,000 fixed directions over the sphere separates the triangles for the whole step.
 bool any_direction_separates(const std::vector<Vec3>& x_t0, const std::vector<Vec3>& x_t1) {
   constexpr int kDirections = 10'000;
   for (int k = 0; k < kDirections; ++k) {
@@ -38,12 +38,12 @@ bool any_direction_separates(const std::vector<Vec3>& x_t0, const std::vector<Ve
   return false;
 }
 
-// The plane between turns as they do up to 90 degrees, beyond that in pieces of the way.
+// A separating plane turns with the layers by up to 90 degrees; beyond that, the step is divided.
 TEST(Certificate, LayersThatTurnTogetherHaveAPlaneThatTurnsWithThem) {
   for (const double angle : {20.0, 45.0, 80.0, 100.0, 140.0}) {
     SCOPED_TRACE(angle);
     const std::vector<Vec3> x_t0 = layers(), x_t1 = turned(x_t0, angle * kDegree);
-    const auto found = find_certificate(kPair, x_t0, x_t1);
+    const auto found = find_separating_plane(kPair, x_t0, x_t1);
     ASSERT_TRUE(found);
     EXPECT_NEAR(gap_along(*found, kPair, x_t1), 1e-3, 1e-9) << "the direction is that of the end";
     EXPECT_FALSE(any_direction_separates(x_t0, x_t1));
@@ -55,13 +55,13 @@ TEST(Certificate, LayersThatTurnAndPassThroughEachOtherHaveNone) {
     SCOPED_TRACE(angle);
     std::vector<Vec3> x_t0 = layers(), x_t1 = x_t0;
     for (std::size_t v = 0; v < 3; ++v) x_t1[v].z() = -1e-3;
-    EXPECT_FALSE(find_certificate(kPair, x_t0, turned(x_t1, angle * kDegree)));
+    EXPECT_FALSE(find_separating_plane(kPair, x_t0, turned(x_t1, angle * kDegree)));
   }
 }
 
 TEST(Certificate, LayersThatHardlyTurnNeedNoPlaneThatTurns) {
   const std::vector<Vec3> x_t0 = layers(), x_t1 = turned(x_t0, 2 * kDegree);
-  const auto found = find_certificate(kPair, x_t0, x_t1);
+  const auto found = find_separating_plane(kPair, x_t0, x_t1);
   ASSERT_TRUE(found);
   EXPECT_TRUE(separates(*found, kPair, x_t0, x_t1));
 }

@@ -1,4 +1,4 @@
-// Contact springs and friction as the solve sees them.
+// Contact springs and friction in the linear system.
 #include "collision/response/contact_set.hpp"
 
 #include <gtest/gtest.h>
@@ -22,15 +22,15 @@ Vec3 random_vector(double size) {
   return {x, y, z};
 }
 
-/// Force of a contact of 500 N/m [N] and its slope [N/m], for a depth in ranges up to 1.
-double load_at(double depth) {
+/// Contact normal force at 500 N/m [N] and its slope [N/m]; `depth` is relative to the range and at most 1.
+double normal_force_at(double depth) {
   return 500 * kRange * depth * (1 + numerics.contact.stiffening * std::pow(depth, 4));
 }
 double slope_at(double depth) {
   return 500 * (1 + 5 * numerics.contact.stiffening * std::pow(depth, 4));
 }
 
-/// A vertex 0.4 of the range above the middle of a triangle, both of cloth, in a slanted frame.
+/// A vertex of cloth 0.4 ranges above the middle of a triangle of cloth, in a slanted frame.
 struct VertexOnFace {
   std::vector<Vec3> x;
   Contact contact;
@@ -62,7 +62,7 @@ struct VertexOnFace {
   double energy(const std::vector<Vec3>& at) const {
     return contact.stiffness * kRange * kRange * energy_at((kRange - gap(at)) / kRange);
   }
-  /// ∫ d (1 + c d⁴) for a depth d in ranges; from one range on the force goes on along its tangent.
+  /// ∫ d (1 + c d⁴) for a depth d in ranges; beyond one range the force continues along its tangent.
   static double energy_at(double depth) {
     const double c = numerics.contact.stiffening;
     if (depth <= 0) return 0;
@@ -76,7 +76,7 @@ struct VertexOnFace {
   }
 };
 
-/// As before the first linearisation of a step.
+/// The lagged state before the first linearisation of a step.
 ContactLag lag_at_start(const ContactSet& contacts, const std::vector<Vec3>& x) {
   ContactLag lag;
   contacts.update(x, lag);
@@ -113,7 +113,7 @@ TEST(ContactSet, ForceWithoutFrictionIsMinusTheGradientOfTheEnergy) {
         EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kEpsilon), 1e-6);
       }
   }
-  // Some pushed and some were out of range.
+  // Some trials are within the range and some are outside.
   EXPECT_GT(pushing, 5);
   EXPECT_LT(pushing, 20);
 }
@@ -145,21 +145,21 @@ TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
   const VertexOnFace pair(mu), smooth(0);
   const ContactSet contacts = pair.set(), frictionless = smooth.set();
   const Vec3 n = pair.contact.normal;
-  // At the start, which friction goes by before the first solve.
-  const double load = load_at(0.6);
+  // Friction uses the normal force at the start before the first solve.
+  const double normal_force = normal_force_at(0.6);
   const double stick = numerics.contact.stick_velocity * kSlidingStep;
   const Vec3 direction = n.unitOrthogonal();
   double last = 0;
-  for (double share : {0.0, 0.1, 0.5, 0.9, 1.0, 1.1, 10.0, 1000.0}) {
+  for (double fraction : {0.0, 0.1, 0.5, 0.9, 1.0, 1.1, 10.0, 1000.0}) {
     std::vector<Vec3> x = pair.x;
-    x[0] += share * stick * direction;
+    x[0] += fraction * stick * direction;
     const Vec3 friction = forces_of(contacts, x)[0] - forces_of(frictionless, x)[0];
-    EXPECT_LT((friction + friction.norm() * direction).norm(), 1e-12 * mu * load) << share;
-    EXPECT_LE(friction.norm(), mu * load * (1 + 1e-12));
-    EXPECT_GE(friction.norm(), last * (1 - 1e-12));  // reached without going back
+    EXPECT_LT((friction + friction.norm() * direction).norm(), 1e-12 * mu * normal_force) << fraction;
+    EXPECT_LE(friction.norm(), mu * normal_force * (1 + 1e-12));
+    EXPECT_GE(friction.norm(), last * (1 - 1e-12));  // grows monotonically
     last = friction.norm();
-    const double expected = share < 1 ? mu * load * share * (2 - share) : mu * load;
-    EXPECT_NEAR(friction.norm(), expected, 1e-9 * mu * load);
+    const double expected = fraction < 1 ? mu * normal_force * fraction * (2 - fraction) : mu * normal_force;
+    EXPECT_NEAR(friction.norm(), expected, 1e-9 * mu * normal_force);
   }
 }
 
@@ -167,12 +167,12 @@ TEST(ContactSet, StaticFrictionHoldsMoreThanThatOfSliding) {
   VertexOnFace pair(0.4), smooth(0);
   pair.contact.static_friction = 0.7;
   const ContactSet contacts = pair.set(), frictionless = smooth.set();
-  const double load = load_at(0.6);
+  const double normal_force = normal_force_at(0.6);
   const double stick = numerics.contact.stick_velocity * kSlidingStep;
   const auto coefficient = [&](double slip) {
     std::vector<Vec3> x = pair.x;
     x[0] += slip * stick * pair.contact.normal.unitOrthogonal();
-    return (forces_of(contacts, x)[0] - forces_of(frictionless, x)[0]).norm() / load;
+    return (forces_of(contacts, x)[0] - forces_of(frictionless, x)[0]).norm() / normal_force;
   };
   EXPECT_NEAR(coefficient(1), 0.7, 1e-9);
   EXPECT_NEAR(coefficient(0.5 * (1 + numerics.contact.slide_velocity)), 0.55, 1e-9);
@@ -194,7 +194,7 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKee
   const ContactSet contacts = pair.set();
   ContactLag lag;
   std::vector<Vec3> x = pair.x;
-  x[0] += 0.4 * kRange * pair.contact.normal + 0.01 * pair.contact.normal.unitOrthogonal();  // load down to a third
+  x[0] += 0.4 * kRange * pair.contact.normal + 0.01 * pair.contact.normal.unitOrthogonal();  // a third of the force
   const auto tangential = [&] {
     std::vector<Vec3> forces(x.size(), Vec3::Zero());
     contacts.add_linear_forces(x, lag, forces);
@@ -202,19 +202,20 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKee
     return (f - pair.contact.normal.dot(f) * pair.contact.normal).norm();
   };
   contacts.update(x, lag);
-  EXPECT_NEAR(tangential(), mu * load_at(0.6), 1e-12);
-  // The law itself has the load that there is: what lags shows in the residual, as long as it is followed.
+  EXPECT_NEAR(tangential(), mu * normal_force_at(0.6), 1e-12);
+  // The law itself uses the present normal force: the residual shows the effect of lagging as long as it is followed.
   const Vec3 itself = forces_of(contacts, x, lag)[0];
-  EXPECT_NEAR(itself.dot(pair.contact.normal.unitOrthogonal()), -mu * load_at(0.2), 1e-12);
+  EXPECT_NEAR(itself.dot(pair.contact.normal.unitOrthogonal()), -mu * normal_force_at(0.2), 1e-12);
   contacts.update(x, lag);
-  // The force follows the tangent at the depth of the start, 0.6, and the tangent its force.
+  // The normal force is linearised at the initial depth 0.6, and friction uses the linearised force.
   const auto tangent = [](double at, double depth) {
-    return std::max(0.0, load_at(at) + slope_at(at) * kRange * (depth - at));
+    return std::max(0.0, normal_force_at(at) + slope_at(at) * kRange * (depth - at));
   };
   EXPECT_NEAR(tangential(), mu * tangent(0.6, 0.2), 1e-12);
   for (int k = 2; k < numerics.newton.patience - 1; ++k) contacts.update(x, lag);
-  EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-3 * mu * load_at(0.2));  // how exact depths are made
-  // Up to a number of updates, so that load and slip do not chase each other for ever; the next step begins anew.
+  EXPECT_NEAR(tangential(), mu * normal_force_at(0.2),
+              1e-3 * mu * normal_force_at(0.2));  // accuracy of the depth search
+  // The number of updates is limited, so that normal force and slip cannot alternate for ever, until the next step.
   contacts.update(x, lag);
   const double last = tangential();
   x[0] -= 0.2 * kRange * pair.contact.normal;
@@ -232,14 +233,14 @@ TEST(ContactSet, FrictionOfAContactThatIsNewInAStepBeginsWithTheLoadOfItsStart) 
   ContactLag lag;
   lag.updates = numerics.newton.patience;
   contacts.update(pair.x, lag);
-  lag.loads[0] = 7;
+  lag.normal_forces[0] = 7;
   contacts.add(pair.contact);
   contacts.update(pair.jittered(0.0003), lag);
-  EXPECT_EQ(lag.loads[0], 7);
-  EXPECT_NEAR(lag.loads[1], load_at(0.6), 1e-12);
+  EXPECT_EQ(lag.normal_forces[0], 7);
+  EXPECT_NEAR(lag.normal_forces[1], normal_force_at(0.6), 1e-12);
 }
 
-// −∂f/∂x of one contact, as linearise leaves it in the system.
+// −∂f/∂x of one contact, as linearise() adds it to the system.
 Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
   const Index rows = system.matrix.rows();
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * rows, 3 * rows);
@@ -254,14 +255,14 @@ Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
   return k;
 }
 
-// With the tangents of the start.
+// Uses the tangents of the start.
 std::vector<Vec3> linear_forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
   std::vector<Vec3> f(x.size(), Vec3::Zero());
   contacts.add_linear_forces(x, lag_at_start(contacts, x), f);
   return f;
 }
 
-// −∂f/∂x by central differences with the tangents and loads of the start, times `rate`.
+// −∂f/∂x by central differences with the tangents and normal forces of the start, times `rate`.
 Eigen::MatrixXd differences(const ContactSet& contacts, std::vector<Vec3> x, double rate) {
   constexpr double kEpsilon = 1e-10;
   const auto size = static_cast<Eigen::Index>(3 * x.size());
@@ -292,12 +293,12 @@ solver::LinearSystem linearised(const ContactSet& contacts, const std::vector<Ve
 
 TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
   for (double rate : {1.0, 2.0}) {
-    // Without friction anywhere in range; with friction where nothing has slipped yet.
+    // Frictionless contacts may be anywhere within the range; rough ones must not have slipped yet.
     const VertexOnFace smooth(0), rough(0.4);
     std::vector<Vec3> x = smooth.jittered(0.0003);
     ASSERT_EQ(smooth.set().active(x), 1);
     const Eigen::MatrixXd spring = assembled(linearised(smooth.set(), x, rate));
-    // Rounding: 1e-17 of a coordinate over 1e-10, times the stiffness.
+    // Rounding: 1e-17 of a coordinate over 1e-10 m, times the stiffness.
     EXPECT_LT((spring - differences(smooth.set(), x, rate)).cwiseAbs().maxCoeff(), 1e-5 * spring.maxCoeff());
     const Eigen::MatrixXd sticking = assembled(linearised(rough.set(), rough.x, rate));
     // 2/ε − s/ε² changes by ε_difference / ε = 3e-5 over the difference.
@@ -306,7 +307,7 @@ TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
   }
 }
 
-/// A vertex that slips on a face; slips in stick slips.
+/// A vertex that slips on a face; slips are relative to the stick slip.
 struct Slipping : VertexOnFace {
   ContactSet contacts;
   ContactLag lag;
@@ -322,16 +323,16 @@ struct Slipping : VertexOnFace {
     at[0] += numerics.contact.stick_velocity * kSlidingStep * (slip * along + sideways * across);
     return at;
   }
-  /// As where an iteration has led to.
+  /// Updates the lag at the result of an iteration.
   Slipping& update(double slip, double sideways = 0) {
     contacts.update(slipped(slip, sideways), lag);
     return *this;
   }
-  /// Friction as the linear system has it, per load [1].
+  /// Friction in the linear system, relative to the normal force [1].
   Vec3 friction(double slip, double sideways = 0) const {
     std::vector<Vec3> f(x.size(), Vec3::Zero());
     contacts.add_linear_forces(slipped(slip, sideways), lag, f);
-    return (f[0] - contact.normal.dot(f[0]) * contact.normal) / load_at(0.6);
+    return (f[0] - contact.normal.dot(f[0]) * contact.normal) / normal_force_at(0.6);
   }
   Mat3 stiffness(double slip) const {
     solver::LinearSystem system;
@@ -360,14 +361,14 @@ TEST(ContactSet, FrictionThatSticksFollowsItsTangentToTheLaw) {
   pair.update(0.5).update(0.5);
   const auto law = [](double slip) { return 0.4 * slip * (2 - slip); };
   EXPECT_NEAR(pair.friction(0.5).dot(pair.along), -law(0.5), 1e-12);
-  // The slope of the law is 0.4 (2 − 2 s) along and, for a turn, 0.4 (2 − s).
+  // The slope of the law is 0.4 (2 − 2 s) along the slip and 0.4 (2 − s) across it.
   EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -(law(0.5) + 0.4 * 1.0 * 0.1), 1e-12);
   EXPECT_NEAR(pair.friction(0.5, 0.2).dot(pair.across), -0.4 * 1.5 * 0.2, 1e-12);
   for (int k = 0; k < 6; ++k) pair.update(0.6);
   EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -law(0.6), 1e-12);
   EXPECT_NEAR(pair.along.dot(pair.stiffness(0.6) * pair.along),
-              pair.lag.loads[0] * 0.4 * (2 - 2 * 0.6) / (numerics.contact.stick_velocity * kSlidingStep),
-              1e-9 * pair.lag.loads[0] * 1e6);
+              pair.lag.normal_forces[0] * 0.4 * (2 - 2 * 0.6) / (numerics.contact.stick_velocity * kSlidingStep),
+              1e-9 * pair.lag.normal_forces[0] * 1e6);
 }
 
 TEST(ContactSet, FrictionThatSticksLetsGoWhereItsTangentLeadsBeyondStaticFriction) {
@@ -377,8 +378,8 @@ TEST(ContactSet, FrictionThatSticksLetsGoWhereItsTangentLeadsBeyondStaticFrictio
   pair.update(0.5).update(0.5).update(1.5, 1);
   const FrictionLag& friction = pair.lag.frictions[0];
   EXPECT_FALSE(friction.sticks);
-  // 0.6 times (0.75 + 1.0 · 1.0, 1.5 · 1.0), brought back to static friction.
-  EXPECT_LT((friction.drag - 0.6 * (1.75 * pair.along + 1.5 * pair.across).normalized()).norm(), 1e-12);
+  // 0.6 times (0.75 + 1.0 · 1.0, 1.5 · 1.0), limited to static friction.
+  EXPECT_LT((friction.relative_friction - 0.6 * (1.75 * pair.along + 1.5 * pair.across).normalized()).norm(), 1e-12);
   EXPECT_NEAR(pair.friction(100).norm(), 0.4, 1e-12);  // the law itself
 }
 
@@ -392,12 +393,12 @@ TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
     pair.update(slip);
     const bool sticks = turn < numerics.contact.returns;
     EXPECT_EQ(pair.lag.frictions[0].sticks, sticks) << turn;
-    // From no friction on along its tangent, or as it slides.
+    // Friction follows the tangent at zero slip, or slides.
     EXPECT_NEAR(pair.friction(slip).dot(pair.along), sticks ? -0.4 * 2 * slip : std::copysign(0.4, -slip), 1e-12);
     pair.update(slip);
     EXPECT_FALSE(pair.lag.frictions[0].sticks) << turn;
   }
-  // The next step begins anew.
+  // The next step starts again.
   pair.lag = {};
   pair.update(4).update(-4);
   EXPECT_TRUE(pair.lag.frictions[0].sticks);
@@ -408,20 +409,20 @@ TEST(ContactSet, FrictionThatIsNotFoundInManyUpdatesSlidesOn) {
   pair.update(0);
   for (int k = 1; k < numerics.newton.patience; ++k) pair.update(0.5 + 0.01 * k);
   EXPECT_TRUE(pair.lag.frictions[0].sticks);
-  const Vec3 drag = pair.lag.frictions[0].drag;
+  const Vec3 relative_friction = pair.lag.frictions[0].relative_friction;
   pair.update(0.2).update(0.3);
   EXPECT_FALSE(pair.lag.frictions[0].sticks);
-  EXPECT_EQ(pair.lag.frictions[0].drag, drag);
+  EXPECT_EQ(pair.lag.frictions[0].relative_friction, relative_friction);
   EXPECT_NEAR(pair.friction(0.3).dot(pair.along), -0.4 * 0.3 * (2 - 0.3), 1e-12);  // the law itself
 }
 
 TEST(ContactSet, ClothOnClothKeepsTheFrictionOfUnchangedVelocity) {
   Slipping pair(false);
   pair.update(0.5);
-  const Vec3 drag = pair.lag.frictions[0].drag;
+  const Vec3 relative_friction = pair.lag.frictions[0].relative_friction;
   pair.update(0.6).update(-0.6);
   EXPECT_FALSE(pair.lag.frictions[0].sticks);
-  EXPECT_EQ(pair.lag.frictions[0].drag, drag);
+  EXPECT_EQ(pair.lag.frictions[0].relative_friction, relative_friction);
   EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -0.4 * 0.6 * (2 - 0.6), 1e-12);  // the law itself
 }
 
@@ -431,7 +432,7 @@ TEST(ContactSet, WhatIsFoundLaterSlidesUntilItIsSeenToHold) {
   pair.contacts.add(pair.contact);
   pair.update(0.5);
   EXPECT_FALSE(pair.lag.frictions[1].sticks);
-  EXPECT_EQ(pair.lag.frictions[1].drag, Vec3::Zero());
+  EXPECT_EQ(pair.lag.frictions[1].relative_friction, Vec3::Zero());
   EXPECT_TRUE(pair.update(0.5).lag.frictions[1].sticks);
 }
 
@@ -454,11 +455,11 @@ TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
   const solver::LinearSystem system = linearised(contacts, x, 1);
   EXPECT_TRUE(system.terms.empty());
   const Eigen::MatrixXd k = assembled(system);
-  // The tangent is that at the depth of the start, 1 mm.
+  // The tangent is taken at the initial depth, 1 mm.
   EXPECT_NEAR(k(8, 8), slope_at(0.001 / kRange), 1e-8);
-  EXPECT_NEAR(linear_forces_of(contacts, x)[2].z(), load_at(0.5) + 0.0005 * slope_at(0.5), 1e-9);
+  EXPECT_NEAR(linear_forces_of(contacts, x)[2].z(), normal_force_at(0.5) + 0.0005 * slope_at(0.5), 1e-9);
   EXPECT_EQ(k.topLeftCorner(6, 6).norm(), 0);
-  EXPECT_NEAR(forces_of(contacts, x)[2].z(), load_at(0.0015 / kRange), 1e-9);
+  EXPECT_NEAR(forces_of(contacts, x)[2].z(), normal_force_at(0.0015 / kRange), 1e-9);
 }
 
 TEST(ContactSet, TangentsFollowTheirOwnForceToTheLaw) {
@@ -466,28 +467,29 @@ TEST(ContactSet, TangentsFollowTheirOwnForceToTheLaw) {
   const ContactSet contacts = pair.set();
   ContactLag lag = lag_at_start(contacts, pair.x);
   EXPECT_NEAR(lag.depths[0], 0.6 * kRange, 1e-15);
-  // Pressed on: the force is that of the tangent, below the law, until the depth that has it is the one that there is.
+  // Pressed: the force follows the tangent, below the law, until the depth of linearisation matches the actual depth.
   std::vector<Vec3> x = pair.x;
   x[0] -= 0.3 * kRange * pair.contact.normal;
   std::vector<Vec3> f(4, Vec3::Zero());
   contacts.add_linear_forces(x, lag, f);
-  EXPECT_NEAR(f[0].norm(), load_at(0.6) + 0.3 * kRange * slope_at(0.6), 1e-12);
-  EXPECT_LT(f[0].norm(), load_at(0.9));
-  // The next tangent is where the law has that force, not where the iterate is.
+  EXPECT_NEAR(f[0].norm(), normal_force_at(0.6) + 0.3 * kRange * slope_at(0.6), 1e-12);
+  EXPECT_LT(f[0].norm(), normal_force_at(0.9));
+  // The next tangent is taken at the depth where the law gives that force, not at the iterate.
   contacts.update(x, lag);
   EXPECT_LT(lag.depths[0], 0.89 * kRange);
-  EXPECT_NEAR(load_at(lag.depths[0] / kRange), f[0].norm(), 1e-8 * f[0].norm());  // how exact depths are made
-  // In the end the two are the same to rounding: else a step ends solved for the tangents and not for the laws.
+  EXPECT_NEAR(normal_force_at(lag.depths[0] / kRange), f[0].norm(),
+              1e-8 * f[0].norm());  // accuracy of the depth search
+  // Finally both agree to rounding; otherwise a step would satisfy the tangents and not the laws.
   for (int k = 0; k < 8; ++k) contacts.update(x, lag);
   EXPECT_NEAR(lag.depths[0], 0.9 * kRange, 1e-8 * kRange);
   std::fill(f.begin(), f.end(), Vec3::Zero());
   contacts.add_linear_forces(x, lag, f);
-  EXPECT_NEAR(f[0].norm(), load_at(0.9), 1e-14 * load_at(0.9));
-  // Taken away: no contact pulls, and the next touch begins with the least slope.
+  EXPECT_NEAR(f[0].norm(), normal_force_at(0.9), 1e-14 * normal_force_at(0.9));
+  // Lifted off: no contact pulls, and the next contact starts with the minimum slope.
   x[0] += kRange * pair.contact.normal;
   contacts.update(x, lag);
   EXPECT_EQ(lag.depths[0], 0);
-  EXPECT_EQ(lag.loads[0], 0);
+  EXPECT_EQ(lag.normal_forces[0], 0);
 }
 
 }  // namespace

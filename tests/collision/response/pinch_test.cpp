@@ -1,4 +1,4 @@
-// Pinched cloth, pair by pair: what is exempted, which way leads back, and what is said about it.
+// Pinched cloth, pair by pair: which pairs are exempt, in which direction they are pushed back, and what is reported.
 #include "collision/response/pinch.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace weft::collision {
 namespace {
 
-/// One triangle of cloth and three boxes of 0.2 m: below it, above it, and far to the side.
+/// One triangle of cloth and three boxes of 0.2 m: below it, above it, and far beside it.
 class PinchedTriangle : public ::testing::Test {
  protected:
   PinchedTriangle() {
@@ -32,7 +32,7 @@ class PinchedTriangle : public ::testing::Test {
     pinched_ = PinchedPairs(3, body_of, std::vector<Index>(body_of.size(), 0));
   }
 
-  /// The cloth with the nearest face of a box.
+  /// The cloth triangle paired with the nearest face of a box.
   CornerPair with(std::size_t body) const {
     return {scene_.triangles[0], nearest_point(x_[0], surfaces_[body].triangles, x_).face};
   }
@@ -54,7 +54,7 @@ TEST_F(PinchedTriangle, IsPushedBackToTheSideThatItCameFrom) {
   pinched_.note_origins(broad_phase_, x_);
   EXPECT_TRUE(pinched_.exempts(with(1)));
   EXPECT_FALSE(pinched_.exempts(with(2)));
-  // Nearer to the bottom than to the top where it came from.
+  // The cloth is nearer to the bottom than to the top, through which it entered.
   move_cloth_to(-0.07);
   const std::vector<PinchedPairs::Push> pushes = pinched_.find_pushes(broad_phase_, x_, 0.003);
   ASSERT_EQ(pushes.size(), 3U);
@@ -68,7 +68,7 @@ TEST_F(PinchedTriangle, IsPushedBackToTheSideThatItCameFrom) {
   }
 }
 
-// What came upon it is turned on its side since, so that the ways out of the box are others.
+// The obstacle that caught the cloth has turned on its side since, so that the other faces are the nearest.
 TEST_F(PinchedTriangle, IsPushedThroughTheFaceThatCameUponItHoweverThatHasTurned) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
@@ -80,7 +80,7 @@ TEST_F(PinchedTriangle, IsPushedThroughTheFaceThatCameUponItHoweverThatHasTurned
   for (const auto& [push, has_room] : pushes) EXPECT_LT((push.normal - Vec3::UnitX()).norm(), 1e-12);
 }
 
-// The box above comes down into the one below: then the way up is no way out.
+// The box above comes down into the one below: then pushing the cloth up leads into it.
 TEST_F(PinchedTriangle, HasNoRoomWhereTheWayBackLeadsIntoAnotherObstacle) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
@@ -95,12 +95,12 @@ TEST_F(PinchedTriangle, HasNoRoomWhereTheWayBackLeadsIntoAnotherObstacle) {
 TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
-  for (const double z : {0.0, 0.1}) {  // in it, on its face
+  for (const double z : {0.0, 0.1}) {  // inside it, on its face
     move_cloth_to(z);
     pinched_.renew(scene_.triangles, broad_phase_, x_);
     EXPECT_EQ(pinched_.size(), 1U) << z;
   }
-  // The corner that is looked at is back, the others are not.
+  // The tested corner is back outside, the others are not.
   move_cloth_to(0.11);
   x_[1][2] = x_[2][2] = 0.05;
   pinched_.renew(scene_.triangles, broad_phase_, x_);
@@ -110,7 +110,7 @@ TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
   EXPECT_TRUE(pinched_.empty());
 }
 
-// Another triangle, with the same corners: cloth that goes through a limb has no certificate beside it either.
+// Another triangle with the same corners: cloth that passes through a limb has no certificate beside it either.
 TEST_F(PinchedTriangle, TakesInWhatMeetsTheLimbBesideIt) {
   pinched_.add(with(1));
   const std::vector<Triangle> cloth{{0, 1, 2}, {0, 2, 1}};
@@ -120,14 +120,14 @@ TEST_F(PinchedTriangle, TakesInWhatMeetsTheLimbBesideIt) {
   beside.b = with(2).b;
   EXPECT_FALSE(pinched_.exempts(beside));
   pinched_.note_origins(broad_phase_, x_);
-  for (const auto& [z, pinched] : {std::pair(0.0, 2U), std::pair(0.11, 0U)}) {  // in the box, and out again
+  for (const auto& [z, pinched] : {std::pair(0.0, 2U), std::pair(0.11, 0U)}) {  // inside the box, outside again
     move_cloth_to(z);
     pinched_.renew(cloth, broad_phase_, x_);
     EXPECT_EQ(pinched_.size(), pinched) << z;
   }
 }
 
-// All its corners are outside of the lower box; one of the box's own corners sticks through.
+// All corners of the cloth are outside the lower box; a corner of the box pierces the cloth.
 TEST_F(PinchedTriangle, IsPushedOffACornerThatSticksThroughIt) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
@@ -135,7 +135,7 @@ TEST_F(PinchedTriangle, IsPushedOffACornerThatSticksThroughIt) {
   move_cloth_to(0.095);
   std::size_t crossings = 0;
   for (const auto& [push, has_room] : pinched_.find_pushes(broad_phase_, x_, 0.003)) {
-    if (push.weights[3] != -1) continue;  // of a particle
+    if (push.weights[3] != -1) continue;  // push of a single particle
     ++crossings;
     EXPECT_EQ(push.distance, 0);
     EXPECT_NEAR(push.normal.cwiseAbs().maxCoeff(), 1, 1e-12) << "the normal of a face of the box";
@@ -158,13 +158,13 @@ TEST_F(PinchedTriangle, IsReportedOnceWithTheObstacleThatIsNearestBesides) {
 
 TEST_F(PinchedTriangle, IsFreshForAnObstacleThatDidNotPinchItsClothBefore) {
   const PinchedPairs before = pinched_;
-  EXPECT_FALSE(first_fresh(pinched_, before, broad_phase_));
+  EXPECT_FALSE(find_new_pinch(pinched_, before, broad_phase_));
   pinched_.add(with(2));
-  const auto fresh = first_fresh(pinched_, before, broad_phase_);
+  const auto fresh = find_new_pinch(pinched_, before, broad_phase_);
   ASSERT_TRUE(fresh.has_value());
   EXPECT_EQ(fresh->a, scene_.triangles[0]);
   EXPECT_EQ(fresh->b, surfaces_[2].triangles[0]);
-  EXPECT_FALSE(first_fresh(pinched_, pinched_, broad_phase_));
+  EXPECT_FALSE(find_new_pinch(pinched_, pinched_, broad_phase_));
 }
 
 }  // namespace

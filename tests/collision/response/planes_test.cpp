@@ -1,4 +1,4 @@
-// What is remembered of separating planes, and that saving it loses nothing.
+// Separating planes are remembered, and saving them loses nothing.
 #include "collision/response/planes.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace weft::collision {
 namespace {
 
-/// Pairs of random triangles, 1 m from pair to pair.
+/// Pairs of random triangles; pairs are 1 m apart.
 struct RandomPairs {
   std::vector<Triangle> triangles;
   std::vector<TrianglePair> pairs;
@@ -22,7 +22,7 @@ struct RandomPairs {
       for (int k = 0; k < 6; ++k) x.push_back(Vec3(p, 0, 0) + vector(0.05) + (k < 3 ? Vec3(Vec3::Zero()) : apart));
       triangles.push_back({6 * p, 6 * p + 1, 6 * p + 2});
       triangles.push_back({6 * p + 3, 6 * p + 4, 6 * p + 5});
-      if (find_certificate({triangles[2 * p], triangles[2 * p + 1]}, x, x)) pairs.push_back({2 * p, 2 * p + 1});
+      if (find_separating_plane({triangles[2 * p], triangles[2 * p + 1]}, x, x)) pairs.push_back({2 * p, 2 * p + 1});
     }
   }
   std::vector<Vec3> moved(double by) {
@@ -42,7 +42,7 @@ struct RandomPairs {
 
 std::vector<CornerPair> failing(Planes& planes, const RandomPairs& of, std::span<const Vec3> x_t0,
                                 std::span<const Vec3> x_t1) {
-  const std::vector<float> moved(of.x.size(), 1e9F);  // nothing is certified by its gap alone
+  const std::vector<float> moved(of.x.size(), 1e9F);  // no pair is certified by its gap alone
   const std::vector<std::uint8_t> changed(of.x.size(), 1);
   std::vector<CornerPair> found;
   planes.find_failing(of.x, x_t0, x_t1, moved, changed, found);
@@ -59,7 +59,7 @@ TEST(Planes, APlaneThatIsKnownIsTriedBeforeAnyIsSearchedFor) {
   RandomPairs pairs(3000);
   Planes planes(pairs.triangles);
   planes.watch(pairs.pairs, pairs.x);
-  PairList near;  // of some of these the first look knows no plane
+  PairList near;  // for some of these the first check knows no plane
   planes.append_closer(1e-4, std::vector<float>(pairs.x.size(), 0.0F), near);
   std::erase_if(pairs.pairs, [&](const TrianglePair& pair) { return std::ranges::find(near, pair) != near.end(); });
   planes.watch(pairs.pairs, pairs.x);
@@ -77,17 +77,17 @@ TEST(Planes, PairsThatStayWhereTheyWereNeedNoLook) {
   const std::vector<float> moved(pairs.x.size(), 1e9F);
   std::vector<std::uint8_t> changed(pairs.x.size(), 1);
   std::vector<Vec3> end = pairs.moved(0.03);
-  std::size_t most = 0;
-  for (std::size_t look = 0; look < 20; ++look) {
+  std::size_t max_count = 0;
+  for (std::size_t trial = 0; trial < 20; ++trial) {
     std::vector<CornerPair> found;
     changed_only.find_failing(pairs.x, pairs.x, end, moved, changed, found);
-    EXPECT_EQ(found, failing(all, pairs, pairs.x, end)) << "look " << look;
-    most = std::max(most, found.size());
+    EXPECT_EQ(found, failing(all, pairs, pairs.x, end)) << "look " << trial;
+    max_count = std::max(max_count, found.size());
     const std::vector<Vec3> next = pairs.moved(0.03);
     std::ranges::fill(changed, 0);
-    for (std::size_t v = look; v < end.size(); v += 7) end[v] = next[v], changed[v] = 1;
+    for (std::size_t v = trial; v < end.size(); v += 7) end[v] = next[v], changed[v] = 1;
   }
-  EXPECT_GT(most, 0U);
+  EXPECT_GT(max_count, 0U);
   EXPECT_EQ(saved(changed_only, pairs), saved(all, pairs));
 }
 
@@ -96,7 +96,7 @@ TEST(Planes, SavingKeepsEveryPlaneThatDiffersFromThoseOfWatching) {
   Planes original(pairs.triangles), restored(pairs.triangles), fresh(pairs.triangles);
   for (Planes* planes : {&original, &restored, &fresh}) planes->watch(pairs.pairs, pairs.x);
   const std::string of_fresh = saved(original, pairs);
-  EXPECT_EQ(of_fresh.size(), sizeof(std::size_t));  // nothing to say
+  EXPECT_EQ(of_fresh.size(), sizeof(std::size_t));  // no planes to save
   const std::vector<Vec3> first = pairs.moved(0.03), second = pairs.moved(0.03);
   failing(original, pairs, pairs.x, first);
   const std::string bytes = saved(original, pairs);
@@ -123,7 +123,7 @@ TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
   EXPECT_THROW(planes.serialize(reader, pairs.x), std::runtime_error);
 }
 
-// By the gap alone: a pair whose triangles have moved less than that stays apart without a look at it.
+// A pair whose triangles have moved less than its gap stays separated without a check.
 TEST(Planes, TheGapOfAPlaneIsNoMoreThanTheDistance) {
   RandomPairs pairs(500);
   Planes planes(pairs.triangles);

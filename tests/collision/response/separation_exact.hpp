@@ -1,4 +1,4 @@
-// Certificates of separation held against exact decisions, family by family.
+// Compares certificates of separation with exact decisions, family by family.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,25 +15,25 @@
 
 namespace weft::collision {
 
-/// What happened to the queries of one family.
+/// Results of the queries of one family.
 struct SeparationTally {
   int queries = 0, meeting = 0, certified = 0, in_integers = 0;
-  int missed = 0;    ///< certified, and yet they meet
-  int touching = 0;  ///< certified, and yet they touch within rounding at the start, which had to be without contact
-  int benign_alarms = 0;  ///< refused although 1e-5 m apart and moving by less than 0.8 of the distance
+  int missed = 0;    ///< certified, but they meet
+  int touching = 0;  ///< certified, but they touch within rounding at the start, which had to be without contact
+  int needless_refusals = 0;  ///< refused, although 1e-5 m apart and moving by less than 0.8 of the distance
   int benign = 0;
-  // Of the pairs that stay apart, by distance at the start [m]: below 1e-8, 1e-7, …, 1e-2, above.
+  // Counts of pairs that stay apart, by distance at the start [m]: below 1e-8, 1e-7, …, 1e-2, above.
   std::array<int, 8> apart{}, refused{};
 };
 
-/// When the certificates of a step are looked for.
+/// Where the search for the certificates of a step begins.
 enum class Watched {
   at_start,    ///< from the start of this step
-  on_the_way,  ///< from the middle of it, and once already for its first quarter, so that directions are known
-  elsewhere    ///< since the positions were others, as in a step before
+  on_the_way,  ///< from the middle of the step, after one check of its first quarter, so that directions are known
+  elsewhere    ///< from other positions, as in an earlier step
 };
 
-/// Some pairs at once, each with six vertices of its own: pair p has triangles 2p and 2p + 1.
+/// Several pairs, each with six vertices of its own: pair p has triangles 2p and 2p + 1.
 struct SeparationBatch {
   std::vector<Triangle> triangles;
   std::vector<TrianglePair> pairs;
@@ -65,12 +65,13 @@ struct SeparationBatch {
   }
 };
 
-/// The most by which a corner of one side moves against one of the other.
+/// Maximum motion of a corner of one side relative to a corner of the other.
 inline double relative_motion(const support::MotionQuery& q) {
-  double most = 0;
+  double max_motion = 0;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) most = std::max(most, ((q.a.t1[i] - q.a.t0[i]) - (q.b.t1[j] - q.b.t0[j])).norm());
-  return most;
+    for (int j = 0; j < 3; ++j)
+      max_motion = std::max(max_motion, ((q.a.t1[i] - q.a.t0[i]) - (q.b.t1[j] - q.b.t0[j])).norm());
+  return max_motion;
 }
 
 inline void judge(const support::MotionQuery& query, bool refused, SeparationTally& tally) {
@@ -98,17 +99,17 @@ inline void judge(const support::MotionQuery& query, bool refused, SeparationTal
   tally.refused[bin] += refused;
   if (distance >= 1e-5 && relative_motion(query) <= 0.8 * distance) {
     ++tally.benign;
-    tally.benign_alarms += refused;
+    tally.needless_refusals += refused;
   }
 }
 
-/// Judges `count` queries of a family, the same ones for the same seed.
+/// Judges `count` queries of a family; the same seed gives the same queries.
 inline SeparationTally judge_family(support::QueryFamily family, int count, unsigned seed) {
   std::mt19937 engine(seed);
   SeparationTally tally;
   int batches = 0;
   while (tally.queries < count) {
-    // Some alone and some together, since the coarse first look at eight is as good as the largest coordinate allows.
+    // Batch sizes differ: the coarse first check of eight pairs is as accurate as the largest coordinate allows.
     const int size = std::array{1, 8, 3, 12}[batches / 3 % 4];
     const auto watched = static_cast<Watched>(batches++ % 3);
     std::vector<support::MotionQuery> queries;
@@ -123,7 +124,7 @@ inline SeparationTally judge_family(support::QueryFamily family, int count, unsi
   return tally;
 }
 
-/// Judges every family, prints a table and states what must hold.
+/// Judges every family, prints a table and asserts what must hold.
 inline void expect_nothing_missed(int count_per_family, unsigned seed) {
   std::printf("%-18s %8s %8s %9s %8s %6s %6s | refused of those that stay apart, by distance at the start [m]\n",
               "family", "queries", "meeting", "certified", "integers", "missed", "at t0");
@@ -141,7 +142,7 @@ inline void expect_nothing_missed(int count_per_family, unsigned seed) {
 
     EXPECT_EQ(tally.missed, 0);
     EXPECT_EQ(tally.touching, 0);
-    EXPECT_EQ(tally.benign_alarms, 0) << "of " << tally.benign;
+    EXPECT_EQ(tally.needless_refusals, 0) << "of " << tally.benign;
     EXPECT_GT(tally.meeting, count_per_family / 100);
     if (family == support::QueryFamily::touching) {
       EXPECT_EQ(tally.meeting, tally.queries);

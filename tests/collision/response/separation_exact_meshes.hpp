@@ -1,4 +1,5 @@
-// The same for meshes: pairs with a common vertex, fan by fan, and what is left after corrections.
+// Compares certificates with exact decisions for meshes: pairs with a common vertex, vertex star by vertex star, and
+// the result of corrections.
 #pragma once
 
 #include <numbers>
@@ -9,7 +10,7 @@
 
 namespace weft::collision {
 
-/// A mesh of one surface in linear motion.
+/// One surface in linear motion.
 struct MovingMesh {
   std::vector<Triangle> triangles;
   std::vector<Vec3> x_t0, x_t1;
@@ -17,7 +18,7 @@ struct MovingMesh {
 
   struct Pair {
     TrianglePair triangles;
-    int corner_a = -1, corner_b = -1;  ///< the common vertex, or -1
+    int corner_a = -1, corner_b = -1;  ///< corners of the common vertex, or -1
   };
 
   const Triangle& at(Index triangle) const { return triangles[triangle]; }
@@ -72,26 +73,26 @@ struct MovingMesh {
   }
 };
 
-// --- Fans ------------------------------------------------------------------------------------------------------------
+// --- Vertex stars ----------------------------------------------------------------------------------------------------
 
-enum class FanKind {
+enum class StarKind {
   calm,         ///< closed and nearly flat, motions up to a thousandth: certified without exception
-  closed,       ///< once around, flat, conical or wavy; every vertex moves in its own way
+  closed,       ///< one turn; flat, conical or wavy; every vertex moves on its own
   inverted,     ///< a cone or saddle that is turned inside out
-  turned,       ///< by up to half a turn, about any axis, in a straight line
-  open,         ///< at a border, up to 1.8 turns like a spiral stair
+  turned,       ///< rotated by up to half a turn about any axis, along straight lines
+  open,         ///< at a border; up to 1.8 turns, as in a spiral stair
   collapsing,   ///< a spiral stair whose ends pass through each other
   around_twice  ///< closed after two turns: intersects at the start, with all orientations positive
 };
-inline constexpr std::array kFanKinds = {FanKind::calm, FanKind::closed,     FanKind::inverted,    FanKind::turned,
-                                         FanKind::open, FanKind::collapsing, FanKind::around_twice};
-inline const char* name(FanKind kind) {
+inline constexpr std::array kStarKinds = {StarKind::calm, StarKind::closed,     StarKind::inverted,    StarKind::turned,
+                                          StarKind::open, StarKind::collapsing, StarKind::around_twice};
+inline const char* name(StarKind kind) {
   constexpr const char* kNames[] = {"calm", "closed", "inverted", "turned", "open", "collapsing", "around twice"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-/// Vertex 0 is in the middle. Size 1.
-inline MovingMesh make_fan_of_size_one(FanKind kind, std::mt19937& engine) {
+/// Vertex 0 is the centre. The size is 1.
+inline MovingMesh make_star_of_size_one(StarKind kind, std::mt19937& engine) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(engine);
   };
@@ -99,44 +100,45 @@ inline MovingMesh make_fan_of_size_one(FanKind kind, std::mt19937& engine) {
     const double x = between(-size, size), y = between(-size, size), z = between(-size, size);
     return Vec3(x, y, z);
   };
-  const bool open = kind == FanKind::open || kind == FanKind::collapsing;
+  const bool open = kind == StarKind::open || kind == StarKind::collapsing;
   const int count =
-      kind == FanKind::around_twice ? 5 + static_cast<int>(engine() % 6) : 3 + static_cast<int>(engine() % 6);
+      kind == StarKind::around_twice ? 5 + static_cast<int>(engine() % 6) : 3 + static_cast<int>(engine() % 6);
   std::vector<double> angles{0};
   for (int k = 0; k < count; ++k)
-    angles.push_back(angles.back() + (kind == FanKind::calm ? 1 : std::pow(10.0, between(-1.5, 0))));
-  const double total = open ? between(0.5, 3.6) : kind == FanKind::around_twice ? 4 : 2;
+    angles.push_back(angles.back() + (kind == StarKind::calm ? 1 : std::pow(10.0, between(-1.5, 0))));
+  const double total = open ? between(0.5, 3.6) : kind == StarKind::around_twice ? 4 : 2;
   for (double& angle : angles) angle *= total * std::numbers::pi / (open ? angles.back() : angles[count]);
 
-  const double cone = kind == FanKind::calm ? 0 : between(-1, 1), wave = kind == FanKind::calm ? 0.05 : between(-1, 1);
-  const double pitch = kind == FanKind::collapsing ? 0.1 : open ? between(0.02, 0.3) : 0;
+  const double cone = kind == StarKind::calm ? 0 : between(-1, 1),
+               wave = kind == StarKind::calm ? 0.05 : between(-1, 1);
+  const double pitch = kind == StarKind::collapsing ? 0.1 : open ? between(0.02, 0.3) : 0;
   MovingMesh mesh;
   mesh.x_t0.push_back(Vec3::Zero());
   const int ring = open ? count + 1 : count;
   for (int k = 0; k < ring; ++k) {
     const double angle = angles[k], r = between(0.5, 1);
-    const double twice = kind == FanKind::around_twice ? 0.3 * std::sin(angle / 2) : 0;
+    const double twice = kind == StarKind::around_twice ? 0.3 * std::sin(angle / 2) : 0;
     mesh.x_t0.push_back({r * std::cos(angle), r * std::sin(angle),
                          r * (cone + wave * std::sin(2 * angle)) * (open ? 0.2 : 1) + pitch * angle + twice});
   }
   for (Index k = 0; k < count; ++k) mesh.triangles.push_back({0, 1 + k, 1 + (k + 1) % ring});
 
   mesh.x_t1 = mesh.x_t0;
-  const double motion = kind == FanKind::calm ? 1e-3 : std::pow(10.0, between(-4, 0.3));
-  const double share = between(0, 1), turn = between(0, 1) * std::numbers::pi;
+  const double motion = kind == StarKind::calm ? 1e-3 : std::pow(10.0, between(-4, 0.3));
+  const double fraction = between(0, 1), turn = between(0, 1) * std::numbers::pi;
   const Eigen::AngleAxisd rotation(turn, vector(1).normalized());
   for (std::size_t v = 0; v < mesh.x_t1.size(); ++v) {
     Vec3& x = mesh.x_t1[v];
-    if (kind == FanKind::inverted) x.z() *= 1 - 2 * share;
-    if (kind == FanKind::turned) x = (rotation * x).eval();
-    if (kind == FanKind::collapsing && v > 0) x.z() -= 2 * share * pitch * angles[v - 1];
-    x += vector(kind == FanKind::closed || kind == FanKind::calm || kind == FanKind::open ? motion : 0.01 * motion);
+    if (kind == StarKind::inverted) x.z() *= 1 - 2 * fraction;
+    if (kind == StarKind::turned) x = (rotation * x).eval();
+    if (kind == StarKind::collapsing && v > 0) x.z() -= 2 * fraction * pitch * angles[v - 1];
+    x += vector(kind == StarKind::closed || kind == StarKind::calm || kind == StarKind::open ? motion : 0.01 * motion);
   }
   return mesh;
 }
 
-inline MovingMesh make_fan(FanKind kind, std::mt19937& engine) {
-  MovingMesh mesh = make_fan_of_size_one(kind, engine);
+inline MovingMesh make_fan(StarKind kind, std::mt19937& engine) {
+  MovingMesh mesh = make_star_of_size_one(kind, engine);
   std::uniform_real_distribution<double> number(-1, 1);
   const double size = std::pow(10.0, -1.5 + 4.5 * number(engine));
   const Eigen::AngleAxisd rotation(3 * number(engine), Vec3(number(engine), number(engine), 0.1).normalized());
@@ -147,12 +149,12 @@ inline MovingMesh make_fan(FanKind kind, std::mt19937& engine) {
   return mesh;
 }
 
-struct FanTally {
+struct StarTally {
   int fans = 0, queries = 0, meeting = 0, certified = 0, missed = 0, refused_apart = 0;
 };
 
 /// One query for each pair with a common vertex: the edge of either side against the other triangle.
-inline void judge_fan(const MovingMesh& mesh, Watched watched, FanTally& tally) {
+inline void judge_star(const MovingMesh& mesh, Watched watched, StarTally& tally) {
   // An edge against a triangle, both as sets of vertices.
   using Key = std::pair<std::set<Index>, std::set<Index>>;
   const auto key = [](const Triangle& a, const Triangle& b) { return Key{{a.begin(), a.end()}, {b.begin(), b.end()}}; };
@@ -187,17 +189,17 @@ inline void judge_fan(const MovingMesh& mesh, Watched watched, FanTally& tally) 
 inline void expect_nothing_missed_in_fans(int fans_per_kind, unsigned seed) {
   std::printf("%-14s %8s %8s %8s %9s %7s %s\n", "fans", "fans", "queries", "meeting", "certified", "missed",
               "apart, but refused");
-  for (FanKind kind : kFanKinds) {
+  for (StarKind kind : kStarKinds) {
     SCOPED_TRACE(name(kind));
     std::mt19937 engine(seed + static_cast<unsigned>(kind));
     const std::clock_t begin = std::clock();
-    FanTally tally;
-    for (int k = 0; k < fans_per_kind; ++k) judge_fan(make_fan(kind, engine), static_cast<Watched>(k % 3), tally);
+    StarTally tally;
+    for (int k = 0; k < fans_per_kind; ++k) judge_star(make_fan(kind, engine), static_cast<Watched>(k % 3), tally);
     std::printf("%-14s %8d %8d %8d %9d %7d %d  %.1f s\n", name(kind), tally.fans, tally.queries, tally.meeting,
                 tally.certified, tally.missed, tally.refused_apart,
                 static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     EXPECT_EQ(tally.missed, 0);
-    if (kind == FanKind::calm) {
+    if (kind == StarKind::calm) {
       EXPECT_EQ(tally.meeting, 0);
       EXPECT_EQ(tally.refused_apart, 0);
     } else {
@@ -209,8 +211,8 @@ inline void expect_nothing_missed_in_fans(int fans_per_kind, unsigned seed) {
 
 // --- Corrections -----------------------------------------------------------------------------------------------------
 
-/// Adds a part if all pairs are 1e-5 m apart: below the floor of 1e-6 m nothing can be certified.
-inline bool add_part(MovingMesh& mesh, const std::vector<Vec3>& x, const std::vector<Triangle>& triangles) {
+/// Adds a component if all pairs are 1e-5 m apart: below 1e-6 m nothing can be certified.
+inline bool add_component(MovingMesh& mesh, const std::vector<Vec3>& x, const std::vector<Triangle>& triangles) {
   MovingMesh larger = mesh;
   const auto first = static_cast<Index>(mesh.x_t0.size());
   larger.x_t0.insert(larger.x_t0.end(), x.begin(), x.end());
@@ -230,7 +232,7 @@ inline bool add_part(MovingMesh& mesh, const std::vector<Vec3>& x, const std::ve
   return true;
 }
 
-/// Two to five triangles, quads and fans in a box of 0.1 m, which move by up to `motion` [m].
+/// Two to five triangles, quads and vertex stars in a box of 0.1 m, which move by up to `motion` [m].
 inline MovingMesh make_cluster(std::mt19937& engine, double motion) {
   std::uniform_real_distribution<double> number(-1, 1);
   const auto vector = [&](double size) {
@@ -243,7 +245,7 @@ inline MovingMesh make_cluster(std::mt19937& engine, double motion) {
     std::vector<Vec3> x;
     std::vector<Triangle> triangles{{0, 1, 2}};
     if (engine() % 3 == 0) {
-      const MovingMesh fan = make_fan_of_size_one(FanKind::closed, engine);
+      const MovingMesh fan = make_star_of_size_one(StarKind::closed, engine);
       for (const Vec3& corner : fan.x_t0) x.push_back(place + 0.04 * corner);
       triangles = fan.triangles;
     } else {
@@ -251,7 +253,7 @@ inline MovingMesh make_cluster(std::mt19937& engine, double motion) {
       for (int k = quad ? 4 : 3; k > 0; --k) x.push_back(place + vector(0.04));
       if (quad) triangles.push_back({2, 1, 3});
     }
-    parts -= add_part(cluster, x, triangles);
+    parts -= add_component(cluster, x, triangles);
   }
   for (Vec3& x : cluster.x_t1) x += vector(motion);
   cluster.movable.assign(cluster.x_t0.size(), 1);
@@ -264,7 +266,7 @@ inline void expect_nothing_meets_after_enforcement(int count, unsigned seed) {
   int would_meet = 0, queries = 0, with_vertex = 0, given_up = 0;
   for (int k = 0; k < count; ++k) {
     MovingMesh cluster = make_cluster(engine, std::pow(10.0, -4 + 4.0 * k / count));
-    // Of three clusters, one is free, one has a moving obstacle as its first part, one has vertices that are held.
+    // One cluster in three is free, one has a moving obstacle as its first component, one has held vertices.
     const bool obstacle = k % 3 == 1, held = k % 3 == 2;
     for (Index v : cluster.triangles[0])
       if (obstacle) cluster.movable[v] = 0;
@@ -290,7 +292,7 @@ inline void expect_nothing_meets_after_enforcement(int count, unsigned seed) {
         EXPECT_EQ(cluster.x_t1[v], wanted[v]);
       }
     }
-    // An obstacle may leave no room; what starts apart can always go back there.
+    // An obstacle may leave no clearance; without obstacles, pairs that start apart can always return to the start.
     if (!obstacle) {
       EXPECT_TRUE(report.separated) << "cluster " << k;
     }

@@ -1,4 +1,4 @@
-// More than a million queries; separation_exact_test.cpp has the same in short.
+// More than a million queries; separation_exact_test.cpp runs fewer of the same.
 #include "collision/response/separation_exact_meshes.hpp"
 
 namespace weft::collision {

@@ -1,4 +1,4 @@
-// The guarantee that no two triangles meet, held against an exact judge along the way.
+// Checks with an exact judge, at samples of the step, that no two triangles meet.
 #include "collision/response/separation.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ struct LonePairs {
   }
 };
 
-/// Random triangles of up to 0.1 m, closer than that and apart by 1e-4 m at least, that move by up to `motion` [m].
+/// Random triangles of up to 0.1 m, at least 1e-4 m and less than their size apart, which move by up to `motion` [m].
 LonePairs random_pairs(int count, double motion, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -47,7 +47,7 @@ LonePairs random_pairs(int count, double motion, unsigned seed) {
     for (int k = 0; k < 6; ++k) corners.push_back(vector(0.05) + (k < 3 ? Vec3(Vec3::Zero()) : apart));
     const Triangle a{0, 1, 2}, b{3, 4, 5};
     if (closest_features({a, b}, corners).points.distance_sq < 1e-8) continue;
-    // An edge can pierce a face with all features apart.
+    // All features can be apart although an edge pierces a face.
     const std::array<Triangle, 1> face_a{a}, face_b{b};
     const support::JudgedObject objects[] = {{"a", true, corners, face_a}, {"b", true, corners, face_b}};
     if (!support::judge(objects).pairs.empty()) continue;
@@ -65,7 +65,7 @@ LonePairs random_pairs(int count, double motion, unsigned seed) {
   return made;
 }
 
-// Pairs, by number, that intersect at one of 65 moments of the way.
+// Numbers of the pairs that intersect at one of 65 times of the step.
 std::set<Index> meeting(const LonePairs& pairs) {
   std::vector<Triangle> sides[2];
   for (std::size_t t = 0; t < pairs.triangles.size(); ++t) sides[t % 2].push_back(pairs.triangles[t]);
@@ -99,12 +99,12 @@ TEST(Separation, CertifiedPairsDoNotMeetOnTheirWay) {
 }
 
 TEST(Separation, PairsInSlowMotionAreNearlyAllCertified) {
-  // At a tenth of their size a few per cent meet; certificates must not be refused to many more.
+  // With motions of a tenth of their size a few per cent meet; not many more may be refused a certificate.
   const LonePairs pairs = random_pairs(200, 0.005, 2);
   EXPECT_LT(failing(pairs).size(), 2 * meeting(pairs).size() + 20);
 }
 
-// Fans, whose verdict hangs on positions alone: what it remembers of them must be what another finds.
+// The result for vertex stars depends on positions only: what is remembered must equal a fresh check.
 TEST(Separation, WhatIsRememberedOfALookIsWhatANewOneFinds) {
   constexpr Index kSide = 6;
   std::vector<Triangle> triangles;
@@ -126,18 +126,18 @@ TEST(Separation, WhatIsRememberedOfALookIsWhatANewOneFinds) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> number(-1, 1);
   std::vector<Vec3> x_t0 = start, x_t1 = start;
-  std::size_t most = 0, least = 1000;
-  for (int look = 0; look < 60; ++look) {
+  std::size_t max_count = 0, min_count = 1000;
+  for (int trial = 0; trial < 60; ++trial) {
     const auto v = static_cast<std::size_t>(engine() % start.size());
-    (look % 3 == 0 ? x_t0 : x_t1)[v] = start[v] + Vec3(number(engine), number(engine), number(engine));
-    if (look % 5 == 0) x_t0[v] = x_t1[v] = start[v];
+    (trial % 3 == 0 ? x_t0 : x_t1)[v] = start[v] + Vec3(number(engine), number(engine), number(engine));
+    if (trial % 5 == 0) x_t0[v] = x_t1[v] = start[v];
     const std::span<const CornerPair> found = remembers.find_failing(x_t0, x_t1);
     Separation another = separation();
-    EXPECT_TRUE(std::ranges::equal(found, another.find_failing(x_t0, x_t1))) << "look " << look;
-    most = std::max(most, found.size());
-    least = std::min(least, found.size());
+    EXPECT_TRUE(std::ranges::equal(found, another.find_failing(x_t0, x_t1))) << "look " << trial;
+    max_count = std::max(max_count, found.size());
+    min_count = std::min(min_count, found.size());
   }
-  EXPECT_GT(most, least);
+  EXPECT_GT(max_count, min_count);
 }
 
 TEST(Separation, PairsThatWouldMeetArePushedApart) {
@@ -153,7 +153,7 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
     EXPECT_TRUE(failing(pairs).empty());
     EXPECT_TRUE(meeting(pairs).empty());
 
-    // Only pairs that failed were moved.
+    // Only pairs that failed have moved.
     double largest = 0;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (wanted[i] == pairs.x_t1[i]) continue;
@@ -166,7 +166,7 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
 }
 
 TEST(Separation, WhatCannotMoveIsNotMoved) {
-  // One side of each pair is an obstacle, which gives way to nothing.
+  // One side of each pair is an obstacle, which cannot be moved.
   LonePairs pairs = random_pairs(200, 0.05, 4);
   for (std::size_t i = 0; i < pairs.movable.size(); ++i) pairs.movable[i] = i % 6 < 3;
   const std::vector<Vec3> wanted = pairs.x_t1;
@@ -182,7 +182,7 @@ TEST(Separation, WhatCannotMoveIsNotMoved) {
 
 TEST(Separation, PairsThatKeepTheirDistanceAreLeftAlone) {
   LonePairs pairs = random_pairs(50, 0, 5);
-  for (Vec3& x : pairs.x_t1) x += Vec3(0.3, 0.1, -0.2);  // all together
+  for (Vec3& x : pairs.x_t1) x += Vec3(0.3, 0.1, -0.2);  // all move together
   const std::vector<Vec3> wanted = pairs.x_t1;
   Separation separation = pairs.separation();
   const SeparationReport report = separation.enforce(pairs.x_t0, pairs.x_t1, pairs.movable);
@@ -193,7 +193,7 @@ TEST(Separation, PairsThatKeepTheirDistanceAreLeftAlone) {
 }
 
 TEST(Separation, SaysWhichPairIsStuckWhereThereIsNoRoom) {
-  // A triangle between two plates that close past each other.
+  // A triangle between two plates that pass through each other.
   const auto triangle_at = [](double z) { return std::vector<Vec3>{{-1, -1, z}, {1, -1, z}, {0, 1, z}}; };
   const auto three = [&](double low, double middle, double high) {
     std::vector<Vec3> x;
@@ -214,7 +214,7 @@ TEST(Separation, SaysWhichPairIsStuckWhereThereIsNoRoom) {
               report.stuck == (CornerPair{triangles[1], triangles[2]}));
   for (std::size_t i : {0u, 1u, 2u, 6u, 7u, 8u}) EXPECT_EQ(x_t1[i], wanted[i]);
 
-  // With a little room left it goes there.
+  // If some clearance remains, the triangle moves there.
   x_t1 = three(0.15, 0.1, 0.16);
   EXPECT_TRUE(separation.enforce(x_t0, x_t1, movable).separated);
   for (std::size_t i : {3u, 4u, 5u}) {
@@ -239,14 +239,14 @@ TEST(ClosestFeatures, AreThoseOfADenseSearch) {
       const Vec3 &p = pairs.x_t0[t[0]], &q = pairs.x_t0[t[1]], &r = pairs.x_t0[t[2]];
       return Vec3(p + double(i) / kCuts * (q - p) + double(j) / kCuts * (r - p));
     };
-    double least = 1;
+    double minimum = 1;
     for (int i = 0; i <= kCuts; ++i)
       for (int j = 0; i + j <= kCuts; ++j)
         for (int k = 0; k <= kCuts; ++k)
-          for (int l = 0; k + l <= kCuts; ++l) least = std::min(least, (point(a, i, j) - point(b, k, l)).norm());
-    EXPECT_LE(distance, least + 1e-14);
-    // Some sample of each triangle is within half a cut of an edge of 0.17 m of the closest point.
-    EXPECT_GT(distance, least - 2 * 0.17 / kCuts);
+          for (int l = 0; k + l <= kCuts; ++l) minimum = std::min(minimum, (point(a, i, j) - point(b, k, l)).norm());
+    EXPECT_LE(distance, minimum + 1e-14);
+    // The sample nearest to a closest point is at most half a cut of an edge of 0.17 m away from it, on each triangle.
+    EXPECT_GT(distance, minimum - 2 * 0.17 / kCuts);
   }
 }
 

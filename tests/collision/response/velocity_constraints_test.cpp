@@ -1,4 +1,4 @@
-// Prescribed velocities of single particles (seed, Eq. 4), with stiction, sliding and release.
+// Prescribed velocities of single particles (seed, Eq. (4)), with stiction, sliding and release.
 #include "collision/response/velocity_constraints.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 constexpr double kGravity = 9.81;
 constexpr double kStep = 0.01, kDMin = 0.001, kMass = 2e-4;
 
-/// One particle in front of walls, moved by forces that the test names.
+/// One particle in front of walls; each test gives the forces on it.
 struct OneParticle {
   VelocityConstraints constraints{{kMass}};
   std::vector<Vec3> x_t0{Vec3::Zero()}, x_t1{Vec3::Zero()};
@@ -23,7 +23,7 @@ struct OneParticle {
     constraints.add(0, normal, distance, kDMin, motion, friction);
   }
   void prepare() { constraints.prepare(x_t0, x_t1); }
-  /// After a solve that led to x_end with this force of the constraint.
+  /// Revises the constraints after a solve with end x_end and this constraint force.
   int revise(const Vec3& x_end, const Vec3& force) {
     const std::vector<Vec3> at{x_end};
     return constraints.revise(x_t0, at, [&](Index) { return force; });
@@ -79,7 +79,7 @@ TEST(VelocityConstraints, MoveWithTheObstacle) {
 }
 
 TEST(VelocityConstraints, HoldAParticleInACornerByAllItsWalls) {
-  // Of a right-angled and of an acute valley; the second needs the walls together, not one after the other.
+  // A right-angled and an acute valley; the second needs both walls at once, not one after the other.
   for (double slope : {1.0, 3.0}) {
     const Vec3 left = Vec3(slope, 0, 1).normalized(), right = Vec3(-slope, 0, 1).normalized();
     OneParticle particle;
@@ -111,7 +111,7 @@ TEST(VelocityConstraints, AreReleasedByTheSignOfTheResidual) {
 TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCone) {
   constexpr double kMu = 0.5;
   const double weight = kMass * kGravity;
-  for (double tangential : {0.9, 1.6}) {  // of μ · weight
+  for (double tangential : {0.9, 1.6}) {  // relative to μ · weight
     OneParticle particle;
     const auto begin = [&] {
       particle.constraints.begin_step(kStep);
@@ -119,7 +119,7 @@ TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCo
       particle.x_t1[0] = Vec3(0, 0, -1e-4);
       particle.prepare();
     };
-    // At rest for three steps: the first one finds the load, and two that are slow make it stick.
+    // At rest for three steps: the first finds the normal force, and two slow ones make the particle stick.
     for (int step = 0; step < 3; ++step) {
       begin();
       particle.revise(Vec3::Zero(), weight * Vec3::UnitZ());
@@ -127,13 +127,13 @@ TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCo
     }
     begin();
     EXPECT_EQ(particle.prescribed().constraint.free, Mat3::Zero());
-    // What is beyond the cone slides from the next step on.
+    // If the force is outside the friction cone, the particle slides from the next step on.
     EXPECT_EQ(particle.revise(Vec3::Zero(), weight * Vec3(kMu * tangential, 0, 1)), 0);
     particle.constraints.accept();
     begin();
     EXPECT_EQ(particle.prescribed().constraint.free.isZero(), tangential < 1);
 
-    // Friction of what slides: μ · load against the slip.
+    // Sliding friction: μ times the normal force, against the slip.
     std::vector<Vec3> force{Vec3::Zero()};
     const std::vector<Vec3> slid{Vec3(-0.001, 0, 0)};
     particle.constraints.add_forces(slid, force);
@@ -147,18 +147,18 @@ TEST(VelocityConstraints, LeanToWallsThatHeldAndAreNotThereNow) {
   std::vector<Vec3> leaning;
   particle.wall(Vec3::UnitZ(), kDMin);
   particle.x_t1[0] = Vec3(0, 0, -1e-4);
-  EXPECT_FALSE(particle.constraints.lean(particle.x_t1, 0.001, leaning));
+  EXPECT_FALSE(particle.constraints.predict_wall_contacts(particle.x_t1, 0.001, leaning));
   particle.prepare();
   particle.revise(Vec3::Zero(), kMass * kGravity * Vec3::UnitZ());
   particle.constraints.accept();
   particle.constraints.begin_step(kStep);
-  EXPECT_TRUE(particle.constraints.lean(particle.x_t1, 0.001, leaning));
+  EXPECT_TRUE(particle.constraints.predict_wall_contacts(particle.x_t1, 0.001, leaning));
   EXPECT_LT((leaning[0] - Vec3(0, 0, -1.1e-3)).norm(), 1e-18);
   particle.wall(Vec3::UnitZ(), kDMin);
-  EXPECT_FALSE(particle.constraints.lean(particle.x_t1, 0.001, leaning));
+  EXPECT_FALSE(particle.constraints.predict_wall_contacts(particle.x_t1, 0.001, leaning));
 }
 
-// Sliding and sticking slips (the stick slip is 2e-6 m), with the obstacle moving.
+// Slips above and below the stick slip of 2e-6 m, with a moving obstacle.
 TEST(VelocityConstraints, JacobianOfSlidingIsExactWhereItGoesOnAndNeverTooSoftWhereItBegins) {
   constexpr double kMu = 0.5, kDelta = 1e-10;
   const double weight = kMass * kGravity;
@@ -166,7 +166,7 @@ TEST(VelocityConstraints, JacobianOfSlidingIsExactWhereItGoesOnAndNeverTooSoftWh
   for (const bool goes_on : {true, false})
     for (const Vec3& slip : {Vec3(-0.001, 0.0004, 0), Vec3(3e-7, 4e-7, 0)}) {
       OneParticle particle;
-      // At rest for three steps, pulled out of the cone, sliding.
+      // At rest for three steps, then pulled out of the friction cone, then sliding.
       for (int step = 0; step < 5; ++step) {
         particle.constraints.begin_step(kStep);
         particle.wall(Vec3::UnitZ(), kDMin, motion, kMu);
@@ -192,7 +192,7 @@ TEST(VelocityConstraints, JacobianOfSlidingIsExactWhereItGoesOnAndNeverTooSoftWh
       for (int k = 0; k < 3; ++k)
         exact.col(k) = (force_at(slip - kDelta * Vec3::Unit(k)) - force_at(slip + kDelta * Vec3::Unit(k))) / kDelta;
       const Mat3 got = system.diagonal_terms[0].stiffness;
-      // Rounding of differences: 1e-16 of the force over 1e-10 m, and the third derivative.
+      // Rounding of differences, 1e-16 of the force over 1e-10 m, and the third derivative.
       const double size = 2 * weight * kMu / slip.norm();
       if (goes_on)
         EXPECT_LT((got - exact).norm(), 1e-4 * size);

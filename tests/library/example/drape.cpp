@@ -1,4 +1,4 @@
-// Simulates a scene with the installed library and prints where the particles of a cloth are in the last frame.
+// Simulates a scene with the installed library and prints the positions of a cloth's particles in the last frame.
 #include <cstdio>
 #include <exception>
 #include <weft/scene.hpp>

@@ -14,10 +14,11 @@ namespace weft::simulation {
 
 /// Groups pairs that meet at x [m] by place, largest number of pairs first. Pairs of the same two objects belong to one
 /// place if their triangles share vertices. `names`: of the bodies.
-std::vector<MeetingPlace> meeting_places(std::span<const collision::CornerPair> pairs, const collision::Bodies& bodies,
-                                         std::span<const std::string> names, std::span<const Vec3> x);
+std::vector<IntersectionPlace> group_intersections(std::span<const collision::CornerPair> pairs,
+                                                   const collision::Bodies& bodies, std::span<const std::string> names,
+                                                   std::span<const Vec3> x);
 
 /// "12 pairs of triangles that touch or cross in 2 places: 'sheet' and 'ball' (8 pairs) around (0, 0, 1) m, ...".
-std::string describe(std::span<const MeetingPlace> places);
+std::string describe(std::span<const IntersectionPlace> places);
 
 }  // namespace weft::simulation

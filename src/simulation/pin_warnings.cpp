@@ -1,4 +1,4 @@
-#include "simulation/pin_doubts.hpp"
+#include "simulation/pin_warnings.hpp"
 
 #include <fmt/format.h>
 
@@ -235,7 +235,7 @@ std::vector<std::string> find_stretches(const scene::Scene& scene, const environ
         "s{}",
         moving.name(scene, pins.second), a.number, stretch.from, 100 * (stretch.max_ratio - 1), stretch.at,
         overlap(environment.cloths[a.cloth], a.number, b.number)
-            ? fmt::format("; what both would hold pin {} holds", a.number)
+            ? fmt::format("; pin {} holds the particles that both select", a.number)
             : ""));
   }
   return found;
@@ -277,8 +277,8 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
         if (height > 0) outside.insert(pin);
         if (height > -kEntryDepth || !outside.contains(pin)) continue;
         entered.insert(pin);
-        found.push_back(fmt::format("{}: enters '{}' at {:.4g} s, and will lag behind there", moving.name(scene, pin),
-                                    body.name, t));
+        found.push_back(fmt::format("{}: enters '{}' at {:.4g} s, and will lag behind its target there",
+                                    moving.name(scene, pin), body.name, t));
       }
     }
   }

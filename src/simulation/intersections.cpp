@@ -1,4 +1,4 @@
-#include "simulation/meetings.hpp"
+#include "simulation/intersections.hpp"
 
 #include <fmt/format.h>
 
@@ -18,13 +18,14 @@ constexpr std::size_t kMaxNamedPlaces = 6;
 
 }  // namespace
 
-std::vector<MeetingPlace> meeting_places(std::span<const collision::CornerPair> pairs, const collision::Bodies& bodies,
-                                         std::span<const std::string> names, std::span<const Vec3> x) {
+std::vector<IntersectionPlace> group_intersections(std::span<const collision::CornerPair> pairs,
+                                                   const collision::Bodies& bodies, std::span<const std::string> names,
+                                                   std::span<const Vec3> x) {
   // Groups each pair of objects by itself, because pairs of other objects may share vertices with it.
   std::map<std::pair<std::size_t, std::size_t>, std::vector<collision::CornerPair>> by_bodies;
   for (const collision::CornerPair& pair : pairs)
     by_bodies[{bodies.body_of(pair.a[0]), bodies.body_of(pair.b[0])}].push_back(pair);
-  std::vector<MeetingPlace> places;
+  std::vector<IntersectionPlace> places;
   for (const auto& [objects, of_objects] : by_bodies) {
     DisjointSets joined(static_cast<std::size_t>(bodies.vertex_count()));
     for (const auto& [a, b] : of_objects)
@@ -32,7 +33,7 @@ std::vector<MeetingPlace> meeting_places(std::span<const collision::CornerPair> 
     std::map<Index, std::set<collision::CornerPair>> groups;
     for (const collision::CornerPair& pair : of_objects) groups[joined.root(pair.a[0])].insert(pair);
     for (const auto& [root, group] : groups) {
-      MeetingPlace place;
+      IntersectionPlace place;
       place.a = names[objects.first];
       place.b = names[objects.second];
       place.pairs = group.size();
@@ -51,20 +52,20 @@ std::vector<MeetingPlace> meeting_places(std::span<const collision::CornerPair> 
       places.push_back(std::move(place));
     }
   }
-  std::ranges::stable_sort(places, std::ranges::greater{}, &MeetingPlace::pairs);
+  std::ranges::stable_sort(places, std::ranges::greater{}, &IntersectionPlace::pairs);
   return places;
 }
 
-std::string describe(std::span<const MeetingPlace> places) {
+std::string describe(std::span<const IntersectionPlace> places) {
   const auto counted = [](std::size_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
   std::size_t pairs = 0;
-  for (const MeetingPlace& place : places) pairs += place.pairs;
+  for (const IntersectionPlace& place : places) pairs += place.pairs;
   std::string text = fmt::format("{} of triangles that touch or cross in {}: ", counted(pairs, "pair"),
                                  counted(places.size(), "place"));
   for (std::size_t p = 0; p < std::min(places.size(), kMaxNamedPlaces); ++p) {
-    const MeetingPlace& place = places[p];
+    const IntersectionPlace& place = places[p];
     const std::string objects =
         place.a == place.b ? fmt::format("'{}' itself", place.a) : fmt::format("'{}' and '{}'", place.a, place.b);
     text += fmt::format("{}{} ({}) around ({:.3g}, {:.3g}, {:.3g}) m, {:.3g} m across", p > 0 ? "; " : "", objects,

@@ -1,4 +1,4 @@
-#include "collision/response/fans.hpp"
+#include "collision/response/vertex_stars.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ double allowed_motion(double area, double lengths) {
 
 }  // namespace
 
-Fans::Fans(std::span<const Surface> surfaces) {
+VertexStars::VertexStars(std::span<const Surface> surfaces) {
   for (const Surface& surface : surfaces) {
     // Sort triangles by vertex, keeping their order.
     std::vector<std::uint32_t> begin(static_cast<std::size_t>(surface.vertex_count) + 1, 0);
@@ -55,7 +55,7 @@ Fans::Fans(std::span<const Surface> surfaces) {
   is_separated_.assign(centres_.size(), 0);
 }
 
-void Fans::add_star(Index vertex, std::span<const Triangle> triangles) {
+void VertexStars::add_star(Index vertex, std::span<const Triangle> triangles) {
   // Go from triangle to triangle over shared edges: a closed star returns to its start after all of them. Any other set
   // is stored without a ring and always tested pair by pair.
   std::vector<Index> ring{triangles.empty() ? vertex : triangles.front()[1]};
@@ -82,7 +82,7 @@ void Fans::add_star(Index vertex, std::span<const Triangle> triangles) {
 
 // Calls body(pair) for each pair of an opposite edge and another triangle of the star.
 template <class Body>
-void Fans::for_each_pair(std::size_t star, const Body& body) const {
+void VertexStars::for_each_pair(std::size_t star, const Body& body) const {
   for (std::size_t k = 0; k < edge_count(star); ++k)
     for (std::size_t l = 0; l < edge_count(star); ++l)
       if (const Edge s = edge(star, k), t = edge(star, l); !share_end(s, t))
@@ -91,7 +91,7 @@ void Fans::for_each_pair(std::size_t star, const Body& body) const {
 
 // Whether the star, all of whose triangles are positively oriented along the axis, goes around once. Compares the
 // directions to the ring with the first one: the cross product changes from negative to positive once per turn.
-bool Fans::turns_once(std::size_t star, const Vec3& axis, std::span<const Vec3> x) const {
+bool VertexStars::turns_once(std::size_t star, const Vec3& axis, std::span<const Vec3> x) const {
   const auto vertices = ring(star);
   const Vec3& centre = x[centres_[star]];
   const Vec3 across = axis.cross(x[vertices.front()] - centre);
@@ -105,14 +105,14 @@ bool Fans::turns_once(std::size_t star, const Vec3& axis, std::span<const Vec3> 
   return turns + (before < 0 ? 1 : 0) == 1;
 }
 
-void Fans::set_reference(std::span<const Vec3> x) {
+void VertexStars::set_reference(std::span<const Vec3> x) {
   is_separated_.assign(centres_.size(), 0);
   parallel_for(centres_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t star = begin; star < end; ++star) measures_[star] = measure_star(star, x);
   });
 }
 
-Fans::StarMeasures Fans::measure_star(std::size_t star, std::span<const Vec3> x) const {
+VertexStars::StarMeasures VertexStars::measure_star(std::size_t star, std::span<const Vec3> x) const {
   constexpr StarMeasures kNone{-1, -1};
   const auto vertices = ring(star);
   if (vertices.empty()) return kNone;
@@ -138,14 +138,14 @@ Fans::StarMeasures Fans::measure_star(std::size_t star, std::span<const Vec3> x)
   return {static_cast<float>(0.999 * slack), static_cast<float>(0.999 * clearance)};
 }
 
-void Fans::mark_clear(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const {
+void VertexStars::mark_clear(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const {
   parallel_for(centres_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t star = begin; star < end; ++star)
       if (static_cast<double>(measure_star(star, x).clearance) > distance) vertices[centres_[star]] = 1;
   });
 }
 
-bool Fans::keeps_orientation(std::size_t star, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const {
+bool VertexStars::keeps_orientation(std::size_t star, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const {
   const auto vertices = ring(star);
   if (vertices.empty()) return false;
   const auto arm = [&](std::size_t k, std::span<const Vec3> x) -> Vec3 { return x[vertices[k]] - x[centres_[star]]; };
@@ -169,8 +169,9 @@ bool Fans::keeps_orientation(std::size_t star, std::span<const Vec3> x_t0, std::
   return turns_once(star, axis, x_t0);
 }
 
-void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
-                        std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing, Certificates which) {
+void VertexStars::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
+                               std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing,
+                               PlaneKinds which) {
   const auto any_changed = [&](std::size_t star) {
     return changed[centres_[star]] ||
            std::ranges::any_of(other_vertices(star), [&](Index v) { return changed[v] != 0; });
@@ -188,7 +189,7 @@ void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
       is_separated_[star] = 1;
       if (stays(star) || keeps_orientation(star, x_t0, x_t1)) continue;
       for_each_pair(star, [&](const CornerPair& pair) {
-        if (find_certificate(pair, x_t0, x_t1, which)) return;
+        if (find_separating_plane(pair, x_t0, x_t1, which)) return;
         is_separated_[star] = 0;
         list.push_back(pair);
       });

@@ -24,11 +24,11 @@ namespace weft::collision {
 /// Shape Regularity", 1994, over a time interval as in Tang et al., "ICCD: Interactive Continuous Collision Detection
 /// between Deformable Models using Connectivity-Based Culling", 2009). A star that goes around once at the start does
 /// so throughout, because the angle cannot jump. Open stars at borders have few pairs and are tested pair by pair.
-class Fans {
+class VertexStars {
  public:
-  Fans() = default;
+  VertexStars() = default;
   /// `surfaces`: the deformable ones, with triangles counter-clockwise seen from the front.
-  explicit Fans(std::span<const Surface> surfaces);
+  explicit VertexStars(std::span<const Surface> surfaces);
 
   /// Measures every star at x [m]: how far its vertices may move in any direction before it must be tested again.
   void set_reference(std::span<const Vec3> x);
@@ -45,7 +45,7 @@ class Fans {
   /// changed.
   void find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
                     std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing,
-                    Certificates which = Certificates::all);
+                    PlaneKinds which = PlaneKinds::all);
 
  private:
   using Edge = std::array<Index, 2>;
