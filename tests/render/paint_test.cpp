@@ -136,7 +136,7 @@ TEST(Paint, HalfTransparentClothIsHalfSeenFromAfar) {
     }
   }
   // Half of the samples show the wall, of which the veil lets half of the light through: its level is somewhere below
-  // 180; red is more than green by half of 160, as eight samples and sixteen thresholds have it.
+  // 180; red is more than green by half of 160, as sixteen samples and thresholds have it.
   EXPECT_NEAR((red - green) / count, 80, 12);
 }
 
