@@ -24,7 +24,7 @@ float tiles(vec2 at) {
 
 vec3 shaded_light(int i, Softness soft, FloorPoint at) {
   vec3 light = light_on_floor(i, at);
-  return light * share_of_light(i, soft, at.position_world, at.n, 0.0, light.g > 0.0);
+  return light * share_of_light(i, soft, ShadowPoint(at.position_world, at.n), light.g > 0.0);
 }
 
 void main() {

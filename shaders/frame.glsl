@@ -24,6 +24,7 @@ layout(std140, binding = 0) uniform Frame {
 // What the geometry buffer says of a pixel: distance along the view axis [m] and number of the surface, half more where
 // its back is seen. Nothing and the floor come first.
 const float kNothing = 0.0, kFloor = 1.0, kFirstSurface = 2.0;
+const float kSolid = -1e6;  // in place of the heat of what is no cloth
 
 // Position of what is seen at `uv` (0 to 1 across the picture), `distance` metres away along the view axis.
 vec3 position_view(vec2 uv, float distance) {

@@ -54,8 +54,19 @@ float visibility(int i, vec3 position_world, vec3 normal_world, bool wanted) {
   return taps == 0 ? 1.0 : lit / float(FILTER_TAPS);
 }
 
-// The same of a place of a triangle that stands for a smooth surface, which lies `rise` metres outside, toward the light:
-// triangles shade each other, as a sawtooth, where light grazes them.
-float visibility_of_curved(int i, vec3 position_world, vec3 normal_world, float rise, bool wanted) {
-  return visibility(i, position_world + max(rise, 0.0) * normal_world, normal_world, wanted);
+// A place that asks whether light reaches it, and the normal there that faces the light.
+struct ShadowPoint {
+  vec3 position_world, normal_world;
+};
+
+// Of a surface with light from `l`. The smooth surface that a triangle stands for lies `rise` metres outside: triangles
+// shade each other, as a sawtooth, where light grazes them. For the same reason a solid body does not shade itself there
+// along `kThrough` metres: the map would show its own texels along the terminator.
+ShadowPoint shadow_point(vec3 position_world, vec3 n_world, vec3 l, float rise, bool solid) {
+  const float kThrough = 0.025, kGrazing = 0.1;
+  float side = dot(n_world, l);
+  vec3 n_toward = side < 0.0 ? -n_world : n_world;
+  vec3 offset = max(side < 0.0 ? -rise : rise, 0.0) * n_toward;
+  if (solid) offset += kThrough * clamp(1.0 - side / kGrazing, 0.0, 1.0) * l;
+  return ShadowPoint(position_world + offset, n_toward);
 }

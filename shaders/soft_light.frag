@@ -74,12 +74,12 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
   return clamp(1.0 - covered / float(SKY_TAPS), 0.0, 1.0);
 }
 
-float share(int i, vec3 p_world, vec3 n_world, float rise, float surface) {
+float share(int i, vec3 p_world, vec3 n_world, float rise, bool solid, float surface) {
   float cone;
   vec3 l = toward_light(i, p_world, cone);
   bool wanted = surface != kNothing && cone > 0.0;
-  float side = dot(n_world, l) < 0.0 ? -1.0 : 1.0;
-  return visibility_of_curved(i, p_world, side * n_world, side * rise, wanted);
+  ShadowPoint at = shadow_point(p_world, n_world, l, rise, solid);
+  return visibility(i, at.position_world, at.normal_world, wanted);
 }
 
 void main() {
@@ -90,10 +90,12 @@ void main() {
   float distance_view = seen.x, surface = floor(seen.y);
   vec3 n_world = frame.floor_plane_world.xyz;
   float rise = 0.0;
+  bool solid = false;
   if (surface >= kFirstSurface) {
-    vec3 normal = texelFetch(normals_heat, pixel, 0).xyz;
-    n_world = normalize(normal);
-    rise = length(normal) - 1.0;
+    vec4 normal_heat = texelFetch(normals_heat, pixel, 0);
+    n_world = normalize(normal_heat.xyz);
+    rise = length(normal_heat.xyz) - 1.0;
+    solid = normal_heat.w < 0.5 * kSolid;
   }
   vec3 p_view = position_view(uv, distance_view), p_world = world_from_view(p_view) + frame.eye_world.xyz;
   vec2 jitter = blur_jitter(gl_FragCoord.xy);
@@ -108,9 +110,9 @@ void main() {
   open = mix(1.0, open, hidden);
   // Floor that other things may light counts as shaded.
   if (in_bounced_light(p_world)) open = min(open, 0.9975);
-  vec2 lit = vec2(share(0, p_world, n_world, rise, surface), 1.0);
+  vec2 lit = vec2(share(0, p_world, n_world, rise, solid, surface), 1.0);
 #if LIGHTS > 1
-  lit.y = share(1, p_world, n_world, rise, surface);
+  lit.y = share(1, p_world, n_world, rise, solid, surface);
 #endif
   soft_light = vec4(pack_soft(surface, surface == kNothing ? 1.0 : open), lit, distance_view);
 }

@@ -51,10 +51,10 @@ Softness look_up_softness(float distance_view, float surface) {
 
 // Share of light i at a point, from the small picture where that knows it. The search at full size is left out of
 // programs without FULL_SHADOWS, as llvmpipe would run a round of it for every pixel: 40 ns.
-float share_of_light(int i, Softness soft, vec3 position_world, vec3 n_toward_light, float rise, bool wanted) {
+float share_of_light(int i, Softness soft, ShadowPoint at, bool wanted) {
 #ifdef FULL_SHADOWS
   bool known = i < 2 && soft.known[min(i, 1)];
-  float searched = visibility_of_curved(i, position_world, n_toward_light, rise, wanted && !known);
+  float searched = visibility(i, at.position_world, at.normal_world, wanted && !known);
   return known ? soft.lit[min(i, 1)] : searched;
 #else
   return soft.lit[min(i, 1)];

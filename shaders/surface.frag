@@ -56,7 +56,13 @@ const float kThreadShine = 0.14;  // of the light that meets threads of full glo
 // Red light goes farthest below skin, so that it comes out where less of the others does: beside the terminator and in
 // penumbras. By eye, from profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
 const vec3 kScattered = vec3(0.50, 0.17, 0.06);
-vec3 scattered(float share, float skin) { return mix(vec3(share), vec3(sqrt(share)), skin * kScattered); }
+const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // cosines up to which light comes out behind the terminator
+vec3 scattered(float share, float skin) { return mix(vec3(share), vec3(share * (2.0 - share)), skin * kScattered); }
+// The cosine, 0 where it is negative, with its kink at the terminator rounded off.
+vec3 scattered_cosine(float cosine, float skin) {
+  vec3 width = skin * kPastTerminator, rounded = clamp(cosine + width, vec3(0.0), 2.0 * width);
+  return rounded * rounded / max(4.0 * width, 1e-4) + max(cosine - width, 0.0);
+}
 #endif
 const float kCoat = 0.04, kCoatAlpha = 0.02;  // of a clear coat: reflectance head-on, as of glass, and roughness squared
 
@@ -66,16 +72,20 @@ void add_light(inout LightSums sums, int i, Point at, Softness soft) {
   float side = dot(at.n_smooth, l);
   // Solid surfaces take nothing from behind; cloth lets some through.
 #ifdef CLOTH
+  const bool kIsSolid = false;
   bool wanted = cone > 0.0;
 #else
-  bool wanted = cone > 0.0 && side > 0.0;
+  const bool kIsSolid = true;
+  float least_side = 0.0;
+#ifdef SKIN
+  least_side = -kPastTerminator.r * at.skin;
 #endif
-  float lit = share_of_light(i, soft, at.position_world, side < 0.0 ? -at.n_smooth : at.n_smooth,
-                             side < 0.0 ? -at.rise : at.rise, wanted);
+  bool wanted = cone > 0.0 && side > least_side;
+#endif
+  float lit = share_of_light(i, soft, shadow_point(at.position_world, at.n_smooth, l, at.rise, kIsSolid), wanted);
   vec3 strength = lights[i].color.rgb * (cone * lit);
 #ifdef SKIN
-  sums.diffuse += lights[i].color.rgb * cone * scattered(lit, at.skin) * scattered(max(dot(at.n, l), 0.0), at.skin) *
-                  smoothstep(0.0, 0.06, side);
+  sums.diffuse += lights[i].color.rgb * cone * scattered(lit, at.skin) * scattered_cosine(side, at.skin);
 #else
   sums.diffuse += strength * (max(dot(at.n, l), 0.0) * smoothstep(0.0, 0.06, side));
 #endif

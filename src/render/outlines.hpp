@@ -1,4 +1,4 @@
-// Antialiasing: where surfaces end or fold, pixels are sampled eight times, and each sample takes the colour of its own
+// Antialiasing: where surfaces end or fold, pixels are sampled 16 times, and each sample takes the colour of its own
 // surface from the pixels around.
 #pragma once
 
@@ -33,7 +33,7 @@ class Outlines {
   std::size_t count() const { return pixels_.size(); }
 
  private:
-  static constexpr int kSamples = 8;
+  static constexpr int kSamples = 16;
   /// What the samples of one pixel show: 1 / distance [1/m], 0 for nothing, how that changes over the plane of their
   /// triangle [1/m for each pixel], and the surface.
   struct Samples {

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/error.hpp"
+#include "render/seen.hpp"
 
 namespace weft::render {
 namespace {
@@ -93,12 +94,13 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
   std::vector<Vertex> vertices(mesh_.source.size());
   positions_.resize(vertices.size());
   const bool has_uv = surface_->uv.size() == vertex_count_, has_heat = state.heat.size() == vertex_count_;
+  const float no_heat = surface_->kind == frame::ObjectKind::cloth ? 0.0f : kSolid;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Index v = mesh_.source[i];
     positions_[i] = state.positions[v];
     vertices[i] = {state.positions[v].cast<float>(), mesh_.normals[i].cast<float>(),
                    has_uv ? surface_->uv[v].cast<float>().eval() : Eigen::Vector2f::Zero(),
-                   has_heat ? state.heat[v] : 0.0f};
+                   has_heat ? state.heat[v] : no_heat};
   }
   if (refinement_) add_middles(vertices);
   with_rims_.clear();

@@ -138,7 +138,7 @@ TEST(Paint, HalfTransparentClothIsHalfSeenFromAfar) {
     }
   }
   // Half of the samples show the wall, in half of the light that the veil transmits: its level is below 180. Red
-  // exceeds green by half of 160, to the accuracy of eight samples and sixteen thresholds.
+  // exceeds green by half of 160, to the accuracy of sixteen samples and thresholds.
   EXPECT_NEAR((red - green) / count, 80, 12);
 }
 
