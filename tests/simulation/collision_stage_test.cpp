@@ -89,9 +89,9 @@ TEST_F(CollisionStages, GiveParticlesTheVelocityOfTheirPush) {
     next_.v[i] = Vec3(0, 0, -100.1);
   }
   const SystemState solved = next_;
-  ASSERT_FALSE(stage_->apart(now_, next_));
+  ASSERT_FALSE(stage_->is_separated(now_, next_));
   ASSERT_EQ(stage_->push_apart(0.01, false, true, now_, next_), std::nullopt);
-  EXPECT_TRUE(stage_->apart(now_, next_));
+  EXPECT_TRUE(stage_->is_separated(now_, next_));
   double largest = 0;
   for (std::size_t i = 0; i < 25; ++i) {
     EXPECT_LT((next_.v[i] - solved.v[i] - (next_.x[i] - solved.x[i]) / 0.01).norm(), 1e-12);

@@ -142,8 +142,8 @@ inline void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {
 
 /// Padded vectors, as the inner loops use them.
 template <class Real = double>
-std::vector<Quad<Real>> quads(std::span<const Vec3> x) {
-  std::vector<Quad<Real>> result;
+std::vector<PaddedVec3<Real>> quads(std::span<const Vec3> x) {
+  std::vector<PaddedVec3<Real>> result;
   for (const Vec3& v : x) result.push_back(padded<Real>(v));
   return result;
 }

@@ -119,7 +119,7 @@ template <class Real>
 Eigen::VectorXd apply(Preconditioner<Real>& preconditioner, const std::vector<Vec3>& r, std::size_t parts) {
   std::vector<std::size_t> all(parts);
   std::iota(all.begin(), all.end(), std::size_t{0});
-  std::vector<Quad<Real>> z(r.size());
+  std::vector<PaddedVec3<Real>> z(r.size());
   preconditioner.apply(testing::quads<Real>(r), z, all);
   return testing::flat(testing::vectors(z));
 }

@@ -65,7 +65,8 @@ TEST(RankOneTerms, OfOtherPartsDoNotCountAndThoseOfOwnPartsDo) {
   Random random(31);
   LinearSystem system = testing::system_of_parts(random);
   cut_groups(system, {30, 6});
-  for (const Part& part : std::vector<Part>(system.parts)) add_term(system, part.begin, part.end, 1e3, random);
+  for (const DiagonalBlock& part : std::vector<DiagonalBlock>(system.parts))
+    add_term(system, part.begin, part.end, 1e3, random);
   const auto b = random.vectors(system.matrix.rows());
   std::vector<Vec3> x(b.size());
   ConjugateGradient cg;
