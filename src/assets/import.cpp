@@ -81,7 +81,7 @@ std::string_view compression_of(std::string_view gltf) {
   return {};
 }
 
-/// Throws std::runtime_error for files that assimp cannot read.
+/// Throws std::runtime_error for glTF with compressed meshes or JSON that is nested too deeply.
 void check_gltf(const std::filesystem::path& file) {
   const std::string text = gltf_text(file);
   if (const std::string_view compression = compression_of(text); !compression.empty())
@@ -106,7 +106,7 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
     scene = importer.ReadFile(file.string(), steps);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string_view error = importer.GetErrorString();
-    if (error.find("bad_alloc") != std::string_view::npos) throw std::bad_alloc();  // caught inside assimp
+    if (error.find("bad_alloc") != std::string_view::npos) throw std::bad_alloc();  // assimp reports it as text only
     throw std::runtime_error(std::string(error));
   }
   return *scene;

@@ -46,7 +46,8 @@ bool is_picture(std::string_view bytes) {
   return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff") || image::is_targa(bytes);
 }
 
-/// Folders near a file in which programs store its pictures, in the order of their names.
+/// Folders near a file in which programs store its pictures: those beside it first, each group in
+/// the order of names.
 std::vector<fs::path> picture_folders(const fs::path& file) {
   const std::string stem = file.stem().string();
   std::vector<fs::path> folders;

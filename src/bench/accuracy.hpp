@@ -38,7 +38,7 @@ struct Run {
   Axis axis = Axis::grid;
   Setting setting;
   std::string failure = {};  ///< why the run did not reach the end; empty if it did
-  Errors errors{};           ///< with contact: of the median over the starts
+  Errors errors{};           ///< with contact: of the median over the starts, see measure_accuracy()
   Errors spread{};           ///< largest difference between one start and the median; 0 if there is only one start
   /// Only for Axis::grid, in the deciding quantity; otherwise NaN. `change`: difference to the run with a tenth of this
   /// newton_tolerance. `left`: difference to the most exactly solved run with the same step.
@@ -46,7 +46,7 @@ struct Run {
   /// Only for Axis::grid: `change` is below a tenth of the error, or below the error's uncertainty, so that the step
   /// and not the solver determines the error.
   bool step_decides = false;
-  Work work = {};  ///< CPU time is the smallest of two timings or of all starts
+  Work work = {};  ///< CPU time is the minimum over all starts; a short single run is timed twice
   int particles = 0;
   std::vector<double> start_errors = {};  ///< error of each start alone, in the deciding quantity
 
@@ -66,8 +66,8 @@ double expected_order(const Run& run);
 struct Candidate {
   Setting setting;
   std::string failure = {};
-  Errors step{};    ///< error of its step, from the difference to twice the step and half of the order
-  Errors solver{};  ///< change by a tenth of its newton_tolerance, at twice its step
+  Errors step{};    ///< error of its step: extrapolated from twice the step, with half of the expected order
+  Errors solver{};  ///< change by a tenfold newton_tolerance, at twice its step
   Errors spread{};  ///< largest difference between one start and the median
   double energies_in_play = 0;
 
@@ -89,7 +89,7 @@ struct Accuracy {
   double cloth_size = 0;        ///< longest side of the box around the largest cloth at the start [m]
   int frames = 0;               ///< number of frames after the start
   double duration = 0;          ///< [s]
-  double largest_energy = 0;    ///< of the reference's energies [J]; see Functionals::energies_in_play
+  double largest_energy = 0;    ///< energies in play of the reference [J]; see Functionals::energies_in_play
   Candidate reference, second;  ///< `reference` is the more certain one, `second` checks it
   Errors apart{};               ///< difference between these two; 0 if the second failed
   Errors uncertainty{};         ///< of the reference: its own, raised by what the second and the cross checks show
@@ -111,7 +111,7 @@ struct Accuracy {
   std::vector<const Run*> decided(scene::Integrator integrator) const;
 };
 
-/// The quantities that are reported: trajectories without contact, functionals with contact.
+/// The quantities that are reported. Without contact: errors of the trajectory; with contact: of functionals.
 std::vector<Quantity> quantities_of(const Accuracy& accuracy);
 /// The quantity that settings are judged by: position, or with contact the centre of mass.
 Quantity deciding_quantity(const Accuracy& accuracy);
@@ -128,9 +128,9 @@ void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross
 /// Runs the scene some hundred times. With contact, each setting runs from several starts that differ by micrometres,
 /// and their median counts. Two references are computed independently: midpoint and BDF2; with contact BDF2 and Euler,
 /// as midpoint does not damp contact. Their steps are an eighth (with contact half) of the shortest measured step, and
-/// a tenfold smaller newton_tolerance changes less than a tenth of what the step does. The more certain reference is
-/// used, and checked against the finest run of each integrator. Throws Error(simulation_failed) if both references
-/// fail, and Error(usage) if the plan does not suit the scene.
+/// newton_tolerance is lowered until the last tenfold decrease changed less than a tenth of what the step does. The
+/// more certain reference is used, and checked against the finest run of each integrator. Throws
+/// Error(simulation_failed) if both references fail, and Error(usage) if the plan does not suit the scene.
 Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each = {}, const AccuracyPlan& plan = {});
 
 }  // namespace weft::bench

@@ -94,7 +94,7 @@ std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
                                                                            : cheapest_text(accuracy, quantity, target);
     text += fmt::format("{}{} m: {}", text.empty() ? "" : "; ", target, choice);
   }
-  // The smallest error that can be verified; with contact it is limited by the effect of micrometres at the start.
+  // The smallest error that can be verified; with contact it is limited by the spread over starts.
   if (uncertainty > kMaxUncertaintyRatio * kTargets[2]) {
     const double known = uncertainty / kMaxUncertaintyRatio;
     text += fmt::format("; {:.1e} m, as exact as this report can show: {}", known,
@@ -122,7 +122,7 @@ class Line {
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
 };
 
-// Fitted to the finest resolved runs of a series.
+// What a decimal digit of accuracy costs, fitted to the finest resolved runs of a series.
 std::string digit_of_series(const Accuracy& accuracy, const std::vector<const Run*>& series, Quantity quantity) {
   Line line;
   std::size_t used = 0;

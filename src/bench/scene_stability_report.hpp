@@ -8,9 +8,9 @@
 
 namespace weft::bench {
 
-/// One sentence on the margin of the unchanged scene.
+/// The smallest margins of the scene in one sentence.
 std::string margin_sentence(const SceneStability& stability);
-/// For each parameter, the factors below and above 1 at which it breaks, and what breaks.
+/// For each parameter, the first factors below and above 1 at which the scene breaks, and what breaks.
 Table margin_table(const SceneStability& stability);
 Table trial_table(const SceneStability& stability);
 /// One row per parameter, and the map of stiffness and step, coloured by verdict.

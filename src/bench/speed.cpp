@@ -132,7 +132,7 @@ double memory_bound_s(const SpeedRun& run) {
 }
 
 double read_bandwidth(double bytes) {
-  constexpr double kMinTimedSeconds = 0.05;  // [s]
+  constexpr double kMinTimedSeconds = 0.05;  // shorter timings are too noisy
   const std::vector<std::uint64_t> numbers(static_cast<std::size_t>(bytes / sizeof(std::uint64_t)) + 1, 1);
   // Each thread reads its own range repeatedly without waiting for the others, so that synchronisation is not measured.
   const auto threads = static_cast<std::size_t>(thread_count());

@@ -72,7 +72,7 @@ std::string grouped(std::int64_t number) {
   return text;
 }
 
-// With at least three significant digits.
+// Three significant digits below 1 s, whole milliseconds above.
 std::string milliseconds(double ms) {
   return ms < 1000 ? fmt::format("{:.3g}", ms) : grouped(std::lround(ms));
 }

@@ -30,8 +30,8 @@ struct Outcome {
   double cpu_s = 0;
 };
 
-/// Largest energy that a scene may gain [J], from driven pins and bodies. 0: nothing is driven, so that only the
-/// fraction due to solver tolerances is allowed.
+/// Largest energy that a scene may gain [J], from driven pins and bodies. 0: nothing is driven, so that only a fixed
+/// fraction of the energies in play is allowed, for solver tolerances.
 struct EnergyLimit {
   double driven = 0;
 };

@@ -20,9 +20,9 @@ namespace weft::exporter {
 /// them (assimp, Blender, three.js). Objects that never move have no targets.
 ///
 /// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender reverses. Normals have targets
-/// as well, since those of the first frame would be wrong in all others. Texture coordinates are weft and warp [m];
-/// vertices on a seam occur once for each panel. A second pair of coordinates places pictures, which are embedded.
-/// Parts with their own materials are separate primitives over the same vertices.
+/// as well, since those of the first frame would be wrong in all others. Texture coordinates are (weft, 1 − warp) [m],
+/// as v points down in glTF; vertices on a seam occur once for each panel. A second pair of coordinates places
+/// pictures, which are embedded. Parts with their own materials are separate primitives over the same vertices.
 class GltfFile {
  public:
   /// Adds the visible objects of the first frame.
@@ -35,8 +35,8 @@ class GltfFile {
   /// of the first frame is used.
   void see(const std::vector<View>& views);
 
-  /// `aspect`: width over height of the pictures. Throws Error(output_failed), also if the file would exceed the limit
-  /// of the format.
+  /// `aspect`: width over height of rendered pictures. Throws Error(output_failed), also if the file would exceed the
+  /// limit of the format.
   void write(const std::filesystem::path& file, const std::string& animation_name, double aspect);
 
  private:
@@ -46,7 +46,7 @@ class GltfFile {
   struct Object {
     std::size_t surface = 0;
     NormalGroups groups = {};
-    std::vector<float> start = {};  // as written
+    std::vector<float> start = {};  // positions of the first frame, y up
     std::vector<float> start_normals = {};
     std::vector<Index> vertex_of = {};  // index in the surface, per written vertex
     std::vector<Index> group_of = {};   // index of the normal group, per written vertex; −1: none

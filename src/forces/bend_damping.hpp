@@ -13,29 +13,30 @@ struct BendParameters {
   double friction = 0;   ///< moment per width that a change of curvature must overcome [N]; half of 2HB of KES
 };
 
-/// Viscosity and friction act on the rate of ‖s_uu‖, ‖s_uv‖ and ‖s_vv‖, along the unit vector of the curvature itself,
-/// so that a curved piece turns rigidly without loss. Friction models Kawabata's bending hysteresis ("The
-/// Standardization and Analysis of Hand Evaluation", 1980): a moment of constant magnitude against the change, smoothed
-/// below a rate of kStickRate. It brings cloth to rest: without it the hem of a draped sheet keeps tipping at
-/// centimetres per second.
+/// Viscosity and friction act on the curvature κ, each of the second derivatives s_uu, s_uv and s_vv of the surface
+/// s(u, v). Only the part of the rate κ̇ along the curvature counts, so that a curved piece turns rigidly without loss.
+/// Friction models Kawabata's bending hysteresis ("The Standardization and Analysis of Hand Evaluation", 1980): a
+/// moment of constant magnitude against the change, smoothed below a rate of kStickRate. It brings cloth to rest:
+/// without it the hem of a draped sheet keeps tipping at centimetres per second.
 ///
-/// Moment per area [N/m] at the rate of curvature κ̇ along c:
+/// Moment per width [N]:
 ///
-///     η (c·κ̇) c / (‖c‖² + flat²)  +  τ (c·κ̇) c / (D √((c·κ̇)² + ε² D²)),  D² = ‖c‖² + kept².
+///     η (c·κ̇) c / (‖c‖² + κ_f²)  +  τ (c·κ̇) c / (D √((c·κ̇)² + ε² D²)),  D² = ‖c‖² + κ_r².
 ///
-/// c is the curvature at x̂, the start of the step (x − v / rate; for BDF2 a third of a step later). It is constant
-/// during a step, so that the moment is the gradient of a convex function of κ̇. The direction at the iterate would
-/// turn with every ripple of nearly flat cloth, and Newton's method would oscillate (measured: a strip pulled over a
-/// rod, at a hundredth of its error, took 6,650 iterations and 68 rejected steps instead of 631 and none). With the
-/// curvature at unchanged velocity, a draped sheet with steps of 40 ms trembles at 1 to 10 mm/s.
+/// c is κ at x̂ = x − v β, the start of the step (for BDF2 a third of a step later), κ_f is kFlatCurvature, κ_r is
+/// residual_curvature_, ε is kStickRate. c is constant during a step, so that the moment is the gradient of a convex
+/// function of κ̇. The direction at the iterate would turn with every ripple of nearly flat cloth, and Newton's method
+/// would oscillate (measured: a strip pulled over a rod, at a tolerance of 0.01, took 6,650 iterations and 68 rejected
+/// steps instead of 631 and none). With the curvature where unchanged velocity leads, a draped sheet with steps of 40
+/// ms trembles at 1 to 10 mm/s.
 ///
-/// The direction fades out if the sheet is flat: for viscosity below kFlatCurvature, for friction below the curvature
-/// that friction can keep. A full moment about an axis that turns with every ripple would be stiffer than the bending
-/// itself.
+/// The direction fades out if the sheet is flat: for viscosity below kFlatCurvature, for friction below the larger
+/// of kFlatCurvature and the curvature τ / B that friction can hold against bending. A full moment about an axis that
+/// turns with every ripple would be stiffer than the bending itself.
 class BendDamping {
   // Curvature below which its direction is too uncertain for damping [1/m]: a radius of 10 m looks flat.
   static constexpr double kFlatCurvature = 0.1;
-  // Rate of curvature at which friction has most of its magnitude [1/(m·s)]: a fold of 10 cm then moves at 5 mm/s.
+  // Rate of curvature at which friction has most of its magnitude [1/(m·s)]: a flap 10 cm long then moves at 5 mm/s.
   // Smaller values hold better and make the system stiffer: friction / kStickRate acts like a viscosity.
   static constexpr double kStickRate = 0.5;
 

@@ -32,7 +32,7 @@ class StepLoop {
   /// Before the first advance(): continues with the cloths of a loop that ends here. `cloths`: their numbers in this
   /// loop, in the order of `before`.
   void copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths);
-  /// Before the first advance(): may_be_untangled cloths that touch or intersect at the start, if the scene allows it.
+  /// Before the first advance(): untangles cloths that touch or intersect at the start, if the scene allows it.
   /// Cloths that were taken over stay as they are.
   void untangle();
   /// Before the first advance(): lifts dynamic bodies off what they touch. Returns the largest lift [m].

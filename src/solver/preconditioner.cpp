@@ -231,7 +231,7 @@ void Preconditioner<Real>::invert_particles() {
     });
 }
 
-// AggregateSums the blocks of one diagonal block of the matrix, without its mass-weighted norm: each 3×3 block into the
+// Sums the stiffness of one diagonal block of the matrix (the matrix without its mass part): each 3×3 block into the
 // finest aggregate that contains both its row and its column, from there into coarser ones.
 template <class Real>
 void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {

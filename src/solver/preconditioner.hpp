@@ -13,25 +13,28 @@
 namespace weft::solver {
 
 /// Whether sums over aggregates are made from the current matrix, or kept from an earlier matrix with the same
-/// constraints. Particle blocks and terms are always current.
+/// constraints. Particle blocks and contact terms (StencilTerm, WideTerm, DiagonalTerm) are always current.
 enum class AggregateSums { recompute, reuse };
 
-/// P⁻¹ = S Σ_l P_l A_l⁻¹ P_lᵀ S, where S is the projection on the free directions. P_0 is the identity, and A_0 the
-/// diagonal of 3×3 blocks of S A S + (I − S) (prefiltered, Tamstorf, Jones & McCormick, "Smoothed Aggregation Multigrid
-/// for Cloth Simulation", 2015). Each further level acts on motion about as long as its aggregates are wide (Bramble,
-/// Pasciak & Xu, "Parallel Multilevel Preconditioners", 1990). P_l = Q_1 Q_2 … Q_l interpolates from aggregates: Q_k
-/// averages, for each member, its own aggregate and those of its neighbours. That is a step of damped Jacobi on the
-/// graph of the matrix, applied to constants (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
+/// M⁻¹ = S Σ_l P_l A_l⁻¹ P_lᵀ S, where P_l interpolates from level l and S is the projection on the free directions.
+/// P_0 is the identity, and A_0 the diagonal of 3×3 blocks of S A S + (I − S) (prefiltered, Tamstorf, Jones &
+/// McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation", 2015). Each further level reduces errors whose
+/// wavelength is about the width of its aggregates (Bramble, Pasciak & Xu, "Parallel Multilevel Preconditioners",
+/// 1990). P_l = Q_1 Q_2 … Q_l interpolates from aggregates: Q_k averages, for each member, its own aggregate and those
+/// of its neighbours. That is a step of damped Jacobi on the graph of the matrix, applied to constants (smoothed
+/// aggregation: Vaněk, Mandel & Brezina, 1996).
 ///
-/// Ideally A_l is the diagonal of P_lᵀ A P_l, and the whole of it on the last level, which is expensive. It is
-/// approximated by sums over aggregates, R_l A R_lᵀ. Aggregates that move as wholes strain only the seams between them;
-/// strain that is spread over the width of an aggregate takes half of that stiffness, for each doubling of the width.
-/// Therefore the matrix without its mass-weighted norm enters with the factor `level_stiffness` per level (1/2^l), the
-/// norm with factor 1. Terms have no neighbours: their stiffness enters aggregates by the interpolation weights, which
-/// bounds the diagonal of P_lᵀ A P_l from above. The last level has P_lᵀ A P_l of the terms exactly.
+/// Ideally A_l is the diagonal of P_lᵀ A P_l, or all of it on the last level. Both are expensive, so A_l is built from
+/// R_l A R_lᵀ, where R_l sums over each aggregate. Aggregates that move as wholes put all strain at their boundaries;
+/// the same motion, spread over the width of an aggregate, meets half the stiffness for each doubling of that width.
+/// Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters with the factor `level_stiffness`
+/// per level, the mass part with factor 1. Contact terms are not part of the matrix: the stiffness that each of their
+/// particles feels enters the aggregates that it interpolates from, times `contact_weight`, which bounds the diagonal
+/// of P_lᵀ A P_l from above. The last level has P_lᵀ A P_l of the contact terms exactly.
 ///
-/// If threads are far stiffer than mass, levels do not interpolate: P_l = R_lᵀ with the full sums. Interpolation would
-/// bend folds, and sums over seams contain nothing of threads that run inside aggregates.
+/// If threads are so stiff that the block of a particle exceeds `stiff_particle` times the mass part, levels do not
+/// interpolate: P_l = R_lᵀ with the full sums. Interpolated motion would stretch threads across folds, and sums over
+/// boundaries of aggregates contain nothing of the threads inside of them.
 ///
 /// Set up in double, applied in `Real`.
 template <class Real>
@@ -40,8 +43,8 @@ class Preconditioner {
   /// Reads `system`, which must outlive the following calls. Keeps what has not changed since the last call.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
-  /// z = P⁻¹ r on the rows of these diagonal blocks, as if r were zero on all others. r must obey the constraints; z
-  /// then does too.
+  /// z = M⁻¹ r on the rows of these diagonal blocks of the system, as if r were zero on all others. r must obey the
+  /// constraints; z then does too.
   void apply(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z, std::span<const std::size_t> parts);
 
  private:
@@ -53,9 +56,9 @@ class Preconditioner {
     Weights<Real> restriction;              // per aggregate
     std::vector<RowRange> of_part;          // aggregates of each diagonal block
     RowChunks chunks;                       // of aggregates, in the selected blocks
-    std::vector<Mat3> of_matrix;            // per aggregate, without terms
+    std::vector<Mat3> of_matrix;            // per aggregate: sum of stiffness, without contact terms
     std::vector<char> touched;              // per aggregate: terms acted on it when `inverse` was made
-    std::vector<PaddedMat3<Real>> inverse;  // per aggregate, with terms
+    std::vector<PaddedMat3<Real>> inverse;  // per aggregate, with contact terms
     std::vector<PaddedVec3<Real>> residual, correction;
   };
   bool has_stiff_threads() const;
@@ -85,8 +88,8 @@ class Preconditioner {
   Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
   const LinearSystem* system_ = nullptr;
-  bool interpolates_ = true;                       // levels interpolate
-  std::vector<DiagonalBlock> parts_;               // when the sums were made
+  bool interpolates_ = true;                       // false if threads are very stiff
+  std::vector<DiagonalBlock> parts_;               // at the last call of prepare()
   std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
   std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: its rows, its sums over aggregates
   std::vector<ParticleConstraint> constraints_;    // when the sums were made
@@ -97,7 +100,7 @@ class Preconditioner {
   };
   std::vector<std::vector<Filter>> filters_;    // per diagonal block
   std::vector<char> touched_, touched_before_;  // per particle: terms act on it
-  std::vector<PaddedMat3<Real>> inverse_;       // per particle, filtered: S P⁻¹ S
+  std::vector<PaddedMat3<Real>> inverse_;       // per particle: S A_0⁻¹ S
   std::vector<Level> levels_;                   // the last one is the coarsest
   Weights<Real> coarse_weights_;                // per particle, from the coarsest aggregates
   // Per block of the matrix: first level that has row and column in one aggregate, or the number of levels.

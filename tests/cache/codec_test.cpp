@@ -237,7 +237,7 @@ TEST(Codec, SurfacesThatMakeNoSenseAreRefused) {
   refuse("is no known value", [](frame::Surface& s, Positions&) { s.kind = static_cast<frame::ObjectKind>(4); });
 }
 
-// Content changed with a valid checksum, as only a has_mistake writer could do: it is refused or read, never a crash
+// Content changed with a valid checksum, as only a faulty writer could do: it is refused or read, never a crash
 // (the sanitizers run on this test).
 TEST(Codec, NoBytesCrashTheDecoder) {
   const Sample sample;

@@ -73,7 +73,7 @@ TEST(RigidBodies, KeepTheirSpinAndShapeForAHundredTurns) {
   Simulation simulation(scene);
   const std::vector<Vec3> start = vertices(simulation, 0);
   const double energy = simulation.initial_report().kinetic_energy;
-  // SystemState of inertia: 1 kg, (0.2² + 0.1²) / 12 m².
+  // Moment of inertia: 1 kg, (0.2² + 0.1²) / 12 m².
   EXPECT_NEAR(energy, 0.5 * (0.05 / 12) * std::pow(20 * std::numbers::pi, 2), 1e-6 * energy);
   FrameReport report;
   for (int frame = 1; frame < scene.frame_count(); ++frame) report = simulation.advance();

@@ -45,7 +45,7 @@ TEST(BlockMatrix, ProductIsThatOfTheDenseMatrix) {
   const auto x = random.vectors(kRows);
   std::vector<Vec3> y(kRows, Vec3::Constant(99));
   matrix.multiply<Vec3>(x, y, 0, kRows);
-  // AggregateSums of up to 40 products of numbers below 1: 40 roundings of 40 · 1.1e-16 at most, 2e-13.
+  // Sums of up to 40 products of numbers below 1: 40 roundings of 40 · 1.1e-16 at most, 2e-13.
   EXPECT_LT((testing::flat(y) - expected * testing::flat(x)).cwiseAbs().maxCoeff(), 2e-13);
 
   // Multiplying in pieces gives the same bits and writes nothing outside the piece.

@@ -367,7 +367,7 @@ TEST(ConjugateGradient, MotionThatAllShareIsExactInSinglePrecisionHoweverStiffTh
   cg.prepare(system);
   const LinearReport report = cg.solve(b, {0.1}, 100, x, {.start = b});
   EXPECT_LE(report.iterations, 1);
-  // AggregateSums of eight blocks in double leave 1e-10 of 1e6; numbers are rounded by 6e-8.
+  // Sums of eight blocks in double leave 1e-10 of 1e6; numbers are rounded by 6e-8.
   for (const Vec3& v : x) EXPECT_LT((v - Vec3(1, 2, 3)).norm(), 1e-6);
 }
 

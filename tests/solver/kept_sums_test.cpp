@@ -1,4 +1,4 @@
-// AggregateSums over aggregates that conjugate gradients reuse in later iterations of Newton's method.
+// Sums over aggregates that conjugate gradients reuse in later iterations of Newton's method.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,7 @@ using testing::norm;
 using testing::Random;
 using testing::system_of_parts;
 
-// AggregateSums of an earlier matrix must not outlive the step: a run that resumes there does not have them.
+// Sums of an earlier matrix must not outlive the step: a run that resumes there does not have them.
 TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
   Random random(37);
   LinearSystem system = system_of_parts(random);

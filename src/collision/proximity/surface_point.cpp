@@ -37,7 +37,8 @@ std::optional<std::array<double, 3>> intersect_segment(const Vec3& p, const Vec3
                                                        std::span<const Vec3> x) {
   const Vec3 &t0 = x[face[0]], &t1 = x[face[1]], &t2 = x[face[2]];
   const Vec3 segment = q - p;
-  // Volumes of the segment with each edge of the face. All have one sign if the line goes through.
+  // Six times the signed volumes of the tetrahedra of the segment and each edge. All have one sign if the line goes
+  // through.
   const double v0 = segment.dot((t1 - p).cross(t2 - p)), v1 = segment.dot((t2 - p).cross(t0 - p)),
                v2 = segment.dot((t0 - p).cross(t1 - p));
   const double sum = v0 + v1 + v2;
@@ -116,7 +117,7 @@ bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase
                std::span<const Vec3> x) {
   Eigen::Index axis = 0;
   towards.cwiseAbs().maxCoeff(&axis);
-  // Start off the round coordinates of edges and corners, where a ray would hit two faces or none.
+  // The ray begins slightly aside: through an edge or a corner it could hit two faces or none.
   const Vec3 from = p + kRayOffset * Vec3(0.918, 0.637, 0.781);
   Vec3 to = from;
   to[axis] += towards[axis] < 0 ? -kRayLength : kRayLength;

@@ -37,7 +37,7 @@ Vec3 between_centres(const Sides& x) {
   return x.a[0] + x.a[1] + x.a[2] - x.b[0] - x.b[1] - x.b[2];
 }
 
-// min over a of height(a, ·) − max over b of height(b, ·), for corners numbered 0 to 2.
+// min over k of height(a, k) − max over k of height(b, k), for corners k = 0 to 2.
 template <class Height>
 double least_gap(const Height& height) {
   return std::min({height(&Sides::a, 0), height(&Sides::a, 1), height(&Sides::a, 2)}) -

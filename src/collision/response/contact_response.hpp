@@ -29,7 +29,7 @@ class ContactResponse {
   void add(const Contact& contact, std::span<const Vec3> x_t0);
   /// Adds a wall for a corner of a cloth triangle that would meet an obstacle. Only with velocity constraints.
   void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
-  /// As VelocityConstraints::lean; false with springs.
+  /// As VelocityConstraints::predict_wall_contacts; false with springs.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
     return walls_ && walls_->predict_wall_contacts(x_t1, by, predicted);
   }
