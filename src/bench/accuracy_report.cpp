@@ -103,9 +103,9 @@ std::string candidate_text(const Candidate& candidate) {
 
 std::string cross_checks_text(const Accuracy& accuracy) {
   if (accuracy.cross_checks.empty())
-    return "\nNo integrator has two steps that decide: nothing else checks the reference.\n";
+    return "\nNo integrator has two runs in which the step decides: no other run checks the reference.\n";
   const Quantity q = deciding_quantity(accuracy);
-  Table table{{"finest run", label(q) + " from the reference", "its own doubt", "not explained"}};
+  Table table{{"finest run", label(q) + " from the reference", "its own uncertainty", "excess"}};
   for (const CrossCheck& check : accuracy.cross_checks) {
     const double apart = at(check.apart, q), doubt = at(check.doubt, q);
     table.push_back({fmt::format("{}, {:.4g} ms", name_of(check.setting.integrator), 1e3 * check.setting.step),
@@ -119,8 +119,8 @@ std::string reference_text(const Accuracy& accuracy) {
   const Candidate &first = accuracy.reference, &second = accuracy.second;
   const bool checked = second.failure.empty();
   const Errors of_second = second.doubt();
-  Table table{{"quantity", "its step", "newton_tolerance × 10", "starts", "the second: all three", "apart",
-               "uncertainty", "marked ~ up to"}};
+  Table table{{"quantity", "its step", "newton_tolerance × 10", "starts", "uncertainty of the second", "difference",
+               "uncertainty", "errors marked ~ below"}};
   for (Quantity q : quantities_of(accuracy)) {
     std::vector<std::string> row{label(q)};
     for (const Errors* errors : {&first.step, &first.solver, &first.spread})
@@ -132,12 +132,12 @@ std::string reference_text(const Accuracy& accuracy) {
     table.push_back(std::move(row));
   }
   return fmt::format(
-      "{}. The second, made independently: {}{}. The better known one is taken. Its uncertainty is what its step "
-      "leaves (from twice its step, by half of its order), what a tenfold larger newton_tolerance changes, and the "
-      "starts, "
-      "together. If the second, or the finest run of an "
-      "integrator, is further off than its own doubt explains, the uncertainty is at least the rest. Errors below "
-      "three times it and the spread of the starts are marked with ~.\n\n{}{}",
+      "{}. The second reference, computed independently: {}{}. The more certain one is used. Its uncertainty combines "
+      "the error of its step (extrapolated from twice the step, with half of the order), the change by a tenfold "
+      "newton_tolerance, and the spread over starts. If the second, or the finest run of an integrator, differs by "
+      "more "
+      "than its own uncertainty, the excess is a lower bound of the uncertainty. Errors below three times the "
+      "uncertainty plus the spread over starts are marked with ~.\n\n{}{}",
       candidate_text(first), candidate_text(second),
       checked ? "" : " (failed: " + second.failure + "; nothing checks the first)", markdown(table),
       cross_checks_text(accuracy));

@@ -227,7 +227,7 @@ const Table& light_rules() {
                   "1 lights a white surface that faces it to white, a spot one at its target")
           .written_if(stands_still<Light>)
           .number("softness", &Light::softness, within(0, 90), "degrees",
-                  "width of the source as seen from the scene; wider gives softer shadows")
+                  "width of the source as seen from the scene; wider gives softer shadows, up to 40")
           .choice("interpolation", &Light::interpolation, kInterpolations, "between its keys")
           .variant("sun",
                    Rows()
