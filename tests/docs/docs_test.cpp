@@ -83,9 +83,9 @@ TEST(GeneratedParts, AreReplacedAndTheRestIsKept) {
   const std::string page = "a\n<!-- generated: exit codes -->\nold\n<!-- end -->\nb\n";
   const std::string text = regenerated(kRoot, "README.md", page);
   EXPECT_TRUE(
-      text.starts_with("a\n<!-- generated: exit codes -->\n\n| exit code | |\n|---|---|\n| 0 | well |\n| 1 | "));
+      text.starts_with("a\n<!-- generated: exit codes -->\n\n| exit code | |\n|---|---|\n| 0 | success |\n| 1 | "));
   EXPECT_TRUE(
-      text.ends_with("| 75 | Ctrl-C or SIGTERM; what is finished is kept, and `--resume` goes on |\n\n"
+      text.ends_with("| 75 | Ctrl-C or SIGTERM; finished frames are kept, and `--resume` continues |\n\n"
                      "<!-- end -->\nb\n"));
   EXPECT_THROW(regenerated(kRoot, "README.md", "<!-- generated: nonsense -->\n<!-- end -->\n"), std::runtime_error);
   EXPECT_THROW(regenerated(kRoot, "README.md", "<!-- generated: fabrics -->\n"), std::runtime_error);

@@ -283,7 +283,8 @@ TEST_F(Specification, MistakesNameWhatTheyAreAbout) {
             "\"spline\"");
   EXPECT_EQ(
       first(changed(kSpecification, R"("skirt_back", "edge": 2 } ])", R"("skirt_back", "edge": 2 }, "right_wrong" ])")),
-      "1:1: pattern.stitches.1: expected stitches that leave each panel one side outside, got a ring of them that "
+      "1:1: pattern.stitches.1: expected stitches that keep the same side of each panel outside, got a ring of "
+      "stitches that "
       "turns it over");
   EXPECT_EQ(first(changed(kSpecification, R"("skirt_back", "edge": 2)", R"("skirt_back", "edge": 4)")),
             "1:1: pattern.stitches.0: expected an edge of a panel, got 4 of \"skirt_back\"");

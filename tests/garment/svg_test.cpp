@@ -59,8 +59,8 @@ TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineColumnAndElement) {
   expect_refused("<svg><circle id='p' r='1'/></svg>", "path, polygon or rect");
   expect_refused("<svg viewBox='0 0 0 1' width='1mm'><path id='p' d='M0 0L1 1L0 1Z'/></svg>", "viewBox");
   expect_refused("<svg>\n<path id='p' transform='spin(3)' d='M0 0L1 1L0 1Z'/></svg>", "transform");
-  expect_refused("<svg><path id='p' d='M0 0", "expected XML");
-  expect_refused("", "expected XML");
+  expect_refused("<svg><path id='p' d='M0 0", "expected valid XML");
+  expect_refused("", "expected valid XML");
   expect_refused("<svg><rect id='p' width='a' height='1'/></svg>", "numbers");
   support::expect_error(ExitCode::asset_unreadable, "none that can be read",
                         [&] { load_svg_panel(folder_ / "absent.svg", "p"); });
