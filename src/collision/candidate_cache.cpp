@@ -123,7 +123,11 @@ bool CandidateCache::is_kept_clear(std::size_t vertex, const Vec3& x) const {
 
 // Whether x is within the margin of the collected end of the vertex, or its body is clear of all cloth.
 bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin) const {
-  return (x - high_end()[vertex]).cwiseMax(low_[vertex] - x).maxCoeff() <= margin || is_kept_clear(vertex, x);
+  const Vec3 beyond = (x - high_end()[vertex]).cwiseMax(low_[vertex] - x);
+  // Boxes grow by the margin along each axis; bounds with more directions hold only what is that close.
+  const bool boxes = parameters_.broad_phase.directions == 6;
+  const double distance = boxes ? beyond.maxCoeff() : beyond.cwiseMax(0).norm();
+  return distance <= margin || is_kept_clear(vertex, x);
 }
 
 bool CandidateCache::covers_end(std::span<const Vec3> x) const {

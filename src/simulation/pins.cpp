@@ -66,14 +66,16 @@ Vec3 middle_of(std::span<const environment::Chosen> particles, std::span<const V
 // Takes time linear in the particles of all pins.
 std::vector<Pins::Owner> Pins::owners(const environment::Environment& environment,
                                       const std::vector<Index>& first_particle) {
-  std::vector<Owner> owner_of;
+  std::size_t particles = 0;
+  for (std::size_t c = 0; c < environment.cloths.size(); ++c)
+    particles = static_cast<std::size_t>(first_particle[c]) + environment.cloths[c].start.size();
+  std::vector<Owner> owner_of(particles);
   for (const bool faded : {false, true}) {
     std::size_t pin = 0;
     for (std::size_t c = 0; c < environment.cloths.size(); ++c)
       for (const std::vector<environment::Chosen>& particles : environment.cloths[c].pins) {
         for (const environment::Chosen& chosen : particles) {
           const auto i = static_cast<std::size_t>(first_particle[c] + chosen.particle);
-          if (i >= owner_of.size()) owner_of.resize(i + 1);
           if (chosen.faded == faded && owner_of[i].fraction == 0) owner_of[i] = {pin, chosen.share};
         }
         ++pin;

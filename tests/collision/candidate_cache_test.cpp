@@ -154,6 +154,22 @@ TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundThatOfTheWay) {
   EXPECT_FALSE(cache.covers_end(to));
 }
 
+// Bounds with diagonal directions grow by the margin as a length: an end at half of it along each axis is outside.
+TEST(CandidateCache, WithMoreDirectionsThanSixAnEndIsCoveredWithinABall) {
+  const Layers layers(2, kReach);
+  std::vector<Vec3> to = layers.x;
+  to[4].x() += 3 * kReach;
+  for (const int directions : {6, 18, 26}) {
+    CandidateCache cache(layers.bodies, {.broad_phase = {.directions = directions}}, layers.x, kReach);
+    cache.collect(layers.x, to);
+    std::vector<Vec3> end = to;
+    end[4].x() += 0.49 * kReach;
+    EXPECT_TRUE(cache.covers_end(end)) << directions;
+    end[4] = to[4] + Vec3::Constant(0.4 * kReach);
+    EXPECT_EQ(cache.covers_end(end), directions == 6) << directions;
+  }
+}
+
 // If the response pushes particles away from their end positions, any position between the two is covered, and what was
 // covered before stays covered.
 TEST(CandidateCache, EndsBetweenStartAndEndAreCoveredOfWhatWasCarriedOff) {

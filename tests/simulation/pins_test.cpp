@@ -160,5 +160,17 @@ TEST_F(PinsOnACharacter, AreRefusedForWhatIsNoObjectOfTheScene) {
   }
 }
 
+TEST(PinStrength, IsKnownOfEveryParticle) {
+  for (const char* edge : {"low = [0, 0], high = [1, 0]", "low = [0, 1], high = [1, 1]"}) {
+    const scene::Scene scene = support::scene_of_text(
+        fmt::format("[[cloth]]\nname = 'a'\nsize = [0.2, 0.2]\nparticles = [3, 3]\npin = [{{ {} }}]\n", edge));
+    const environment::Environment environment(scene);
+    const Pins pins(scene, environment, {0});
+    int pinned = 0;
+    for (Index i = 0; i < 9; ++i) pinned += pins.strength_fraction(i) > 0 ? 1 : 0;
+    EXPECT_EQ(pinned, 3) << edge;
+  }
+}
+
 }  // namespace
 }  // namespace weft::simulation
