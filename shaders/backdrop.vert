@@ -1,4 +1,4 @@
-// Where nothing is: the studio itself, lit at the corners of a grid as open floor is.
+// Backdrop behind everything, computed at the corners of a grid as open floor is.
 #include "shading.glsl"
 #include "stage.glsl"
 layout(location = 0) in vec2 corner_clip;

@@ -1,5 +1,5 @@
-// The floor without end: lit like any matte surface near the subjects, the backdrop's own colour far away. OPEN: where
-// the small picture shows neither shadow nor occlusion, as most floor is.
+// Infinite floor: lit as a matte surface near the subjects, in the backdrop's colour far away. OPEN: for most floor,
+// where the soft light buffer shows neither shadow nor occlusion.
 #include "shading.glsl"
 #include "soft_look_up.glsl"
 #include "bounced_light.glsl"
@@ -10,7 +10,7 @@
 layout(location = 0) out vec4 color;
 #ifdef TILED
 layout(binding = 16) uniform sampler2D floor_picture;
-uniform vec4 picture_across, picture_up;  // of (x, y, z, 1) in the world
+uniform vec4 picture_across, picture_up;  // maps from (x, y, z, 1) in the world
 uniform float tint;
 #endif
 
@@ -45,7 +45,7 @@ void main() {
 #else
   Softness soft = look_up_softness(distance_view, kFloor);
   vec4 bounced_here = bounced_light(position_world, n);
-  // Floor hides nothing from itself: what comes back from what does is all in the cubes.
+  // Floor does not occlude itself: all light that occluders reflect onto it is in the grid.
   FloorPoint at = floor_point(albedo, ray_world);
   vec3 shown = albedo * (irradiance(n) * min(soft.open, open_at_most(bounced_here.w)) + bounced_here.rgb);
   shown += shaded_light(0, soft, at);
@@ -62,7 +62,7 @@ void main() {
 #endif
   color = vec4(encode(linear), 1.0);
 #ifdef REFLECTING
-  // Fresnel's law by Schlick; a rough floor reflects less where it is seen at an angle (Lagarde 2011).
+  // Schlick's approximation of Fresnel's law; a rough floor reflects less at grazing angles (Lagarde 2011).
   float roughness = frame.center_world.w, edge = 1.0 - max(-dot(normalize(ray_world), n), 0.0);
   float share = 0.04 + max(0.96 - roughness, 0.0) * edge * edge * edge * edge * edge;
   share *= 1.0 - away_from_subjects(position_world);

@@ -1,19 +1,19 @@
-// What all passes of one picture share. Names carry their space: world [m], view (right, up, backward [m]), clip.
+// Data that all passes of a picture share. Names contain the space: world [m], view (right, up, backward [m]), clip.
 layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;
   mat4 view_from_world;
-  mat4 above_from_world;   // to texture space of the map seen from above
+  mat4 above_from_world;   // to the texture space of the sky map
   vec4 eye_world;          // w: radius of the surroundings [m]
   vec4 center_world;       // of the surroundings; w: roughness of the floor
   vec4 up_world;
-  vec4 right_world;        // of the camera
-  vec4 sky;                // linear light from above; w: reach of sky occlusion [m]
-  vec4 horizon;            // from the sides; w: linear light that the look deepens
-  vec4 ground;             // from below; w: metres of one unit of depth of the sky maps
-  vec4 backdrop;           // linear colour at the horizon; w: share that it loses far from the subjects
+  vec4 right_world;        // right axis of the camera
+  vec4 sky;                // linear light from above; w: range of sky occlusion [m]
+  vec4 horizon;            // from the sides; w: linear light below which the look darkens tones
+  vec4 ground;             // from below; w: metres per unit of depth of the sky map
+  vec4 backdrop;           // linear colour at the horizon; w: fraction that it loses far from the subjects
   vec4 backdrop_top;       // straight above
-  vec4 viewport;           // width, height [pixels], and their inverses
-  vec4 frustum;            // tangents of half the opening, near, far [m]
+  vec4 viewport;           // width, height [pixels], and their reciprocals
+  vec4 frustum;            // tangents of half the field of view, near, far [m]
   vec4 floor_plane_world;  // unit normal, upward; w: height of the eye above it [m]
   vec4 floor_look;         // linear colour; w: exposure, a factor on all light
   vec4 box_axes[3];        // unit; w: sharpness (surroundings.hpp)
@@ -21,24 +21,23 @@ layout(std140, binding = 0) uniform Frame {
   vec4 irradiance[9];
 } frame;
 
-// What the geometry buffer says of a pixel: distance along the view axis [m] and number of the surface, half more where
-// its back is seen. Nothing and the floor come first.
+// Geometry buffer values of a pixel: distance along the view axis [m] and surface number, plus 0.5 if its back is seen.
 const float kNothing = 0.0, kFloor = 1.0, kFirstSurface = 2.0;
-const float kSolid = -1e6;  // in place of the heat of what is no cloth
+const float kSolid = -1e6;  // heat value of surfaces other than cloth
 
-// Position of what is seen at `uv` (0 to 1 across the picture), `distance` metres away along the view axis.
+// View-space position at `uv` (0 to 1 across the picture), `distance` metres away along the view axis.
 vec3 position_view(vec2 uv, float distance) {
   return vec3((uv * 2.0 - 1.0) * frame.frustum.xy * distance, -distance);
 }
 vec3 world_from_view(vec3 direction_view) { return transpose(mat3(frame.view_from_world)) * direction_view; }
 
-// Interleaved gradient noise (Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014):
-// the values of any 3x3 pixels are spread evenly over [0,1).
+// Interleaved gradient noise (Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014): the
+// values of any 3x3 pixels are evenly spread over [0,1).
 float pixel_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
 
-// Points evenly spread over a disc of radius 1 (Vogel 1979), one after the other, as a sine and cosine for each would
-// cost more than the look-ups they are for: point k of n is sqrt((k + 1/2) / n) times a direction that turns by the
-// golden angle each time. `turn` in [0,1) starts the directions somewhere in the round.
+// Points evenly spread over a disc of radius 1 (Vogel 1979): point k of n is sqrt((k + 1/2) / n) times a direction that
+// turns by the golden angle each time. Computed incrementally, because a sine and cosine per point would cost more than
+// the lookup. `turn` in [0,1) sets the first direction.
 vec2 first_direction(float turn) {
   vec2 corner = vec2(abs(4.0 * turn - 2.0) - 1.0, abs(4.0 * fract(turn + 0.25) - 2.0) - 1.0);
   return normalize(corner);

@@ -1,4 +1,4 @@
-// Everything with triangles, floor included.
+// All triangle meshes, including the floor.
 #include "frame.glsl"
 layout(location = 0) in vec3 position_world;
 layout(location = 1) in vec3 normal_world;
@@ -6,7 +6,7 @@ layout(location = 2) in vec2 vertex_uv;
 layout(location = 3) in float heat;
 #ifdef PICTURED
 layout(location = 4) in vec2 vertex_place;
-uniform vec3 picture_u, picture_v;  // rows of the map to the picture
+uniform vec3 picture_u, picture_v;  // rows of the map to picture coordinates
 out vec2 place;
 #endif
 #ifdef TRIMMED
@@ -14,11 +14,12 @@ layout(location = 5) in vec3 vertex_trim_distances;
 layout(location = 6) in vec3 vertex_trim_places;
 out vec3 trim_distances, trim_places;
 #endif
-uniform float nearer;  // [m] by which it counts as nearer than other things
+uniform float nearer;  // depth offset towards the viewer [m]
 out vec3 surface_normal_world;
 out vec2 surface_uv;
 out float surface_heat;
-// Of the normal n and the place p from the eye: squares and products of n, and n times its share of p (geometry.frag).
+// For rise() in geometry.frag: squares and products of the normal n; n times dot(n, p), with p the position from the
+// eye.
 out vec3 normal_squares, normal_products, plane;
 invariant gl_Position;
 out float gl_ClipDistance[1];  // height above the floor, for mirror.hpp
@@ -36,7 +37,8 @@ void main() {
   trim_distances = vertex_trim_distances;
   trim_places = vertex_trim_places;
 #endif
-  // llvmpipe cuts here even where GL_CLIP_DISTANCE0 is off: a millimetre less, or rounding takes away the floor itself.
+  // llvmpipe clips here even if GL_CLIP_DISTANCE0 is off: without a millimetre of tolerance, rounding removes the floor
+  // itself.
   gl_ClipDistance[0] =
       dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w + 1e-3;
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);

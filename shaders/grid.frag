@@ -1,4 +1,4 @@
-// What changes so slowly over the picture that it is lit at the corners of a grid: backdrop, open floor under suns.
+// Colours interpolated from the corners of a grid, for slowly varying parts: backdrop, open floor under suns.
 #include "frame.glsl"
 noperspective in vec3 shown;
 layout(location = 0) out vec4 color;

@@ -1,4 +1,5 @@
-// Microfacet highlight (GGX, Walter et al. 2007; visibility term by Hammon 2017), for reflectance f0 head-on.
+// Microfacet highlight (GGX, Walter et al. 2007; visibility term by Hammon 2017), for reflectance f0 at normal
+// incidence.
 float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
   vec3 h = normalize(v + l);
   float n_h = max(dot(n, h), 0.0), n_l = max(dot(n, l), 0.0), n_v = max(dot(n, v), 1e-3), l_h = max(dot(l, h), 0.0);
@@ -8,12 +9,12 @@ float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
 }
 
 #ifdef METAL
-// The same for a reflectance of each channel.
+// The same with a reflectance per channel.
 vec3 colored_highlight(vec3 n, vec3 v, vec3 l, float alpha, vec3 f0) {
   float grazing = 1.0 - max(dot(l, normalize(v + l)), 0.0);
   return highlight(n, v, l, alpha, 1.0) * (f0 + (1.0 - f0) * (grazing * grazing * grazing * grazing * grazing));
 }
 #endif
 
-// What a surface mirrors head-on: rough ones hide half of their facets from each other.
+// Reflectance at normal incidence: on rough surfaces, facets shadow each other.
 float head_on(float roughness) { return 0.04 * (1.0 - 0.9 * roughness * roughness); }

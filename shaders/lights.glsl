@@ -1,17 +1,17 @@
-// Direct light. SPOTS: some are no suns.
+// Direct light. SPOTS: some lights are spots.
 struct Light {
-  mat4 shadow_from_world;         // to texture coordinates and depth, homogeneous
-  mat4 shadow_planes_from_world;  // its inverse transpose: carries planes
-  vec4 toward_light_world;        // w: squared distance of a spot from its target, of a sun 0
-  vec4 position_world;            // w: cosine of half the cone
+  mat4 shadow_from_world;         // to homogeneous texture coordinates and depth
+  mat4 shadow_planes_from_world;  // its inverse transpose: transforms planes
+  vec4 toward_light_world;        // w: squared distance of a spot from its target; sun: 0
+  vec4 position_world;            // w: cosine of half the cone angle
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
-  vec4 shadow;                    // penumbra width for each unit of depth, depth bias
+  vec4 shadow;                    // penumbra width per unit of depth (x, y); depth bias (z)
 };
-// LIGHTS of them are there, one at least. Index them by constants: llvmpipe reads a member at a variable index once for
-// each pixel.
+// LIGHTS of these are valid, at least one. Index by constants: llvmpipe reads a member at a variable index once per
+// pixel.
 layout(std140, binding = 1) uniform Lights { Light lights[4]; };
-// Unit vector toward light i, and how much of it comes to the point through its cone: 1 at its target, by the square of the
-// distance from there on.
+// Unit vector towards light i. `cone`: its intensity at the point within its cone, 1 at the target, with inverse square
+// falloff.
 vec3 toward_light(int i, vec3 position_world, out float cone) {
   cone = 1.0;
 #ifdef SPOTS

@@ -1,16 +1,16 @@
-// Floor that nothing shades or hides from the sky, as the ray of a pixel meets it, in linear light.
+// Linear light of floor without shadow or occlusion, at the ray of a pixel.
 #include "stage.glsl"
 
 #ifdef SHINY
 #include "highlight.glsl"
 #endif
 
-// Where the ray of a pixel meets the floor.
+// Intersection of the ray of a pixel with the floor.
 struct FloorPoint {
   vec3 position_world, n, v, albedo;
 };
 
-// What the floor shows of light i. SHINY: it mirrors the lamp, too.
+// Light i as reflected by the floor. SHINY: with a highlight of the lamp.
 vec3 light_on_floor(int i, FloorPoint at) {
   float cone;
   vec3 l = toward_light(i, at.position_world, cone);
@@ -22,19 +22,19 @@ vec3 light_on_floor(int i, FloorPoint at) {
   return lights[i].color.rgb * cone * shown;
 }
 
-// 0 near the subjects, to 1 far from them.
+// 0 near the subjects, rising to 1 far from them.
 float away_from_subjects(vec3 position_world) {
   float away = max(length(position_world - frame.center_world.xyz) / frame.eye_world.w - 1.5, 0.0) / 5.0;
   return away * away / (1.0 + away * away);
 }
 
-// A pool of light round the subjects that runs out slowly into the backdrop.
+// Fades the floor around the subjects slowly into the backdrop.
 vec3 fade_out(vec3 color, vec3 position_world, vec3 ray_world) {
   return mix(color, backdrop_color(normalize(ray_world)), away_from_subjects(position_world));
 }
 
-// How far the ray of a pixel, one metre along the view axis, goes [m]. Rays to the floor go down; so close to the horizon
-// that rounding denies it, all is backdrop.
+// Distance along the view axis [m]; `ray_world` advances one metre along it. Rays to the floor go down; the bound
+// covers rays whose slope rounds to zero near the horizon, where all is backdrop.
 float floor_distance(vec3 ray_world) {
   return frame.floor_plane_world.w / max(-dot(frame.floor_plane_world.xyz, ray_world), 1e-6);
 }

@@ -1,25 +1,26 @@
-// Light from around and the way to the screen; used by all that is drawn.
+// Ambient light and encoding to sRGB; all colour passes use it.
 #include "frame.glsl"
 #include "lights.glsl"
 #include "surroundings.glsl"
 
-// Light from around that a matte surface takes where only a share of them is open to it. Light that comes from what hides
-// the others has its color: in creases it is that of the surface itself (Jimenez et al., "Practical Realtime Strategies
-// for Accurate Indirect Occlusion", 2016, Eq. 5).
+// Ambient light on a matte surface of which the fraction `open` is unoccluded. Light from the occluders has their
+// colour: in creases, that of the surface itself (Jimenez et al., "Practical Realtime Strategies for Accurate Indirect
+// Occlusion", 2016, Eq. 5).
 vec3 ambient_light(vec3 n_world, float open, vec3 albedo) {
   vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
   return irradiance(n_world) * max(vec3(open), ((open * a + b) * open + c) * open);
 }
 
-// The curve of IEC 61966-2-1 by roots, fitted to within 0.1/255 on [0.0031, 1]: three powers cost 25 ns a pixel more.
+// The curve of IEC 61966-2-1 by roots, fitted to within 0.1/255 on [0.0031, 1]: three powers would cost 25 ns more per
+// pixel.
 vec3 srgb(vec3 linear) {
   vec3 root = sqrt(linear);
   vec3 curve = 0.833761273 * root + 0.298103297 * sqrt(root) - 0.055321666 * linear - 0.076902919;
   return mix(12.92 * linear, curve, greaterThan(linear, vec3(0.0031308)));
 }
 
-// Linear light to the sRGB bytes of the picture. Below 0.8 colors are as given, but for what film does to the dark where
-// the look wants that; brighter light is bent towards 1 by its strongest channel, and pales as it goes on.
+// Linear light to sRGB. Below 0.8, colours are unchanged, except for the film-like darkening (toe) of the look; above,
+// the strongest channel is compressed towards 1, and very bright colours desaturate.
 vec3 encode(vec3 linear) {
   linear *= frame.floor_look.w;
   float toe = frame.horizon.w;

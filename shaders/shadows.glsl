@@ -1,28 +1,28 @@
-// Shadows, after lights.glsl. A pixel first asks a coarse map of depth ranges whether any caster is near enough to
-// matter; only in and around penumbrae does it search for blockers and filter (Fernando, "Percentage-Closer Soft
-// Shadows", 2005).
+// Shadows; include after lights.glsl. A coarse map of depth ranges excludes pixels without nearby casters; only in and
+// around penumbrae does a pixel search for blockers and filter (Fernando, "Percentage-Closer Soft Shadows", 2005).
 layout(binding = 0) uniform sampler2DArrayShadow shadow_compare;
 layout(binding = 1) uniform sampler2DArray shadow_depth;
 layout(binding = 2) uniform sampler2DArray shadow_range;
 
-// Share of light i that reaches a point, 0 to 1. `normal_world` faces the light. 1 at once where not `wanted`.
+// Fraction of light i that reaches a point, 0 to 1. `normal_world` faces the light. If not `wanted`, 1 without any
+// search.
 float visibility(int i, vec3 position_world, vec3 normal_world, bool wanted) {
   vec4 homogeneous = lights[i].shadow_from_world * vec4(position_world, 1.0);
   vec3 at = homogeneous.xyz / homogeneous.w;
 
-  // The tangent plane as depth over texture coordinates, so that wide filters do not shade a slope by itself.
+  // The tangent plane as depth over texture coordinates, so that wide filters do not make a slope shadow itself.
   vec4 plane = lights[i].shadow_planes_from_world * vec4(normal_world, -dot(normal_world, position_world));
   float texel = 1.0 / SHADOW_TEXELS, bias = lights[i].shadow.z;
   vec2 slope = -plane.xy / (sign(plane.z) * max(abs(plane.z), 1e-6));
-  // Nearly edge-on slopes would reach out of the map; there the light is faint anyway.
+  // Nearly edge-on slopes would leave the map; there the light is faint anyway.
   slope *= min(1.0, MAX_SLOPE_TEXELS * bias / (texel * max(length(slope), 1e-9)));
 
-  // llvmpipe runs both sides of every branch and leaves a loop only when its pixels are done: what may be skipped is
-  // a loop of no rounds, of a count that the compiler cannot know and unroll.
+  // llvmpipe executes both sides of every branch and leaves a loop only when all its pixels are done: optional work is
+  // a loop with zero iterations, with a count that the compiler cannot know and unroll.
   vec2 range = texture(shadow_range, vec3(at.xy, i)).rg;
   vec2 reach = lights[i].shadow.xy * max(at.z - range.x, 0.0);
   reach = clamp(reach, vec2(FILTER_FLOOR_TEXELS * texel), vec2(FILTER_LIMIT_TEXELS * texel));
-  // What the tangent plane may rise or fall over the filter.
+  // Depth range of the tangent plane over the filter.
   float lift = dot(abs(slope), reach + texel);
   bool outside = homogeneous.w <= 0.0 || any(greaterThan(abs(at.xy - 0.5), vec2(0.5)));
   bool all_lit = !wanted || outside || range.x == 1.0 || at.z + lift - bias <= range.x;
@@ -35,7 +35,7 @@ float visibility(int i, vec3 position_world, vec3 normal_world, bool wanted) {
     vec2 offset = sqrt((float(k) + 0.5) / float(BLOCKER_TAPS)) * direction * reach;
     direction = next_direction(direction);
     float depth = textureLod(shadow_depth, vec3(at.xy + offset, i), 0.0).r;
-    // Depth 1 is no caster, also for what lies beyond the map's far plane.
+    // Depth 1 means no caster, also for points beyond the map's far plane.
     float blocks = float(depth < min(at.z + dot(slope, offset) - margin, 1.0));
     blocker_sum += depth * blocks;
     blocker_count += blocks;
@@ -54,14 +54,14 @@ float visibility(int i, vec3 position_world, vec3 normal_world, bool wanted) {
   return taps == 0 ? 1.0 : lit / float(FILTER_TAPS);
 }
 
-// A place that asks whether light reaches it, and the normal there that faces the light.
+// A point whose visibility is asked for, and its normal facing the light.
 struct ShadowPoint {
   vec3 position_world, normal_world;
 };
 
-// Of a surface with light from `l`. The smooth surface that a triangle stands for lies `rise` metres outside: triangles
-// shade each other, as a sawtooth, where light grazes them. For the same reason a solid body does not shade itself there
-// along `kThrough` metres: the map would show its own texels along the terminator.
+// Shadow point of a surface lit from `l`. The point moves out to the smooth surface, `rise` metres outside its
+// triangle: otherwise triangles shadow each other in a sawtooth at grazing light. There, solid bodies also ignore
+// casters along `kThrough` metres: the map would show its own texels along the terminator.
 ShadowPoint shadow_point(vec3 position_world, vec3 n_world, vec3 l, float rise, bool solid) {
   const float kThrough = 0.025, kGrazing = 0.1;
   float side = dot(n_world, l);

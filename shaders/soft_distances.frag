@@ -1,5 +1,5 @@
-// Distances of the pixels that the small picture looks at, close together: the search for what is nearby reads them all
-// over, and those of the whole picture do not fit into a processor's cache.
+// Copies the distances of the pixels that the soft light buffer samples into a small texture: the search for nearby
+// occluders reads them repeatedly, and those of the full picture do not fit into the CPU's cache.
 #include "soft_light.glsl"
 layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(location = 0) out float distance_view;

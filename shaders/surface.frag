@@ -1,4 +1,4 @@
-// Cloth and solid surfaces: direct light with soft shadows, light of the sky, and the sheen or gloss of the material.
+// Cloth and solid surfaces: direct light with soft shadows, ambient light, and the sheen or gloss of the material.
 #include "shading.glsl"
 #include "highlight.glsl"
 #include "soft_look_up.glsl"
@@ -12,9 +12,10 @@
 layout(binding = 4) uniform sampler2D normals_heat;
 layout(binding = 5) uniform sampler2D rest_uvs;
 layout(binding = 8) uniform sampler2D distances_surfaces;
-layout(binding = 7) uniform sampler2D materials;  // a row for each surface: front colour, roughness; back colour, thread
-                                                  // spacing; heat scale, hem [m], thickness [m], stitches beside seams [m]; cloth: gloss, share of the warp,
-                                                  // fuzz, sheer; opacity, threads, skin
+// One row per surface, by column: front colour, roughness; back colour, thread spacing; heat scale, hem [m], thickness
+// [m], distance of stitches from seams [m]; cloth: gloss, warp fraction, fuzz, sheer (else: coat, metal); opacity,
+// threads, skin.
+layout(binding = 7) uniform sampler2D materials;
 layout(binding = 6) uniform sampler2D heat_colors;
 #ifdef PAINTED
 layout(binding = 10) uniform sampler2D paints;  // geometry.frag
@@ -22,25 +23,25 @@ layout(binding = 10) uniform sampler2D paints;  // geometry.frag
 layout(location = 0) out vec4 color;
 
 #ifdef CLOTH
-// Highlight of threads that run along t: the facets of each lie around it, so that it is wide across and narrow along
+// Highlight of threads along t, wide across and narrow along them, because their facets lie around the thread
 // (anisotropic GGX, Burley, "Physically-Based Shading at Disney", 2012).
 float thread_highlight(vec3 n, vec3 t, vec3 b, vec3 v, vec3 l) {
   const float kAlong = 0.22, kAcross = 0.62;
   vec3 h = normalize(v + l);
   float h_t = dot(h, t) / kAlong, h_b = dot(h, b) / kAcross, h_n = dot(h, n), d = h_t * h_t + h_b * h_b + h_n * h_n;
   float n_l = max(dot(n, l), 0.0), n_v = max(dot(n, v), 0.05);
-  d = max(d, 1.0);  // as it is where t, b and n are at right angles, which derivatives across outlines do not see to
+  d = max(d, 1.0);  // true for orthogonal t, b and n; derivatives across outlines violate it
   return n_l / (kAlong * kAcross * d * d * 4.0 * (n_l + n_v - n_l * n_v));
 }
 #endif
 
-// What the pixel shows, as far as light on it needs to know.
+// Surface data that the lights need.
 struct Point {
   vec3 position_world, n, n_smooth, v;
   float rise;        // geometry.frag
   float shine, alpha, f0;
-  vec3 weft, warp;   // unit, in the surface
-  vec4 finish;       // METAL: gloss of the coat, share of metal
+  vec3 weft, warp;   // unit vectors in the surface
+  vec4 finish;       // cloth: column 3 of `materials`; METAL: x: coat, y: metal fraction
 #ifdef METAL
   vec3 colored_f0;
 #endif
@@ -51,26 +52,26 @@ struct Point {
 struct LightSums {
   vec3 diffuse, through, gloss;
 };
-const float kThreadShine = 0.14;  // of the light that meets threads of full gloss
+const float kThreadShine = 0.14;  // reflectance factor of threads with full gloss
 #ifdef SKIN
-// Red light goes farthest below skin, so that it comes out where less of the others does: beside the terminator and in
-// penumbras. By eye, from profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
+// Below skin, red light travels farthest and dominates where it emerges: beside the terminator and in penumbrae. Tuned
+// by eye, from profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
 const vec3 kScattered = vec3(0.50, 0.17, 0.06);
-const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // cosines up to which light comes out behind the terminator
+const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // cosines up to which light emerges behind the terminator
 vec3 scattered(float share, float skin) { return mix(vec3(share), vec3(share * (2.0 - share)), skin * kScattered); }
-// The cosine, 0 where it is negative, with its kink at the terminator rounded off.
+// The clamped cosine with its kink at the terminator smoothed.
 vec3 scattered_cosine(float cosine, float skin) {
   vec3 width = skin * kPastTerminator, rounded = clamp(cosine + width, vec3(0.0), 2.0 * width);
   return rounded * rounded / max(4.0 * width, 1e-4) + max(cosine - width, 0.0);
 }
 #endif
-const float kCoat = 0.04, kCoatAlpha = 0.02;  // of a clear coat: reflectance head-on, as of glass, and roughness squared
+const float kCoat = 0.04, kCoatAlpha = 0.02;  // clear coat: reflectance at normal incidence, as of glass, and roughness squared
 
 void add_light(inout LightSums sums, int i, Point at, Softness soft) {
   float cone;
   vec3 l = toward_light(i, at.position_world, cone);
   float side = dot(at.n_smooth, l);
-  // Solid surfaces take nothing from behind; cloth lets some through.
+  // Solid surfaces receive no light from behind; cloth transmits some.
 #ifdef CLOTH
   const bool kIsSolid = false;
   bool wanted = cone > 0.0;
@@ -90,7 +91,7 @@ void add_light(inout LightSums sums, int i, Point at, Softness soft) {
   sums.diffuse += strength * (max(dot(at.n, l), 0.0) * smoothstep(0.0, 0.06, side));
 #endif
 #ifdef CLOTH
-  // Light on the far side shines through between the threads.
+  // Light from the far side passes between the threads.
   sums.through += strength * max(-side, 0.0);
   float shine = highlight(at.n, at.v, l, max(at.alpha, 0.2), at.f0);
 #ifdef GLOSSY
@@ -123,7 +124,7 @@ void main() {
   vec3 offset_world = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, distance_view));
   at.position_world = offset_world + frame.eye_world.xyz;
   at.v = -normalize(offset_world);
-  // Near outlines a smooth normal may lean away from the eye; bend it back to the horizon.
+  // Near outlines, a smooth normal may point away from the eye: bend it back to the horizon.
   vec3 n_seen = normalize(normal_heat.xyz);
   at.rise = length(normal_heat.xyz) - 1.0;
   at.n = at.n_smooth = normalize(n_seen + at.v * max(0.02 - dot(n_seen, at.v), 0.0));
@@ -145,7 +146,7 @@ void main() {
   if (paint.w > 0.5) {
     albedo = paint.rgb * paint.rgb;
 #ifdef SKIN
-    // Of colours that skin may have; hair and shoes, which are painted, shine more.
+    // Only colours that skin can have; painted hair and shoes shine more.
     float bare = opacity_threads.z * clamp(2.5 * (1.0 - paint.w), 0.0, 1.0);
     at.skin = bare * smoothstep(0.01, 0.12, albedo.r - albedo.b);
     at.alpha = mix(at.alpha, min(at.alpha, 0.18), opacity_threads.z - bare);
@@ -157,8 +158,8 @@ void main() {
 #endif
 #ifdef CLOTH
   at.finish = texelFetch(materials, ivec2(3, row), 0);
-  at.finish.x *= at.finish.x * at.finish.x;  // between cotton and satin lie two orders
-  // Beside cloth, where derivatives look too, there is what an earlier picture left.
+  at.finish.x *= at.finish.x * at.finish.x;  // the scale from cotton to satin spans two orders of magnitude
+  // Derivatives also read pixels beside cloth, where stale data of an earlier picture may remain.
   vec2 rest_uv = row < 0 ? vec2(0.0) : texelFetch(rest_uvs, pixel, 0).xy;
   int threads = int(opacity_threads.y);
   Weave woven = weave(rest_uv, row < 0 ? 0.0 : back_spacing.w, threads, at.finish.z, at.n, at.position_world);
@@ -215,13 +216,13 @@ void main() {
   vec3 through = irradiance(-at.n_smooth) * soft.open + light.through;
   vec3 around = vec3(0.0);
 #ifdef GLOSSY
-  // What the threads show of the surroundings.
+  // Surroundings reflected by the threads.
   around = surroundings(reflect(-at.v, at.n), 0.4) * (at.finish.x * soft.open * (0.04 + 0.3 * rim));
 #endif
   vec3 linear = albedo * (light.diffuse * (1.0 - 0.4 * max(at.finish.w - 0.3, 0.0)) + at.finish.w * behind * through) + sheen +
                 light.gloss + around;
 #elif defined(METAL)
-  // What is near in the mirrored direction hides the surroundings there and shows its own light; floor in the shade, less.
+  // Nearby surfaces in the mirrored direction hide the surroundings and show their own light; shaded floor subtracts.
   vec3 mirrored = reflect(-at.v, at.n);
   vec4 near_by = bounced_light(at.position_world, mirrored);
   float open = soft.open * (1.0 - clamp(1.5 * near_by.w - 0.5, 0.0, 1.0));
@@ -234,7 +235,7 @@ void main() {
   vec3 linear = mix(base, above, coat) + light.gloss;
 #else
 #ifdef SKIN
-  // Down catches light at grazing angles.
+  // Fine hairs catch light at grazing angles.
   light.diffuse *= 1.0 + 0.35 * at.skin * edge * edge * edge;
 #endif
   float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * soft.open;
@@ -243,7 +244,7 @@ void main() {
 #endif
   float alpha = 1.0;
 #ifdef SHEER
-  // What gets between the threads has a longer way through them where cloth is seen at an angle.
+  // At oblique view, light has a longer path through the threads.
   float layers = 1.0 / max(dot(at.n_smooth, at.v), 0.2);
 #ifdef TRIMMED
   layers *= trimmed.layers;

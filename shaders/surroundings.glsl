@@ -1,6 +1,6 @@
-// Light that comes from around; surroundings.hpp. After frame.glsl.
+// Environment light (surroundings.hpp); include after frame.glsl.
 
-// What matte white that faces n takes, in the open.
+// Unoccluded irradiance on normal n, as the light that matte white shows.
 vec3 irradiance(vec3 n) {
   vec3 sum = frame.irradiance[0].rgb + n.x * frame.irradiance[1].rgb + n.y * frame.irradiance[2].rgb +
              n.z * frame.irradiance[3].rgb + n.x * n.y * frame.irradiance[4].rgb + n.y * n.z * frame.irradiance[5].rgb +
@@ -9,7 +9,7 @@ vec3 irradiance(vec3 n) {
   return max(sum, vec3(0.0));
 }
 
-// What is seen towards a direction, blurred as by a reflection of roughness squared `alpha`.
+// Environment light from a direction, blurred as by a reflection with roughness squared `alpha`.
 vec3 surroundings(vec3 toward, float alpha) {
   float height = dot(toward, frame.up_world.xyz), blur = 0.08 + alpha;
   vec3 above = mix(frame.horizon.rgb, frame.sky.rgb, smoothstep(0.0, 1.0, height));

@@ -1,37 +1,37 @@
-// Hems, stitches and seams of cloth, drawn by how far a point is from its border and from its seams (trims.hpp). What is
-// finer than a pixel counts by the share of it that it covers, so that nothing beats or shimmers. After weave.glsl.
-layout(binding = 11) uniform sampler2D trims;  // distance from the border, from a seam, place along the nearer [m]
+// Hems, stitches and seams of cloth, drawn by distance from borders and seams (trims.hpp). Details finer than a pixel
+// contribute by their coverage, which avoids moiré and shimmer. Include after weave.glsl.
+layout(binding = 11) uniform sampler2D trims;  // distances from border and seam, position along the nearer one [m]
 
-// All [m]. Stitches lie in a groove, which they pull into the cloth.
-const float kStitchFromFold = 0.002;  // by which a hem goes on beyond its stitches
+// All [m]. Stitches pull a groove into the cloth.
+const float kStitchFromFold = 0.002;  // distance of a hem's stitches from its inner edge
 const float kGroove = 0.0011, kThread = 0.00028;  // half widths
-const float kStitch = 0.0032;  // from one to the next
-const float kOnTop = 0.78;     // share of it that the thread shows
-const float kTwin = 0.005;     // between rows: knits are hemmed, and denim is sewn, with two needles
-const vec3 kJeans = vec3(0.60, 0.27, 0.05);  // linear colour of the thread that denim is sewn with
-const float kValley = 0.0013;  // half width of what a seam draws in
+const float kStitch = 0.0032;  // stitch pitch
+const float kOnTop = 0.78;     // visible fraction of a stitch's thread
+const float kTwin = 0.005;     // distance between rows: knits and denim are sewn with two needles
+const vec3 kJeans = vec3(0.60, 0.27, 0.05);  // linear colour of the thread in denim
+const float kValley = 0.0013;  // half width of the valley along a seam
 
-// Share of a pixel that is `width` wide about `at` that a band of half width `half_width` about `center` covers.
+// Fraction of a pixel of width `width` at `at` that is covered by a band of half width `half_width` at `center`.
 float band(float at, float width, float center, float half_width) {
   float from = max(at - 0.5 * width, center - half_width), to = min(at + 0.5 * width, center + half_width);
   return max(to - from, 0.0) / width;
 }
 
-// Share of it over which the thread lies on top, of a pixel that is `width` long.
+// Fraction of a pixel of length `width` in which the thread lies on top.
 float on_top(float along, float width) {
   float from = (along - 0.5 * width) / kStitch, to = (along + 0.5 * width) / kStitch;
   float sum = (floor(to) - floor(from)) * kOnTop + min(fract(to), kOnTop) - min(fract(from), kOnTop);
   return sum * kStitch / width;
 }
 
-// Tone of a line of stitches at `center`: the thread is paler, its holes are dark, the groove is shaded.
+// Tone of a stitch line at `center`: the thread is paler, its holes are dark, the groove is shaded.
 float stitches(float at, float width, float center, float shown) {
   return 1.0 - 0.16 * band(at, width, center, kGroove) + band(at, width, center, kThread) * mix(-0.5, 0.16, shown);
 }
 
-// Stitches of one thread or two, the second `beside` the first.
+// Stitches of one thread or two, the second at distance `beside` from the first.
 struct Rows {
-  float tone, thread;  // thread: share of the pixel that it covers
+  float tone, thread;  // thread: fraction of the pixel that it covers
 };
 Rows rows(float at, float width, float center, float beside, float shown, int threads) {
   Rows result = Rows(stitches(at, width, center, shown), band(at, width, center, kThread) * shown);
@@ -42,7 +42,7 @@ Rows rows(float at, float width, float center, float beside, float shown, int th
   return result;
 }
 
-// How steeply cloth rises with the distance from a line of stitches.
+// Slope of cloth with the distance from a stitch line.
 float groove(float at, float width, float center) {
   return band(at, width, center, kGroove) * 0.55 * clamp((at - center) / kGroove, -1.0, 1.0) * step(width, kGroove);
 }
@@ -50,19 +50,19 @@ float groove(float at, float width, float center) {
 struct Trimmed {
   vec3 normal_world;
   float tone;    // factor on the colour
-  float layers;  // of cloth that lie on each other
-  float thread;  // share of the pixel that shows stitches of another colour
+  float layers;  // number of overlapping layers of cloth
+  float thread;  // fraction of the pixel that shows stitches of another colour
 };
 
-// `look`: width of the hem [m], thickness of the cloth [m], distance of stitches from seams [m], 0 for none. `pixel_width`:
-// of a pixel, seen head-on [m].
+// `look`: width of the hem, thickness of the cloth, distance of stitches from seams (0: none) [m]. `pixel_width`: of a
+// pixel at normal incidence [m].
 Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front, int threads, Weave woven, vec3 n_world) {
   vec3 at = texelFetch(trims, pixel, 0).xyz;
   vec3 right = dFdx(at), up = dFdy(at), width = clamp(abs(right) + abs(up), 1e-6, 1.0);
-  // The directions in which border and seam are left, in the surface.
+  // Directions of increasing distance from border and seam, in the surface.
   vec2 u_right = dFdx(rest_uv), u_up = dFdy(rest_uv);
   float area = u_right.x * u_up.y - u_right.y * u_up.x, sense = area < 0.0 ? -1.0 : 1.0;
-  // Right on a seam both sides are as far away, as if pixels had no width.
+  // On the seam itself, neighbours on both sides have equal distances, and derivatives would give a zero width.
   width.xy = max(width.xy, 0.7 * min(sqrt(abs(area)), 1.0));
   if (woven.at_outline) width = vec3(pixel_width);
   float hem = look.x, thickness = max(look.y, 1e-5), shown = on_top(at.z, width.z);
@@ -71,7 +71,7 @@ Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front
   inward *= inversesqrt(max(dot(inward, inward), 1e-20));
   aside *= inversesqrt(max(dot(aside, aside), 1e-20));
 
-  // The edge is round. A hem ends in a step on the back, which shows through a little on the front.
+  // The edge is rounded. A hem ends in a step on the back, slightly visible on the front.
   float fold = hem > 0.0 ? 2.0 * thickness : 0.5 * thickness;
   float rise = band(at.x, width.x, 0.5 * fold, 0.5 * fold) * 0.8, tone = 1.0, thread = 0.0;
   if (hem > 0.0) {

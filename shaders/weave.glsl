@@ -1,22 +1,22 @@
-// Threads drawn in rest coordinates: of a plain weave, a twill of three over and one under, the right side of a jersey,
-// or fibres alone; each a little different in tone. Every feature fades to its mean before it gets smaller than two
-// pixels, so that nothing shimmers.
+// Threads drawn in rest coordinates: plain weave, 3/1 twill, face side of a jersey, or loose fibres; each yarn slightly
+// different in tone. Every feature fades to its mean before it becomes smaller than two pixels, so that nothing
+// shimmers.
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
-const float kUneven = 0.15;  // share of its tone by which a yarn differs at most; 0.7 of it at each three times the size
+const float kUneven = 0.15;  // maximum relative deviation of a yarn's tone; times 0.7 for each threefold size
 
 float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
-// From -1 to 1, of neighbours that make up for each other: what varies slowly from thread to thread would be left to see,
-// as bands, from where threads are not.
+// From -1 to 1, with opposite contributions to neighbouring threads: without slow variation, no bands remain visible
+// where the threads themselves have faded.
 float thread_noise(float thread) { return noise(thread + 1.0) - noise(thread); }
 
-// From -0.5 to 0.5, another one in each cell.
+// Random value from -0.5 to 0.5 for each cell.
 float speck(ivec2 cell) {
   uint mixed = uint(cell.x) * 0x9E3779B1u ^ uint(cell.y) * 0x85EBCA77u;
   mixed = (mixed ^ (mixed >> 15)) * 0x2C1B3C6Du;
   return float((mixed ^ (mixed >> 13)) & 0xFFFFu) / 65535.0 - 0.5;
 }
 
-// Smooth over one unit of `at`.
+// Value noise, smooth over one unit of `at`.
 float unevenness(vec2 at) {
   vec2 whole = floor(at), f = at - whole;
   f = f * f * (3.0 - 2.0 * f);
@@ -29,23 +29,23 @@ struct Weave {
   vec3 normal_world;
   float tone;   // factor on the colour
   float shine;  // factor on the highlight
-  float weft;   // share of it that shows, where it has a colour of its own
+  float weft;   // visible fraction of weft, for weft with its own colour
   vec3 weft_world, warp_world;  // directions of the threads
-  bool at_outline;              // derivatives look at other cloth, or none: they say nothing
+  bool at_outline;              // derivatives cross an outline and are invalid
 };
 
-// 1 while a feature of `size` is well above the pixel's footprint, 0 once it is below two pixels.
+// 1 while a feature of `size` is well above the pixel's footprint, 0 when it is below two pixels.
 float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.22, 0.5, footprint / size); }
 
-// What lies on top at one place.
+// The yarn on top at one point.
 struct Top {
-  float height;  // less its mean
+  float height;  // minus its mean
   vec2 tilt;     // of the normal along weft and warp
-  float yarn;    // another one for each thread
+  float yarn;    // random seed, different for each thread
   bool weft;
 };
 
-// Round yarns: height falls off across the thread and where it dives under the next one.
+// Round yarns: height falls off across the thread and where it passes below the next one.
 Top plain_top(vec2 thread) {
   vec2 cell = floor(thread), local = fract(thread) - 0.5;
   bool weft_over = mod(cell.x + cell.y, 2.0) < 1.0;
@@ -54,7 +54,7 @@ Top plain_top(vec2 thread) {
   return Top(height - 0.775, weft_over ? bend : bend.yx, weft_over ? cell.y + 0.5 : cell.x + 37.0, weft_over);
 }
 
-// Each warp thread lies over three of the weft and under one, its neighbour one later.
+// Each warp thread passes over three weft threads and under one, offset by one for the next warp thread.
 Top twill_top(vec2 thread) {
   vec2 cell = floor(thread), local = fract(thread) - 0.5;
   float place = mod(cell.y - cell.x, 4.0);
@@ -65,7 +65,7 @@ Top twill_top(vec2 thread) {
   return Top(height - 0.775, weft_over ? bend : bend.yx, weft_over ? cell.y + 0.5 : cell.x + 37.0, weft_over);
 }
 
-// Stitches: two legs that part upward, in columns.
+// Columns of stitches, each of two legs that diverge upward.
 Top knit_top(vec2 thread) {
   float column = fract(thread.x) - 0.5, side = column < 0.0 ? -1.0 : 1.0, off = abs(column) - 0.25;
   float course = fract(1.25 * thread.y - 1.4 * abs(column)) - 0.5;
@@ -74,9 +74,9 @@ Top knit_top(vec2 thread) {
   return Top(height - 0.717, tilt, floor(thread.x) + 37.0, false);
 }
 
-// Yarns are uneven along their way, some threads wide and eight times as long, at three sizes, of which those show that
-// the picture can; the warp of denim is dyed unevenly, and fibres that stand out are of many tones.
-// `footprint`: of a pixel along weft and warp: seen at an angle, the yarns across it still show.
+// Tone variation along yarns, at three sizes, each some threads wide and eight times as long; sizes that the pixel
+// cannot resolve fade. The warp of denim is dyed unevenly, and fibres that stand out vary in tone. `footprint`: of a
+// pixel along weft and warp; at oblique view, the yarns of one direction may still be resolved.
 float uneven_tone(vec2 thread, vec2 footprint, int threads, float fuzz) {
   vec2 share = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
   float length_share = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;
@@ -92,17 +92,17 @@ float uneven_tone(vec2 thread, vec2 footprint, int threads, float fuzz) {
                        seen.y * share.y * unevenness(at.yx * vec2(length_share, 1.0) + 71.0));
   }
   float seen = visible_feature(max(footprint.x, footprint.y), 1.0) * fibres;
-  // Pressed fibres lie in all directions, spun ones along their yarns.
+  // Pressed fibres lie in all directions, spun fibres along their yarns.
   mat2 lie = threads == kNone ? mat2(0.9, 0.5, -0.5, 0.9) : mat2(1.3, 0.0, 0.0, 0.4);
   if (seen > 0.0) tone *= 1.0 + 0.5 * seen * (unevenness(lie * thread) + unevenness(lie * thread.yx + 31.0));
   return tone;
 }
 
 Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, vec3 p_world) {
-  // Pixels of other surfaces take part in the derivatives, with no spacing at all; cloth without threads has a grain.
+  // Derivatives may include pixels of other surfaces, which have no spacing; cloth without threads has a grain.
   vec2 thread = rest_uv / max(spacing, 1e-6);
   vec2 across = dFdx(thread), down = dFdy(thread);
-  // Of a pixel: along the threads, the larger of both, and across the lines of a twill.
+  // Pixel footprint: along each thread direction, the maximum of both, and across the lines of a twill.
   vec2 along_axes = vec2(length(vec2(across.x, down.x)), length(vec2(across.y, down.y)));
   float footprint = max(length(across), length(down)), across_lines = length(vec2(across.y - across.x, down.y - down.x));
   // Gradients of weft and warp in the surface, from screen derivatives.
@@ -111,7 +111,7 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   float area = across.x * down.y - across.y * down.x;
   weft *= sign(area) * inversesqrt(max(dot(weft, weft), 1e-20));
   warp *= sign(area) * inversesqrt(max(dot(warp, warp), 1e-20));
-  // Threads hardly stretch: where rest coordinates change by much more or less than places do, there is an outline.
+  // Threads hardly stretch: if rest coordinates and positions change by very different amounts, there is an outline.
   float along_threads = spacing * spacing * max(dot(across, across), dot(down, down)),
         in_space = max(dot(p_dx, p_dx), dot(p_dy, p_dy));
   bool at_outline = spacing > 0.0 && (along_threads > 4.0 * in_space || in_space > 4.0 * along_threads);
@@ -126,7 +126,7 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   }
   result.tone = uneven_tone(thread, along_axes, threads, fuzz);
 
-  // The lines of a twill are farther apart than its threads.
+  // The lines of a twill are farther apart than its threads, so they stay visible longer.
   if (threads == kTwill || threads == kDenim) {
     float line = visible_feature(0.7071 * across_lines, 2.8) * cos(1.5707963 * (thread.y - thread.x));
     result.weft *= 1.0 + line;
@@ -136,7 +136,7 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   if (fine > 0.0 && threads != kNone) {
     Top top = threads == kPlain ? plain_top(thread) : threads == kKnit ? knit_top(thread) : twill_top(thread);
     result.normal_world = normalize(n_world + 0.75 * fine * (top.tilt.x * weft + top.tilt.y * warp));
-    // Less the mean of the height: the tone stays when the threads fade.
+    // Height minus its mean, so that the tone stays the same when threads fade.
     result.tone *= 1.0 + fine * (0.85 * top.height + 0.07 * thread_noise(top.yarn));
     result.shine = 1.0 + fine * top.height;
     result.weft = mix(result.weft, top.weft ? 1.0 : 0.0, fine);
@@ -144,7 +144,8 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   return result;
 }
 
-// Colour of denim with `weft` of its undyed weft on top; that of the cloth is the mean, at a quarter.
+// Colour of denim with the fraction `weft` of undyed weft on top; `cloth` is the mean colour, at a fraction of a
+// quarter.
 vec3 denim_color(vec3 cloth, float weft) {
   const float kPaler = 2.2, kDye = 0.35;
   vec3 undyed = kPaler * mix(vec3(dot(cloth, vec3(0.2126, 0.7152, 0.0722))), cloth, kDye);

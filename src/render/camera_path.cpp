@@ -10,21 +10,21 @@ namespace {
 
 using Kind = frame::Camera::Kind;
 
-// How far beyond the subjects of the first frame cloth is kept in view, in diagonals of their box: what falls on for
-// ever would leave a dot of the rest.
-constexpr double kReach = 1.5;
+// How far beyond the subjects of the first frame cloth is kept in view, in diagonals of their box. Without a limit,
+// cloth that falls for ever would shrink everything else to a dot.
+constexpr double kClothRange = 1.5;
 
-// Gaussians end at this many of their widths, where 0.3 % of them are left.
-constexpr double kWidths = 3;
+// Half width of the Gaussian kernel, in standard deviations; 0.3 % of its weight is cut off.
+constexpr double kKernelSigmas = 3;
 
-constexpr double kWidest = 100;    // of found fields of view [degrees]
-constexpr double kNearest = 0.05;  // of an eye to the middle of its subjects [m]
+constexpr double kMaxFieldOfView = 100;   // maximum of computed fields of view [degrees]
+constexpr double kMinEyeDistance = 0.05;  // minimum distance of an eye from the centre of its subjects [m]
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   return snapshot.stage ? snapshot.stage->up : Vec3(Vec3::UnitZ());
 }
 
-/// Which surfaces the camera shows.
+/// Flags the surfaces that the camera must show.
 std::vector<bool> subjects_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) {
   const auto chosen = [&](const auto& wanted) {
     std::vector<bool> which;
@@ -44,11 +44,11 @@ std::vector<bool> subjects_of(const frame::FrameSnapshot& snapshot, const frame:
   return chosen(is_subject);
 }
 
-/// Weights of a Gaussian from its middle outward, `width` in entries; both sides together add up to 1.
+/// Weights of a Gaussian from its centre outward, `width` in entries; both sides together sum to 1.
 std::vector<double> gaussian(double width) {
   std::vector<double> weights{1};
   double sum = 1;
-  for (int i = 1; i <= kWidths * width; ++i) {
+  for (int i = 1; i <= kKernelSigmas * width; ++i) {
     weights.push_back(std::exp(-0.5 * i * i / (width * width)));
     sum += 2 * weights.back();
   }
@@ -69,24 +69,24 @@ void CameraPath::see(const frame::FrameSnapshot& snapshot) {
   frame.number = snapshot.frame;
   frame.time = snapshot.time;
   frame.camera = named ? *named : automatic_camera();
-  const ViewAxes axes = looking_from(frame.camera, up_of(snapshot));
+  const ViewAxes axes = axes_from_angles(frame.camera, up_of(snapshot));
   frame.fit = FrustumFit(axes, frame.camera, aspect_);
-  turns_ = turns_ || (!frames_.empty() && frames_.front().camera.azimuth != frame.camera.azimuth);
+  azimuth_changes_ = azimuth_changes_ || (!frames_.empty() && frames_.front().camera.azimuth != frame.camera.azimuth);
   const std::vector<bool> chosen = subjects_of(snapshot, frame.camera);
   Box3 all;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (!chosen[i]) continue;
     for (const Vec3& position : snapshot.states[i].positions) all.extend(position);
   }
-  if (!reach_ && !all.isEmpty()) {
-    const Vec3 further = Vec3::Constant(kReach * all.diagonal().norm());
-    reach_ = Box3(all.min() - further, all.max() + further);
+  if (!cloth_box_ && !all.isEmpty()) {
+    const Vec3 margin = Vec3::Constant(kClothRange * all.diagonal().norm());
+    cloth_box_ = Box3(all.min() - margin, all.max() + margin);
   }
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (!chosen[i]) continue;
-    const bool held = frame.camera.kind == Kind::whole && snapshot.surfaces[i]->kind == frame::ObjectKind::cloth;
+    const bool is_limited = frame.camera.kind == Kind::whole && snapshot.surfaces[i]->kind == frame::ObjectKind::cloth;
     for (const Vec3& position : snapshot.states[i].positions) {
-      const Vec3 kept = held ? Vec3(position.cwiseMax(reach_->min()).cwiseMin(reach_->max())) : position;
+      const Vec3 kept = is_limited ? Vec3(position.cwiseMax(cloth_box_->min()).cwiseMin(cloth_box_->max())) : position;
       frame.fit.add(kept);
       frame.subjects.extend(kept);
     }
@@ -96,7 +96,7 @@ void CameraPath::see(const frame::FrameSnapshot& snapshot) {
     frame.fit.add(frame.subjects.min());
     frame.fit.add(frame.subjects.max());
   }
-  seen_.extend(frame.subjects);
+  subject_bounds_.extend(frame.subjects);
   frames_.push_back(std::move(frame));
 }
 
@@ -106,12 +106,12 @@ void CameraPath::find() {
     case Kind::placed:
       return;
     case Kind::whole:
-      return turns_ ? go_around() : stand_still();
+      return azimuth_changes_ ? compute_orbit() : compute_fixed_camera();
     case Kind::follow:
     case Kind::close:
-      return follow();
+      return compute_following_camera();
     case Kind::track:
-      return turn_after();
+      return compute_tracking_camera();
   }
 }
 
@@ -133,17 +133,17 @@ frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string&
   return result;
 }
 
-/// As close as all frames together allow.
-void CameraPath::stand_still() {
+/// Places one camera as close as all frames together allow.
+void CameraPath::compute_fixed_camera() {
   FrustumFit all = frames_.front().fit;
   for (const Frame& frame : frames_) all.add(frame.fit);
-  for (Frame& frame : frames_) all.place(frame.camera, seen_.center());
+  for (Frame& frame : frames_) all.place(frame.camera, subject_bounds_.center());
 }
 
-/// Around the middle of all that is seen, at the distance that each frame is in view from.
-void CameraPath::go_around() {
-  const Vec3 center = seen_.center();
-  double distance = kNearest;
+/// Orbits the centre of everything seen, at the smallest distance that shows every frame.
+void CameraPath::compute_orbit() {
+  const Vec3 center = subject_bounds_.center();
+  double distance = kMinEyeDistance;
   for (const Frame& frame : frames_) distance = std::max(distance, frame.fit.distance(center));
   for (Frame& frame : frames_) {
     frame.camera.target = center;
@@ -156,8 +156,8 @@ double CameraPath::frames_in(double seconds) const {
   return length > 0 ? seconds * static_cast<double>(frames_.size() - 1) / length : 0;
 }
 
-/// Gaussian means over the frames before and after; beyond the ends the way goes on as it was, mirrored about its end,
-/// so that who walks evenly is followed evenly from the first frame on.
+/// Gaussian means of the subjects' centres over neighbouring frames. Beyond both ends, the trajectory is
+/// point-reflected about its end, so that even walking is followed evenly from the first frame on.
 std::vector<Vec3> CameraPath::smooth_centers() const {
   const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
   const auto last = static_cast<std::ptrdiff_t>(frames_.size()) - 1;
@@ -176,21 +176,23 @@ std::vector<Vec3> CameraPath::smooth_centers() const {
   return smooth;
 }
 
-/// With the middle of the subjects, at the distance that the widest frame needs, or as close as they allow: then the
-/// largest distance of the frames around each, smoothed as widely, which is never less than its own.
-void CameraPath::follow() {
+/// Moves with the centre of the subjects. `follow`: at the distance that the widest frame needs. `close`: as
+/// close as possible, from the maximum of the distances within the kernel around each frame, smoothed with the same
+/// kernel; the result is never less than the frame's own distance.
+void CameraPath::compute_following_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   const auto count = static_cast<std::ptrdiff_t>(frames_.size());
-  std::vector<double> needs;
-  for (std::ptrdiff_t k = 0; k < count; ++k) needs.push_back(std::max(kNearest, frames_[k].fit.distance(centers[k])));
-  std::vector<double> distances(needs.size(), *std::ranges::max_element(needs));
+  std::vector<double> needed_distances;
+  for (std::ptrdiff_t k = 0; k < count; ++k)
+    needed_distances.push_back(std::max(kMinEyeDistance, frames_[k].fit.distance(centers[k])));
+  std::vector<double> distances(needed_distances.size(), *std::ranges::max_element(needed_distances));
   if (frames_.front().camera.kind == Kind::close) {
     const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
     const auto reach = static_cast<std::ptrdiff_t>(weights.size()) - 1;
     const auto largest_around = [&](std::ptrdiff_t k) {
       k = std::clamp<std::ptrdiff_t>(k, 0, count - 1);
-      return *std::max_element(needs.begin() + std::max<std::ptrdiff_t>(0, k - reach),
-                               needs.begin() + std::min(count, k + reach + 1));
+      return *std::max_element(needed_distances.begin() + std::max<std::ptrdiff_t>(0, k - reach),
+                               needed_distances.begin() + std::min(count, k + reach + 1));
     };
     std::vector<double> around;
     for (std::ptrdiff_t k = -reach; k < count + reach; ++k) around.push_back(largest_around(k));
@@ -206,9 +208,9 @@ void CameraPath::follow() {
   }
 }
 
-/// Where it stands, toward the middle of the subjects; wide enough for the boxes around them in all frames where the
-/// scene gives no field of view.
-void CameraPath::turn_after() {
+/// Stays in place and turns towards the centre of the subjects. If the scene gives no field of view, it is wide enough
+/// for the subjects' boxes in all frames.
+void CameraPath::compute_tracking_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   double tangent = 0;
   for (std::size_t k = 0; k < frames_.size(); ++k) {
@@ -225,7 +227,7 @@ void CameraPath::turn_after() {
   }
   const double found = 2 * std::atan(tangent / (1 - frames_.front().camera.margin)) / radians(1);
   for (Frame& frame : frames_)
-    if (frame.camera.field_of_view == 0) frame.camera.field_of_view = std::clamp(found, 1.0, kWidest);
+    if (frame.camera.field_of_view == 0) frame.camera.field_of_view = std::clamp(found, 1.0, kMaxFieldOfView);
 }
 
 }  // namespace weft::render

@@ -1,4 +1,4 @@
-// The camera of a run: where the scene places it, or found from all frames before the first is drawn.
+// The camera of a run: placed by the scene, or computed from all frames before the first is drawn.
 #pragma once
 
 #include <optional>
@@ -12,22 +12,23 @@ namespace weft::render {
 
 class CameraPath {
  public:
-  /// `camera`: its name; empty: the first of the scene, else one that has all of the run in view. `aspect`: width over
-  /// height of the pictures.
+  /// `camera`: its name; empty: the first of the scene, else one that shows the whole run. `aspect`: width over height
+  /// of the pictures.
   CameraPath(std::string camera, double aspect) : name_(std::move(camera)), aspect_(aspect) {}
 
-  /// Whether the camera has to see frames before they are drawn. Throws as find_camera() does.
+  /// Whether the camera needs all frames before the first can be drawn. Throws as find_camera() does.
   static bool is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera);
 
-  /// Every frame of the run, in their order; then find().
+  /// Call see() with every frame of the run, in order; then find().
   void see(const frame::FrameSnapshot& snapshot);
   void find();
 
-  /// The camera of a frame; where it is found, of the last frame up to this one that was seen, at least one.
+  /// The camera of a frame. If it is computed: that of the last seen frame up to this one; see() needs at least one
+  /// frame.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
  private:
-  /// What a frame asks of the camera, and what it gets.
+  /// What a frame requires of the camera, and the camera computed for it.
   struct Frame {
     int number = 0;
     double time = 0;
@@ -36,22 +37,22 @@ class CameraPath {
     Box3 subjects;
   };
 
-  void stand_still();
-  void go_around();
-  void follow();
-  void turn_after();
+  void compute_fixed_camera();
+  void compute_orbit();
+  void compute_following_camera();
+  void compute_tracking_camera();
   double frames_in(double seconds) const;
   std::vector<Vec3> smooth_centers() const;
 
   std::string name_;
   double aspect_;
   std::vector<Frame> frames_;
-  std::optional<Box3> reach_;  // in which cloth counts
-  Box3 seen_;                  // of all frames
-  bool turns_ = false;         // axes differ between frames
+  std::optional<Box3> cloth_box_;  // box outside which cloth is ignored
+  Box3 subject_bounds_;            // bounds of the subjects of all frames
+  bool azimuth_changes_ = false;   // the azimuth differs between frames
 };
 
-/// The camera of a frame that is looked at alone.
+/// The camera for a single frame without its run.
 frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string& camera, double aspect);
 
 }  // namespace weft::render

@@ -12,14 +12,14 @@
 namespace weft::render {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of a motion [pixels]
+constexpr double kRounding = 1e-6;  // motions below this are rounding errors [pixels]
 
-/// Where a ray from `eye` meets the plane of a triangle: the distance in lengths of `along`, and the shares of its
-/// second and third corner (Möller and Trumbore 1997).
-struct Meeting {
+/// Intersection of a ray from `eye` with the plane of a triangle: the distance in lengths of `along`, and the
+/// barycentric weights of the second and third corner (Möller and Trumbore 1997).
+struct PlaneIntersection {
   double distance = 0, b = 0, c = 0;
 
-  Meeting(const Vec3& eye, const Vec3& along, const std::array<Vec3, 3>& corners) {
+  PlaneIntersection(const Vec3& eye, const Vec3& along, const std::array<Vec3, 3>& corners) {
     const Vec3 to_b = corners[1] - corners[0], to_c = corners[2] - corners[0], from = eye - corners[0];
     const Vec3 p = along.cross(to_c), q = from.cross(to_b);
     const double volume = to_b.dot(p);
@@ -33,8 +33,8 @@ struct Meeting {
   }
 };
 
-/// What one pixel shows.
-struct Shown {
+/// Values of one pixel.
+struct PixelValues {
   double depth = std::numeric_limits<double>::infinity();
   Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
   Vec2 uv = Vec2::Zero(), motion = Vec2::Zero();
@@ -51,7 +51,7 @@ const std::vector<Vec3>* Before::positions(const frame::Surface& surface, std::s
   return nullptr;
 }
 
-void DataPasses::find(std::span<const SurfaceBuffers> surfaces, const View& view) {
+void DataPasses::find_hits(std::span<const SurfaceBuffers> surfaces, const View& view) {
   hits_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), {});
   const auto place = [&](const Eigen::Vector4d& clip) {
     return Vec3((0.5 + 0.5 * clip.x() / clip.w()) * width_, (0.5 + 0.5 * clip.y() / clip.w()) * height_, 1 / clip.w())
@@ -76,7 +76,7 @@ void DataPasses::find(std::span<const SurfaceBuffers> surfaces, const View& view
   }
 }
 
-/// [pixels], from the lower left corner.
+/// Position in the picture [pixels], from the lower left corner.
 Vec2 DataPasses::to_picture(const View& view, const Vec3& position) const {
   const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
   return {(0.5 + 0.5 * clip.x() / clip.w()) * width_, (0.5 + 0.5 * clip.y() / clip.w()) * height_};
@@ -84,7 +84,7 @@ Vec2 DataPasses::to_picture(const View& view, const Vec3& position) const {
 
 void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
                       const std::optional<Before>& before, image::Layers& layers) {
-  find(surfaces, view);
+  find_hits(surfaces, view);
   const auto add = [&](const char* name) {
     layers.channels.push_back({name, std::vector<float>(hits_.size())});
     return layers.channels.size() - 1;
@@ -96,7 +96,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
     add(name);
   if (heated) add("heat.V");
 
-  // Triangles of painted surfaces are drawn part by part.
+  // Painted surfaces draw their triangles part by part.
   std::vector<std::vector<std::int32_t>> parts;
   for (const SurfaceBuffers& drawn : surfaces) {
     parts.push_back(drawn.surface().part_of_triangle);
@@ -109,24 +109,26 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Vec2 here(x + 0.5, y + 0.5);
-      // One metre along the view axis.
+      // Ray through the pixel; advances one metre along the view axis.
       const Vec3 along = view.axes.forward + (2 * here.x() / width_ - 1) * view.tan_half_width * view.axes.right +
                          (2 * here.y() / height_ - 1) * view.tan_half_height * view.axes.up;
       const Hit& hit = hits_[static_cast<std::size_t>(y) * width_ + x];
-      Shown shown;
-      Vec3 was;
+      PixelValues shown;
+      Vec3 position_before;
       if (hit.surface >= 0) {
         const SurfaceBuffers& drawn = surfaces[hit.surface];
         const frame::Surface& surface = drawn.surface();
         const Triangle& corners = drawn.triangles()[hit.triangle];
         const Index a = corners[0], b = corners[1], c = corners[2];
         const auto positions = drawn.positions();
-        const Meeting meeting(view.eye, along, {positions[a], positions[b], positions[c]});
+        const PlaneIntersection intersection(view.eye, along, {positions[a], positions[b], positions[c]});
         const auto& source = drawn.mesh().source;
-        const auto blend = [&](const auto& of) { return meeting.blend(of[source[a]], of[source[b]], of[source[c]]); };
-        shown.depth = meeting.distance;
+        const auto blend = [&](const auto& of) {
+          return intersection.blend(of[source[a]], of[source[b]], of[source[c]]);
+        };
+        shown.depth = intersection.distance;
         const auto& normals = drawn.mesh().normals;
-        shown.normal = meeting.blend(normals[a], normals[b], normals[c]).normalized();
+        shown.normal = intersection.blend(normals[a], normals[b], normals[c]).normalized();
         const Vec3 face = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
         if (face.dot(along) > 0) shown.normal = -shown.normal;
         shown.object = kFirstSurface + hit.surface;
@@ -135,16 +137,16 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
         if (!drawn.state().heat.empty()) shown.heat = blend(drawn.state().heat);
         shown.position = view.eye + shown.depth * along;
         const std::vector<Vec3>* known = positions_before[hit.surface];
-        was = known ? Vec3(blend(*known)) : shown.position;
+        position_before = known ? Vec3(blend(*known)) : shown.position;
       }
       if (floor) {
         const double depth = floor->normal.dot(floor->point - view.eye) / floor->normal.dot(along);
         if (floor->normal.dot(along) < 0 && depth > 0 && depth < std::min(shown.depth, view.far)) {
           shown = {.depth = depth, .position = view.eye + depth * along, .normal = floor->normal, .object = kFloor};
-          was = shown.position;
+          position_before = shown.position;
         }
       }
-      if (shown.object != kNothing && before) shown.motion = here - to_picture(before->view, was);
+      if (shown.object != kNothing && before) shown.motion = here - to_picture(before->view, position_before);
       if (shown.motion.norm() < kRounding) shown.motion.setZero();  // noise does not compress
       const double values[] = {shown.depth,      shown.position.x(), shown.position.y(), shown.position.z(),
                                shown.normal.x(), shown.normal.y(),   shown.normal.z(),   shown.object,

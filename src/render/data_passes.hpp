@@ -1,4 +1,4 @@
-// What is seen at the centre of each pixel, in figures: what compositors ask for beside the picture.
+// Numeric passes for compositors: depth, position, normal, ids and motion at the centre of each pixel.
 #pragma once
 
 #include <optional>
@@ -11,29 +11,28 @@
 
 namespace weft::render {
 
-/// A frame before, and how it was seen.
+/// An earlier frame and the view that it was drawn from.
 struct Before {
   const frame::FrameSnapshot& snapshot;
   View view;
 
-  /// Of a surface of this name with as many vertices; null where there was none.
+  /// Positions of the surface with the same name and `count` vertices; null if there was none.
   const std::vector<Vec3>* positions(const frame::Surface& surface, std::size_t count) const;
 };
 
-/// Works on the processor, in double precision: the triangle in front is found as shadow maps find it, and the ray of
-/// the pixel then meets that one exactly. Lace counts as solid.
+/// Works on the CPU in double precision: rasterises the triangle in front, then intersects the ray of the pixel with
+/// its plane exactly. Lace counts as solid.
 class DataPasses {
  public:
   DataPasses(int width, int height) : width_(width), height_(height) {}
 
-  /// Appends to `layers`, as 32 bits:
-  /// - depth.Z: distance along the view axis [m]; infinite where nothing is
-  /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, toward the viewer
-  /// - id.object: 0 nothing, 1 the floor, 2 + i surface i of the picture; id.part: 1 + i part i of that, else 0
+  /// Appends to `layers`, as 32-bit floats:
+  /// - depth.Z: distance along the view axis [m]; infinite where nothing is visible
+  /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, towards the viewer
+  /// - id.object: 0 nothing, 1 the floor, 2 + i surface i of the picture; id.part: 1 + i part i of that surface, else 0
   /// - uv.U, .V: rest coordinates (weft, warp) [m]
-  /// - motion.X, .Y: to here from where the point was `before` [pixels, to the right and up]; 0 where that is not
-  ///   there
-  /// - heat.V: strain or speed, where the stage asks for either
+  /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up]; 0 if it did not exist then
+  /// - heat.V: strain or speed, if the stage shows either
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
             const std::optional<Before>& before, image::Layers& layers);
 
@@ -42,7 +41,7 @@ class DataPasses {
     float nearness = 0;  // 1 / distance [1/m]
     std::int32_t surface = -1, triangle = -1;
   };
-  void find(std::span<const SurfaceBuffers> surfaces, const View& view);
+  void find_hits(std::span<const SurfaceBuffers> surfaces, const View& view);
   Vec2 to_picture(const View& view, const Vec3& position) const;
 
   int width_, height_;

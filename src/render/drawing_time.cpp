@@ -8,48 +8,48 @@
 namespace weft::render {
 namespace {
 
-/// Of the pictures that are being drawn: where each one's sum is, and up to when all is shared out.
-struct RasteriserShares {
+/// Rasteriser time of the pictures that are being drawn: a pointer to each one's sum, and the time already distributed.
+struct RasteriserTime {
   std::mutex mutex;
   std::vector<double*> sums;
-  double until = 0;  // on the clocks of the rasteriser's threads
+  double distributed_until = 0;  // CPU seconds of the rasteriser's threads that are already distributed
 
-  void share_out() {
+  void distribute() {
     const double now = rasteriser_cpu_seconds();
-    for (double* sum : sums) *sum += (now - until) / static_cast<double>(sums.size());
-    until = now;
+    for (double* sum : sums) *sum += (now - distributed_until) / static_cast<double>(sums.size());
+    distributed_until = now;
   }
 };
 
-RasteriserShares& rasteriser_shares() {
-  static RasteriserShares shares;
-  return shares;
+RasteriserTime& rasteriser_time() {
+  static RasteriserTime rasteriser;
+  return rasteriser;
 }
 
 double own_cpu_seconds() {
-  return thread_cpu_seconds() + helped_cpu_seconds;
+  return thread_cpu_seconds() + helper_cpu_seconds;
 }
 
 }  // namespace
 
-DrawingTimer::DrawingTimer() : began_(own_cpu_seconds()) {
-  RasteriserShares& shares = rasteriser_shares();
-  const std::lock_guard lock(shares.mutex);
-  shares.share_out();
-  shares.sums.push_back(&rasterised_);
+DrawingTimer::DrawingTimer() : start_seconds_(own_cpu_seconds()) {
+  RasteriserTime& rasteriser = rasteriser_time();
+  const std::lock_guard lock(rasteriser.mutex);
+  rasteriser.distribute();
+  rasteriser.sums.push_back(&rasteriser_seconds_);
 }
 
 DrawingTimer::~DrawingTimer() {
-  RasteriserShares& shares = rasteriser_shares();
-  const std::lock_guard lock(shares.mutex);
-  std::erase(shares.sums, &rasterised_);
+  RasteriserTime& rasteriser = rasteriser_time();
+  const std::lock_guard lock(rasteriser.mutex);
+  std::erase(rasteriser.sums, &rasteriser_seconds_);
 }
 
 double DrawingTimer::cpu_seconds() const {
-  RasteriserShares& shares = rasteriser_shares();
-  const std::lock_guard lock(shares.mutex);
-  shares.share_out();
-  return own_cpu_seconds() - began_ + rasterised_;
+  RasteriserTime& rasteriser = rasteriser_time();
+  const std::lock_guard lock(rasteriser.mutex);
+  rasteriser.distribute();
+  return own_cpu_seconds() - start_seconds_ + rasteriser_seconds_;
 }
 
 }  // namespace weft::render

@@ -1,5 +1,5 @@
-// What drawing costs: CPU time of its own thread, of those that rasterise for it and of those that help in its loops,
-// whatever a simulation or an encoder beside it takes.
+// CPU time of drawing: of the drawing thread, of its rasteriser threads and of the threads that help in its loops. Time
+// of a concurrent simulation or encoder is excluded.
 #pragma once
 
 #include <atomic>
@@ -12,9 +12,9 @@
 namespace weft::render {
 
 /// CPU seconds that other threads have spent in loops of the calling thread.
-inline thread_local double helped_cpu_seconds = 0;
+inline thread_local double helper_cpu_seconds = 0;
 
-/// parallel_for() for drawing: of threads that help the time counts as the caller's.
+/// parallel_for() for drawing: CPU time of helping threads counts as the caller's.
 template <class Body>
 void drawing_for(std::size_t count, std::size_t chunk, const Body& body) {
   const std::thread::id caller = std::this_thread::get_id();
@@ -25,11 +25,11 @@ void drawing_for(std::size_t count, std::size_t chunk, const Body& body) {
     body(begin, end);
     helped += thread_cpu_seconds() - before;
   });
-  helped_cpu_seconds += helped;
+  helper_cpu_seconds += helped;
 }
 
-/// CPU time of one picture, from here on, on one thread. The threads of the rasteriser belong to the process: of
-/// pictures that are drawn at the same time each gets an equal share of theirs.
+/// CPU time of one picture on one thread, from construction on. The rasteriser threads belong to the process: pictures
+/// that are drawn at the same time split their time equally.
 class DrawingTimer {
  public:
   DrawingTimer();
@@ -40,8 +40,8 @@ class DrawingTimer {
   double cpu_seconds() const;
 
  private:
-  double began_;                   // on the clocks of this thread alone
-  mutable double rasterised_ = 0;  // so far, for this picture; any timer shares out for all
+  double start_seconds_;                   // CPU time of this thread at construction
+  mutable double rasteriser_seconds_ = 0;  // rasteriser seconds of this picture so far; any timer updates all timers
 };
 
 }  // namespace weft::render

@@ -6,8 +6,9 @@
 namespace weft::render {
 namespace {
 
-constexpr double kLineShare = 0.62;  // share of a pixel's light that a line takes
-constexpr double kHidden = 4e-3;     // of the distance: what lies so much behind what is seen is hidden
+constexpr double kLineOpacity = 0.62;  // fraction of a pixel's light that a line removes
+constexpr double kDepthTolerance =
+    4e-3;  // relative depth tolerance: an edge farther behind the visible surface is hidden
 
 std::vector<std::pair<Index, Index>> edges_of(const frame::Surface& surface) {
   std::vector<std::pair<Index, Index>> edges;
@@ -21,7 +22,7 @@ std::vector<std::pair<Index, Index>> edges_of(const frame::Surface& surface) {
   return edges;
 }
 
-/// Where a vertex is in the picture [pixels], and 1 / distance [1/m].
+/// Position of a vertex in the picture [pixels], and 1 / distance [1/m].
 struct Place {
   double x, y, nearness;
 };
@@ -57,8 +58,8 @@ class Canvas {
   void darken(int x, int y, double nearness, float surface, double cover) {
     if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
     const std::size_t at = static_cast<std::size_t>(y) * width_ + x;
-    if (std::floor(seen_[at].surface) != surface || nearness * seen_[at].distance < 1 - kHidden) return;
-    const double keep = 1 - kLineShare * cover;
+    if (std::floor(seen_[at].surface) != surface || nearness * seen_[at].distance < 1 - kDepthTolerance) return;
+    const double keep = 1 - kLineOpacity * cover;
     std::uint64_t dark = picture_[at] & ~((std::uint64_t{1} << 48) - 1);
     for (int k = 0; k < 48; k += 16)
       dark |= static_cast<std::uint64_t>(static_cast<double>(picture_[at] >> k & 0xFFFF) * keep) << k;

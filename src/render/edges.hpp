@@ -1,4 +1,4 @@
-// Edges of the faces as simulated, drawn over a finished picture.
+// Edges of the simulated faces, drawn over a finished picture.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace weft::render {
 
-/// Darkens `picture`, as Outlines takes it, along the edges of those faces that `seen` shows there; lines are a pixel
-/// wide and smooth. Surface i has the number kFirstSurface + i.
+/// Darkens `picture` (format as in Outlines) along the edges of the faces that are visible according to `seen`. Lines
+/// are one pixel wide and antialiased. Surface i has the number kFirstSurface + i.
 void draw_edges(std::span<const SurfaceBuffers> surfaces, const View& view, int width, int height,
                 std::span<const Seen> seen, std::span<std::uint64_t> picture);
 

@@ -8,7 +8,7 @@
 namespace weft::render {
 namespace {
 
-constexpr double kFieldOfView = 30;  // degrees, vertical: a portrait lens, little distortion
+constexpr double kFieldOfView = 30;  // [degrees], vertical: a portrait lens, little distortion
 
 template <class Visit>
 void for_each_subject_vertex(const frame::FrameSnapshot& snapshot, const Visit& visit) {
@@ -44,8 +44,8 @@ frame::Camera automatic_camera() {
   return camera;
 }
 
-ViewAxes looking_from(const frame::Camera& camera, const Vec3& up) {
-  // The front is -y where z is up and +z where y is up, as in modelling programs; right is +x in both.
+ViewAxes axes_from_angles(const frame::Camera& camera, const Vec3& up) {
+  // The front is -y if z is up and +z if y is up, as in modelling programs; right is +x in both.
   const Vec3 front = view_axes(-up.cross(Vec3::UnitX()), up).forward;
   const Vec3 right = front.cross(-up);
   const double azimuth = radians(camera.azimuth), elevation = radians(camera.elevation);
@@ -82,7 +82,7 @@ double FrustumFit::distance(const Vec3& center) const {
 
 void FrustumFit::place(frame::Camera& camera, const Vec3& center) const {
   const double depth = axes_.forward.dot(center);
-  // A single point needs no distance at all; the near plane does.
+  // For a single point the distance is zero, but the near plane needs some.
   const double stand = std::min({horizontal_.forward(), vertical_.forward(), depth - 0.05});
   camera.position = horizontal_.across() * axes_.right + vertical_.across() * axes_.up + stand * axes_.forward;
   camera.target = camera.position + (depth - stand) * axes_.forward;

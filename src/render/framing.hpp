@@ -1,4 +1,4 @@
-// Which part of the world a picture shows: the camera a scene names, or one that has everything in frame.
+// Which part of the world a picture shows: the camera that a scene names, or one that frames everything.
 #pragma once
 
 #include <algorithm>
@@ -11,40 +11,40 @@
 
 namespace weft::render {
 
-/// True for surfaces that a picture is about: visible, and no floor without end.
+/// True for visible surfaces other than infinite floors.
 bool is_subject(const frame::Surface& surface);
 
-/// Smallest box around all subjects [m]; a metre around the origin where there are none.
+/// Smallest box around all subjects [m]; a metre around the origin if there are none.
 Box3 subject_bounds(const frame::FrameSnapshot& snapshot);
 
-/// Box around the places that the subjects reach in the run [m], the same in all its frames: backdrop and floor, and
-/// the cubes of bounced light, go by it. Where the snapshot does not say, around the subjects.
+/// Box around all places that the subjects reach during the run [m]; the same in all frames. Backdrop, floor and the
+/// grid of bounced light depend on it. If the snapshot does not store it, the box around the subjects.
 Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot);
 
-/// The camera of a scene that names none: one that has all of a run in view.
+/// The camera for scenes that name none: it shows the whole run.
 frame::Camera automatic_camera();
 
-/// Axes of a found camera, from its azimuth and elevation.
-ViewAxes looking_from(const frame::Camera& camera, const Vec3& up);
+/// Axes of a computed camera, from its azimuth and elevation.
+ViewAxes axes_from_angles(const frame::Camera& camera, const Vec3& up);
 
 /// Where an eye with given axes may stand so that points are in its picture. A point (x, y, z) in those axes (z
-/// forward) is within the left and right edges of an eye at (cx, cz) when |x - cx| <= t (z - cz). All points together
-/// leave t cz - cx <= min(t z - x) = low and t cz + cx <= min(t z + x) = high; the same for y.
+/// forward) is within the left and right edges of an eye at (cx, cz) if |x - cx| <= t (z - cz). All points together
+/// require t cz - cx <= min(t z - x) = low and t cz + cx <= min(t z + x) = high; the same for y.
 class FrustumFit {
  public:
   FrustumFit() = default;
-  /// `camera`: field of view and margin.
+  /// Uses the field of view and margin of `camera`.
   FrustumFit(const ViewAxes& axes, const frame::Camera& camera, double aspect);
 
   void add(const Vec3& point);
-  /// What another one with the same axes was given.
+  /// Adds all points of another fit with the same axes.
   void add(const FrustumFit& other);
 
   const ViewAxes& axes() const { return axes_; }
-  /// How far before `center` the eye has to stand that looks at it [m].
+  /// Distance that the eye needs in front of `center` [m].
   double distance(const Vec3& center) const;
-  /// As close as the points allow, with equal room on both sides of the direction that needs more; the target as deep
-  /// as `center`.
+  /// Sets position and target as close as the points allow, centred along the direction that needs more room. The
+  /// target has the depth of `center`.
   void place(frame::Camera& camera, const Vec3& center) const;
 
  private:
@@ -62,8 +62,8 @@ class FrustumFit {
   Span horizontal_, vertical_;
 };
 
-/// The camera called `name`, or the first where `name` is empty; null where the snapshot names none at all.
-/// Throws Error(usage) listing the names there are where none is called so.
+/// The camera called `name`, or the first if `name` is empty; null if the snapshot has no cameras. Throws Error(usage)
+/// that lists the names if none matches.
 const frame::Camera* find_camera(const frame::FrameSnapshot& snapshot, const std::string& name);
 
 }  // namespace weft::render

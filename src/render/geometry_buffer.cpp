@@ -8,7 +8,7 @@
 namespace weft::render {
 namespace {
 
-/// How a look is laid: `laid` of geometry.frag.
+/// How the picture of an appearance is applied: the uniform `laid` of geometry.frag.
 int laid(const frame::Appearance& look) {
   if (!look.paint.texture) return 1;
   switch (look.paint.alpha) {
@@ -22,22 +22,22 @@ int laid(const frame::Appearance& look) {
   return 1;
 }
 
-// What is drawn finer than it is simulated leaves its faces by about as much [m], and must not be pierced for that by
-// what it lies on.
-constexpr float kNearer = 1.5e-3f;
+// Curved triangles deviate from the simulated faces by about this distance [m]. This depth offset keeps the surfaces
+// below from showing through.
+constexpr float kDepthOffset = 1.5e-3f;
 float nearer(const SurfaceBuffers& surface) {
-  return surface.refined() ? kNearer : 0.0f;
+  return surface.refined() ? kDepthOffset : 0.0f;
 }
 
 }  // namespace
 
-GeometryBuffer::GeometryProgram::GeometryProgram(const Gl& gl, const Way& way) {
+GeometryBuffer::GeometryProgram::GeometryProgram(const Gl& gl, const Variant& variant) {
   std::vector<std::string> defines;
-  if (way.painted) defines.emplace_back("PAINTED");
-  if (way.pictured) defines.emplace_back("PICTURED");
-  if (way.holes) defines.emplace_back("HOLES");
-  if (way.trimmed) defines.emplace_back("TRIMMED");
-  if (way.peeled) defines.emplace_back("PEELED");
+  if (variant.painted) defines.emplace_back("PAINTED");
+  if (variant.pictured) defines.emplace_back("PICTURED");
+  if (variant.holes) defines.emplace_back("HOLES");
+  if (variant.trimmed) defines.emplace_back("TRIMMED");
+  if (variant.peeled) defines.emplace_back("PEELED");
   program = Program(gl, "geometry.vert", "geometry.frag", defines);
   surface = program.uniform("surface");
   nearer = program.uniform("nearer");
@@ -72,9 +72,9 @@ GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
   attach(false, false);
 }
 
-const GeometryBuffer::GeometryProgram& GeometryBuffer::use(const Way& way) {
-  auto known = programs_.find(way);
-  if (known == programs_.end()) known = programs_.emplace(way, GeometryProgram(*gl_, way)).first;
+const GeometryBuffer::GeometryProgram& GeometryBuffer::use(const Variant& variant) {
+  auto known = programs_.find(variant);
+  if (known == programs_.end()) known = programs_.emplace(variant, GeometryProgram(*gl_, variant)).first;
   known->second.program.use();
   return known->second;
 }
@@ -92,7 +92,7 @@ void GeometryBuffer::begin(std::span<const SurfaceBuffers> surfaces) {
   const bool painted = std::ranges::any_of(surfaces, [](const SurfaceBuffers& each) { return each.painted(); });
   const bool trimmed = std::ranges::any_of(surfaces, [](const SurfaceBuffers& each) { return each.trimmed(); });
   if (painted != painted_ || trimmed != trimmed_) attach(painted, trimmed);
-  // What has no hems has none near.
+  // Default attribute for surfaces without hems.
   if (trimmed) gl_->VertexAttrib3f(5, kNoTrim, kNoTrim, kNoTrim);
 }
 
@@ -114,7 +114,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, std::span<co
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (!left_out.empty() && left_out[i] != 0) continue;
     set_class(surfaces[i].surface().kind == frame::ObjectKind::cloth ? PixelClass::cloth : PixelClass::solid);
-    const bool cull = surfaces[i].hides_its_backs(eye);
+    const bool cull = surfaces[i].shows_only_fronts(eye);
     if (cull) gl_->Enable(GL_CULL_FACE);
     draw(surfaces[i], static_cast<float>(kFirstSurface + i), false);
     if (cull) gl_->Disable(GL_CULL_FACE);
@@ -124,7 +124,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, std::span<co
     const GeometryProgram& program = use({});
     gl_->Uniform1f(program.surface, kFloor);
     gl_->Uniform1f(program.nearer, 0);
-    // From below one looks through the floor. Its normal is that of a plane, and it has no rest coordinates.
+    // The floor is invisible from below. Its normal is constant, and it has no rest coordinates.
     gl_->Enable(GL_CULL_FACE);
     for (const GLuint unused : {0, 1, 3, 4}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     floor->draw();
@@ -136,7 +136,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, std::span<co
 
 void GeometryBuffer::draw_layer(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, bool deeper) {
   if (!layers_) layers_.emplace(*gl_, width_, height_);
-  // Each layer lies before what draw() has left, which the first one keeps for the others.
+  // Each layer starts from the result of draw(), which the first layer saves for the later ones.
   if (deeper) {
     copy(seen_, layers_->peeled);
     copy(layers_->seen, seen_);
@@ -162,7 +162,7 @@ void GeometryBuffer::copy(const Texture& from, const Texture& to) const {
                         1);
 }
 
-/// Colours and trims have buffers of their own, as long as something has either.
+/// Colours and trims have attachments of their own, while some surface has them.
 void GeometryBuffer::attach(bool painted, bool trimmed) {
   if (painted && !painting_) painting_.emplace(*gl_, width_, height_);
   if (trimmed && !trims_) trims_ = make_texture(*gl_, GL_RGBA32F, width_, height_, GL_NEAREST);
@@ -177,7 +177,7 @@ void GeometryBuffer::attach(bool painted, bool trimmed) {
   check_framebuffer(*gl_, target_, "geometry buffer");
 }
 
-/// All surfaces of a picture in which something is painted say of each pixel whether they are.
+/// If something in the picture is painted, all surfaces write for each pixel whether they are.
 void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peeled) {
   const auto use_for = [&](int laid) -> const GeometryProgram& {
     const GeometryProgram& program = use({painted_, laid >= 2, laid == 4, trimmed_, peeled});

@@ -1,4 +1,4 @@
-// What is seen at each pixel before any light: normal, heat, rest coordinates, distance and surface.
+// What each pixel shows before shading: normal, heat, rest coordinates, distance and surface.
 #pragma once
 
 #include <map>
@@ -14,31 +14,31 @@
 
 namespace weft::render {
 
-/// Stencil values that tell the shading passes apart. A floor pixel becomes shaded floor where Shading finds that
-/// soft light changes it; the lower two bits tell the rest.
+/// Stencil values that select the shading pass. A floor pixel becomes shaded floor if Shading finds that soft light
+/// changes it; the lower two bits keep the class.
 enum class PixelClass : int { backdrop = 0, cloth = 1, solid = 2, floor = 3, shaded_floor = 7 };
 
 class GeometryBuffer {
  public:
   GeometryBuffer(const Gl& gl, int width, int height);
 
-  /// Draws all surfaces but those of `left_out` (empty: none; else a flag for each) and, where not null, the floor as
-  /// seen from `eye`. `far` is the distance stored where nothing is [m]. Leaves the results bound to units 4, 5 and 8,
-  /// where something is painted its colours to unit 10, and where cloth has hems its trims to unit 11.
+  /// Draws all surfaces except those flagged in `left_out` (empty: none) and, if not null, the floor, as seen from
+  /// `eye`. `far`: distance stored where nothing is visible [m]. Binds the results to units 4, 5 and 8; colours to unit
+  /// 10 if something is painted; trims to unit 11 if cloth has hems.
   void draw(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, const FloorBuffers* floor,
             const Vec3& eye, double far);
-  /// Over what draw() has left, instead of what an earlier call has drawn: the nearest of what only `left_out` has, of
-  /// class cloth. `deeper`: the nearest behind what that call has shown.
+  /// Draws over the result of draw() the nearest layer of the surfaces flagged in `left_out`, with class cloth, and
+  /// replaces an earlier layer. `deeper`: the nearest layer behind the one of the previous call.
   void draw_layer(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, bool deeper);
 
-  /// Whether what was drawn last has pictures on it, or parts of different colours.
+  /// Whether the last picture contains painted pictures, or parts of different colours.
   bool painted() const { return painted_; }
-  /// Whether some cloth has hems or seams to show.
+  /// Whether some cloth has visible hems or seams.
   bool trimmed() const { return trimmed_; }
-  /// Opacity of each painted range of a surface, as Holes takes it.
+  /// Opacity of each painted range of a surface, in the form that Holes expects.
   std::vector<const Opacity*> opacity_of(const PaintedMesh& mesh);
 
-  /// Reads what each pixel shows, lowest row first.
+  /// Reads back what each pixel shows, lowest row first.
   void read_seen(std::vector<Seen>& seen) const;
 
   /// Distance and surface of each pixel, as Seen.
@@ -47,17 +47,17 @@ class GeometryBuffer {
   const Texture& depth_stencil() const { return depth_stencil_; }
 
  private:
-  /// What is drawn how: all of a picture with paint, or hems, writes whether it has them.
-  struct Way {
+  /// Shader variant. All surfaces of a painted or trimmed picture also write whether they have paint or trims.
+  struct Variant {
     bool painted = false, pictured = false, holes = false, trimmed = false, peeled = false;
-    auto operator<=>(const Way&) const = default;
+    auto operator<=>(const Variant&) const = default;
   };
   struct GeometryProgram {
     Program program;
     GLint surface, nearer, picture_u, picture_v, laid, color, back_color;
-    GeometryProgram(const Gl& gl, const Way& way);
+    GeometryProgram(const Gl& gl, const Variant& variant);
   };
-  const GeometryProgram& use(const Way& way);
+  const GeometryProgram& use(const Variant& variant);
   void set_class(PixelClass pixel_class) const;
   void attach(bool painted, bool trimmed);
   void begin(std::span<const SurfaceBuffers> surfaces);
@@ -65,7 +65,7 @@ class GeometryBuffer {
   void draw(const SurfaceBuffers& surface, float number, bool peeled);
   void copy(const Texture& from, const Texture& to) const;
 
-  /// What is only there once something is painted, once cloth has hems, and once some can be seen through.
+  /// Resources created on first use: for painted surfaces, and for cloth that is seen through.
   struct Painting {
     Texture colors;
     Paints paints;
@@ -78,7 +78,7 @@ class GeometryBuffer {
 
   const Gl* gl_;
   int width_, height_;
-  std::map<Way, GeometryProgram> programs_;
+  std::map<Variant, GeometryProgram> programs_;
   Texture normal_heat_, uv_, seen_, depth_stencil_, trims_;
   Framebuffer target_;
   std::optional<Painting> painting_;

@@ -7,18 +7,19 @@ namespace {
 
 using Clip = Eigen::Vector4d;
 
-// Sides of the picture and the near plane, by what is negative beyond them.
+// Signed distance to the sides of the picture and the near plane; negative outside.
 constexpr int kSides = 5;
-double inside(const Clip& at, int side) {
+double side_distance(const Clip& at, int side) {
   if (side == 4) return at.w() + at.z();
   const double along = at[side / 2];
   return at.w() + (side % 2 == 0 ? along : -along);
 }
 
-/// One bit for each side that a place is beyond.
-std::uint8_t beyond(const Clip& at) {
+/// Outcode: one bit for each side that a point is beyond.
+std::uint8_t outcode_of(const Clip& at) {
   std::uint8_t code = 0;
-  for (int side = 0; side < kSides; ++side) code |= static_cast<std::uint8_t>((inside(at, side) < 0 ? 1 : 0) << side);
+  for (int side = 0; side < kSides; ++side)
+    code |= static_cast<std::uint8_t>((side_distance(at, side) < 0 ? 1 : 0) << side);
   return code;
 }
 
@@ -27,13 +28,13 @@ struct Corner {
   Clip clip;
 };
 
-/// Cuts a triangle off at the sides of the picture (Sutherland and Hodgman 1974).
+/// Clips a triangle at the sides of the picture (Sutherland and Hodgman 1974).
 void cut(std::vector<Corner> corners, InView& in_view) {
   for (int side = 0; side < kSides; ++side) {
     std::vector<Corner> left;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Corner &from = corners[i], &to = corners[(i + 1) % corners.size()];
-      const double there = inside(from.clip, side), next = inside(to.clip, side);
+      const double there = side_distance(from.clip, side), next = side_distance(to.clip, side);
       if (there >= 0) left.push_back(from);
       if ((there >= 0) == (next >= 0)) continue;
       const double share = there / (there - next);
@@ -56,7 +57,7 @@ std::optional<InView> in_view_of(const View& view, std::span<const DrawnMesh> me
   for (const DrawnMesh& mesh : meshes) {
     codes.clear();
     for (const Vec3& place : mesh.positions) {
-      codes.push_back(beyond(view.clip_from_world * place.homogeneous()));
+      codes.push_back(outcode_of(view.clip_from_world * place.homogeneous()));
       if (codes.back() == 0) in_view.places.push_back(place);
       all = all && codes.back() == 0;
     }
@@ -67,7 +68,7 @@ std::optional<InView> in_view_of(const View& view, std::span<const DrawnMesh> me
   }
   if (all) return std::nullopt;
   if (floor) {
-    // As far as the picture shows anything of it.
+    // Floor as far as the picture shows it.
     const Vec3 under = view.eye - floor->normal.dot(view.eye - floor->point) * floor->normal;
     const Vec3 x = view.far * floor->normal.unitOrthogonal(), y = floor->normal.cross(x);
     cut({corner(under + x + y), corner(under - x + y), corner(under - x - y)}, in_view);

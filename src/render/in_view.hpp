@@ -1,4 +1,4 @@
-// What of surfaces and floor is in view, for maps that need not hold the rest.
+// The parts of surfaces and floor that are in view, for maps that can omit the rest.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace weft::render {
 
-/// What a picture shows, world space: vertices, and triangles cut off at its borders.
+/// What a picture shows, in world space: vertices, and triangles clipped at its borders.
 struct InView {
   std::vector<Vec3> places;
   std::vector<std::array<Vec3, 3>> cut;
 };
 
-/// Absent where all vertices are in view: then what the picture leaves out is floor that no map holds anyway.
+/// Absent if all vertices are in view: the picture then excludes only floor, which no map contains anyway.
 std::optional<InView> in_view_of(const View& view, std::span<const DrawnMesh> meshes,
                                  const std::optional<Floor>& floor);
 

@@ -8,7 +8,7 @@
 namespace weft::render {
 namespace {
 
-constexpr double kFilmHeight = 0.024;  // [m], of which an f-number speaks
+constexpr double kFilmHeight = 0.024;  // film height to which f-numbers refer [m]
 
 template <class Value>
 Value mix(const Value& now, const Value& before, double back) {
@@ -24,8 +24,8 @@ std::vector<Instant> instants(double shutter, bool lens, int count) {
   for (int k = 0; k < count; ++k) {
     Instant instant;
     instant.back = shutter / 360 * (k + 0.5) / count;
-    // Evenly over the disc (Vogel 1979), in an order that goes in and out as time passes, so that neither tells the
-    // other: 5 has no common divisor with counts that are powers of two.
+    // Evenly over the disc (Vogel 1979). The order alternates between centre and rim over time, so that lens position
+    // and time do not correlate: 5 is coprime with counts that are powers of two.
     const int place = 5 * k % count;
     if (lens)
       instant.lens = std::sqrt((place + 0.5) / count) * Vec2(std::cos(golden * place), std::sin(golden * place));

@@ -10,8 +10,8 @@
 namespace weft::render {
 namespace {
 
-// Share of a shadow map left free at each edge, so that penumbrae end inside it.
-constexpr double kBorder = 1.0 / 32;
+// Fraction of a shadow map left free at each edge, so that penumbrae end inside it.
+constexpr double kBorderFraction = 1.0 / 32;
 
 Vec3 travel_direction(const frame::Light& light) {
   const bool spot = light.kind == frame::Light::Kind::spot;
@@ -23,7 +23,7 @@ double half_cone(const frame::Light& light) {
   return radians(std::clamp(light.cone_angle, 1.0, 160.0)) / 2;
 }
 
-/// Tangent of half the angle under which the light's source is seen; a floor keeps edges from being razor sharp.
+/// Tangent of half the angular size of the light source; the minimum keeps shadow edges from being razor sharp.
 double source_tangent(const frame::Light& light) {
   return std::tan(radians(std::clamp(light.softness, 0.1, 40.0)) / 2);
 }
@@ -34,10 +34,10 @@ ShadowView fit_sun(const frame::Light& light, std::span<const Vec3> casters, con
   Box3 bounds;
   for (const Vec3& caster : casters) bounds.extend(Vec3(view.block<3, 3>(0, 0) * caster));
   if (bounds.isEmpty()) bounds = Box3(Vec3::Constant(-0.5), Vec3::Constant(0.5));
-  // A flat or tiny set of casters still needs room across and along the light.
-  const double least = std::max(1e-3, 1e-3 * bounds.sizes().norm());
-  const Vec3 size = bounds.sizes().cwiseMax(least);
-  const Vec3 margin(kBorder * size.x(), kBorder * size.y(), 0.01 * size.z());
+  // A flat or tiny set of casters still needs extent across and along the light.
+  const double min_size = std::max(1e-3, 1e-3 * bounds.sizes().norm());
+  const Vec3 size = bounds.sizes().cwiseMax(min_size);
+  const Vec3 margin(kBorderFraction * size.x(), kBorderFraction * size.y(), 0.01 * size.z());
   const Vec3 half = 0.5 * size + margin;
   const Box3 fitted(bounds.center() - half, bounds.center() + half);
 
@@ -60,14 +60,14 @@ ShadowView fit_spot(const frame::Light& light, std::span<const Vec3> casters, co
   }
   const double reach = std::max((light.target - light.position).norm(), 1e-2);
   farthest = 1.01 * std::max(farthest, reach);
-  // Casters beside or behind the light must not pull the near plane to zero: depth precision goes with near / far.
+  // Casters beside or behind the light must not pull the near plane to zero: depth precision depends on near / far.
   const double near = std::clamp(0.99 * nearest, 0.01 * farthest, 0.9 * farthest);
   const double tangent = std::tan(half_cone(light));
 
   ShadowView shadow;
   shadow.clip_from_world = perspective(tangent, tangent, near, farthest) * look_along(light.position, axes);
   const double source_radius = source_tangent(light) * reach;
-  const double range = (farthest - near) / (farthest * near);  // 1/distance from depth 0 to depth 1
+  const double range = (farthest - near) / (farthest * near);  // range of 1/distance between depth 0 and depth 1
   shadow.penumbra_uv.setConstant(source_radius / (2 * tangent) * range);
   shadow.depth_per_metre = 1 / (range * reach * reach);
   shadow.texel_metres = 2 * tangent * reach / map_size;
@@ -76,7 +76,7 @@ ShadowView fit_spot(const frame::Light& light, std::span<const Vec3> casters, co
 
 using Box2 = Eigen::AlignedBox2d;
 
-/// Where places lie on a map, -1 to 1; all of it where one is behind the light.
+/// Bounds of points on a map, -1 to 1; the whole map if a point is behind the light.
 Box2 extent_of(std::span<const Vec3> places, const Mat4& clip_from_world) {
   Box2 extent;
   for (const Vec3& place : places) {
@@ -87,7 +87,7 @@ Box2 extent_of(std::span<const Vec3> places, const Mat4& clip_from_world) {
   return extent;
 }
 
-/// Where what is in view lies, in front of all that could shade it left out.
+/// Bounds of what is in view on a map; triangles are clipped at the light's near plane.
 Box2 extent_of(const InView& in_view, const Mat4& clip_from_world) {
   Box2 extent = extent_of(in_view.places, clip_from_world);
   for (const auto& corners : in_view.cut) {
@@ -100,19 +100,19 @@ Box2 extent_of(const InView& in_view, const Mat4& clip_from_world) {
   return extent;
 }
 
-/// Leaves of a map the part that matters: where its light finds casters, and of that what is in view. A quarter of each
-/// side stays, as penumbrae of more texels would be too wide for their filter.
+/// Crops a map to the part that matters: the casters in the light, and of these what is in view. Keeps at least a
+/// quarter of each side, because penumbrae of more texels would be too wide for their filter.
 void crop(ShadowView& shadow, std::span<const Vec3> casters, const InView* in_view) {
-  constexpr double kMargin = 0.06, kLeast = 0.25;
+  constexpr double kMargin = 0.06, kMinFraction = 0.25;
   Box2 part = extent_of(casters, shadow.clip_from_world).intersection(Box2(Vec2(-1, -1), Vec2(1, 1)));
   if (part.isEmpty()) return;
   const auto grown = [](const Box2& box, const Vec2& by) { return Box2(box.min() - by, box.max() + by); };
   if (in_view != nullptr) {
-    const Vec2 least = kLeast * part.sizes();
+    const Vec2 min_sizes = kMinFraction * part.sizes();
     const Box2 needed = part.intersection(grown(extent_of(*in_view, shadow.clip_from_world), kMargin * part.sizes()));
-    if (!needed.isEmpty()) part = grown(needed, (0.5 * (least - needed.sizes())).cwiseMax(0));
+    if (!needed.isEmpty()) part = grown(needed, (0.5 * (min_sizes - needed.sizes())).cwiseMax(0));
   }
-  part = grown(part, kBorder * part.sizes() + Vec2::Constant(1e-6));
+  part = grown(part, kBorderFraction * part.sizes() + Vec2::Constant(1e-6));
   Mat4 cropped = Mat4::Identity();
   for (int k = 0; k < 2; ++k) {
     cropped(k, k) = 2 / part.sizes()[k];
@@ -130,7 +130,7 @@ std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot,
   std::vector<frame::Light> lights = snapshot.lights;
   if (lights.size() > kMaxLights) lights.resize(kMaxLights);
   if (!lights.empty()) return lights;
-  // Key light over the left shoulder and low, so that shadows fall to the right and a little away and folds get relief.
+  // Key light over the left shoulder and low: shadows fall to the right and slightly away, and folds show relief.
   const Vec3 level_forward = view_axes(camera.right.cross(-up), up).forward;
   frame::Light key;
   key.name = "key";
@@ -155,7 +155,7 @@ ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, 
                       int map_size) {
   const bool spot = light.kind == frame::Light::Kind::spot;
   ShadowView shadow = spot ? fit_spot(light, casters, up, map_size) : fit_sun(light, casters, up, map_size);
-  // A sun's map fits its casters as it is.
+  // Without `in_view`, the map of a sun already fits its casters.
   if (spot || in_view != nullptr) crop(shadow, casters, in_view);
   return shadow;
 }
@@ -184,7 +184,7 @@ LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, con
   packed.position << light.position.cast<float>(), static_cast<float>(outer);
   packed.color << (light.intensity * scale.cwiseProduct(image::linear_from_srgb(light.color))).cast<float>(),
       static_cast<float>(1 / (inner - outer));
-  // Half a texel for the slope that the filter cannot see, and 0.2 mm for what rasterising rounds.
+  // A quarter of a texel for the slope that the filter cannot see, and 0.2 mm for rounding of the rasteriser.
   const double bias = (0.25 * shadow.texel_metres + 2e-4) * shadow.depth_per_metre;
   packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), 0.0f;
   return packed;

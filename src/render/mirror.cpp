@@ -19,7 +19,7 @@ View mirrored(const View& view, const Floor& floor) {
   const auto turned = [&](const Vec3& v) -> Vec3 { return v - 2 * n.dot(v) * n; };
   View mirror = view;
   mirror.eye = floor.point + turned(view.eye - floor.point);
-  // A reflection has left for right; with up for down as well it is a view again.
+  // A reflection swaps left and right; flipping up and down as well gives a proper view.
   mirror.axes = {turned(view.axes.right), -turned(view.axes.up), turned(view.axes.forward)};
   mirror.view_from_world = look_along(mirror.eye, mirror.axes);
   mirror.clip_from_world =
@@ -47,7 +47,7 @@ Mirror::Mirror(const Gl& gl, const QualitySettings& quality, int width, int heig
 void Mirror::draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights) {
   gl_->NamedBufferData(frame_block_.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl_->BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block_.name());
-  // What is below the floor is not reflected.
+  // Objects below the floor are not reflected.
   gl_->Enable(GL_CLIP_DISTANCE0);
   geometry_.draw(subjects.surfaces, {}, nullptr, view.eye, view.far);
   gl_->Disable(GL_CLIP_DISTANCE0);

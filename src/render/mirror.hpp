@@ -1,4 +1,4 @@
-// What a floor that shines reflects: the subjects as they are seen from below it, drawn small.
+// Reflections in a glossy floor: the subjects as seen from below it, drawn small.
 #pragma once
 
 #include <span>
@@ -9,25 +9,25 @@
 
 namespace weft::render {
 
-/// The view from behind the floor that shows what the floor reflects, upside down.
+/// The view mirrored at the floor: it shows what the floor reflects, upside down.
 View mirrored(const View& view, const Floor& floor);
 
 class Mirror {
  public:
-  /// For pictures of width x height pixels, which the floor shows at half their size.
+  /// For pictures of width x height pixels; reflections have half that size.
   Mirror(const Gl& gl, const QualitySettings& quality, int width, int height);
 
-  /// What is drawn beside the view, as the passes of the picture take it.
+  /// What is drawn besides the view, in the form of the main passes.
   struct Subjects {
     std::span<const SurfaceBuffers> surfaces;
     std::span<const DrawnMesh> meshes;
     std::span<const Shading::Material> materials;
     const SkyView& above;
     double heat_scale;
-    bool painted;  ///< pictures show
+    bool painted;  ///< whether pictures on surfaces are shown
   };
-  /// Expects light blocks and shadow maps bound. Leaves the picture bound to unit 13, and its distances to 14; other
-  /// units and the frame block are those of this picture then.
+  /// Light blocks and shadow maps must be bound. Binds the reflection to unit 13 and its distances to 14. Other units
+  /// and the frame block stay bound to this pass.
   void draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights);
 
   int width() const { return width_; }
@@ -40,7 +40,7 @@ class Mirror {
   SoftLight soft_light_;
   Shading shading_;
   Buffer frame_block_;
-  Texture picture_;  // with smaller ones, for what is blurred
+  Texture picture_;  // with mip levels, for blurred reflections
 };
 
 }  // namespace weft::render

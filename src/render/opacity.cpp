@@ -11,17 +11,17 @@ namespace {
 
 using Wrap = frame::Paint::Wrap;
 
-/// Parts of the texels of a line of `from` that each of `to` texels covers.
-struct Share {
+/// Weights of the texels of a line of `from` that each of `to` texels covers.
+struct TexelWeights {
   int first = 0;
   std::vector<float> weights;
 };
-std::vector<Share> shares(int from, int to) {
-  std::vector<Share> all;
+std::vector<TexelWeights> texel_weights(int from, int to) {
+  std::vector<TexelWeights> all;
   const double width = static_cast<double>(from) / to;
   for (int i = 0; i < to; ++i) {
     const double begin = i * width, end = begin + width;
-    Share share{static_cast<int>(begin), {}};
+    TexelWeights share{static_cast<int>(begin), {}};
     for (int k = share.first; k < from && k < end; ++k)
       share.weights.push_back(static_cast<float>((std::min(end, k + 1.0) - std::max(begin, double(k))) / width));
     all.push_back(std::move(share));
@@ -29,7 +29,7 @@ std::vector<Share> shares(int from, int to) {
   return all;
 }
 
-/// The texel that a number stands for, or -1 beyond the edge of what is laid once.
+/// Texel index after wrapping; -1 outside a picture that appears once.
 int wrapped(int texel, int size, Wrap wrap) {
   switch (wrap) {
     case Wrap::repeat:
@@ -50,10 +50,11 @@ int wrapped(int texel, int size, Wrap wrap) {
 
 MipLevel half_of(const MipLevel& level) {
   MipLevel half{std::max(1, level.width / 2), std::max(1, level.height / 2), {}};
-  const std::vector<Share> columns = shares(level.width, half.width), rows = shares(level.height, half.height);
+  const std::vector<TexelWeights> columns = texel_weights(level.width, half.width),
+                                  rows = texel_weights(level.height, half.height);
   half.texels.reserve(static_cast<std::size_t>(half.width) * half.height);
-  for (const Share& row : rows) {
-    for (const Share& column : columns) {
+  for (const TexelWeights& row : rows) {
+    for (const TexelWeights& column : columns) {
       Eigen::Vector4f sum = Eigen::Vector4f::Zero();
       for (std::size_t j = 0; j < row.weights.size(); ++j) {
         const Eigen::Vector4f* line =

@@ -1,4 +1,4 @@
-// The opacity of a picture for passes on the processor.
+// Opacity of a picture (alpha of a texture), for passes on the CPU.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,25 +9,25 @@
 
 namespace weft::render {
 
-/// One of a picture's sizes, each half of the one before: linear light times alpha, and alpha; rows from the bottom.
+/// One mip level: premultiplied linear colour and alpha, rows from the bottom.
 struct MipLevel {
   int width = 0, height = 0;
   std::vector<Eigen::Vector4f> texels;
 };
 
-/// The next smaller size: each texel is the mean of what it covers. Of one by one there is none.
+/// The next mip level: each texel is the mean of those it covers. A level of 1 x 1 has no next one.
 MipLevel half_of(const MipLevel& level);
 
-/// The picture at its own size; `opaque` takes its alpha for 1.
+/// Level 0 of the picture; `opaque` ignores alpha and uses 1.
 MipLevel full_size(const frame::Texture& texture, bool opaque);
 
 class Opacity {
  public:
   Opacity(std::vector<MipLevel> levels, frame::Paint::Wrap wrap_u, frame::Paint::Wrap wrap_v);
 
-  /// At a place of the picture, between texels; `footprint`: width of what is asked for, in texels of the full size.
+  /// Interpolated opacity at a point of the picture. `footprint`: width of the sampled area, in texels of level 0.
   float at(const Eigen::Vector2f& place, float footprint) const;
-  /// Width and height of the full size [texels].
+  /// Width and height of level 0 [texels].
   Eigen::Vector2f size() const;
 
  private:
@@ -39,8 +39,8 @@ class Opacity {
   frame::Paint::Wrap wrap_u_, wrap_v_;
 };
 
-/// Thresholds from 1/32 to 31/32 that are spread evenly over any 4×4 neighbours: of an opacity between them so many
-/// are opaque (Bayer, "An optimum method for two-level rendition of continuous-tone pictures", 1973).
+/// Ordered dithering: thresholds from 1/32 to 31/32, evenly spread over any 4x4 pixels, so that the fraction of opaque
+/// pixels equals the opacity (Bayer, "An optimum method for two-level rendition of continuous-tone pictures", 1973).
 inline float threshold_at(int x, int y) {
   constexpr std::uint8_t kOrder[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
   return (2.0f * static_cast<float>(kOrder[4 * (y & 3) + (x & 3)]) + 1.0f) / 32.0f;

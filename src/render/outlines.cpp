@@ -12,24 +12,26 @@
 namespace weft::render {
 namespace {
 
-constexpr int kWord = 64;
+constexpr int kWordBits = 64;
 
-// Offsets of the samples from the pixel's lower left corner: no two in a row or column of sixteenths, so that edges
-// near the axes get seventeen steps as well. The pattern is that of Direct3D's 16 samples. With eight, one sample that
-// an edge at rest passes back and forth changed a pixel by more than is seen as flicker.
+// Offsets of the samples from the pixel's lower left corner: Direct3D's pattern of 16 samples. No two share a row or
+// column of sixteenths, so that edges near the axes also have seventeen levels. (Measured: with eight samples, one that
+// an edge at rest repeatedly crosses changes the pixel by a visible flicker.)
 constexpr float kOffsetX[] = {19 / 32.f, 15 / 32.f, 11 / 32.f, 25 / 32.f, 7 / 32.f, 21 / 32.f, 27 / 32.f, 23 / 32.f,
                               13 / 32.f, 17 / 32.f, 9 / 32.f,  5 / 32.f,  1 / 32.f, 31 / 32.f, 29 / 32.f, 3 / 32.f};
 constexpr float kOffsetY[] = {19 / 32.f, 11 / 32.f, 21 / 32.f, 15 / 32.f, 13 / 32.f, 27 / 32.f, 23 / 32.f, 7 / 32.f,
                               29 / 32.f, 3 / 32.f,  5 / 32.f,  25 / 32.f, 17 / 32.f, 9 / 32.f,  31 / 32.f, 1 / 32.f};
 
-// Where something ends or folds, 1 / distance, which is linear over the picture of any plane, has a kink or a step. Of
-// a crease that is seen head-on and turns by an angle the kink is its tangent times the angle of a pixel.
-constexpr double kCrease = 0.4;
-// A sample shows what its pixel shows if that lies in the plane of the sample's triangle, to this part of a kink.
+// 1 / distance is linear over the picture of any plane. Where a surface ends or folds, it has a step or a kink. For a
+// crease seen head-on, the kink is the tangent of its angle times the angle of a pixel.
+constexpr double kMinCreaseTangent = 0.4;
+// A sample shows what its pixel shows if that lies in the plane of the sample's triangle, within this fraction of a
+// kink.
 constexpr float kSamePlane = 0.25f;
 
-/// Twice the signed area of the triangle of an edge from a to b and a place, positive on its left. Exactly the opposite
-/// for the edge from b to a, as both measure from the same end: no sample falls between two triangles.
+/// Edge function: twice the signed area of the triangle formed by an edge from a to b and a point, positive on its
+/// left. The edge from b to a gives exactly the negative value, because both use the same reference end: no sample
+/// falls between two triangles.
 struct Edge {
   float along, across, from_x, from_y;
 
@@ -46,11 +48,11 @@ struct Edge {
   float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
 };
 
-// Thresholds of the samples' opacity, in sixteenths: neighbours differ by much.
+// Order of the samples' opacity thresholds, in sixteenths; consecutive samples differ much.
 constexpr int kThresholdOrder[] = {0, 8, 12, 4, 10, 2, 6, 14, 9, 1, 5, 13, 3, 11, 15, 7};
 
-/// The opacity of a triangle at places of the picture. What is linear over the triangle is, times 1 / distance, linear
-/// over the picture.
+/// The opacity of a triangle at points of the picture. An attribute that is linear over the triangle, times 1 /
+/// distance, is linear over the picture (perspective-correct interpolation).
 class HoleTest {
  public:
   template <class Vertex>
@@ -64,7 +66,7 @@ class HoleTest {
     if (!(std::abs(area) > 0)) return;
     along_x_ = (c_y * b - b_y * c) / area;
     along_y_ = (b_x * c - c_x * b) / area;
-    // Texels for one pixel, by areas at the mean distance.
+    // Texels for each pixel, from the ratio of areas at the mean distance.
     const Eigen::Vector2f q = (places[1] - places[0]).cwiseProduct(opacity.size()),
                           r = (places[2] - places[0]).cwiseProduct(opacity.size());
     footprint_ = std::sqrt(std::abs(q.x() * r.y() - q.y() * r.x()) / std::abs(area));
@@ -85,14 +87,14 @@ class HoleTest {
 Outlines::Outlines(int width, int height)
     : width_(width),
       height_(height),
-      words_((width + kWord - 1) / kWord),
+      words_((width + kWordBits - 1) / kWordBits),
       bits_(static_cast<std::size_t>(words_) * height),
       first_(bits_.size()) {}
 
-/// Sets the bits of the pixels of the area whose neighbours show another surface, or another part of their own.
-void Outlines::find(std::span<const Seen> seen, const PixelArea& area) {
+/// Sets the bits of the pixels in the area whose neighbours show another surface or a fold of their own.
+void Outlines::find_outlines(std::span<const Seen> seen, const PixelArea& area) {
   std::fill(bits_.begin(), bits_.end(), Bits{0});
-  // Three rows of 1 / distance at a time, with a column more on either side.
+  // Holds three rows of 1 / distance at a time, with a padding column on either side.
   const std::size_t stride = static_cast<std::size_t>(width_) + 2;
   nearness_.resize(3 * stride);
   const auto load = [&](int row) {
@@ -122,16 +124,16 @@ void Outlines::find(std::span<const Seen> seen, const PixelArea& area) {
     for (int x = std::max(left, 1); x < right; ++x) flags[x] |= own[x].surface != own[x - 1].surface;
     for (int x = left; x < std::min(right, width_ - 1); ++x) flags[x] |= own[x].surface != own[x + 1].surface;
     Bits* bits = bits_.data() + static_cast<std::size_t>(y) * words_;
-    for (int x = left; x < right; ++x) bits[x / kWord] |= Bits{flags[x]} << (x % kWord);
+    for (int x = left; x < right; ++x) bits[x / kWordBits] |= Bits{flags[x]} << (x % kWordBits);
   }
 }
 
-/// Gives each of those pixels its samples.
-void Outlines::number() {
+/// Allocates samples for each pixel with a set bit.
+void Outlines::number_samples() {
   pixels_.clear();
   for (std::size_t word = 0; word < bits_.size(); ++word) {
     first_[word] = static_cast<int>(pixels_.size());
-    const int y = static_cast<int>(word) / words_, x = static_cast<int>(word) % words_ * kWord;
+    const int y = static_cast<int>(word) / words_, x = static_cast<int>(word) % words_ * kWordBits;
     for (Bits left = bits_[word]; left; left &= left - 1) pixels_.push_back({x + std::countr_zero(left), y});
   }
   samples_.assign(pixels_.size(), {});
@@ -143,7 +145,8 @@ Outlines::Vertex Outlines::to_picture(const Eigen::Vector4d& clip) const {
           static_cast<float>((0.5 + 0.5 * clip.y() * nearness) * height_), static_cast<float>(nearness)};
 }
 
-/// Takes the triangle over where it is nearer than what the samples show, and `shows(x, y, nearness, sample)`.
+/// Writes the triangle to the samples that it covers, if it is nearer than their content and `shows(x, y, nearness,
+/// sample)` is true.
 template <class Shows>
 void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface, const Shows& shows) {
   const auto [x_min, x_max] = std::minmax({a.x, b.x, c.x});
@@ -155,10 +158,10 @@ void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float s
 
   // Bits of the columns x0 to x1 in word `word`.
   const auto columns = [&](int word) {
-    const int from = std::max(x0 - word * kWord, 0), to = std::min(x1 - word * kWord, kWord - 1);
-    return (~Bits{0} << from) & (~Bits{0} >> (kWord - 1 - to));
+    const int from = std::max(x0 - word * kWordBits, 0), to = std::min(x1 - word * kWordBits, kWordBits - 1);
+    return (~Bits{0} << from) & (~Bits{0} >> (kWordBits - 1 - to));
   };
-  const int word0 = x0 / kWord, word1 = x1 / kWord;
+  const int word0 = x0 / kWordBits, word1 = x1 / kWordBits;
   int y = y0;
   const auto row_has_outlines = [&](int row) {
     for (int word = word0; word <= word1; ++word) {
@@ -172,13 +175,13 @@ void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float s
   const Edge edges[] = {{a, b}, {b, c}, {c, a}};
   const float area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
   if (!(std::abs(area) > 0)) return;
-  // Seen from behind, all edges run the other way round.
+  // Seen from behind, all edges run in the opposite direction.
   const float side = area > 0 ? 1.0f : -1.0f, shown = area > 0 ? surface : surface + 0.5f;
   const float b_a = b.nearness - a.nearness, c_a = c.nearness - a.nearness;
   const float slope_x = (b_a * (c.y - a.y) - c_a * (b.y - a.y)) / area;
   const float slope_y = (c_a * (b.x - a.x) - b_a * (c.x - a.x)) / area;
-  // Slivers have wild slopes.
-  const auto [least, most] = std::minmax({a.nearness, b.nearness, c.nearness});
+  // Slivers have extreme slopes, so interpolated values are clamped to this range.
+  const auto [min_nearness, max_nearness] = std::minmax({a.nearness, b.nearness, c.nearness});
 
   float edge_offsets[3][kSamples], nearness_offsets[kSamples];
   for (int s = 0; s < kSamples; ++s) {
@@ -191,16 +194,16 @@ void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float s
       for (Bits left = bits_[at] & columns(word); left; left &= left - 1) {
         const int bit = std::countr_zero(left);
         Samples& samples = samples_[first_[at] + std::popcount(bits_[at] & ((Bits{1} << bit) - 1))];
-        const float px = static_cast<float>(word * kWord + bit), py = static_cast<float>(y);
+        const float px = static_cast<float>(word * kWordBits + bit), py = static_cast<float>(y);
         float corner[3];
         for (int e = 0; e < 3; ++e) corner[e] = edges[e].at(px, py);
         const float corner_nearness = a.nearness + slope_x * (px - a.x) + slope_y * (py - a.y);
         for (int s = 0; s < kSamples; ++s) {
           const float e0 = side * (corner[0] + edge_offsets[0][s]), e1 = side * (corner[1] + edge_offsets[1][s]);
           const float e2 = side * (corner[2] + edge_offsets[2][s]);
-          const float near = std::min(std::max(corner_nearness + nearness_offsets[s], least), most);
+          const float near = std::min(std::max(corner_nearness + nearness_offsets[s], min_nearness), max_nearness);
           bool wins = (std::min(e0, std::min(e1, e2)) >= 0) & (near > samples.nearness[s]);
-          if constexpr (!std::is_same_v<Shows, Everything>)
+          if constexpr (!std::is_same_v<Shows, AlwaysOpaque>)
             wins = wins && shows(px + kOffsetX[s], py + kOffsetY[s], near, s);
           samples.nearness[s] = wins ? near : samples.nearness[s];
           samples.slope_x[s] = wins ? slope_x : samples.slope_x[s];
@@ -231,13 +234,13 @@ void Outlines::sample(const DrawnMesh& mesh, float surface, const View& view) {
   }
 }
 
-/// Each sample has a threshold of its own: of an opacity between them so many show the surface.
+/// Each sample has its own threshold: the fraction of samples that show the surface equals its opacity.
 void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const View& view) {
   for (std::size_t r = 0; r < mesh.holes->ranges().size(); ++r) {
     const PaintedRange& range = mesh.holes->ranges()[r];
     const Opacity* opacity = mesh.holes->opacity(r);
     for (const auto& [a, b, c] : mesh.triangles.subspan(range.first, range.count)) {
-      // What passes through the near plane has no holes there.
+      // Triangles that cross the near plane are omitted.
       if (std::min({clip_[a].w(), clip_[b].w(), clip_[c].w()}) < view.near) continue;
       if (opacity == nullptr) {
         sample(vertices_[a], vertices_[b], vertices_[c], surface);
@@ -252,11 +255,11 @@ void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const Vie
   }
 }
 
-/// The floor fills what lies behind all surfaces, where it is seen from above.
+/// Writes the floor to samples behind all surfaces, if the eye is above it.
 void Outlines::sample_floor(const Floor& floor, const View& view) {
   const double height = floor.normal.dot(view.eye - floor.point);
   if (height <= 0) return;
-  // Of the ray through a place of the picture, one metre along the view axis: how far it comes down.
+  // Descent towards the floor of the ray through a point of the picture, per metre along the view axis.
   const double x = -2 * view.tan_half_width / width_ * floor.normal.dot(view.axes.right);
   const double y = -2 * view.tan_half_height / height_ * floor.normal.dot(view.axes.up);
   const double corner = -floor.normal.dot(view.axes.forward) - 0.5 * (x * width_ + y * height_);
@@ -274,35 +277,37 @@ void Outlines::sample_floor(const Floor& floor, const View& view) {
   }
 }
 
-/// The pixel that each sample takes its colour from: the pixel itself where it shows the same, else the one around it
-/// that shows the same surface nearest to the plane of the sample's triangle: of two sides of an edge, each its own.
+/// The pixel from which each sample takes its colour: the pixel itself if it shows the same surface in the same plane;
+/// else the neighbour that shows the same surface nearest to the plane of the sample's triangle. Thus samples on each
+/// side of an edge take colours from their own side.
 std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t slot, std::span<const Seen> seen) const {
   const int x = pixels_[slot].x, y = pixels_[slot].y;
   const Samples& samples = samples_[slot];
   const int x0 = std::max(x - 1, 0), x1 = std::min(x + 1, width_ - 1);
   const int y0 = std::max(y - 1, 0), y1 = std::min(y + 1, height_ - 1);
   const auto index = [&](int i, int j) { return static_cast<std::size_t>(j) * width_ + i; };
-  // The plane of the triangle at the pixel's middle. If a crease passes close to that, the middle lies near the planes
-  // of both sides, but shows one of them.
+  // The plane of the triangle at the pixel's centre. If a crease passes close to the centre, the centre lies near the
+  // planes of both sides, but shows only one of them.
   const Seen& own = seen[index(x, y)];
-  float least_home = 1e9f, home_x = 0, home_y = 0;
+  float min_own_offset = 1e9f, own_slope_x = 0, own_slope_y = 0;
   for (int s = 0; s < kSamples; ++s) {
     const float right = 0.5f - kOffsetX[s], up = 0.5f - kOffsetY[s];
     const float nearness = samples.nearness[s] + samples.slope_x[s] * right + samples.slope_y[s] * up;
     const float off = std::abs(own.distance * nearness - 1);
-    if (samples.surface[s] != own.surface || off >= least_home) continue;
-    least_home = off;
-    home_x = samples.slope_x[s];
-    home_y = samples.slope_y[s];
+    if (samples.surface[s] != own.surface || off >= min_own_offset) continue;
+    min_own_offset = off;
+    own_slope_x = samples.slope_x[s];
+    own_slope_y = samples.slope_y[s];
   }
   std::array<std::size_t, kSamples> sources;
   std::size_t chosen = 0;
   for (int s = 0; s < kSamples; ++s) {
     const float surface = samples.surface[s], slope_x = samples.slope_x[s], slope_y = samples.slope_y[s];
-    // Most samples are of the same triangle as the one before.
+    // Most samples belong to the same triangle as the one before.
     if (s == 0 || surface != samples.surface[s - 1] || slope_x != samples.slope_x[s - 1] ||
         slope_y != samples.slope_y[s - 1]) {
-      // How far a pixel lies off that plane, as a part of its distance; any other surface is farther off than the same.
+      // Relative distance of a pixel from the sample's plane; pixels of other surfaces rank behind all pixels of the
+      // same one.
       const auto off_plane = [&](int i, int j) {
         const Seen& there = seen[index(i, j)];
         if (there.surface != surface) return 1e9f;
@@ -312,16 +317,17 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
         return surface < kFloor ? 0.0f : std::abs(there.distance * nearness - 1);
       };
       chosen = index(x, y);
-      const float turn = std::max(std::abs(slope_x - home_x), std::abs(slope_y - home_y)) * own.distance;
-      const bool beyond_crease = surface == own.surface && turn > kink_;
-      float least = beyond_crease ? 1e9f : off_plane(x, y);
-      if (least > kSamePlane * kink_) {
+      const float slope_change =
+          std::max(std::abs(slope_x - own_slope_x), std::abs(slope_y - own_slope_y)) * own.distance;
+      const bool beyond_crease = surface == own.surface && slope_change > kink_;
+      float min_offset = beyond_crease ? 1e9f : off_plane(x, y);
+      if (min_offset > kSamePlane * kink_) {
         for (int j = y0; j <= y1; ++j) {
           for (int i = x0; i <= x1; ++i) {
             if (beyond_crease && i == x && j == y) continue;
             const float off = off_plane(i, j);
-            if (off >= least) continue;
-            least = off;
+            if (off >= min_offset) continue;
+            min_offset = off;
             chosen = index(i, j);
           }
         }
@@ -335,12 +341,12 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
 void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
                       const View& view, const PixelArea& area, std::span<std::uint64_t> picture) {
   if (area.width <= 0 || area.height <= 0) return;
-  kink_ = static_cast<float>(kCrease * 2 * view.tan_half_height / height_);
-  find(seen, area);
-  number();
+  kink_ = static_cast<float>(kMinCreaseTangent * 2 * view.tan_half_height / height_);
+  find_outlines(seen, area);
+  number_samples();
   for (std::size_t i = 0; i < meshes.size(); ++i) sample(meshes[i], static_cast<float>(kFirstSurface + i), view);
   if (floor) sample_floor(*floor, view);
-  // All are resolved before the first is written: they look at each other.
+  // Resolves all pixels before it writes the first, because they read each other.
   resolved_.clear();
   for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
     std::uint64_t sums[3] = {}, mean = 0;

@@ -7,12 +7,13 @@
 namespace weft::render {
 namespace {
 
-/// The place of each drawn vertex. A corner that lies elsewhere than the first of its vertex gets one of its own.
+/// Paint coordinates of each drawn vertex. A corner whose coordinates differ from the first of its vertex gets a new
+/// vertex.
 std::vector<Eigen::Vector2f> split_by_place(std::span<const std::array<Vec2, 3>> corners, ShadedMesh& mesh) {
   constexpr Index kNone = -1;
   std::vector<Eigen::Vector2f> places(mesh.source.size(), Eigen::Vector2f::Zero());
   std::vector<char> placed(mesh.source.size(), 0);
-  std::vector<Index> next(mesh.source.size(), kNone);  // of the same vertex, at another place
+  std::vector<Index> next(mesh.source.size(), kNone);  // next copy of the same vertex with other coordinates
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2f place = corners[t][k].cast<float>();

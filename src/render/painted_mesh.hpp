@@ -1,4 +1,4 @@
-// Where pictures lie on a drawn mesh, and where they leave holes in it.
+// Picture coordinates on a drawn mesh, and the holes that pictures cut into it.
 #pragma once
 
 #include <span>
@@ -10,33 +10,32 @@
 
 namespace weft::render {
 
-/// Consecutive triangles of one look.
+/// Consecutive triangles of one appearance.
 struct PaintedRange {
   std::size_t first = 0, count = 0;
   const frame::Appearance* look = nullptr;
 };
 
-/// What a painted surface has beside its drawn mesh.
+/// What a painted surface has in addition to its drawn mesh.
 struct PaintedMesh {
-  std::vector<Eigen::Vector2f> places;  ///< per drawn vertex: what paints go by
+  std::vector<Eigen::Vector2f> places;  ///< per drawn vertex: paint coordinates
   std::vector<PaintedRange> ranges;
 };
 
-/// Splits the drawn vertices whose corners lie at different places of the paint, as they do at seams, and sorts the
-/// triangles by part.
+/// Splits drawn vertices whose corners have different paint coordinates, as at seams, and sorts the triangles by part.
 PaintedMesh lay_paint(const frame::Surface& surface, ShadedMesh& mesh);
 
-/// The holes of one drawn triangle, if it has any.
+/// The holes of a painted mesh.
 class Holes {
  public:
-  /// `opacity` of the picture of each range, null where nothing is cut out.
+  /// `opacity`: of the picture of each range; null if the range has no holes.
   Holes(const PaintedMesh& mesh, std::vector<const Opacity*> opacity);
 
   bool any() const;
-  /// How opaque triangles from one of `ranges` are; null where they have no holes.
+  /// Opacity of the triangles of a range; null if they have no holes.
   const Opacity* opacity(std::size_t range) const { return opacity_[range]; }
   std::span<const PaintedRange> ranges() const { return mesh_->ranges; }
-  /// Place in the picture of a range of a drawn vertex.
+  /// Picture coordinates of a drawn vertex for a range.
   Eigen::Vector2f place(std::size_t range, Index vertex) const;
 
  private:

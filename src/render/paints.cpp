@@ -14,7 +14,8 @@ namespace {
 using Wrap = frame::Paint::Wrap;
 using Alpha = frame::Paint::Alpha;
 
-// Of OpenGL 4.6, and before that of an extension that llvmpipe has; 8 keeps prints sharp on cloth seen at 7 degrees.
+// GL_TEXTURE_MAX_ANISOTROPY of OpenGL 4.6, also in an extension that llvmpipe has; 8 keeps prints sharp on cloth seen
+// at 7 degrees.
 constexpr GLenum kMaxAnisotropy = 0x84FE;
 constexpr float kAnisotropy = 8;
 
@@ -27,14 +28,14 @@ GLint gl_wrap(Wrap wrap) {
     case Wrap::mirror:
       return GL_MIRRORED_REPEAT;
     case Wrap::once:
-      return GL_CLAMP_TO_BORDER;  // which is transparent
+      return GL_CLAMP_TO_BORDER;  // the border is transparent
   }
   return GL_REPEAT;
 }
 
-/// Linear light to the bytes of an sRGB texture, to within half a byte.
+/// Converts linear light to the bytes of an sRGB texture, with an error below half a byte.
 std::uint8_t srgb_byte(float linear) {
-  constexpr int kSteps = 8192;  // bytes are at least 2.5 of them apart, near black
+  constexpr int kSteps = 8192;  // bytes are at least 2.5 steps apart, near black
   static const auto kTable = [] {
     std::vector<std::uint8_t> table;
     for (int i = 0; i <= kSteps; ++i)
@@ -78,7 +79,7 @@ const PaintTexture& Paints::of(const frame::Paint& paint) {
   gl_->TextureParameteri(name, GL_TEXTURE_WRAP_S, gl_wrap(paint.wrap_u));
   gl_->TextureParameteri(name, GL_TEXTURE_WRAP_T, gl_wrap(paint.wrap_v));
   gl_->TextureParameterf(name, kMaxAnisotropy, kAnisotropy);
-  gl_->GetError();  // of an OpenGL without: then it is not used
+  gl_->GetError();  // clears the error of an OpenGL without anisotropy, which is then not used
   if (paint.alpha == Alpha::cutout) made.opacity.emplace(std::move(levels), paint.wrap_u, paint.wrap_v);
   return known_.emplace(key, std::move(made)).first->second;
 }

@@ -1,4 +1,4 @@
-// Pictures of surfaces as OpenGL samples them.
+// Pictures of surfaces as OpenGL textures.
 #pragma once
 
 #include <map>
@@ -12,8 +12,8 @@
 
 namespace weft::render {
 
-/// One picture with all its sizes, made in linear light by the processor, so that means are those of light and no
-/// colour comes from what is transparent; and its opacity where that cuts holes.
+/// One picture with all mip levels, and its opacity if it cuts holes. The CPU makes the levels from premultiplied
+/// linear colour, so that means are means of light and transparent texels contribute no colour.
 struct PaintTexture {
   Texture texture;
   std::optional<Opacity> opacity;
@@ -24,7 +24,7 @@ class Paints {
  public:
   explicit Paints(const Gl& gl) : gl_(&gl) {}
 
-  /// Made when first asked for; the paint has a picture.
+  /// The texture of a paint, made on first use. The paint must have a picture.
   const PaintTexture& of(const frame::Paint& paint);
 
  private:

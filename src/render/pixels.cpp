@@ -21,11 +21,11 @@ const std::vector<float>& linear_table() {
 }
 
 float channel(std::uint64_t rgba, int which) {
-  // From 64 bits the compiler would go one by one.
+  // 32-bit conversion: from 64 bits, the compiler would not vectorise.
   return static_cast<float>(static_cast<int>(static_cast<std::uint32_t>(rgba >> (16 * which)) & 0xFFFF));
 }
 
-/// Interleaved gradient noise in [0, 1), as pixel_noise() of shaders/frame.glsl.
+/// Interleaved gradient noise in [0, 1); same as pixel_noise() in shaders/frame.glsl.
 float noise(int x, int y) {
   const float along = 0.06711056f * static_cast<float>(x) + 0.00583715f * static_cast<float>(y);
   const float wide = 52.9829189f * (along - std::floor(along));

@@ -1,4 +1,4 @@
-// Pixels as they are read from OpenGL: R, G, B, A of 16 bits, sRGB encoded, the lowest row first.
+// Pixels in the format read from OpenGL: R, G, B, A of 16 bits, sRGB encoded, lowest row first.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace weft::render {
 
-/// Linear light of one pixel, 0 to 1.
+/// Linear colour of one pixel, 0 to 1.
 Eigen::Vector3f linear_of(std::uint64_t rgba);
-/// And back; alpha is 1.
+/// Inverse of linear_of(); alpha is 1.
 std::uint64_t encoded(const Eigen::Vector3f& linear);
 
-/// Top row first, with bytes: half a level of noise either way keeps wide gradients from showing their steps.
+/// 8-bit image, top row first. Dithers by half a level either way, so that wide gradients show no bands.
 image::Image to_image(std::span<const std::uint64_t> rgba, int width, int height);
 image::Image16 to_image16(std::span<const std::uint64_t> rgba, int width, int height);
 

@@ -24,12 +24,12 @@ void Refinement::update(std::span<const Triangle> coarse, std::size_t vertices) 
   }
 }
 
-Middle middle(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b, double farthest) {
+Middle middle(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b, double max_offset) {
   const Vec3 along = b - a, sum = normal_a + normal_b;
   Vec3 off = along.dot(normal_b) * normal_b - along.dot(normal_a) * normal_a;
   off *= 0.125;
-  if (off.norm() > farthest) off *= farthest / off.norm();
-  // Of normals that face each other nothing is left.
+  if (off.norm() > max_offset) off *= max_offset / off.norm();
+  // The sum vanishes if the normals face each other.
   const Vec3 normal = sum.squaredNorm() > 1e-6 ? Vec3(sum.normalized()) : normal_a;
   return {0.5 * (a + b) + off, normal};
 }

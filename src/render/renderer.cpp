@@ -26,25 +26,26 @@
 namespace weft::render {
 namespace {
 
-// Triangles of cloth that are drawn as four each; where there are more they are small enough.
-constexpr std::size_t kMostRefined = 20000;
-constexpr std::size_t kMostLayers = 4;  // of cloth that is seen through, one behind the other
-constexpr double kWay = 5;              // of what is blurred, in one of its sharp pictures [pixels]
-constexpr double kFloorReach = 60;      // half side of the drawn floor, in radii of the subjects
+// Cloth is refined up to this number of triangles; finer meshes have small enough triangles.
+constexpr std::size_t kMaxRefinedTriangles = 20000;
+constexpr std::size_t kMaxPeeledLayers = 4;  // overlapping layers of translucent cloth
+constexpr double kMaxMotionPerPicture =
+    5;  // maximum motion in each of the sharp pictures that motion blur averages [pixels]
+constexpr double kFloorSizeRatio = 60;  // half side of the drawn floor, relative to subject radius plus eye distance
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   const Vec3 up = snapshot.stage ? snapshot.stage->up : Vec3(0, 0, 1);
   return up.squaredNorm() > 0 ? Vec3(up.normalized()) : Vec3(0, 0, 1);
 }
 
-void check(const frame::FrameSnapshot& snapshot) {
+void check_states(const frame::FrameSnapshot& snapshot) {
   if (snapshot.surfaces.size() != snapshot.states.size()) {
     throw Error(ExitCode::internal, "frame {}: {} surfaces, but states of {}", snapshot.frame, snapshot.surfaces.size(),
                 snapshot.states.size());
   }
 }
 
-/// One snapshot as the passes need it.
+/// One snapshot prepared for the passes.
 struct Plan {
   frame::Stage stage;
   Vec3 up;
@@ -77,7 +78,7 @@ Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Stage& stage, 
   plan.floor = find_floor(snapshot, plan.up);
   plan.view = make_view(camera, plan.up, aspect, plan.subjects, plan.floor);
   plan.lights = effective_lights(snapshot, plan.stage.look, plan.view.axes, plan.up);
-  plan.lighting = light_up(plan.stage, plan.up, plan.floor, plan.lights);
+  plan.lighting = make_lighting(plan.stage, plan.up, plan.floor, plan.lights);
   plan.caster_positions = subject_positions(snapshot);
   return plan;
 }
@@ -93,7 +94,7 @@ struct Renderer::Impl {
   frame::Cords cords;
   DrawTimes times;
 
-  // GL objects; made and deleted with the context current.
+  // GL objects; created and deleted with the context current.
   struct Passes {
     ShadowMaps shadows;
     BouncedLight bounced;
@@ -114,12 +115,13 @@ struct Renderer::Impl {
           frame_block(gl) {}
   };
   std::optional<Passes> passes;
-  std::optional<Mirror> mirror;  // once a floor shines
+  std::optional<Mirror> mirror;  // made once a floor is glossy
   std::optional<Outlines> outlines;
   std::optional<DataPasses> data;
   image::Layers layers;
 
-  // The picture and what it shows, lowest row first; kept for their memory. With layers also the floor without shadows.
+  // The picture and what it shows, lowest row first; members, so that their memory is reused. open_floor: floor without
+  // shadows, only if layers are requested.
   std::vector<std::uint64_t> rgba, unsmoothed, open_floor;
   std::vector<Seen> seen;
 
@@ -135,10 +137,10 @@ struct Renderer::Impl {
   bool reflects(const Plan& plan) const {
     return quality.mirrors && floor_roughness(plan.lighting.style, plan.floor) < kMirrorsSubjects;
   }
-  void bounce(const Plan& plan, std::span<const DrawnMesh> meshes, double heat);
+  void draw_bounced_light(const Plan& plan, std::span<const DrawnMesh> meshes, double heat);
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
-  void look_through_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
-                          std::span<const DrawnMesh> opaque, const PixelArea& area);
+  void blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
+                               std::span<const DrawnMesh> opaque, const PixelArea& area);
   Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const;
   void draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan);
   void draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before);
@@ -170,7 +172,7 @@ Renderer::Impl::~Impl() {
   context->release();
 }
 
-/// Brings the buffers in line with the snapshot's surfaces: kept where the surface is known, made where it is new.
+/// Updates the buffers to match the snapshot's surfaces: keeps those of known surfaces, creates those of new ones.
 void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const View& view) {
   std::size_t cloth_triangles = 0;
   for (const auto& surface : snapshot.surfaces)
@@ -189,7 +191,7 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const
       const bool cloth = surface->kind == frame::ObjectKind::cloth;
       const bool free = cloth && !settings.layers;
       next.emplace_back(gl, surface,
-                        Detail{.refines = quality.refines && free && cloth_triangles <= kMostRefined,
+                        Detail{.refines = quality.refines && free && cloth_triangles <= kMaxRefinedTriangles,
                                .rims = quality.trims && free && surface->appearance.thickness > 0,
                                .trims = quality.trims && cloth && surface->appearance.thickness > 0});
     }
@@ -217,7 +219,7 @@ void Renderer::Impl::update_floor(const Plan& plan) {
   const Vec3 center = plan.subjects.center();
   const Vec3 under = center - plan.floor->normal.dot(center - plan.floor->point) * plan.floor->normal;
   const double radius = 0.5 * plan.subjects.diagonal().norm();
-  passes->floor.update(under, plan.floor->normal, kFloorReach * (radius + (plan.view.eye - under).norm()));
+  passes->floor.update(under, plan.floor->normal, kFloorSizeRatio * (radius + (plan.view.eye - under).norm()));
 }
 
 void Renderer::Impl::upload_frame(const Plan& plan) {
@@ -245,11 +247,11 @@ std::vector<Shading::Material> Renderer::Impl::materials(const Plan& plan) const
   return list;
 }
 
-void Renderer::Impl::bounce(const Plan& plan, std::span<const DrawnMesh> meshes, double heat) {
+void Renderer::Impl::draw_bounced_light(const Plan& plan, std::span<const DrawnMesh> meshes, double heat) {
   const std::vector<Shading::Material> looks = materials(plan);
   std::vector<BouncingSurface> surfaces;
   for (std::size_t i = 0; i < looks.size(); ++i) {
-    if (heat > 0 && looks[i].cloth) continue;  // its colors are no paint
+    if (heat > 0 && looks[i].cloth) continue;  // heat colours reflect no coloured light
     surfaces.push_back({&passes->surfaces[i], &looks[i].appearance, plan.lighting.style.plain, meshes[i].opacity});
   }
   passes->bounced.draw(surfaces, plan.floor, plan.lighting.style.floor_tint, irradiance_of(plan.lighting.around),
@@ -257,20 +259,20 @@ void Renderer::Impl::bounce(const Plan& plan, std::span<const DrawnMesh> meshes,
 }
 
 void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
-  // Of more lights the small picture does not know where they shine.
+  // With more lights than kSoftLights, the soft light buffer does not contain all shadows: all floor counts as shaded.
   std::vector<PixelArea> shaded_floor{{0, 0, settings.width, settings.height}};
   if (plan.lights.size() <= kSoftLights) shaded_floor = passes->soft_light.shaded_floor();
   passes->shading.draw(materials(plan), heat, features(plan), subjects, shaded_floor);
 }
 
-/// Shadow maps, then what is seen, then its soft light at reduced size, then colours, then clean outlines.
+/// Draws shadow maps and bounced light, the geometry buffer, soft light at reduced size, colours, then smooth outlines.
 void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan) {
   update_surfaces(snapshot, plan.view);
   update_floor(plan);
   gl.Disable(GL_DITHER);
   std::vector<DrawnMesh> meshes;
   std::deque<Holes> holes;
-  std::vector<char> sheer;  // which can be seen through; empty where none can
+  std::vector<char> sheer;  // flag for each surface that is translucent; empty if none is
   for (const SurfaceBuffers& surface : passes->surfaces) {
     meshes.push_back({surface.positions(), surface.triangles()});
     const double opacity = quality.trims && !plan.lighting.style.plain ? opacity_of(surface.surface()) : 1;
@@ -292,7 +294,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   passes->shadows.draw(plan.lights, plan.caster_positions, meshes, in_view ? &*in_view : nullptr, plan.up,
                        plan.lighting.exposure.direct);
   const double heat = heat_scale(snapshot, plan.stage);
-  bounce(plan, meshes, heat);
+  draw_bounced_light(plan, meshes, heat);
   const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
   if (reflects(plan)) {
     if (!mirror) mirror.emplace(gl, quality, settings.width, settings.height);
@@ -313,7 +315,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   passes->shading.read(rgba);
   if (!outlines && !plan.lighting.style.edges) return;
   passes->geometry.read_seen(seen);
-  if (!sheer.empty()) look_through_cloth(plan, sheer, above, opaque, area);
+  if (!sheer.empty()) blend_translucent_cloth(plan, sheer, above, opaque, area);
   if (data) {
     unsmoothed = rgba;
     if (plan.floor && sheer.empty()) {
@@ -327,10 +329,10 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   if (plan.lighting.style.edges) draw_edges(passes->surfaces, plan.view, settings.width, settings.height, seen, rgba);
 }
 
-/// Lays cloth that can be seen through over the picture of all else, layer by layer from the nearest inward (Everitt,
-/// "Interactive Order-Independent Transparency", 2001), and leaves in `seen` what is nearest of all.
-void Renderer::Impl::look_through_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
-                                        std::span<const DrawnMesh> opaque, const PixelArea& area) {
+/// Blends translucent cloth over the picture of everything else by depth peeling, nearest layer first (Everitt,
+/// "Interactive Order-Independent Transparency", 2001). `seen` then contains the nearest surfaces of all.
+void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
+                                             std::span<const DrawnMesh> opaque, const PixelArea& area) {
   std::vector<std::uint64_t> behind = rgba;
   outlines->smooth(seen, opaque, plan.floor, plan.view, area, behind);
   const auto of_sheer = [&](const Seen& at) {
@@ -341,7 +343,7 @@ void Renderer::Impl::look_through_cloth(const Plan& plan, std::span<const char> 
     std::vector<Seen> seen;
   };
   std::vector<Layer> peeled;
-  while (peeled.size() < kMostLayers) {
+  while (peeled.size() < kMaxPeeledLayers) {
     passes->geometry.draw_layer(passes->surfaces, sheer, !peeled.empty());
     Layer layer;
     passes->geometry.read_seen(layer.seen);
@@ -375,35 +377,37 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   const frame::Camera camera = choose_camera(snapshot);
   const double scene_blur = snapshot.stage ? snapshot.stage->motion_blur : 0;
   const double shutter = before ? settings.motion_blur.value_or(scene_blur) : 0;
-  // Compositors blur by the motion and the depth that their layers have.
+  // Compositors blur by the motion and depth layers.
   if (data || (shutter <= 0 && camera.aperture <= 0)) {
     const Plan plan = plan_of(snapshot, camera);
     draw_sharp(snapshot, plan);
     if (data) draw_layers(plan, before);
     return;
   }
-  const frame::Camera was = before ? choose_camera(*before) : camera;
-  const auto moment = [&](double back) { return shutter > 0 ? between(snapshot, *before, back) : snapshot; };
+  const frame::Camera camera_before = before ? choose_camera(*before) : camera;
+  const auto snapshot_at = [&](double back) { return shutter > 0 ? between(snapshot, *before, back) : snapshot; };
   const auto view_at = [&](double back, const frame::FrameSnapshot& moved) {
-    return make_view(between(camera, was, back), up_of(moved), settings.aspect(), subject_bounds(moved),
+    return make_view(between(camera, camera_before, back), up_of(moved), settings.aspect(), subject_bounds(moved),
                      find_floor(moved, up_of(moved)));
   };
-  // Without a lens as many pictures as leave short ways between them, and along these they are smeared.
+  // Without a lens: as many pictures as leave at most kMaxMotionPerPicture pixels of motion in each, and Smear along
+  // that motion.
   int count = quality.instants;
   const bool smears = camera.aperture <= 0;
   if (smears) {
-    const frame::FrameSnapshot opening = moment(shutter / 360);
-    const double way = longest_way(opening, view_at(shutter / 360, opening), snapshot, view_at(0, snapshot),
-                                   settings.width, settings.height);
-    count = std::clamp(static_cast<int>(std::ceil(way / kWay)), 1, quality.instants);
+    const frame::FrameSnapshot opening = snapshot_at(shutter / 360);
+    const double motion = longest_motion(opening, view_at(shutter / 360, opening), snapshot, view_at(0, snapshot),
+                                         settings.width, settings.height);
+    count = std::clamp(static_cast<int>(std::ceil(motion / kMaxMotionPerPicture)), 1, quality.instants);
   }
   std::vector<Eigen::Vector3f> sums(static_cast<std::size_t>(settings.width) * settings.height,
                                     Eigen::Vector3f::Zero()),
       sharp(sums.size());
   Smear smear(settings.width, settings.height);
   for (const Instant& instant : instants(shutter, camera.aperture > 0, count)) {
-    const frame::FrameSnapshot moved = moment(instant.back);
-    const Plan plan = plan_of(moved, through_lens(between(camera, was, instant.back), up_of(moved), instant.lens));
+    const frame::FrameSnapshot moved = snapshot_at(instant.back);
+    const Plan plan =
+        plan_of(moved, through_lens(between(camera, camera_before, instant.back), up_of(moved), instant.lens));
     draw_sharp(moved, plan);
     for (std::size_t i = 0; i < sums.size(); ++i) sharp[i] = linear_of(rgba[i]);
     if (!smears) {
@@ -411,7 +415,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
       continue;
     }
     const double half = 0.5 * shutter / 360 / count;
-    const frame::FrameSnapshot from = moment(instant.back + half), to = moment(instant.back - half);
+    const frame::FrameSnapshot from = snapshot_at(instant.back + half), to = snapshot_at(instant.back - half);
     smear.add(passes->surfaces, plan.view, from, view_at(instant.back + half, from), to,
               view_at(instant.back - half, to), sharp, sums);
   }
@@ -434,7 +438,7 @@ void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* b
     }
   }
   if (!open_floor.empty()) {
-    const std::vector<float> shadows = caught_shadows(seen, unsmoothed, open_floor, settings.width, settings.height);
+    const std::vector<float> shadows = floor_shadows(seen, unsmoothed, open_floor, settings.width, settings.height);
     std::vector<float> alpha(surfaces.size());
     for (int y = 0; y < settings.height; ++y) {
       for (int x = 0; x < settings.width; ++x) {
@@ -458,7 +462,7 @@ void Renderer::set_camera_path(CameraPath path) {
 }
 
 image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
-  check(snapshot);
+  check_states(snapshot);
   const WallTimer wall;
   const DrawingTimer cpu;
   const CurrentContext current(*impl_->context);

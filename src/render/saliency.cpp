@@ -11,21 +11,22 @@
 namespace weft::render {
 namespace {
 
-// A picture of this height decides what covers what: one cell is 1/5000 to 1/10000 of a picture.
+// Occlusion is resolved in a picture of this height: one cell covers 1/5000 to 1/10000 of the picture.
 constexpr int kRows = 72;
-constexpr double kHalfMotion = 0.5;  // sizes of the cloth per second at which motion counts half [1/s]
+constexpr double kHalfScoreRate =
+    0.5;  // rate of shape change at which motion scores half [sizes of the cloth per second]
 
-/// The picture in coarse cells: the nearest surface in each.
-class Cells {
+/// A coarse depth buffer: the nearest surface in each cell.
+class CoverageGrid {
  public:
-  Cells(const View& view, double aspect)
+  CoverageGrid(const View& view, double aspect)
       : view_(view),
         columns_(std::max(1, static_cast<int>(std::lround(kRows * aspect)))),
         depth_(static_cast<std::size_t>(columns_ * kRows), std::numeric_limits<double>::max()),
         cloth_(depth_.size(), 0) {}
 
   void add(const frame::Surface& surface, const std::vector<Vec3>& positions) {
-    std::vector<Vec3> cells;  // column, row, depth; far outside where the eye cannot see
+    std::vector<Vec3> cells;  // column, row, depth; NaN in front of the near plane
     for (const Vec3& position : positions) {
       const Eigen::Vector4d clip = view_.clip_from_world * position.homogeneous();
       const Vec3 ndc = clip.head<3>() / clip.w();
@@ -37,12 +38,13 @@ class Cells {
       fill(cells[a], cells[b], cells[c], surface.kind == frame::ObjectKind::cloth);
   }
 
-  double cloth_share() const {
+  double cloth_fraction() const {
     return static_cast<double>(std::count(cloth_.begin(), cloth_.end(), 1)) / static_cast<double>(cloth_.size());
   }
 
  private:
-  // Cells whose centre lies in the triangle, by the signs of areas; triangles that the eye is in are left out.
+  // Cells whose centre is in the triangle, by the signs of areas; triangles that cross the near plane are
+  // ignored.
   void fill(const Vec3& a, const Vec3& b, const Vec3& c, bool cloth) {
     const auto area = [](const Vec3& p, const Vec3& q, const Vec3& r) {
       return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
@@ -57,9 +59,9 @@ class Cells {
     for (int y = first(low, kRows); y < first(high, kRows); ++y) {
       for (int x = first(left, columns_); x < first(right, columns_); ++x) {
         const Vec3 at(x + 0.5, y + 0.5, 0);
-        const Vec3 shares = Vec3(area(at, b, c), area(at, c, a), area(at, a, b)) / whole;
-        if (shares.minCoeff() < 0) continue;
-        const double depth = shares.dot(Vec3(a.z(), b.z(), c.z()));
+        const Vec3 weights = Vec3(area(at, b, c), area(at, c, a), area(at, a, b)) / whole;
+        if (weights.minCoeff() < 0) continue;
+        const double depth = weights.dot(Vec3(a.z(), b.z(), c.z()));
         const auto cell = static_cast<std::size_t>(y * columns_ + x);
         if (depth >= depth_[cell]) continue;
         depth_[cell] = depth;
@@ -78,13 +80,13 @@ double coverage(const frame::FrameSnapshot& snapshot, const std::string& camera_
   const Vec3 up = snapshot.stage ? snapshot.stage->up : Vec3::UnitZ();
   const frame::Camera camera = camera_of(snapshot, camera_name, aspect);
   const View view = make_view(camera, up, aspect, subject_bounds(snapshot), find_floor(snapshot, up));
-  Cells cells(view, aspect);
+  CoverageGrid cells(view, aspect);
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i)
     if (is_subject(*snapshot.surfaces[i])) cells.add(*snapshot.surfaces[i], snapshot.states[i].positions);
-  return cells.cloth_share();
+  return cells.cloth_fraction();
 }
 
-/// Front area, and its sum as vectors, whose length is as large where the surface is flat.
+/// Total area, and the sum of area vectors, whose length equals the area if the surface is flat.
 struct Facing {
   double area = 0;
   Vec3 sum = Vec3::Zero();
@@ -101,7 +103,7 @@ Facing facing(const frame::Surface& surface, const std::vector<Vec3>& x) {
   return result;
 }
 
-/// Mean speed of the vertices against that of their mean: cloth that only falls or is carried along does not count.
+/// Mean speed of the vertices relative to their mean velocity: falling or being carried along does not count.
 double speed_within(const std::vector<Vec3>& now, const std::vector<Vec3>& before, double seconds) {
   Vec3 mean = Vec3::Zero();
   for (std::size_t v = 0; v < now.size(); ++v) mean += (now[v] - before[v]) / static_cast<double>(now.size());
@@ -116,7 +118,7 @@ Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSna
                      const std::string& camera, double aspect) {
   Saliency saliency;
   saliency.coverage = coverage(snapshot, camera, aspect);
-  double area = 0, flat = 0, rate = 0;  // rate: sizes of the cloth per second, weighted by area
+  double area = 0, flat = 0, rate = 0;  // cloth sizes per second, weighted by area
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
     if (surface.kind != frame::ObjectKind::cloth || !is_subject(surface)) continue;
@@ -130,7 +132,7 @@ Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSna
   }
   if (!(area > 0)) return saliency;
   saliency.folding = 1 - flat / area;
-  saliency.motion = rate / (rate + kHalfMotion * area);
+  saliency.motion = rate / (rate + kHalfScoreRate * area);
   return saliency;
 }
 

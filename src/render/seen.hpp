@@ -1,15 +1,15 @@
-// What a pixel shows, as the geometry buffer tells the passes after it.
+// What a pixel shows: output of the geometry buffer for later passes.
 #pragma once
 
 namespace weft::render {
 
-/// Numbers of what is seen; surface i of a picture is kFirstSurface + i. As in shaders/frame.glsl.
+/// Surface numbers; surface i of a picture is kFirstSurface + i. As in shaders/frame.glsl.
 inline constexpr int kNothing = 0, kFloor = 1, kFirstSurface = 2;
 
-/// In place of the heat of what is no cloth. As in shaders/frame.glsl.
+/// Heat value of surfaces other than cloth. As in shaders/frame.glsl.
 inline constexpr float kSolid = -1e6f;
 
-/// One pixel: distance along the view axis [m], and the number of the surface, half more where its back is seen.
+/// One pixel: distance along the view axis [m], and the surface number, plus 0.5 if its back is seen.
 struct Seen {
   float distance = 0, surface = kNothing;
 };

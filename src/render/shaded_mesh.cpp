@@ -10,8 +10,8 @@
 namespace weft::render {
 namespace {
 
-// A regular prism meets the crease angle exactly, and rounding would then choose per frame. This margin [degrees]
-// keeps such edges soft at any orientation; no common division of the circle lands on it.
+// The faces of a regular prism can meet exactly at the crease angle; rounding would then decide differently in each
+// frame. This margin [degrees] keeps such edges soft at any orientation; no common division of the circle lands on it.
 constexpr double kCreaseMargin = 0.37;
 
 Vec3 unit_or_up(const Vec3& sum) {
@@ -19,7 +19,7 @@ Vec3 unit_or_up(const Vec3& sum) {
   return length > 0 ? Vec3(sum / length) : Vec3::UnitZ();
 }
 
-/// Adds to the mesh the drawn vertices of one vertex of the surface: one for each distinct normal among its corners.
+/// Adds the drawn vertices of one surface vertex: one for each distinct normal among its corners.
 class VertexSplitter {
  public:
   VertexSplitter(ShadedMesh& mesh, std::span<const Vec3> areas, double cos_crease)
@@ -29,7 +29,7 @@ class VertexSplitter {
     const std::size_t first = mesh_.normals.size();
     for (const std::int32_t corner : corners) {
       const Vec3 normal = corner_normal(corner, corners);
-      // Corners that average the same triangles get the same bits, as the order of addition is the same.
+      // Corners that average the same triangles get identical bits, because the order of addition is the same.
       std::size_t drawn = first;
       while (drawn < mesh_.normals.size() && mesh_.normals[drawn] != normal) ++drawn;
       if (drawn == mesh_.normals.size()) {
@@ -60,7 +60,7 @@ class VertexSplitter {
 
 CornerMap::CornerMap(std::span<const Triangle> triangles, std::size_t vertex_count)
     : first_(vertex_count + 1, 0), corners_(triangles.size() * 3) {
-  // Counting sort: count, sum up, then fill in corner order.
+  // Counting sort: count, prefix sum, then fill in corner order.
   for (const Triangle& triangle : triangles) {
     for (const Index vertex : triangle) {
       if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertex_count) {

@@ -18,11 +18,12 @@ std::vector<std::string> shading_defines(const QualitySettings& quality, const L
   return defines;
 }
 
-// Seams of cloth that is thicker are sewn down on both sides, at this distance [m].
-constexpr double kSewnTwice = 0.7e-3, kBesideSeam = 4e-3;
+// Cloth thicker than kTopstitchedThickness has topstitching on both sides of a seam, at distance kTopstitchDistance
+// [m].
+constexpr double kTopstitchedThickness = 0.7e-3, kTopstitchDistance = 4e-3;
 
-// Gloss of cotton: up to here threads shine by less than half a level of 255.
-constexpr double kMatte = 0.1;
+// Gloss of cotton: up to this value, threads shine by less than half a level of 255.
+constexpr double kMaxMatteGloss = 0.1;
 
 Texture make_heat_colors(const Gl& gl) {
   std::vector<float> texels;
@@ -44,7 +45,7 @@ float clip_of(int pixel, int size) {
   return 2 * static_cast<float>(pixel) / static_cast<float>(size) - 1;
 }
 
-/// Vertices of two coordinates in clip space at place 0.
+/// Attribute 0: two coordinates in clip space.
 void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corners) {
   gl.VertexArrayVertexBuffer(array.name(), 0, corners.name(), 0, sizeof(Eigen::Vector2f));
   gl.EnableVertexArrayAttrib(array.name(), 0);
@@ -52,8 +53,8 @@ void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corn
   gl.VertexArrayAttribBinding(array.name(), 0, 0);
 }
 
-/// Cells of 16x16 pixels, each two triangles. What is interpolated over them is off by less than half a level of 255
-/// where it bends as floor does towards the horizon.
+/// Cells of 16x16 pixels with two triangles each. The interpolation error is below half a level of 255 for curvatures
+/// like that of floor towards the horizon.
 struct Grid {
   std::vector<Eigen::Vector2f> corners;
   std::vector<GLuint> triangles;
@@ -75,7 +76,7 @@ struct Grid {
   }
 };
 
-/// A surface without colours of its own.
+/// Replaces the colours of an appearance with clay.
 frame::Appearance clay(const frame::Appearance& look) {
   frame::Appearance plain = look;
   plain.color = Vec3(0.74, 0.72, 0.69);
@@ -91,7 +92,7 @@ frame::Appearance clay(const frame::Appearance& look) {
 }  // namespace
 
 double opacity_of(const frame::Surface& surface) {
-  constexpr double kFirst = 0.5, kSlope = 1.25;  // so that chiffon, with 0.9, stops half
+  constexpr double kFirst = 0.5, kSlope = 1.25;  // chiffon, with a sheerness of 0.9, stops half of the light
   if (surface.kind != frame::ObjectKind::cloth) return 1;
   return 1 - kSlope * std::clamp(surface.appearance.finish.sheer - kFirst, 0.0, 0.5);
 }
@@ -134,9 +135,8 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
   check_framebuffer(gl, target_, "picture");
 }
 
-// What a sun gives to open floor, and
-// how it fades out, changes so slowly over the picture that it may be interpolated; the edge of a spot or a checker
-// not.
+// The light of a sun on open floor, and its fading, vary so slowly over the picture that they can be interpolated on a
+// grid; the edges of spots and checkers cannot.
 Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const Features& features)
     : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.tiled &&
                     !features.reflecting) {
@@ -179,11 +179,12 @@ const Shading::Programs& Shading::programs(Features features) {
 }
 
 void Shading::upload_materials(std::span<const Material> materials, double heat_scale) {
-  constexpr int kColumns = 5;  // of surface.frag
+  constexpr int kColumns = 5;  // as in surface.frag
   std::vector<Eigen::Vector4f> texels;
   heat_ = heat_scale > 0;
-  glossy_ = std::ranges::any_of(
-      materials, [](const Material& material) { return material.cloth && material.appearance.finish.gloss > kMatte; });
+  glossy_ = std::ranges::any_of(materials, [](const Material& material) {
+    return material.cloth && material.appearance.finish.gloss > kMaxMatteGloss;
+  });
   metal_ = std::ranges::any_of(materials, [](const Material& material) {
     return !material.cloth && (material.appearance.metal > 0 || material.appearance.coat > 0);
   });
@@ -191,9 +192,9 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
   for (const auto& [look, cloth, opacity, skin] : materials) {
     texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
     texels.push_back(texel(look.back_color, look.thread_spacing));
-    texels.push_back(
-        Eigen::Vector4d(cloth ? heat_scale : 0, look.hem, look.thickness, look.thickness > kSewnTwice ? kBesideSeam : 0)
-            .cast<float>());
+    texels.push_back(Eigen::Vector4d(cloth ? heat_scale : 0, look.hem, look.thickness,
+                                     look.thickness > kTopstitchedThickness ? kTopstitchDistance : 0)
+                         .cast<float>());
     const frame::Finish& finish = look.finish;
     texels.push_back(Eigen::Vector4d(cloth ? finish.gloss : look.coat, cloth ? finish.warp_fraction : look.metal,
                                      finish.fuzz, finish.sheer)
@@ -219,7 +220,7 @@ void Shading::set_floor(const std::optional<Floor>& floor, double tint) {
 void Shading::use_floor(const Program& program, const Features& features) const {
   program.use();
   if (!features.tiled) return;
-  constexpr GLuint kUnit = 16;  // of floor.frag
+  constexpr GLuint kUnit = 16;  // as in floor.frag
   gl_->BindTextureUnit(kUnit, floor_picture_);
   const Eigen::Vector4f across = floor_picture_from_world_.row(0), up = floor_picture_from_world_.row(1);
   gl_->Uniform4f(program.uniform("picture_across"), across.x(), across.y(), across.z(), across.w());
@@ -236,7 +237,7 @@ void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
     corners.insert(corners.end(), {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y0}, {x1, y1}, {x0, y1}});
   }
   upload<Eigen::Vector2f>(*gl_, area_vertices_, corners);
-  // Only floor has both of the lower bits.
+  // Only floor has both lower bits set.
   gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::shaded_floor), static_cast<GLuint>(PixelClass::floor));
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   gl_->BindVertexArray(area_array_.name());
@@ -274,7 +275,7 @@ void Shading::draw_open_floor(const Features& features) {
   const Programs& chosen = programs(features);
   bind();
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  // Of both classes of floor the lower bits are the same.
+  // Both classes of floor have the same lower bits.
   gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::floor), static_cast<GLuint>(PixelClass::floor));
   use_floor(chosen.open_floor, features);
   if (chosen.floor_on_grid) {
@@ -294,7 +295,7 @@ void Shading::draw(std::span<const Material> materials, double heat_scale, const
   bind();
   mark_shaded_floor(shaded_floor);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  // Blocks without a pixel of the class are left after the stencil test.
+  // The stencil test skips blocks without pixels of the class.
   const auto shade = [&](PixelClass pixel_class, const Program& program, bool on_grid = false) {
     gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(pixel_class), 0xFF);
     use_floor(program, features);
@@ -345,7 +346,7 @@ double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stag
       for (const float heat : state.heat) hottest = std::max(hottest, static_cast<double>(heat));
     }
   }
-  // A frame without any heat is drawn all cold.
+  // A frame without any heat is drawn entirely cold.
   return hottest > 0 ? 1 / hottest : 1;
 }
 

@@ -22,36 +22,36 @@ class Shading {
   struct Material {
     frame::Appearance appearance;
     bool cloth = false;
-    double opacity = 1;  ///< seen head-on
-    bool skin = false;   ///< where no picture lies over its colour
+    double opacity = 1;  ///< at normal incidence
+    bool skin = false;   ///< where no picture covers its colour
   };
-  /// What shaders are compiled for.
+  /// Features that select shader variants.
   struct Features {
     LightSet lights;
-    bool checker = false;     ///< on the floor
+    bool checker = false;     ///< checkered floor
     bool tiled = false;       ///< the floor shows the picture of set_floor()
-    bool level = false;       ///< the floor, so that one axis is its normal
-    bool painted = false;     ///< the geometry buffer has colours of its own
-    bool trimmed = false;     ///< and hems
+    bool level = false;       ///< the floor's normal is a coordinate axis
+    bool painted = false;     ///< the geometry buffer has colours
+    bool trimmed = false;     ///< the geometry buffer has hems
     bool shiny = false;       ///< the floor mirrors lamps
-    bool reflecting = false;  ///< the floor shows what a Mirror has drawn, everywhere
-    bool sheer = false;       ///< cloth says how opaque it is
-    bool glossy = false;      ///< threads of some cloth shine; draw() sees to that, and to the next three
-    bool metal = false;       ///< something that is no cloth is of metal or has a coat; likewise
-    bool skin = false;        ///< something is skin; likewise
-    bool heat = false;        ///< in place of colours of cloth
+    bool reflecting = false;  ///< the whole floor shows the picture of a Mirror
+    bool sheer = false;       ///< cloth writes its opacity
+    bool glossy = false;      ///< some cloth has shiny threads; set by draw(), as are the next three
+    bool metal = false;       ///< something other than cloth is metal or has a clear coat
+    bool skin = false;        ///< something is skin
+    bool heat = false;        ///< heat replaces the colours of cloth
     auto operator<=>(const Features&) const = default;
   };
-  /// The floor whose picture is drawn, and a factor on its light; before draw().
+  /// Sets the floor whose picture is drawn, and a factor on its light. Call before draw().
   void set_floor(const std::optional<Floor>& floor, double tint);
-  /// Looks of the surfaces in the order of their materials. `heat_scale`: 1 / hottest value, 0 for the surfaces' own
-  /// colours; only cloth shows heat. `subjects` holds all of them; floor is lit and open outside `shaded_floor`.
-  /// Expects the frame and light blocks, shadow maps, soft light and geometry bound.
+  /// `materials`: in the order of the surfaces. `heat_scale`: 1 / hottest value, 0 for the surfaces' own colours; only
+  /// cloth shows heat. `subjects`: area that contains all surfaces. Outside `shaded_floor`, floor is fully lit and open
+  /// to the sky. Frame and light blocks, shadow maps, soft light and geometry must be bound.
   void draw(std::span<const Material> materials, double heat_scale, const Features& features, const PixelArea& subjects,
             std::span<const PixelArea> shaded_floor);
-  /// All floor as if nothing shaded it, after draw() of the same picture.
+  /// Draws all floor without shadows or occlusion. Call after draw() of the same picture.
   void draw_open_floor(const Features& features);
-  /// Only cloth, after draw() of the same picture; its opacity goes into alpha.
+  /// Draws cloth only and writes its opacity to alpha. Call after draw() of the same picture.
   void draw_layer(Features features, const PixelArea& subjects);
 
   const Texture& picture() const { return picture_; }
@@ -65,7 +65,7 @@ class Shading {
 
   struct Programs {
     Program cloth, solid, open_floor, shaded_floor;
-    bool floor_on_grid;  // open_floor is lit at the corners of the grid
+    bool floor_on_grid;  // open_floor computes light at the corners of the grid
     Programs(const Gl& gl, const QualitySettings& quality, const Features& features);
   };
   const Programs& programs(Features features);
@@ -74,7 +74,7 @@ class Shading {
   const Gl* gl_;
   int width_, height_;
   QualitySettings quality_;
-  std::map<Features, Programs> programs_;  // made when first needed
+  std::map<Features, Programs> programs_;  // made on first use
   Program backdrop_, areas_;
   Texture picture_, heat_colors_, materials_;
   Framebuffer target_;
@@ -82,26 +82,27 @@ class Shading {
   Buffer area_vertices_, grid_vertices_, grid_triangles_;
   GLsizei grid_indices_ = 0;
   int material_rows_ = 0;
-  bool glossy_ = false, metal_ = false, skin_ = false, heat_ = false;  // of the materials
-  std::optional<Paints> floor_pictures_;                               // once a floor has one
+  bool glossy_ = false, metal_ = false, skin_ = false, heat_ = false;  // present among the materials
+  std::optional<Paints> floor_pictures_;                               // made once a floor has a picture
   GLuint floor_picture_ = 0;
   float floor_tint_ = 1;
   Eigen::Matrix<float, 2, 4> floor_picture_from_world_ = Eigen::Matrix<float, 2, 4>::Zero();
 };
 
-/// Share of the light that cloth stops, head-on. Dense weaves let light through, but nothing is seen behind them.
+/// Fraction of the light that cloth stops at normal incidence. Dense weaves transmit light, but nothing is visible
+/// through them.
 double opacity_of(const frame::Surface& surface);
 
-/// Whether a body is bare where no picture lies over its colour, as the mannequin is.
+/// Whether a body shows skin where no picture covers its colour, as the mannequin does.
 bool is_skin(const frame::Surface& surface);
 
-/// `plain`: of clay.
+/// `plain`: as clay, without own colours.
 Shading::Material material_of(const frame::Surface& surface, bool plain);
 
-/// What heat a stage shows of a frame: clay has none, and the look of strain has to have it.
+/// The heat that a stage shows for a frame: none for clay, strain for the look `strain`.
 frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
 
-/// 1 / value at the hot end of the scale, 0 where no heat is to be drawn.
+/// 1 / value at the hot end of the scale; 0 if no heat is drawn.
 double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
 
 }  // namespace weft::render

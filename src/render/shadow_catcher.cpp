@@ -6,8 +6,8 @@
 
 namespace weft::render {
 
-std::vector<float> caught_shadows(std::span<const Seen> seen, std::span<const std::uint64_t> shaded,
-                                  std::span<const std::uint64_t> open, int width, int height) {
+std::vector<float> floor_shadows(std::span<const Seen> seen, std::span<const std::uint64_t> shaded,
+                                 std::span<const std::uint64_t> open, int width, int height) {
   std::vector<float> shadows(seen.size(), 0);
   const auto is_floor = [&](std::size_t i) { return seen[i].surface == kFloor; };
   for (std::size_t i = 0; i < shadows.size(); ++i) {

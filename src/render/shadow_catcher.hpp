@@ -1,4 +1,4 @@
-// What of a picture compositors lay over a plate: its surfaces, and the shadow on its floor.
+// The parts of a picture that compositors lay over a plate: surfaces, and their shadow on the floor.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace weft::render {
 
-/// Share of the floor's light that subjects take from it at each pixel: of `shaded` against `open`, the same floor
-/// without shadows (both as read, lowest row first). Where a surface covers it, the most of what is beside, as part of
-/// such a pixel may be floor.
-std::vector<float> caught_shadows(std::span<const Seen> seen, std::span<const std::uint64_t> shaded,
-                                  std::span<const std::uint64_t> open, int width, int height);
+/// Fraction of the floor's light that the subjects block at each pixel: `shaded` compared with `open`, the same floor
+/// without shadows (both as read, lowest row first). Pixels covered by a surface take the maximum of their neighbours,
+/// because part of such a pixel may be floor.
+std::vector<float> floor_shadows(std::span<const Seen> seen, std::span<const std::uint64_t> shaded,
+                                 std::span<const std::uint64_t> open, int width, int height);
 
 }  // namespace weft::render

@@ -9,16 +9,17 @@
 namespace weft::render {
 namespace {
 
-constexpr int kBlock = 16;   // texels of a shadow map's side that share one range
-constexpr int kCoarser = 4;  // sides of maps that only thrown light asks: its cubes are larger than their texels
+constexpr int kBlock = 16;  // side of a block of texels that shares one depth range
+constexpr int kBounceMapReduction =
+    4;  // reduction of maps that only bounced light samples: its cells are larger than their texels
 
-// Widest filter, in texels: a penumbra may take this much to each side. Wider ones would need more taps to stay smooth.
+// Maximum half width of a penumbra [texels]. Wider ones would need more filter taps to stay smooth.
 constexpr int filter_limit(int map_size) {
   return map_size / 24;
 }
 
-/// Of a mesh with holes: those texels are covered whose threshold its opacity there is above, which filters make an
-/// even shade. Its corners are in front of the light.
+/// Rasterises a mesh with holes: a texel is covered if the opacity exceeds its dither threshold; the shadow filter
+/// averages these to an even shade. All corners must be in front of the light.
 template <class Write>
 void fill_with_holes(const DrawnMesh& mesh, std::span<const Eigen::Vector3f> places, int size, const Write& write) {
   for (std::size_t r = 0; r < mesh.holes->ranges().size(); ++r) {
@@ -31,7 +32,7 @@ void fill_with_holes(const DrawnMesh& mesh, std::span<const Eigen::Vector3f> pla
       }
       const Eigen::Vector2f at_a = mesh.holes->place(r, a), along_b = mesh.holes->place(r, b) - at_a,
                             along_c = mesh.holes->place(r, c) - at_a;
-      // Texels of the picture for one of the map, by their areas.
+      // Picture texels for each map texel, from the ratio of areas.
       const Eigen::Vector2f texels_b = along_b.cwiseProduct(opacity->size()),
                             texels_c = along_c.cwiseProduct(opacity->size());
       const Eigen::Vector3f map_b = places[b] - places[a], map_c = places[c] - places[a];
@@ -72,7 +73,7 @@ void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world
       fill_with_holes(mesh, places, size, write);
       continue;
     }
-    const auto partly = [&](int at, bool covered, float depth, float to_b, float to_c) {
+    const auto write_dithered = [&](int at, bool covered, float depth, float to_b, float to_c) {
       write(at, covered && mesh.opacity > threshold_at(at % size, at / size), depth, to_b, to_c);
     };
     const auto clip = [&](Index vertex) -> Eigen::Vector4d {
@@ -81,7 +82,7 @@ void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world
     for (const auto& [a, b, c] : mesh.triangles) {
       const bool whole = in_front[a] != 0 && in_front[b] != 0 && in_front[c] != 0;
       if (mesh.opacity < 1) {
-        if (whole) fill_triangle(places[a], places[b], places[c], size, size, partly);
+        if (whole) fill_triangle(places[a], places[b], places[c], size, size, write_dithered);
       } else if (whole) {
         fill_triangle(places[a], places[b], places[c], size, size, write);
       } else {
@@ -131,12 +132,12 @@ void ShadowMaps::reserve(int layers) {
 
 void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions,
                       std::span<const DrawnMesh> casters, const InView* in_view, const Vec3& up, const Vec3& scale) {
-  // One layer at least, so that the samplers always have something to look at.
+  // At least one layer, so that the samplers always have a complete texture.
   reserve(std::max<int>(1, static_cast<int>(lights.size())));
   const int size = quality_.shadow_size, coarse = size / kBlock;
   LightsUniform block;
   maps_.resize(lights.size());
-  whole_.resize(in_view == nullptr ? 0 : lights.size());
+  complete_maps_.resize(in_view == nullptr ? 0 : lights.size());
   const auto fill = [&](Map& map, const frame::Light& light, const InView* needed, int map_size) {
     const ShadowView view = fit_shadow(light, caster_positions, needed, up, map_size);
     map.light = pack_light(light, view, scale);
@@ -145,7 +146,7 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
   };
   for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
     fill(maps_[i], lights[i], in_view, size);
-    if (in_view != nullptr) fill(whole_[i], lights[i], nullptr, size / kCoarser);
+    if (in_view != nullptr) fill(complete_maps_[i], lights[i], nullptr, size / kBounceMapReduction);
     block.lights[i] = maps_[i].light;
     const std::vector<float>& depths = maps_[i].depths;
     find_ranges(depths);
@@ -164,26 +165,26 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
 
 Eigen::Vector3f ShadowMaps::light_on(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool shadowed) const {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (const Map& map : whole_.empty() ? maps_ : whole_) {
+  for (const Map& map : complete_maps_.empty() ? maps_ : complete_maps_) {
     const LightUniform& light = map.light;
     const int size = map.size;
     Eigen::Vector3f toward = light.toward_light.head<3>();
     float cone = 1;
     if (light.toward_light.w() != 0) {
-      const Eigen::Vector3f way = light.position.head<3>() - point;
-      toward = way.normalized();
+      const Eigen::Vector3f to_light = light.position.head<3>() - point;
+      toward = to_light.normalized();
       const float t = (toward.dot(light.toward_light.head<3>()) - light.position.w()) * light.color.w();
       cone = std::clamp(t, 0.0f, 1.0f);
-      cone *= cone * (3 - 2 * cone) * light.toward_light.w() / std::max(way.squaredNorm(), 1e-6f);
+      cone *= cone * (3 - 2 * cone) * light.toward_light.w() / std::max(to_light.squaredNorm(), 1e-6f);
     }
     const float facing = cone * normal.dot(toward);
     if (facing <= 0) continue;
     if (shadowed) {
-      // A step of two texels off the surface stands for the bias of the picture's shadows.
+      // A bias of two texels replaces the bias of the picture's shadows.
       const Eigen::Vector4f at = light.shadow_from_world * point.homogeneous();
       const Eigen::Vector2f texel = at.head<2>() / at.w() * static_cast<float>(size);
       const bool inside = at.w() > 0 && texel.minCoeff() >= 0 && texel.maxCoeff() < static_cast<float>(size);
-      // Depth 1 is no caster, also for what lies beyond the far plane.
+      // Depth 1 means no caster, also for points beyond the far plane.
       const float depth = std::min(at.z() / at.w() - 4 * light.shadow.z(), 1.0f);
       if (inside &&
           depth > map.depths[static_cast<std::size_t>(texel.y()) * size + static_cast<std::size_t>(texel.x())])
@@ -194,8 +195,8 @@ Eigen::Vector3f ShadowMaps::light_on(const Eigen::Vector3f& point, const Eigen::
   return sum;
 }
 
-/// Ranges of blocks and of what lies within reach of the widest filter, so that a block answers for every tap that
-/// starts in it.
+/// Computes the depth range of each block, extended by the width of the largest filter, so that a block's range is
+/// valid for every tap that starts in it.
 void ShadowMaps::find_ranges(std::span<const float> map) {
   const int size = quality_.shadow_size, coarse = size / kBlock;
   ranges_.assign(static_cast<std::size_t>(coarse) * coarse, {});
@@ -214,7 +215,7 @@ void ShadowMaps::find_ranges(std::span<const float> map) {
   spread_ranges(coarse, 1);
 }
 
-/// Takes in the neighbours along lines whose elements lie `step` apart, the lines `other_step`.
+/// Extends ranges by their neighbours along lines with element stride `step`; lines are `other_step` apart.
 void ShadowMaps::spread_ranges(int step, int other_step) {
   const int coarse = quality_.shadow_size / kBlock, radius = filter_limit(quality_.shadow_size) / kBlock + 1;
   std::vector<Range> line(static_cast<std::size_t>(coarse));

@@ -1,4 +1,4 @@
-// Depth seen from each light, and coarse ranges of it that let most pixels do without filtering.
+// Depth maps of each light, with coarse depth ranges that spare most pixels the filtering.
 #pragma once
 
 #include <span>
@@ -15,20 +15,21 @@ class ShadowMaps {
  public:
   ShadowMaps(const Gl& gl, const QualitySettings& quality);
 
-  /// Draws the map of every light and uploads the light block. Leaves the maps bound to units 0 to 2. They hold what is
-  /// `in_view`; where that is null, all.
+  /// Draws the map of every light and uploads the light block. Binds the maps to units 0 to 2. They contain what is
+  /// `in_view`; null: all casters.
   void draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions,
             std::span<const DrawnMesh> casters, const InView* in_view, const Vec3& up, const Vec3& scale);
 
-  /// Direct light on matte white at a point that faces `normal`, in view or not, after draw(); with hard shadows or
-  /// none.
+  /// Direct light on matte white at a point that faces `normal`, in view or not. `shadowed`: with hard shadows, else
+  /// without. Call after draw().
   Eigen::Vector3f light_on(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool shadowed) const;
 
-  /// Lines for the shaders that include lights.glsl.
+  /// Macro definitions for shaders that include lights.glsl.
   static std::vector<std::string> defines(const QualitySettings& quality, const LightSet& lights);
 
  private:
-  /// Nearest and farthest depth in a block of texels; beyond all depths where no caster is, as nothing is dark there.
+  /// Minimum and maximum depth in a block of texels; outside the range [0, 1] without a caster, as nothing is dark
+  /// there.
   struct Range {
     float nearest = 1, farthest = 0;
   };
@@ -47,7 +48,8 @@ class ShadowMaps {
   Texture depth_, range_;
   Sampler compare_, raw_;
   Buffer light_block_;
-  std::vector<Map> maps_, whole_;  // of each light; coarse ones of all, where those of the picture leave something out
+  std::vector<Map> maps_,
+      complete_maps_;  // per light; complete_maps_: coarse maps of all casters, filled if maps_ omit some
   std::vector<Range> ranges_;
 };
 

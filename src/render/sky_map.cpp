@@ -8,7 +8,7 @@ namespace weft::render {
 void draw_sky_map(std::span<const DrawnMesh> meshes, const SkyView& view, std::vector<SkyTexel>& map) {
   map.assign(static_cast<std::size_t>(kSkySize) * kSkySize, {});
   const Mat4 texture_from_world = texture_from_clip() * view.clip_from_world;
-  std::vector<Eigen::Vector3f> places;  // texels, depth
+  std::vector<Eigen::Vector3f> places;  // x, y in texels; depth
   const auto write = [&](int at, bool covered, float depth, float, float) {
     SkyTexel& texel = map[static_cast<std::size_t>(at)];
     texel.highest = covered ? std::min(texel.highest, depth) : texel.highest;

@@ -1,5 +1,4 @@
-// How high and how low things are over each spot, as seen from straight above: what hides the sky;
-// shaders/soft_light.frag.
+// Height range of what lies above each spot, as seen from straight above, for sky occlusion (shaders/soft_light.frag).
 #pragma once
 
 #include <span>
@@ -10,15 +9,15 @@
 
 namespace weft::render {
 
-inline constexpr int kSkySize = 256;  ///< texels along a side: the dark under things is soft anyway
+inline constexpr int kSkySize = 256;  ///< texels along a side; coarse, because sky occlusion is soft
 
-/// Depths of a SkyView; 1 and 0 where nothing is.
+/// Depths of a SkyView; 1 and 0 if nothing is there.
 struct SkyTexel {
   float highest = 1, lowest = 0;
 };
 
-/// kSkySize x kSkySize texels, row by row, each of what lies over its centre. On the processor: triangles of cloth are
-/// about as small as texels, for which OpenGL takes ten times as long and once more from below.
+/// Fills kSkySize x kSkySize texels, row by row, from what lies over each centre. Works on the CPU: triangles of cloth
+/// are about as small as texels, for which OpenGL takes ten times as long and needs a second pass from below.
 void draw_sky_map(std::span<const DrawnMesh> meshes, const SkyView& view, std::vector<SkyTexel>& map);
 
 }  // namespace weft::render

@@ -10,11 +10,12 @@
 namespace weft::render {
 namespace {
 
-constexpr int kTile = 8;  // pixels; a way reaches half of its length, so that the next tile knows of it
-constexpr float kLongest = 2 * kTile;
-constexpr float kStill = 1.2f;  // pixels: outlines are as wide themselves
+constexpr int kTile =
+    8;  // [pixels]; smears extend half of the motion to each side, so that they stay within the next tile
+constexpr float kMaxMotion = 2 * kTile;
+constexpr float kMinMotion = 1.2f;  // [pixels]; as wide as the antialiasing of outlines
 
-/// [pixels], lowest row first; z: 1 / distance, not above 0 behind the viewer.
+/// Position in the picture [pixels], lowest row first; z: 1 / distance, 0 behind the near plane.
 Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int height) {
   const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
   if (clip.w() < view.near) return Eigen::Vector3f::Zero();
@@ -22,7 +23,7 @@ Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int
       .cast<float>();
 }
 
-/// Null where a surface is not there, or another one.
+/// Null if the snapshot lacks the surface or has another number of vertices.
 const std::vector<Vec3>* positions_of(const frame::FrameSnapshot& snapshot, const frame::Surface& surface,
                                       std::size_t count) {
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i)
@@ -33,8 +34,8 @@ const std::vector<Vec3>* positions_of(const frame::FrameSnapshot& snapshot, cons
 
 }  // namespace
 
-double longest_way(const frame::FrameSnapshot& from, const View& from_view, const frame::FrameSnapshot& to,
-                   const View& to_view, int width, int height) {
+double longest_motion(const frame::FrameSnapshot& from, const View& from_view, const frame::FrameSnapshot& to,
+                      const View& to_view, int width, int height) {
   float longest = 0;
   for (std::size_t i = 0; i < to.surfaces.size(); ++i) {
     if (!is_subject(*to.surfaces[i])) continue;
@@ -52,82 +53,84 @@ double longest_way(const frame::FrameSnapshot& from, const View& from_view, cons
   return longest;
 }
 
-void Smear::find_ways(std::span<const SurfaceBuffers> surfaces, const View& view, const frame::FrameSnapshot& from,
-                      const View& from_view, const frame::FrameSnapshot& to, const View& to_view) {
-  ways_.assign(static_cast<std::size_t>(width_) * height_, {});
+void Smear::find_motions(std::span<const SurfaceBuffers> surfaces, const View& view, const frame::FrameSnapshot& from,
+                         const View& from_view, const frame::FrameSnapshot& to, const View& to_view) {
+  motions_.assign(static_cast<std::size_t>(width_) * height_, {});
   std::vector<Eigen::Vector3f> places;
-  std::vector<Eigen::Vector2f> ways;
+  std::vector<Eigen::Vector2f> motions;
   for (const SurfaceBuffers& drawn : surfaces) {
     const std::size_t count = drawn.state().positions.size();
     const std::vector<Vec3>*starts = positions_of(from, drawn.surface(), count),
           *ends = positions_of(to, drawn.surface(), count);
     const auto& mesh = drawn.mesh();
     places.clear();
-    ways.clear();
+    motions.clear();
     for (std::size_t i = 0; i < mesh.source.size(); ++i) {
       const Index vertex = mesh.source[i];
       places.push_back(to_pixels(view, drawn.positions()[i], width_, height_));
-      ways.emplace_back(Eigen::Vector2f::Zero());
+      motions.emplace_back(Eigen::Vector2f::Zero());
       if (starts == nullptr || ends == nullptr) continue;
       const Eigen::Vector3f start = to_pixels(from_view, (*starts)[vertex], width_, height_),
                             end = to_pixels(to_view, (*ends)[vertex], width_, height_);
-      if (start.z() > 0 && end.z() > 0) ways.back() = (end - start).head<2>();
-      const float length = ways.back().norm();
-      if (length > kLongest) ways.back() *= kLongest / length;
+      if (start.z() > 0 && end.z() > 0) motions.back() = (end - start).head<2>();
+      const float length = motions.back().norm();
+      if (length > kMaxMotion) motions.back() *= kMaxMotion / length;
     }
     for (const auto& [a, b, c] : mesh.triangles) {
       if (places[a].z() <= 0 || places[b].z() <= 0 || places[c].z() <= 0) continue;
-      const Eigen::Vector2f &first = ways[a], along = ways[b] - first, across = ways[c] - first;
+      const Eigen::Vector2f &first = motions[a], along = motions[b] - first, across = motions[c] - first;
       fill_triangle(places[a], places[b], places[c], width_, height_,
                     [&](int at, bool covered, float nearness, float to_b, float to_c) {
-                      if (covered && nearness > ways_[at].nearness)
-                        ways_[at] = {first + to_b * along + to_c * across, nearness};
+                      if (covered && nearness > motions_[at].nearness)
+                        motions_[at] = {first + to_b * along + to_c * across, nearness};
                     });
     }
   }
 }
 
-/// What is still keeps its place: only longest ways draw their surroundings along.
-void Smear::find_longest() {
+/// Dilates motion over neighbouring tiles. Pixels in still surroundings stay sharp: only the longest motions smear
+/// their surroundings.
+void Smear::dilate_motions() {
   const int columns = (width_ + kTile - 1) / kTile, rows = (height_ + kTile - 1) / kTile;
   std::vector<Eigen::Vector2f> tiles(static_cast<std::size_t>(columns) * rows, Eigen::Vector2f::Zero());
-  const auto take = [](Eigen::Vector2f& longest, const Eigen::Vector2f& way) {
-    if (way.squaredNorm() > longest.squaredNorm()) longest = way;
+  const auto take = [](Eigen::Vector2f& longest, const Eigen::Vector2f& motion) {
+    if (motion.squaredNorm() > longest.squaredNorm()) longest = motion;
   };
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x)
       take(tiles[static_cast<std::size_t>(y / kTile) * columns + x / kTile],
-           ways_[static_cast<std::size_t>(y) * width_ + x].way);
-  longest_ = tiles;
+           motions_[static_cast<std::size_t>(y) * width_ + x].motion);
+  dilated_motions_ = tiles;
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column)
       for (int other = std::max(row - 1, 0); other <= std::min(row + 1, rows - 1); ++other)
         for (int beside = std::max(column - 1, 0); beside <= std::min(column + 1, columns - 1); ++beside)
-          take(longest_[static_cast<std::size_t>(row) * columns + column],
+          take(dilated_motions_[static_cast<std::size_t>(row) * columns + column],
                tiles[static_cast<std::size_t>(other) * columns + beside]);
 }
 
-/// Each place along a way shows what is there if that came by, or if what is here went away from before it; else what
-/// is here (after McGuire et al., "A Reconstruction Filter for Plausible Motion Blur", 2012).
-Eigen::Vector3f Smear::drawn_along(int x, int y, const Eigen::Vector2f& way,
+/// Averages samples along a motion. A sample shows the picture there if that surface moves across this pixel, or if the
+/// surface at this pixel moves away from in front of it; else the picture here (after McGuire et al., "A Reconstruction
+/// Filter for Plausible Motion Blur", 2012).
+Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
                                    std::span<const Eigen::Vector3f> sharp) const {
   const std::size_t here = static_cast<std::size_t>(y) * width_ + x;
-  const float length = way.norm(), own = 0.5f * ways_[here].way.norm();
-  // A pixel apart at most, one of them here.
+  const float length = motion.norm(), own = 0.5f * motions_[here].motion.norm();
+  // Taps are at most one pixel apart; one of them is here.
   const int taps = 2 * static_cast<int>(std::ceil(0.5f * length)) + 1;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (int k = 0; k < taps; ++k) {
     const float t = (static_cast<float>(k) + 0.5f) / static_cast<float>(taps) - 0.5f;
-    const int to_x = std::clamp(static_cast<int>(std::lround(static_cast<float>(x) + t * way.x())), 0, width_ - 1),
-              to_y = std::clamp(static_cast<int>(std::lround(static_cast<float>(y) + t * way.y())), 0, height_ - 1);
+    const int to_x = std::clamp(static_cast<int>(std::lround(static_cast<float>(x) + t * motion.x())), 0, width_ - 1),
+              to_y = std::clamp(static_cast<int>(std::lround(static_cast<float>(y) + t * motion.y())), 0, height_ - 1);
     const std::size_t there = static_cast<std::size_t>(to_y) * width_ + to_x;
-    // How far what is in front comes, and a pixel over which that ends.
+    // Distance that the surface in front moves, with a falloff of one pixel.
     constexpr float kSame = 1.01f;
-    const float distance = std::abs(t) * length, other = 0.5f * ways_[there].way.norm();
-    const bool before = ways_[there].nearness > kSame * ways_[here].nearness,
-               behind = ways_[here].nearness > kSame * ways_[there].nearness;
-    const float reach = before ? other : behind ? own : std::max(own, other);
-    const float share = std::clamp(reach - distance + 0.5f, 0.0f, 1.0f);
+    const float distance = std::abs(t) * length, other = 0.5f * motions_[there].motion.norm();
+    const bool before = motions_[there].nearness > kSame * motions_[here].nearness,
+               behind = motions_[here].nearness > kSame * motions_[there].nearness;
+    const float extent = before ? other : behind ? own : std::max(own, other);
+    const float share = std::clamp(extent - distance + 0.5f, 0.0f, 1.0f);
     sum += share * sharp[there] + (1 - share) * sharp[here];
   }
   return sum / static_cast<float>(taps);
@@ -136,16 +139,16 @@ Eigen::Vector3f Smear::drawn_along(int x, int y, const Eigen::Vector2f& way,
 void Smear::add(std::span<const SurfaceBuffers> surfaces, const View& view, const frame::FrameSnapshot& from,
                 const View& from_view, const frame::FrameSnapshot& to, const View& to_view,
                 std::span<const Eigen::Vector3f> sharp, std::vector<Eigen::Vector3f>& sum) {
-  find_ways(surfaces, view, from, from_view, to, to_view);
-  find_longest();
+  find_motions(surfaces, view, from, from_view, to, to_view);
+  dilate_motions();
   const int columns = (width_ + kTile - 1) / kTile;
   drawing_for(static_cast<std::size_t>(height_), kTile, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       for (int x = 0; x < width_; ++x) {
         const int y = static_cast<int>(row);
         const std::size_t at = row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-        const Eigen::Vector2f& way = longest_[static_cast<std::size_t>(y / kTile) * columns + x / kTile];
-        sum[at] += way.norm() < kStill ? sharp[at] : drawn_along(x, y, way, sharp);
+        const Eigen::Vector2f& motion = dilated_motions_[static_cast<std::size_t>(y / kTile) * columns + x / kTile];
+        sum[at] += motion.norm() < kMinMotion ? sharp[at] : smear_pixel(x, y, motion, sharp);
       }
     }
   });

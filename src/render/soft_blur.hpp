@@ -1,5 +1,5 @@
-// Evens out the noise of the small picture of soft light (soft_light.hpp), on the processor: its texels are read
-// anyway, and llvmpipe took 22 CPU ms of a picture for what takes 5 here.
+// Removes noise from the small buffer of soft light (soft_light.hpp) on the CPU: its texels are read back anyway, and
+// this takes 5 CPU ms for each picture against 22 in llvmpipe.
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace weft::render {
 
-/// Lights whose shares the small picture holds.
+/// Number of lights whose fractions the buffer stores.
 inline constexpr std::size_t kSoftLights = 2;
 
-/// As shaders/soft_light.glsl packs it.
+/// Layout as packed in shaders/soft_light.glsl.
 struct SoftTexel {
   float surface_open, lit[kSoftLights], distance;
 };
 
-/// Mean openness over five texels of the same surface, across and then down: outlines are kept. The shares of light are
-/// softened over a pixel only: their steps would show as a sawtooth at full size.
+/// Averages openness over five texels of the same surface, horizontally and then vertically; outlines are kept. The
+/// light fractions are blurred over one pixel only, because their steps would be visible as a sawtooth at full size.
 class SoftBlur {
  public:
   SoftBlur(int width, int height);
@@ -25,21 +25,21 @@ class SoftBlur {
   void smooth(std::vector<SoftTexel>& texels);
 
  private:
-  /// Texels row by row, each row with what lies beyond its ends, which is as they are.
+  /// Texels row by row; each row has padding at both ends that repeats its last texels.
   using Plane = std::vector<float>;
-  struct Shares {
+  struct LightFraction {
     Plane lit;
-    Plane too_crisp;  // not negative where an edge is too crisp for this size
+    Plane too_crisp;  // >= 0 where a shadow edge is too sharp for this size
   };
   struct Planes {
     Plane open;
-    std::array<Shares, kSoftLights> lights;
+    std::array<LightFraction, kSoftLights> lights;
   };
 
-  template <bool kShares>
+  template <bool kWithLights>
   void pass(const Planes& from, Planes& to, bool across) const;
   void extend(Plane& plane, int y) const;
-  std::size_t place(int y) const;
+  std::size_t row_start(int y) const;
 
   int width_, height_;
   std::size_t stride_;

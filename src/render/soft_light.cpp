@@ -7,14 +7,14 @@
 namespace weft::render {
 namespace {
 
-constexpr int kSoftTile = 4;  // texels of the small picture
-constexpr int kMargin = 2;    // texels that shading may look beyond a pixel's own; shaders/shading.glsl
+constexpr int kSoftTile = 4;  // side of a tile [texels of the buffer]
+constexpr int kMargin = 2;    // filter radius of the lookup around a pixel [texels]; shaders/shading.glsl
 
-// Openness from which floor counts as open: what is left out is half a level of 255, less than the dither.
+// Openness from which floor counts as open: the error is half a level of 255, less than the dither.
 constexpr float kOpen = 0.998f;
 
-/// Whether floor here or nearby needs to look the texel up.
-bool shades(const SoftTexel& texel) {
+/// Whether floor at or near this texel needs soft light.
+bool needs_soft_light(const SoftTexel& texel) {
   constexpr float kOpenPacked = kFloor + 0.9375f * kOpen;
   if (texel.surface_open < kFloor) return false;
   return texel.surface_open < kOpenPacked || texel.surface_open >= kFirstSurface || texel.lit[0] < 1 ||
@@ -84,7 +84,7 @@ void SoftLight::draw(std::span<const DrawnMesh> meshes, const SkyView& above, Li
 }
 
 std::vector<PixelArea> SoftLight::shaded_floor() const {
-  // Texel x counts for the tiles of x - kMargin and x + kMargin; flags begin at x = -kMargin.
+  // Texel x marks the tiles of x - kMargin and x + kMargin; flags start at x = -kMargin.
   const auto tiles = [](int texels_along) { return (texels_along + 2 * kMargin + kSoftTile - 1) / kSoftTile; };
   const int columns = tiles(width_), rows = tiles(height_);
   std::vector<std::uint8_t> flags(static_cast<std::size_t>(columns) * rows), row_flags(columns);
@@ -92,7 +92,7 @@ std::vector<PixelArea> SoftLight::shaded_floor() const {
     std::fill(row_flags.begin(), row_flags.end(), 0);
     const SoftTexel* row = texels_.data() + static_cast<std::size_t>(y) * width_;
     for (int x = 0; x < width_; ++x) {
-      const bool flag = shades(row[x]);
+      const bool flag = needs_soft_light(row[x]);
       row_flags[x / kSoftTile] |= flag;
       row_flags[(x + 2 * kMargin) / kSoftTile] |= flag;
     }
@@ -100,7 +100,7 @@ std::vector<PixelArea> SoftLight::shaded_floor() const {
       for (int i = 0; i < columns; ++i) flags[static_cast<std::size_t>(tile_row) * columns + i] |= row_flags[i];
     }
   }
-  // Runs of tiles become areas.
+  // Merges runs of tiles into areas.
   const auto pixel = [&](int tile, int size) {
     return std::clamp((tile * kSoftTile - kMargin) * quality_.soft_divisor, 0, size);
   };

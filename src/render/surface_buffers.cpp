@@ -9,7 +9,7 @@
 namespace weft::render {
 namespace {
 
-/// Where pictures cut holes, backs are seen through them.
+/// Through holes, back faces are visible.
 bool has_holes(const frame::Surface& surface) {
   const auto cuts = [](const frame::Appearance& look) { return look.paint.alpha == frame::Paint::Alpha::cutout; };
   return cuts(surface.appearance) ||
@@ -51,7 +51,7 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
   if (detail_.trims || detail_.rims) trims_.emplace(*surface_);
   describe(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
-  // A stream of `size` numbers of its own at a place.
+  // Adds an attribute of `size` floats with its own buffer.
   const auto describe_more = [&](GLuint place, const Buffer& buffer, GLint size) {
     gl.VertexArrayVertexBuffer(array_.name(), place, buffer.name(), 0, static_cast<GLsizei>(size * sizeof(float)));
     gl.EnableVertexArrayAttrib(array_.name(), place);
@@ -68,18 +68,18 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
 }
 
 void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
-  // Obstacles mostly stand still.
+  // Skips unchanged surfaces: most obstacles stand still.
   if (!detail_.rims) rim = 0;
-  if (mapped_ && state.positions == state_.positions && state.heat == state_.heat && rim == rim_) return;
-  rim_ = rim;
+  if (has_corner_map_ && state.positions == state_.positions && state.heat == state_.heat && rim == rim_width_) return;
+  rim_width_ = rim;
   state_ = state;
-  if (!mapped_ || vertex_count_ != state.positions.size()) {
+  if (!has_corner_map_ || vertex_count_ != state.positions.size()) {
     corners_ = CornerMap(surface_->triangles, state.positions.size());
     vertex_count_ = state.positions.size();
-    mapped_ = true;
+    has_corner_map_ = true;
   }
   if (closed_) {
-    double volume = 0;  // six times what is enclosed: negative where the front is inside
+    double volume = 0;  // six times the enclosed volume: negative if the front is inside
     bounds_.setEmpty();
     for (const Vec3& position : state.positions) bounds_.extend(position);
     for (const auto& [a, b, c] : surface_->triangles) {
@@ -87,7 +87,7 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
       volume +=
           from_center.dot((state.positions[b] - state.positions[a]).cross(state.positions[c] - state.positions[a]));
     }
-    outward_ = volume > 0;
+    faces_outward_ = volume > 0;
   }
   mesh_ = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
   if (painted_) painted_ = lay_paint(*surface_, mesh_);
@@ -102,20 +102,20 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
                    has_uv ? surface_->uv[v].cast<float>().eval() : Eigen::Vector2f::Zero(),
                    has_heat ? state.heat[v] : no_heat};
   }
-  if (refinement_) add_middles(vertices);
+  if (refinement_) add_midpoints(vertices);
   with_rims_.clear();
   if (rim > 0) add_rims(vertices, rim);
-  if (detail_.trims && trims_uploaded_ != positions_.size()) upload_trims();
+  if (detail_.trims && uploaded_trim_count_ != positions_.size()) upload_trims();
   upload<Vertex>(*gl_, vertices_, vertices);
   upload<Triangle>(*gl_, triangles_, triangles());
   if (painted_) upload<Eigen::Vector2f>(*gl_, places_, painted_->places);
 }
 
-void SurfaceBuffers::add_middles(std::vector<Vertex>& vertices) {
+void SurfaceBuffers::add_midpoints(std::vector<Vertex>& vertices) {
   refinement_->update(mesh_.triangles, vertices.size());
-  const double farthest = farthest_middle(surface_->appearance.thickness);
+  const double max_offset = max_midpoint_offset(surface_->appearance.thickness);
   for (const auto& [a, b] : refinement_->edges()) {
-    const Middle here = middle(positions_[a], positions_[b], mesh_.normals[a], mesh_.normals[b], farthest);
+    const Middle here = middle(positions_[a], positions_[b], mesh_.normals[a], mesh_.normals[b], max_offset);
     positions_.push_back(here.position);
     vertices.push_back({here.position.cast<float>(), here.normal.cast<float>(),
                         0.5f * (vertices[a].rest_uv + vertices[b].rest_uv),
@@ -129,23 +129,23 @@ void SurfaceBuffers::add_middles(std::vector<Vertex>& vertices) {
   }
 }
 
-/// Strips behind all other vertices and triangles.
+/// Appends strips after all other vertices and triangles.
 void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
-  // One drawn vertex of each of the surface's, and the middles of its rims where they are curved.
+  // One drawn vertex for each surface vertex, and the midpoints of curved rims.
   std::vector<Index> drawn(vertex_count_);
   for (std::size_t i = 0; i < mesh_.source.size(); ++i) drawn[mesh_.source[i]] = static_cast<Index>(i);
   std::vector<Vec3> places = state_.positions, normals(vertex_count_);
   for (std::size_t v = 0; v < vertex_count_; ++v) normals[v] = mesh_.normals[drawn[v]];
-  std::vector<std::pair<Index, Index>> ends;  // between which a place lies
+  std::vector<std::pair<Index, Index>> ends;  // drawn vertices whose mean a place is
   for (std::size_t v = 0; v < vertex_count_; ++v) ends.emplace_back(drawn[v], drawn[v]);
-  const double farthest = farthest_middle(surface_->appearance.thickness);
+  const double max_offset = max_midpoint_offset(surface_->appearance.thickness);
   std::vector<Trims::Rim> rims;
   for (const Trims::Rim& rim : trims_->rims()) {
     if (!refinement_) {
       rims.push_back(rim);
       continue;
     }
-    const Middle here = middle(places[rim.a], places[rim.b], normals[rim.a], normals[rim.b], farthest);
+    const Middle here = middle(places[rim.a], places[rim.b], normals[rim.a], normals[rim.b], max_offset);
     const auto m = static_cast<Index>(places.size());
     places.push_back(here.position);
     normals.push_back(here.normal);
@@ -175,7 +175,7 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
     for (std::size_t t = 0; t < strip.triangles.size(); ++t) add(t);
     return;
   }
-  // Each range gets another one with its strips.
+  // Each range gets a second range with its strips.
   const auto& parts = surface_->part_of_triangle;
   const auto look_of = [&](std::int32_t triangle) {
     return parts.empty() ? &look : &surface_->parts[static_cast<std::size_t>(parts[triangle])].appearance;
@@ -190,13 +190,13 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
   }
 }
 
-/// In rest coordinates, so once.
+/// Trims depend on rest coordinates only, so one upload suffices.
 void SurfaceBuffers::upload_trims() {
   std::vector<Trim> trims;
   for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
   if (refinement_)
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
-  // Strips are in the midst of a hem, so that they show neither its stitches nor its fold.
+  // Strips get a border distance inside the hem, so that they show neither its stitches nor its fold.
   constexpr float kPlain = 0.3f;
   Trim plain;
   plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);
@@ -208,7 +208,7 @@ void SurfaceBuffers::upload_trims() {
   }
   upload<std::array<float, Trim::kKinds>>(*gl_, trim_distances_, distances);
   upload<std::array<float, Trim::kKinds>>(*gl_, trim_places_, places);
-  trims_uploaded_ = trims.size();
+  uploaded_trim_count_ = trims.size();
 }
 
 void SurfaceBuffers::draw(const PaintedRange& range) const {

@@ -13,15 +13,15 @@
 
 namespace weft::render {
 
-/// How a surface is drawn finer than it is.
+/// What a surface is drawn with in addition to its simulated triangles.
 struct Detail {
-  bool refines = false;  ///< with curved triangles; mesh() is then the coarser one
-  bool rims = false;     ///< with strips along borders, as thick as the cloth; mesh() is then without
-  bool trims = false;    ///< with hems and seams
+  bool refines = false;  ///< curved triangles; mesh() then holds the coarse ones
+  bool rims = false;     ///< strips along borders, as thick as the cloth; mesh() excludes them
+  bool trims = false;    ///< hems and seams
 };
 
-/// Attribute places, as in the shaders: 0 position, 1 normal, 2 rest (u,v), 3 heat; of what is painted 4 the place of
-/// the paint; of what has hems 5 and 6 a Trim.
+/// Vertex attributes, as in the shaders: 0 position, 1 normal, 2 rest (u,v), 3 heat; 4 paint coordinates if painted; 5
+/// and 6 a Trim if trimmed.
 class SurfaceBuffers {
  public:
   SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, const Detail& detail);
@@ -30,23 +30,23 @@ class SurfaceBuffers {
   bool refined() const { return refinement_.has_value(); }
   bool trimmed() const { return trims_.has_value() && detail_.trims; }
 
-  /// Takes over the positions of a frame. Throws Error(internal) where their number is not that of the surface. `rim`:
+  /// Copies the state of a frame. Throws Error(internal) if the number of positions differs from the surface's. `rim`:
   /// width of the strips along borders [m], 0 for none.
   void update(const frame::SurfaceState& state, double rim = 0);
   void draw() const;
   void draw(const PaintedRange& range) const;
-  /// Null where nothing is painted.
+  /// Null if nothing is painted.
   const PaintedMesh* painted() const { return painted_ ? &*painted_ : nullptr; }
-  /// Whether what is seen from `eye` is all front: a closed surface with its front outside, and the eye not near
-  /// inside.
-  bool hides_its_backs(const Vec3& eye) const { return outward_ && !bounds_.contains(eye); }
+  /// Whether only front faces are visible from `eye`: the surface is closed, its normals point outwards, and the eye is
+  /// outside its bounding box.
+  bool shows_only_fronts(const Vec3& eye) const { return faces_outward_ && !bounds_.contains(eye); }
   /// World position of each drawn vertex [m], and triangles of them.
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const Triangle> triangles() const {
     if (!with_rims_.empty()) return with_rims_;
     return refinement_ ? refinement_->triangles() : std::span<const Triangle>(mesh_.triangles);
   }
-  /// And what they stand for.
+  /// The mesh that positions() and triangles() derive from.
   const ShadedMesh& mesh() const { return mesh_; }
   const frame::SurfaceState& state() const { return state_; }
 
@@ -56,7 +56,7 @@ class SurfaceBuffers {
     Eigen::Vector2f rest_uv;
     float heat;
   };
-  void add_middles(std::vector<Vertex>& vertices);
+  void add_midpoints(std::vector<Vertex>& vertices);
   void add_rims(std::vector<Vertex>& vertices, double width);
   void upload_trims();
   friend class FloorBuffers;
@@ -67,7 +67,7 @@ class SurfaceBuffers {
   Detail detail_;
   CornerMap corners_;
   std::size_t vertex_count_ = 0;
-  bool mapped_ = false, closed_ = false, outward_ = false;
+  bool has_corner_map_ = false, closed_ = false, faces_outward_ = false;
   Box3 bounds_;
   VertexArray array_;
   Buffer vertices_, triangles_, places_, trim_distances_, trim_places_;
@@ -75,14 +75,14 @@ class SurfaceBuffers {
   std::optional<Refinement> refinement_;
   std::optional<PaintedMesh> painted_;
   std::optional<Trims> trims_;
-  std::size_t trims_uploaded_ = 0;  // of so many vertices
-  double rim_ = 0;
+  std::size_t uploaded_trim_count_ = 0;  // number of vertices whose trims are uploaded
+  double rim_width_ = 0;
   std::vector<Triangle> with_rims_;
   std::vector<Vec3> positions_;
   frame::SurfaceState state_;  // of the last frame
 };
 
-/// Two triangles that reach to the horizon, wound so that `normal` faces the viewer.
+/// Two triangles that extend to the horizon, wound so that `normal` faces the viewer.
 class FloorBuffers {
  public:
   explicit FloorBuffers(const Gl& gl);

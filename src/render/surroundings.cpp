@@ -20,13 +20,13 @@ double smoothstep(double from, double to, double x) {
   return t * t * (3 - 2 * t);
 }
 
-/// Quadric basis of Irradiance.
+/// Basis of the quadric Irradiance.
 std::array<double, 9> quadric(const Vec3& n) {
   const double x = n.x(), y = n.y(), z = n.z();
   return {1, x, y, z, x * y, y * z, z * x, z * z, x * x - y * y};
 }
 
-Style of_look(Look look) {
+Style make_style(Look look) {
   Style style;
   switch (look) {
     case Look::studio:
@@ -71,7 +71,7 @@ Style of_look(Look look) {
 }  // namespace
 
 Style style_of(const frame::Stage& stage) {
-  Style style = of_look(stage.look);
+  Style style = make_style(stage.look);
   if (stage.sky_color) style.sky_color = image::linear_from_srgb(*stage.sky_color);
   style.sky_intensity = std::clamp(stage.sky_intensity.value_or(style.sky_intensity), 0.0, 1.0);
   return style;
@@ -81,8 +81,8 @@ Vec3 Surroundings::light(const Vec3& toward, double alpha) const {
   const double height = toward.dot(up), blur = 0.08 + alpha;
   const Vec3 above = horizon + smoothstep(0, 1, height) * (sky - horizon);
   Vec3 sum = ground + smoothstep(-blur, blur, height) * (above - ground);
-  // A Gaussian blurred by one has the sharpness of both together (Wang et al., "All-Frequency Rendering of Dynamic,
-  // Spatially-Varying Reflectance", 2009).
+  // A Gaussian blurred by another has the sharpness of their convolution (Wang et al., "All-Frequency Rendering of
+  // Dynamic, Spatially-Varying Reflectance", 2009).
   const double own = 2 / (alpha * alpha + 1e-4);
   for (const Box& box : boxes) {
     const double sharpness = box.sharpness * own / (box.sharpness + own);
@@ -93,7 +93,8 @@ Vec3 Surroundings::light(const Vec3& toward, double alpha) const {
 
 Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3& up,
                       std::span<const frame::Light> lights, const Vec3& ground) {
-  // The key light's direction on the ground; the boxes are placed by it, so that they stand still as cameras move.
+  // The key light's horizontal direction. The boxes are placed relative to it, so that they stay still when the camera
+  // moves.
   Vec3 key = Vec3::Zero();
   if (!lights.empty()) {
     const frame::Light& first = lights.front();
@@ -113,7 +114,7 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
     case Look::stage:
       around.sky = Vec3::Constant(0.2);
       around.horizon = Vec3::Constant(0.1);
-      // Strips from the sides and behind, which draw outlines.
+      // Rim lights: strips from the sides and behind.
       around.boxes = {box(-0.9, 0.6, 0.5, 14, 3), box(-0.3, -1, 0.5, 14, 2.2), box(0.3, 0.2, 1, 10, 1.5)};
       break;
     case Look::daylight:
@@ -128,7 +129,7 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
       around.boxes = {box(0.2, 0.1, 1, 5, 1.2), box(-0.4, -1, 0.5, 4, 1.1), box(-1, 0.8, 0.45, 14, 2.0)};
       break;
   }
-  // What lies flat gets the style's share; the ground gives what it is said to.
+  // A horizontal surface receives the style's fraction of light; the ground light is as given.
   const Vec3 flat = at(irradiance_of(around), up);
   const Vec3 scale = style.sky_intensity * style.sky_color.cwiseQuotient(flat.cwiseMax(1e-6));
   const bool tinted = stage.look == Look::daylight;
@@ -141,10 +142,10 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
 }
 
 Irradiance irradiance_of(const Surroundings& surroundings) {
-  // Midpoints of 24 x 48 cells of the sphere, even in height: what is projected is smooth.
+  // Midpoints of 24 x 48 cells of the sphere, uniform in height; enough, because the projected function is smooth.
   constexpr int kRows = 24, kColumns = 48;
   constexpr double kPi = std::numbers::pi;
-  // Norms of the harmonics squared, times pi, 2 pi / 3 and pi / 4 of the cosine, over pi for what matte white shows.
+  // Squared norms of the harmonics, times the cosine's pi, 2 pi / 3 and pi / 4, over pi to get what matte white shows.
   constexpr double kZero = 1 / (4 * kPi), kOne = 3 / (4 * kPi) * 2 / 3, kCross = 15 / (4 * kPi) / 4,
                    kUp = 5 / (16 * kPi) / 4, kSaddle = 15 / (16 * kPi) / 4;
   std::array<Vec3, 9> sums;

@@ -1,4 +1,4 @@
-// What stands around the subjects and lights them from all sides, as the word of a scene's look has it.
+// Environment light and backdrop of each look.
 #pragma once
 
 #include <array>
@@ -10,47 +10,47 @@
 
 namespace weft::render {
 
-/// What a look decides beside the light. Colours are linear.
+/// Settings of a look besides its lights. Colours are linear.
 struct Style {
-  Vec3 sky_color = Vec3::Ones();  ///< of the light from around, where it meets what lies flat
-  double sky_intensity = 0.45;    ///< its share of all light
-  Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon, times what the floor shows in full light
-  Vec3 zenith = Vec3::Ones();     ///< and straight above
-  double glow = 0;                ///< share by which the backdrop is brighter behind the subjects than far from them
-  double floor_tint = 1;          ///< factor on the color of the floor
-  double floor_roughness = 1;     ///< of the floor, where its own is not below
-  double toe = 0;                 ///< linear light below which tones are deepened, as film does; 0: colors as given
-  bool exposes = true;            ///< direct light is turned up until floor shows its own color
-  bool plain = false;             ///< all surfaces of clay, none of their own colors
-  bool edges = false;             ///< edges of faces are drawn
+  Vec3 sky_color = Vec3::Ones();  ///< colour of the environment light on a horizontal surface
+  double sky_intensity = 0.45;    ///< fraction of all light that the environment provides
+  Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon, relative to fully lit floor
+  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above, likewise
+  double glow = 0;                ///< relative increase of backdrop brightness behind the subjects
+  double floor_tint = 1;          ///< factor on the colour of the floor
+  double floor_roughness = 1;     ///< upper limit of the floor's roughness
+  double toe = 0;                 ///< linear light below which tones are darkened, as film does; 0: unchanged
+  bool exposes = true;            ///< direct light is increased until floor shows its own colour
+  bool plain = false;             ///< all surfaces are clay, without own colours
+  bool edges = false;             ///< draws the edges of faces
 };
 Style style_of(const frame::Stage& stage);
 
-/// Light from each direction, in units in which a matte white surface under that of all directions shows it: a sky, a
-/// ground, and soft boxes as spherical Gaussians.
+/// Environment light for each direction: a sky, a ground, and soft boxes as spherical Gaussians. Unit: uniform light of
+/// 1 makes a matte white surface show 1.
 struct Surroundings {
   struct Box {
     Vec3 axis = Vec3::UnitZ();
-    double sharpness = 1;  ///< falls to 1/e where the cosine to the axis is 1/sharpness less
+    double sharpness = 1;  ///< the light falls to 1/e at a cosine to the axis of 1 - 1/sharpness
     Vec3 light = Vec3::Zero();
   };
   static constexpr int kBoxes = 3;
   Vec3 up = Vec3::UnitZ(), sky = Vec3::Zero(), horizon = Vec3::Zero(), ground = Vec3::Zero();
   std::array<Box, kBoxes> boxes;
 
-  /// From around `toward` (unit), blurred as the reflection of a surface of roughness² `alpha`; as surroundings() of
+  /// Light from around `toward` (unit), blurred for a reflection with roughness² `alpha`. Same as surroundings() in
   /// shaders/surroundings.glsl.
   Vec3 light(const Vec3& toward, double alpha) const;
 };
 
-/// Of a style, scaled such that what lies flat and open gets the style's share of all light. The boxes stand about the
-/// first light as a photographer's do. `ground` is the light that comes from below.
+/// The surroundings of a style, scaled so that an unoccluded horizontal surface receives the style's fraction of all
+/// light. The boxes are placed relative to the first light, as a photographer places them. `ground`: light from below.
 Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3& up,
                       std::span<const frame::Light> lights, const Vec3& ground);
 
-/// Light that matte white facing n takes: a quadric in n, whose coefficients of 1, x, y, z, xy, yz, zx, z², x² - y² are
-/// the first nine harmonics times what a cosine keeps of them (Ramamoorthi and Hanrahan, "An Efficient Representation
-/// for Irradiance Environment Maps", 2001).
+/// Irradiance on a surface with normal n, as the light that matte white shows: a quadric in n. Coefficients of 1, x, y,
+/// z, xy, yz, zx, z², x² - y²: the first nine spherical harmonics, convolved with the clamped cosine (Ramamoorthi and
+/// Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001).
 using Irradiance = std::array<Vec3, 9>;
 Irradiance irradiance_of(const Surroundings& surroundings);
 Vec3 at(const Irradiance& irradiance, const Vec3& n);

@@ -18,20 +18,19 @@ struct ViewAxes {
   Vec3 right, up, forward;
 };
 
-/// Axes looking along `forward` with `up` upright; where the two are parallel or `forward` is zero, some upright
-/// choice.
+/// Axes that look along `forward` with `up` upright. If the two are parallel or `forward` is zero, some upright axes.
 ViewAxes view_axes(const Vec3& forward, const Vec3& up);
 
-/// view_from_world of a viewer at `eye`.
+/// view_from_world for a viewer at `eye`.
 Mat4 look_along(const Vec3& eye, const ViewAxes& axes);
 
-/// clip_from_view of a perspective picture; the tangents are of half the opening, distances in metres.
+/// clip_from_view of a perspective picture; the tangents are those of half the field of view; distances in metres.
 Mat4 perspective(double tan_half_width, double tan_half_height, double near, double far);
 
-/// clip_from_view of a parallel view onto the box `bounds_view`, whose z runs backward as view space does.
+/// clip_from_view of a parallel projection of the box `bounds_view`; its z points backward, as in view space.
 Mat4 orthographic(const Box3& bounds_view);
 
-/// Texture coordinates and depth, each 0 to 1, from clip space.
+/// Maps clip space to texture coordinates and depth, each 0 to 1.
 Mat4 texture_from_clip();
 
 }  // namespace weft::render

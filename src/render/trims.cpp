@@ -12,34 +12,33 @@ std::uint64_t key(Index a, Index b) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32 | static_cast<std::uint32_t>(b);
 }
 
-constexpr double kCorner = 0.87;  // cosine of 30 degrees: borders that turn by more have a corner
+constexpr double kMaxSmoothCosine = 0.87;  // cosine of 30 degrees: borders that turn by more have a corner
 
-/// Gives the sides of a border between corners both kinds in turn. Of a closed one `from` is the first edge after a
-/// corner; where it has an odd number of them two sides of one kind meet at the last.
+/// Assigns the two border kinds alternately to the sides between corners. On a closed border, starts with the first
+/// edge after a corner; with an odd number of sides, two of the same kind meet at the end.
 template <class Segment>
-void tell_sides(std::vector<Segment>& segments, std::span<const std::size_t> row, std::span<const Vec2> uv) {
-  const auto way = [&](std::size_t k) { return Vec2(uv[segments[row[k]].b] - uv[segments[row[k]].a]); };
+void assign_border_kinds(std::vector<Segment>& segments, std::span<const std::size_t> chain, std::span<const Vec2> uv) {
+  const auto direction = [&](std::size_t k) { return Vec2(uv[segments[chain[k]].b] - uv[segments[chain[k]].a]); };
   const auto corner_before = [&](std::size_t k) {
-    // Not told across seams, which end a panel.
-    if (segments[row[(k + row.size() - 1) % row.size()]].b != segments[row[k]].a) return false;
-    const Vec2 before = way((k + row.size() - 1) % row.size()), after = way(k);
-    return before.dot(after) < kCorner * before.norm() * after.norm();
+    // Not across seams, which end a panel.
+    if (segments[chain[(k + chain.size() - 1) % chain.size()]].b != segments[chain[k]].a) return false;
+    const Vec2 before = direction((k + chain.size() - 1) % chain.size()), after = direction(k);
+    return before.dot(after) < kMaxSmoothCosine * before.norm() * after.norm();
   };
   std::size_t from = 0;
-  if (segments[row.back()].to == segments[row.front()].from)
-    while (from + 1 < row.size() && !corner_before(from)) ++from;
+  if (segments[chain.back()].to == segments[chain.front()].from)
+    while (from + 1 < chain.size() && !corner_before(from)) ++from;
   bool other = false;
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    const std::size_t k = (from + i) % row.size();
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    const std::size_t k = (from + i) % chain.size();
     if (i > 0 && corner_before(k)) other = !other;
-    segments[row[k]].other = other;
+    segments[chain[k]].other = other;
   }
 }
 
-/// Puts edges that follow each other in one row and says where along it each begins. Of a seam's two sides the first
-/// that is met tells both.
+/// Chains consecutive edges and stores the arc length at each start. Each seam is measured once, from its first side.
 template <class Segment>
-void measure(std::vector<Segment>& segments, std::span<const Vec2> places) {
+void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> places) {
   std::unordered_multimap<Index, std::size_t> by_start;
   std::unordered_map<Index, int> ends;
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -49,10 +48,10 @@ void measure(std::vector<Segment>& segments, std::span<const Vec2> places) {
   std::vector<char> done(segments.size(), 0);
   const auto walk = [&](std::size_t first) {
     double along = 0;
-    std::vector<std::size_t> row;
+    std::vector<std::size_t> chain;
     for (std::size_t i = first; i < segments.size();) {
       done[i] = 1;
-      row.push_back(i);
+      chain.push_back(i);
       segments[i].start = along;
       along += (places[segments[i].b] - places[segments[i].a]).norm();
       if (segments[i].twin >= 0) {
@@ -61,8 +60,8 @@ void measure(std::vector<Segment>& segments, std::span<const Vec2> places) {
         std::swap(twin.a, twin.b);
         twin.start = segments[i].start;
       }
-      // Of several ways the one that goes on in the same panel, or the first of the list, whatever the order of the
-      // map.
+      // Of several continuations, prefers the same panel, then the lowest index, so that the order of the map has no
+      // influence.
       std::size_t next = segments.size();
       const auto [from, to] = by_start.equal_range(segments[i].to);
       const auto rank = [&](std::size_t k) { return std::pair(segments[k].a != segments[i].b, k); };
@@ -70,7 +69,7 @@ void measure(std::vector<Segment>& segments, std::span<const Vec2> places) {
         if (!done[it->second] && (next == segments.size() || rank(it->second) < rank(next))) next = it->second;
       i = next;
     }
-    tell_sides(segments, row, places);
+    assign_border_kinds(segments, chain, places);
   };
   for (std::size_t i = 0; i < segments.size(); ++i)
     if (!done[i] && !ends.contains(segments[i].from)) walk(i);
@@ -80,8 +79,9 @@ void measure(std::vector<Segment>& segments, std::span<const Vec2> places) {
 
 }  // namespace
 
-/// Panels are flat by themselves: a vertex at which some are sewn together, or one to itself, has a place in each.
-std::vector<Triangle> Trims::lay_out(const frame::Surface& surface) {
+/// Assigns places, the positions of vertices in their panels. Panels are flat: a vertex on a seam between panels, or of
+/// a panel with itself, has one place in each.
+std::vector<Triangle> Trims::find_places(const frame::Surface& surface) {
   const auto& triangles = surface.triangles;
   const bool by_part = surface.part_of_triangle.size() == triangles.size(),
              by_corner = surface.paint_uv.size() == triangles.size();
@@ -110,12 +110,12 @@ std::vector<Triangle> Trims::lay_out(const frame::Surface& surface) {
 
 Trims::Trims(const frame::Surface& surface) {
   const auto& triangles = surface.triangles;
-  std::unordered_map<std::uint64_t, std::array<std::size_t, 2>> owner;  // of each edge in its way: triangle and corner
+  std::unordered_map<std::uint64_t, std::array<std::size_t, 2>> owner;  // of each directed edge: triangle and corner
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       owner.emplace(key(triangles[t][k], triangles[t][(k + 1) % 3]), std::array{t, k});
   const bool flat = !surface.uv.empty();
-  const std::vector<Triangle> corners = flat ? lay_out(surface) : triangles;
+  const std::vector<Triangle> corners = flat ? find_places(surface) : triangles;
   std::vector<Segment> borders, seams;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -140,8 +140,8 @@ Trims::Trims(const frame::Surface& surface) {
   std::vector<std::vector<Index>> neighbors(places_.size());
   for (const Triangle& t : corners)
     for (std::size_t k = 0; k < 3; ++k) neighbors[t[k]].insert(neighbors[t[k]].end(), {t[(k + 1) % 3], t[(k + 2) % 3]});
-  measure(borders, places_);
-  measure(seams, places_);
+  measure_arc_lengths(borders, places_);
+  measure_arc_lengths(seams, places_);
   const auto second = std::stable_partition(borders.begin(), borders.end(), [](const Segment& s) { return !s.other; });
   lines_[Trim::other_border] = lines({second, borders.end()}, neighbors);
   borders.erase(second, borders.end());
@@ -151,15 +151,15 @@ Trims::Trims(const frame::Surface& surface) {
 
 Trims::Place Trims::place(const Lines& lines, std::int32_t segment, const Vec2& at) const {
   const Segment& line = lines.segments[segment];
-  const Vec2 from = places_[line.a], way = places_[line.b] - from;
-  const double length = way.norm();
+  const Vec2 from = places_[line.a], direction = places_[line.b] - from;
+  const double length = direction.norm();
   if (!(length > 0)) return {(at - from).norm(), line.start};
-  const double along = std::clamp((at - from).dot(way) / length, 0.0, length);
-  return {(at - from - along / length * way).norm(), line.start + along};
+  const double along = std::clamp((at - from).dot(direction) / length, 0.0, length);
+  return {(at - from - along / length * direction).norm(), line.start + along};
 }
 
-/// Hands what is nearest on from vertex to vertex, so that a line counts along the cloth: panels that are laid
-/// together may come to lie over each other.
+/// Finds the nearest segment of each place by propagation along mesh edges, so that distances are measured within the
+/// cloth: laid-out panels may overlap in the plane.
 Trims::Lines Trims::lines(std::vector<Segment> segments, std::span<const std::vector<Index>> neighbors) const {
   Lines result{std::move(segments), std::vector<std::int32_t>(places_.size(), -1), {}};
   result.at.resize(places_.size());
@@ -196,8 +196,8 @@ Trim Trims::trim(const Vec2& at, std::span<const Index> near) const {
       const std::int32_t nearest = lines.nearest[vertex];
       if (nearest < 0) continue;
       try_segment(nearest);
-      // At a vertex of a line two of its segments are as near, of which one is kept: what lies beside the vertex may
-      // belong to the other.
+      // At a vertex of a line, two segments are equally near, and only one is stored: points beside the vertex may be
+      // closer to the other.
       for (const Index end : {lines.segments[nearest].a, lines.segments[nearest].b})
         std::ranges::for_each(lines.at[end], try_segment);
     }
@@ -223,7 +223,7 @@ Trim Trims::at(Index vertex) const {
 
 Trim Trims::middle(Index a, Index b) const {
   if (places_of_.empty()) return {};
-  // Of all places of its ends those that are closest are ends of an edge.
+  // Of all pairs of places, the closest two in the same panel are the ends of the edge.
   std::array<Index, 2> ends{places_of_[a].front(), places_of_[b].front()};
   double length = kNoTrim;
   for (const Index from : places_of_[a]) {
@@ -250,23 +250,23 @@ double rim_width(const frame::Appearance& look, std::span<const Vec3> positions,
 RimStrip rim_strip(std::span<const Trims::Rim> rims, std::span<const Vec3> positions, std::span<const Vec3> normals,
                    double thickness) {
   RimStrip strip;
-  // Away from the cloth at each vertex of a border: from both edges that meet there.
+  // Direction away from the cloth at each border vertex, summed over its border edges.
   std::unordered_map<Index, Vec3> outward;
   for (const auto& [a, b, triangle] : rims) {
-    const Vec3 way = positions[b] - positions[a];
+    const Vec3 direction = positions[b] - positions[a];
     for (const Index end : {a, b}) {
-      const Vec3 out = way.cross(normals[end]);
+      const Vec3 out = direction.cross(normals[end]);
       const auto [entry, added] = outward.try_emplace(end, out);
       if (!added) entry->second += out;
     }
   }
-  std::unordered_map<Index, Index> first;  // of the two vertices of the strip
+  std::unordered_map<Index, Index> first;  // first of the two strip vertices of each border vertex
   const auto vertex = [&](Index v) {
     const auto [entry, added] = first.try_emplace(v, static_cast<Index>(strip.positions.size()));
     if (!added) return entry->second;
     const Vec3 sum = outward[v], out = sum.norm() > 0 ? Vec3(sum.normalized()) : normals[v];
     strip.positions.insert(strip.positions.end(), {positions[v], positions[v] - thickness * normals[v]});
-    // Round, as a fold is.
+    // Rounded normals, as on a fold.
     strip.normals.insert(strip.normals.end(), {(out + normals[v]).normalized(), (out - normals[v]).normalized()});
     strip.source.insert(strip.source.end(), {v, v});
     return entry->second;

@@ -1,4 +1,4 @@
-// Where cloth ends and where its panels are sewn together: what hems, stitches and the thickness of its edge go by.
+// Borders and seams of cloth, from which hems, stitches and visible edge thickness are drawn.
 #pragma once
 
 #include <span>
@@ -12,28 +12,28 @@ namespace weft::render {
 
 inline constexpr float kNoTrim = 1e3f;
 
-/// How far a point is from the nearest line of each kind, in rest coordinates [m]; kNoTrim where there is no such
-/// thing. Borders that meet at a corner are of two kinds, so that both distances are linear across it: their minimum is
-/// not.
+/// Distances from a point to the nearest line of each kind, in rest coordinates [m]; kNoTrim if there is none. Two
+/// borders that meet at a corner have different kinds, so that both distances are linear across the corner; their
+/// minimum would not be.
 struct Trim {
   enum Kind { border, other_border, seam };
   static constexpr int kKinds = 3;
-  std::array<float, kKinds> distance{kNoTrim, kNoTrim, kNoTrim}, along{};  ///< along: the place along that line
+  std::array<float, kKinds> distance{kNoTrim, kNoTrim, kNoTrim}, along{};  ///< along: position along that line [m]
 
   float from_border() const { return std::min(distance[border], distance[other_border]); }
 };
 
-/// Of the rest shape, so the same in all frames.
+/// Borders and seams of the rest shape, the same in all frames.
 class Trims {
  public:
-  /// Of a surface with rest coordinates; of one without them all is kNoTrim.
+  /// Uses the surface's rest coordinates; without them, all trims are kNoTrim.
   explicit Trims(const frame::Surface& surface);
 
-  /// Of a vertex of the surface, and of the middle of an edge between two.
+  /// The trim at a vertex of the surface, and at the midpoint of an edge.
   Trim at(Index vertex) const;
   Trim middle(Index a, Index b) const;
 
-  /// An edge of one triangle only, in the way of that.
+  /// A border edge: it belongs to one triangle only and has its orientation.
   struct Rim {
     Index a, b;
     std::int32_t triangle;
@@ -42,46 +42,47 @@ class Trims {
 
  private:
   struct Segment {
-    Index a, b;              // places
-    Index from, to;          // vertices
-    double start = 0;        // of it along its border or seam [m]
-    bool other = false;      // of two sides of a border that meet at a corner, one is
-    std::int32_t twin = -1;  // the same edge on the other side of a seam
+    Index a, b;              // indices of places
+    Index from, to;          // indices of vertices
+    double start = 0;        // arc length of its start along its border or seam [m]
+    bool other = false;      // of two border sides that meet at a corner, the second kind
+    std::int32_t twin = -1;  // same edge on the other side of a seam
   };
-  /// What one kind of lines is to all places.
+  /// All lines of one kind, with lookup by place.
   struct Lines {
     std::vector<Segment> segments;
-    std::vector<std::int32_t> nearest;          // by place, -1 where there is none
-    std::vector<std::vector<std::int32_t>> at;  // by place: those that begin or end there
+    std::vector<std::int32_t> nearest;          // by place; -1 if there is none
+    std::vector<std::vector<std::int32_t>> at;  // by place: segments that begin or end there
   };
   struct Place {
     double distance = kNoTrim, along = 0;
   };
   Place place(const Lines& lines, std::int32_t segment, const Vec2& at) const;
   Lines lines(std::vector<Segment> segments, std::span<const std::vector<Index>> neighbors) const;
-  std::vector<Triangle> lay_out(const frame::Surface& surface);
+  std::vector<Triangle> find_places(const frame::Surface& surface);
   Trim trim(const Vec2& at, std::span<const Index> near) const;
 
-  std::vector<Vec2> places_;                   // where vertices lie in their panels [m]
-  std::vector<std::int32_t> part_;             // by place
+  std::vector<Vec2> places_;                   // positions of vertices in their panels [m]
+  std::vector<std::int32_t> part_;             // by place: its panel
   std::vector<std::vector<Index>> places_of_;  // by vertex; empty without rest coordinates
   std::vector<Rim> rims_;
   std::array<Lines, Trim::kKinds> lines_;
 };
 
-/// The thickness that the edge of cloth shows: a strip along each border, from the front to the back.
+/// The visible thickness at the edge of cloth: a strip along each border, from front to back.
 struct RimStrip {
   std::vector<Vec3> positions, normals;
   std::vector<Index> source;        ///< the vertex that each is at, or behind
-  std::vector<Triangle> triangles;  ///< of these, from 0
-  std::vector<std::int32_t> owner;  ///< by triangle: that of its rim
+  std::vector<Triangle> triangles;  ///< indices into positions, from 0
+  std::vector<std::int32_t> owner;  ///< by triangle: the triangle of its rim
 };
 
-/// Width of the strips [m]: as thick as the edge is, twice so where it is folded to a hem; thinner where that is less
-/// than 2.5 pixels of a picture of so many rows, and 0 where a pixel would be left, as it would break into dots.
+/// Width of the strips [m]: the thickness of the edge, doubled if it is folded to a hem. Reduced if it covers less than
+/// 2.5 pixels in a picture with `rows` rows; 0 if less than about a pixel would remain, because thinner strips break
+/// into dots.
 double rim_width(const frame::Appearance& look, std::span<const Vec3> positions, const View& view, int rows);
 
-/// Of a surface as it lies in a frame, `thickness` [m] wide; `normals` by vertex.
+/// The strips of a surface in one frame, `thickness` [m] wide; `normals` by vertex.
 RimStrip rim_strip(std::span<const Trims::Rim> rims, std::span<const Vec3> positions, std::span<const Vec3> normals,
                    double thickness);
 

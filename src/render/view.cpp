@@ -9,14 +9,16 @@
 namespace weft::render {
 namespace {
 
-// Rec. 709.
+// Rec. 709 luminance weights.
 const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
-constexpr double kGround = 0.8;     // of what open floor shows comes from below: it runs out into what is darker
-constexpr double kMirrored = 0.5;   // of that: what shines sees floor in the shade of the subjects
-constexpr double kBrightest = 1.8;  // gain of direct light; scenes darker than that are meant to be dark
-constexpr double kBalance = 0.08;   // share of a channel that white balance may take or add
+constexpr double kGroundLight =
+    0.8;  // fraction of the open floor's light that comes from below: far floor fades to a darker backdrop
+constexpr double kReflectedGround =
+    0.5;  // factor on that in reflections: glossy surfaces see floor in the shade of the subjects
+constexpr double kMaxGain = 1.8;           // maximum gain of direct light; darker scenes are meant to be dark
+constexpr double kMaxWhiteBalance = 0.08;  // maximum relative change of a channel by white balance
 
-/// From the world to the picture on a triangle, at these places in it.
+/// Map from the world to picture coordinates, from the corners of a triangle and their picture coordinates.
 Eigen::Matrix<double, 2, 4> picture_from_world(const std::array<Vec3, 3>& x, const std::array<Vec2, 3>& places) {
   const Vec3 p = x[1] - x[0], q = x[2] - x[0];
   Mat3 axes;
@@ -65,12 +67,12 @@ View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const
   const double reach = (subjects.center() - view.eye).norm() + radius;
   double nearest = view.axes.forward.dot(subjects.center() - view.eye) - radius;
   if (floor) {
-    // The floor comes nearest at the lower edge of the picture, never nearer than this part of the eye's height.
+    // The floor is nearest at the lower edge of the picture, and never nearer than this fraction of the eye's height.
     const double height = floor->normal.dot(view.eye - floor->point);
     const double widest = std::hypot(1.0, view.tan_half_width, view.tan_half_height);
     if (height > 0) nearest = std::min(nearest, height / widest);
   }
-  // Depth is resolved to distance^2 / (near 2^24): with near at a thousandth of the reach, some 1e-4 of the scene.
+  // Depth resolution is distance^2 / (near 2^24): with near at a thousandth of `reach`, about 1e-4 of the scene.
   view.near = std::max(0.8 * nearest, 1e-3 * reach);
   view.far = 200 * reach;
   view.view_from_world = look_along(view.eye, view.axes);
@@ -106,7 +108,7 @@ Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span
   if (!floor) return {Vec3::Constant(share), 0.8 * style.sky_color};
   Vec3 direct = Vec3::Zero();
   for (const frame::Light& each : lights) {
-    // Far away no spot reaches.
+    // The distant floor receives no spot light.
     if (each.kind != frame::Light::Kind::sun || each.direction.squaredNorm() == 0) continue;
     const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
     direct += share * each.intensity * facing * image::linear_from_srgb(each.color);
@@ -115,22 +117,22 @@ Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span
   if (style.exposes) {
     const Vec3 missing = (Vec3::Ones() - sky).cwiseQuotient(direct.cwiseMax(1e-6));
     const double level = kLuminance.dot(Vec3::Ones() - sky) / std::max(kLuminance.dot(direct), 1e-6);
-    const Vec3 tint = (missing / std::max(level, 1e-6)).cwiseMax(1 - kBalance).cwiseMin(1 + kBalance);
-    gain = std::clamp(level, 1.0, kBrightest) * tint;
+    const Vec3 tint = (missing / std::max(level, 1e-6)).cwiseMax(1 - kMaxWhiteBalance).cwiseMin(1 + kMaxWhiteBalance);
+    gain = std::clamp(level, 1.0, kMaxGain) * tint;
   }
   return {share * gain, image::linear_from_srgb(floor->look.color).cwiseProduct(sky + gain.cwiseProduct(direct))};
 }
 
-Lighting light_up(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
-                  std::span<const frame::Light> lights) {
+Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
+                       std::span<const frame::Light> lights) {
   Lighting lighting;
   lighting.style = style_of(stage);
   lighting.exposure = expose(lighting.style, floor, lights);
   lighting.gain = std::exp2(stage.exposure);
-  // What open floor shows; what lies in the shade is taken off where it is (bounced_light.hpp).
+  // Light of open floor; the deficit of shaded floor is subtracted locally (bounced_light.hpp).
   const Vec3 ground =
       floor && !stage.ground_color
-          ? Vec3(kGround * lighting.style.floor_tint * lighting.exposure.floor)
+          ? Vec3(kGroundLight * lighting.style.floor_tint * lighting.exposure.floor)
           : lighting.style.sky_intensity *
                 (stage.ground_color ? image::linear_from_srgb(*stage.ground_color) : Vec3(Vec3::Constant(0.55)));
   lighting.around = surround(lighting.style, stage, up, lights, ground);
@@ -155,7 +157,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   const SkyView above = fit_sky(subjects, around.up, reach);
   const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
   const Vec3 shown = style.floor_tint * lighting.exposure.floor;
-  // A sky has its own color, a backdrop that of the floor.
+  // A sky has its own colour, a backdrop that of the floor.
   const auto behind = [&](const Vec3& color) -> Vec3 { return sky ? color : shown.cwiseProduct(color); };
 
   FrameUniform frame;
@@ -167,7 +169,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   frame.right_world = four(view.axes.right, 0);
   frame.sky = four(around.sky, reach);
   frame.horizon = four(around.horizon, style.toe);
-  frame.ground = four(kMirrored * around.ground, above.depth_metres);
+  frame.ground = four(kReflectedGround * around.ground, above.depth_metres);
   frame.backdrop = four(behind(style.horizon), style.glow);
   frame.backdrop_top = four(behind(style.zenith), 0);
   frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),

@@ -17,7 +17,8 @@ const char* text(const Gl& gl, GLenum name) {
   return found ? found : "unknown";
 }
 
-/// An archive may bring Mesa behind EGL: libEGL and Mesa look for each other's files in places of the system otherwise.
+/// Uses the Mesa behind EGL that an archive may include; otherwise libEGL and Mesa search system folders for each
+/// other's files.
 void use_own_mesa() {
   const std::filesystem::path libraries = own_installation().libraries, vendor = libraries / "egl_vendor.json";
   std::error_code none;
@@ -26,11 +27,12 @@ void use_own_mesa() {
   setenv("LIBGL_DRIVERS_PATH", (libraries / "dri").c_str(), 1);
 }
 
-/// Mesa reads these once, when the first context of the process is made.
+/// Mesa reads these variables once, when the process makes its first context.
 void set_rasteriser_environment(int threads) {
   use_own_mesa();
-  setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);  // EGL would choose a graphics card: other pictures, and no such threads
-  // 512-bit vectors together with 4x multisampling crash llvmpipe of Mesa 22.3; its own choice is right everywhere.
+  setenv("LIBGL_ALWAYS_SOFTWARE", "1",
+         0);  // else EGL could use a graphics card: other pictures, and no llvmpipe threads
+  // Mesa 22.3: 512-bit vectors with 4x multisampling crash llvmpipe; its default width always works.
   const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH");
   if (width && std::string_view(width) == "512") unsetenv("LP_NATIVE_VECTOR_WIDTH");
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
@@ -73,11 +75,11 @@ std::unique_ptr<Context> make_context(Backend backend, int threads) {
     case Backend::automatic:
       break;
   }
-  std::string osmesa_said;
+  std::string osmesa_error;
   try {
     return make_osmesa_context();
   } catch (const Error& error) {
-    osmesa_said = error.what();
+    osmesa_error = error.what();
   }
   try {
     return make_egl_context();
@@ -85,7 +87,7 @@ std::unique_ptr<Context> make_context(Backend backend, int threads) {
     throw Error(
         ExitCode::usage,
         "no OpenGL without a window on this machine: install libosmesa6, or libegl1 and libgl1-mesa-dri\n  {}\n  {}",
-        osmesa_said, error.what());
+        osmesa_error, error.what());
   }
 }
 

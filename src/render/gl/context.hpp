@@ -1,4 +1,4 @@
-// Where OpenGL comes from: a library opened at run time that makes a 4.5 core context without a window.
+// OpenGL contexts: a library opened at run time provides a 4.5 core context without a window.
 #pragma once
 
 #include <glad/gl.h>
@@ -10,26 +10,27 @@
 
 namespace weft::render {
 
-/// All functions of one context. Kept per context, as the two backends bring their own copies of each function.
+/// All functions of one context. Stored per context, because each backend brings its own copies of the functions.
 using Gl = GladGLContext;
 
-/// An OpenGL 4.5 core context. There is no default framebuffer to speak of: draw into own ones only.
+/// An OpenGL 4.5 core context. It has no usable default framebuffer: draw into own framebuffers only.
 class Context {
  public:
   virtual ~Context() = default;
 
-  /// Binds the context to the calling thread. Throws Error(internal) with the library's words.
+  /// Binds the context to the calling thread. Throws Error(internal) with the library's message.
   virtual void make_current() = 0;
-  /// Unbinds it, so that another thread may take it.
+  /// Unbinds it, so that another thread can bind it.
   virtual void release() = 0;
 
   const Gl& gl() const { return gl_; }
-  /// "OSMesa 8 (libOSMesa.so.8)" and why it was chosen, then the strings of the driver.
+  /// "OSMesa 8 (libOSMesa.so.8)" and the reason for the choice, then the strings of the driver.
   const std::string& description() const { return description_; }
 
  protected:
   using Loader = GLADapiproc (*)(const char* name);
-  /// Fills gl_ and description_; the context must be current. Throws where the driver gives less than 4.5 core.
+  /// Fills gl_ and description_; the context must be current. Throws Error(usage) if the driver provides less
+  /// than 4.5 core.
   void load_functions(Loader loader, const std::string& backend);
 
  private:
@@ -37,12 +38,13 @@ class Context {
   std::string description_;
 };
 
-/// Makes a context, bound to the calling thread. `automatic` takes OSMesa, or EGL where there is no OSMesa.
-/// `threads` are those of the software rasteriser (0: its own choice); the driver reads them once a process, so
-/// the first context decides. Throws Error(internal) naming each library tried and what it said.
+/// Makes a context, bound to the calling thread. `automatic` takes OSMesa, or EGL if there is no OSMesa. `threads`: of
+/// the software rasteriser (0: its default). The driver reads this once per process, so the first context decides.
+/// `automatic` throws Error(usage) that names each library tried and its error if neither works; else Error(usage) for
+/// an absent library, Error(internal) for a failed call.
 std::unique_ptr<Context> make_context(Backend backend, int threads);
 
-/// CPU seconds that the threads of llvmpipe have taken so far, in all contexts; 0 of a driver that draws elsewhere.
+/// CPU seconds that the threads of llvmpipe have used so far in all contexts; 0 for other drivers.
 double rasteriser_cpu_seconds();
 
 std::unique_ptr<Context> make_osmesa_context();

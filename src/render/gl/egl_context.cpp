@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kEgl = "libEGL.so.1";
 
-// The handful of names of EGL 1.5 used here, so that building needs no EGL headers. Values: Khronos registry, egl.xml.
+// The few EGL 1.5 names used here, so that building needs no EGL headers. Values: Khronos registry, egl.xml.
 using EglHandle = void*;
 using EglInt = int;
 using EglBoolean = unsigned;
@@ -36,7 +36,7 @@ class EglContext : public Context {
     load_functions(get_proc_, std::string("EGL surfaceless (") + kEgl + ")");
   }
 
-  // The display is shared by all contexts of the process and stays initialised.
+  // All contexts of the process share the display, which stays initialised.
   ~EglContext() override { destroy_context_(display_, context_); }
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;

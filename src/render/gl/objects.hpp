@@ -1,4 +1,4 @@
-// OpenGL objects that delete themselves; the context they came from must be current then.
+// OpenGL objects that delete themselves. Their context must be current on destruction.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace weft::render {
 
-/// Owner of one GL name. `Kind` says how it is made and deleted.
+/// Owner of one GL name. `Kind` defines how it is made and deleted.
 template <class Kind>
 class GlObject {
  public:
@@ -87,12 +87,12 @@ using Sampler = GlObject<SamplerKind>;
 using Framebuffer = GlObject<FramebufferKind>;
 using ProgramName = GlObject<ProgramKind>;
 
-/// A texture of one level; sampled with `filter` (GL_NEAREST or GL_LINEAR), clamped to its edge.
+/// A texture of one mip level; sampled with `filter` (GL_NEAREST or GL_LINEAR), clamped to its edge.
 Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum filter);
-/// The same with `layers` slices (GL_TEXTURE_2D_ARRAY).
+/// The same with `layers` layers (GL_TEXTURE_2D_ARRAY).
 Texture make_texture_array(const Gl& gl, GLenum format, int width, int height, int layers, GLenum filter);
 
-/// Throws Error(internal) naming `what` where a framebuffer cannot be drawn to.
+/// Throws Error(internal) that names `what` if the framebuffer is incomplete.
 void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what);
 
 /// Replaces the content of a buffer that changes from frame to frame.
@@ -101,7 +101,7 @@ void upload(const Gl& gl, const Buffer& buffer, std::span<const T> data) {
   gl.NamedBufferData(buffer.name(), static_cast<GLsizeiptr>(data.size_bytes()), data.data(), GL_STREAM_DRAW);
 }
 
-/// Throws Error(internal) with the error's name where GL has noted one since the last call.
+/// Throws Error(internal) with the error's name if GL has recorded an error since the last call.
 void check_errors(const Gl& gl, const char* what);
 
 }  // namespace weft::render

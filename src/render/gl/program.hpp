@@ -1,4 +1,4 @@
-// Shader programs from the sources in shaders/, which are embedded in the library when it is built.
+// Shader programs from the sources in shaders/, which the build embeds in the library.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ namespace weft::render {
 class Program {
  public:
   Program() = default;
-  /// `vertex` and `fragment` are file names in shaders/; `fragment` may be empty where only depth is drawn. `defines`
-  /// ("CLOTH", "TAPS 16") come before the sources. Throws Error(internal) with the compiler's words.
+  /// `vertex` and `fragment`: file names in shaders/; `fragment` may be empty if only depth is drawn. `defines`
+  /// ("CLOTH", "TAPS 16") precede the sources. Throws Error(internal) with the compiler's message.
   Program(const Gl& gl, const std::string& vertex, const std::string& fragment,
           const std::vector<std::string>& defines = {});
 
   void use() const { gl_->UseProgram(program_.name()); }
-  /// Place of a uniform; -1 where the compiler found it unused, which GL then ignores.
+  /// Location of a uniform; -1 if the compiler removed it as unused, which GL then ignores.
   GLint uniform(const char* name) const { return gl_->GetUniformLocation(program_.name(), name); }
 
  private:
@@ -26,7 +26,7 @@ class Program {
   ProgramName program_;
 };
 
-/// Source of a file of shaders/ with each `#include "name"` line replaced by that file.
+/// Source of a file in shaders/ with each `#include "name"` line replaced by that file.
 std::string shader_source(const std::string& file);
 
 }  // namespace weft::render

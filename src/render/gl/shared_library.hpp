@@ -1,17 +1,17 @@
-// A library opened by name, for backends that may be absent.
+// A library opened by name at run time, for backends that may be absent.
 #pragma once
 
 #include <string>
 
 namespace weft::render {
 
-/// Stays open for the life of the process: a software rasteriser leaves threads and LLVM state behind.
+/// The library stays open until the process ends: a software rasteriser keeps threads and LLVM state.
 class SharedLibrary {
  public:
-  /// Throws Error(usage), as of a package that is missing, with the dynamic loader's words.
+  /// Throws Error(usage), as for a missing package, with the dynamic loader's message.
   explicit SharedLibrary(const std::string& file);
 
-  /// Address of a function; throws Error(usage) where the library has none of that name.
+  /// Address of a function; throws Error(usage) if the library lacks it.
   template <class Function>
   Function function(const char* name) const {
     return reinterpret_cast<Function>(address(name));
