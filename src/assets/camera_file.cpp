@@ -18,7 +18,8 @@
 namespace weft::assets {
 namespace {
 
-/// Maximum time between samples of the motion [s]: 90 degrees in a second are then off by 0.0001 of the distance.
+/// Maximum time between samples of the motion [s]: a camera that circles its target by 90 degrees in a second is then
+/// off by 0.0001 of the distance.
 constexpr double kMaxSampleInterval = 0.02;
 
 /// Longer shots are treated as damaged [s].
@@ -26,7 +27,7 @@ constexpr double kMaxShotLength = 3600;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// Value of a channel at a time; the first and the last value hold outside.
+/// Value of a channel at a time [ticks]; before the first key its value, after the last key that of the last.
 template <class Key, class Between>
 auto value_at(std::span<const Key> keys, double ticks, const Between& between) {
   const auto next = std::ranges::find_if(keys, [&](const Key& key) { return key.mTime > ticks; });
@@ -79,7 +80,7 @@ aiMatrix4x4 world_at(const aiNode& node, const aiAnimation* animation, double ti
   return world;
 }
 
-/// All key times on the path from the camera to the root, refined in between.
+/// All key times of the nodes from the camera to the root, refined in between [s].
 std::vector<double> times_of(const aiNode& node, const aiAnimation& animation) {
   const double rate = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 1;
   std::set<double> keys;

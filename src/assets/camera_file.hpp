@@ -9,13 +9,13 @@
 
 namespace weft::assets {
 
-/// A moving camera of a file, sampled at times close enough for linear interpolation in between; at least one time.
+/// A moving camera of a file, sampled at one or more times that are close enough for linear interpolation in between.
 struct LoadedCamera {
   std::vector<double> times;    ///< [s], increasing
   std::vector<Vec3> positions;  ///< [m]; y is up
   std::vector<Vec3> forward;    ///< viewing directions, unit length
   double field_of_view = 0;     ///< vertical [degrees]
-  double roll = 0;              ///< largest tilt to a side [degrees]
+  double roll = 0;              ///< largest angle of the camera's side vector to the horizontal [degrees]
 };
 
 /// Reads the camera on the node `object` of a glTF file, or the only camera if `object` is empty, with the first

@@ -14,7 +14,7 @@ namespace weft::assets {
 
 /// Interpretation of the lengths and axes of a file.
 struct FileAxes {
-  std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, else 1
+  std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, or 1
   scene::FileUp up = scene::FileUp::as_file;
   scene::UpAxis scene_up = scene::UpAxis::z;
 };
@@ -34,7 +34,7 @@ LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes
 /// Reads only skeleton and clips (at least one), without the mesh.
 LoadedCharacter load_motion(const std::filesystem::path& file, const FileAxes& axes, const std::string& where);
 
-/// Whether the extension of a file is that of BVH, in any case.
+/// Whether the extension of a file is .bvh, in upper or lower case.
 bool is_bvh(const std::filesystem::path& file);
 
 /// Scales every length of a character by `scale` and rotates every direction by `axes`, a signed permutation.

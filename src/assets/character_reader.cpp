@@ -26,7 +26,7 @@ using character::Affine;
 /// Maximum number of vertices of all parts with all copies, before merging: far more than collision can handle.
 constexpr std::size_t kMaxVertices = 4'000'000;
 
-/// Skin that the rest pose of the nodes moves farther from its bind position causes a warning [m].
+/// Largest distance without a warning between skin in the rest pose of the nodes and in its bind pose [m].
 constexpr double kMaxBindError = 0.05;
 
 /// Maximum error of the sum of weights without a warning: rounding, and the few bits that some formats store.
@@ -60,7 +60,7 @@ std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
       nodes.push_back(next);
       const auto children = children_of(*next.first);
       for (std::size_t c = children.size(); c-- > 0;)
-        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);  // RAW leaves gaps
+        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);  // null in RAW files
     }
     return nodes;
   };
@@ -168,7 +168,8 @@ class CharacterReader {
   }
 
   /// The weights of each vertex of a mesh. For a skinned mesh, `placing` becomes the map from the mesh to the rest
-  /// position given by its most important bone. The bones' offsets then start from there: all meshes share one space.
+  /// position given by the bone with the largest sum of weights. The bones' offsets then refer to that position, so
+  /// that all meshes share one space.
   std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& placing) {
     std::vector<Weights> weights(mesh.mNumVertices);
     std::vector<std::pair<Index, Affine>> bones;  // node and offset of bones with weights
@@ -215,7 +216,7 @@ class CharacterReader {
     return weight.mWeight;
   }
 
-  /// Warns if the rest pose of the nodes does not reproduce the bound skin, as with pivots that assimp's reader
+  /// Warns if the rest pose of the nodes moves skin off its bind pose, for example because of pivots that assimp
   /// ignores. FBX binds a mesh at its node; other formats define only the bones relative to each other.
   void check_bind(const aiMesh& mesh, const Affine& placing, const std::vector<Weights>& weights, Index node) {
     if (mesh.mNumBones == 0) return;
@@ -391,7 +392,8 @@ class CharacterReader {
     return uv.allFinite() ? uv : Vec2(Vec2::Zero());
   }
 
-  /// Takes materials and texture coordinates from the faces before merging; merging yields the same triangles.
+  /// Copies materials and texture coordinates from the faces before vertices are merged: merging does not change the
+  /// list of triangles.
   void color_faces(const Soup& unjoined) {
     if (file_.empty() || scene_.mNumMaterials == 0 || std::ranges::find(materials_, -1) != materials_.end()) return;
     character::Coloring& coloring = character_.coloring;
@@ -442,7 +444,7 @@ class CharacterReader {
   std::vector<Index> materials_;  // per vertex of the soup; -1 if the file has none
   std::vector<Vec2> uv_;          // per vertex of the soup
   std::vector<Morph> morphs_;
-  std::set<const aiMesh*> skinned_;  // that have been read
+  std::set<const aiMesh*> skinned_;  // skinned meshes that have been read
   ClipTargets targets_;
 };
 

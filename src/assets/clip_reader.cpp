@@ -94,7 +94,7 @@ struct ClipReader {
             to_curve<Vec3>(std::span(from.mScalingKeys, from.mNumScalingKeys), channel)};
   }
 
-  /// Reads morph weights; each key lists the targets that it gives weights to.
+  /// Reads morph weights; each key lists targets and their weights.
   void read_morphs(const aiMeshMorphAnim& from, const ClipTargets::Morphs& targets, character::Clip& clip) {
     const std::string channel = from.mName.C_Str();
     std::vector<character::MorphChannel> channels(static_cast<std::size_t>(targets.count));

@@ -21,8 +21,9 @@ struct ClipTargets {
   std::multimap<std::string, Morphs> morphs;
 };
 
-/// Skips channels of unknown objects and extends the clip to keys past its end, with a warning for both. Throws
-/// std::runtime_error naming clip and channel for times that run backwards and non-finite numbers.
+/// Skips channels of unknown objects and second channels of a node, and extends the clip to keys past its end, with
+/// warnings (none for ends within rounding errors). Throws std::runtime_error naming clip and channel for times that
+/// run backwards and non-finite numbers.
 character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets, std::vector<std::string>& warnings);
 
 }  // namespace weft::assets

@@ -36,7 +36,8 @@ class RegularFiles : public Assimp::DefaultIOSystem {
 };
 
 /// Assimp 5.2 mistakes a line feed at the start of binary PLY data, a byte of a number, for the end of the header and
-/// drops it. Returns such a file with an additional line feed, which is dropped instead; nothing for all other files.
+/// drops it. Returns the bytes of such a file with an additional line feed for assimp to drop; nullopt for all other
+/// files.
 std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 1 << 16;
   constexpr std::string_view kBinary = "\nformat binary_", kEnd = "\nend_header\n";
@@ -49,7 +50,7 @@ std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path&
   return bytes;
 }
 
-/// The bytes of a binary glTF file with another extension, such as .vrm, which assimp would read as OBJ; else nothing.
+/// The bytes of a binary glTF file with an extension such as .vrm, which assimp would read as OBJ; else nullopt.
 std::optional<std::string> renamed_gltf(const std::filesystem::path& file) {
   constexpr std::string_view kStart = "glTF";
   if (read_start(file, kStart.size()) != kStart || file.extension() == ".glb") return std::nullopt;

@@ -11,15 +11,16 @@ class Importer;
 
 namespace weft::assets {
 
-/// Imports a file; `importer` owns the result. Throws std::runtime_error with assimp's message. Damaged files can crash
-/// assimp or block it for ever: call it through run_isolated.
+/// Imports a file with the post-processing flags `steps` of assimp; `importer` owns the result. Throws
+/// std::runtime_error with assimp's message. Damaged files can crash assimp or block it for ever: call it through
+/// run_isolated.
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps);
 
 /// The unit that an FBX file states [m]. Readers of other formats convert to metres themselves if they know the unit.
 std::optional<double> metres_per_unit(const aiScene& scene);
 
 /// The up axis (0 x, 1 y, 2 z) that the file (FBX) or its format states: glTF, and Collada after rotation by its
-/// reader. Empty for other formats.
+/// reader. nullopt for other formats.
 std::optional<int> up_axis(const Assimp::Importer& importer, const aiScene& scene);
 
 }  // namespace weft::assets

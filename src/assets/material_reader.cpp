@@ -46,8 +46,8 @@ bool is_picture(std::string_view bytes) {
   return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff") || image::is_targa(bytes);
 }
 
-/// Folders near a file in which programs store its pictures: those beside it first, each group in
-/// the order of names.
+/// Folders in which programs store the pictures of a file: first those beside the file, then those one folder above,
+/// both in the order of names.
 std::vector<fs::path> picture_folders(const fs::path& file) {
   const std::string stem = file.stem().string();
   std::vector<fs::path> folders;
@@ -81,7 +81,7 @@ std::optional<fs::path> find_file(const std::string& named, const fs::path& file
   return std::nullopt;
 }
 
-/// If FBX declares a picture without name or content, assimp gives the name of the folder.
+/// If FBX declares a picture without name or content, assimp returns the name of the current folder.
 bool is_nameless(const std::string& named) {
   return named.empty() || named == "." || named == "./" || named == ".\\";
 }

@@ -11,8 +11,8 @@
 
 namespace weft::assets {
 
-/// Base colour and picture of each material. Pictures are embedded, or files searched below the folder of `file`.
-/// Unusable pictures are skipped with a warning.
+/// Base colour and picture of each material. Pictures are embedded, or files searched beside `file` and in picture
+/// folders there and one folder above. Unusable pictures are skipped with a warning.
 std::vector<character::Material> read_materials(const aiScene& scene, const std::filesystem::path& file,
                                                 std::vector<std::string>& warnings);
 

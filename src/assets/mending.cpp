@@ -18,9 +18,9 @@
 namespace weft::assets {
 namespace {
 
-/// Detached pieces with a smaller fraction of the area are left out: stitched-on trimmings [1].
+/// Detached pieces with a smaller fraction of the area are removed [1].
 constexpr double kMaxSmallPieceArea = 0.02;
-/// Other detached pieces end at this distance before the edge, as a fraction of the distance to their middles [1].
+/// Detached vertices move toward the mean middle of their triangles by this fraction of the distance [1].
 constexpr double kCutGap = 0.2;
 /// Maximum length of a collapsed edge, as a multiple of the minimum height of triangles [1].
 constexpr double kMaxCollapseRatio = 8;
@@ -97,7 +97,7 @@ struct Joint {
   }
 };
 
-/// The flattest pairs of triangles at each edge; each triangle is in one pair per edge.
+/// The flattest pairs of triangles at each edge; each triangle is in at most one pair per edge.
 std::vector<Joint> joints_of(const LoadedMesh& loaded) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const std::vector<Vec3>& x = loaded.mesh.positions;
@@ -133,7 +133,8 @@ std::vector<Joint> joints_of(const LoadedMesh& loaded) {
 /// Orients the triangles of each connected piece as most of its area faces. Returns the number of flipped triangles.
 std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
-  std::vector<std::vector<std::pair<std::size_t, bool>>> next(triangles.size());  // and whether it faces alike
+  // Neighbours of each triangle, and whether they face the same way.
+  std::vector<std::vector<std::pair<std::size_t, bool>>> next(triangles.size());
   for (const Joint& joint : joints) {
     const bool same_way = joint.faces_same_way(triangles);
     next[joint.t].emplace_back(joint.u, same_way);
@@ -164,7 +165,7 @@ std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) 
   return turned;
 }
 
-/// Detaches unjoined triangles: gives them their own vertices at edges that are not manifold, and moves these away.
+/// Detaches unjoined triangles: at edges that are not manifold, gives them vertices of their own and moves these away.
 void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& mended) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
@@ -237,7 +238,7 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
   keep_vertices(loaded, from);
 }
 
-/// Removes remaining third triangles at edges, which are connected to both others around a corner.
+/// Removes the third triangles at edges that cut() cannot detach, as other triangles connect them to the joined two.
 void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   double whole = 0;
@@ -354,7 +355,8 @@ class EdgeCollapser {
     return true;
   }
 
-  /// Flips the longest edge of a flat triangle, if the UVs are continuous across it and both triangles become higher.
+  /// Flips the longest edge of a flat triangle if the UVs are continuous across it and the lower one of its two
+  /// triangles becomes higher.
   bool flip(std::size_t t) {
     std::size_t k = 0;
     for (std::size_t i = 1; i < 3; ++i)
@@ -393,7 +395,7 @@ class EdgeCollapser {
     return ab.cross(bc).norm() / std::max({ab.norm(), bc.norm(), ca.norm()});
   }
 
-  /// Whether a triangle would reverse its orientation or lose its area if vertex b moved to a.
+  /// Whether triangle t would reverse its orientation or lose its area if its vertex b moved to a.
   bool would_flip(std::size_t t, Index b, Index a) const {
     const std::vector<Vec3>& x = loaded_.mesh.positions;
     Triangle after = triangles_[t];

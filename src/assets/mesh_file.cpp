@@ -62,7 +62,7 @@ std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   return renamed;
 }
 
-/// Copies colours and groups of vertices; `renamed`: new index of each vertex.
+/// Copies colours and groups of vertices; `renamed`: new index of each vertex, or −1.
 void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, LoadedMesh& result) {
   const std::size_t count = result.mesh.positions.size();
   for (std::size_t v = 0; v < renamed.size(); ++v) {

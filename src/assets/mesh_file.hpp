@@ -17,16 +17,16 @@ namespace weft::assets {
 /// A mesh, and the clean-up that was applied.
 struct LoadedMesh {
   mesh::Mesh mesh;  ///< in metres, without uv. Quads are kept if the file contains nothing else
-  /// Texture coordinates of the corners of each triangle, v upward; they may differ between islands at one vertex. NaN
-  /// for parts without them; empty if no part has any.
+  /// Texture coordinates of the corners of each triangle, v upward; a vertex may have different ones in different
+  /// triangles. NaN for parts without them; empty if no part has any.
   std::vector<std::array<Vec2, 3>> uv;
-  std::vector<Vec3> colors;  ///< per vertex, each channel from 0 to 1; empty if no part of the file has any
+  std::vector<Vec3> colors;  ///< per vertex, each channel from 0 to 1 (0 for parts without); empty if no part has any
   /// Weight (0 to 1) of each vertex in each vertex group or bone of the file. Merged vertices keep the largest weight
   /// and the largest value of each colour channel.
   std::map<std::string, std::vector<double>> groups;
   std::size_t removed_triangles = 0;  ///< without area: a repeated corner, or all corners on a line
   std::size_t lost_vertices = 0;      ///< used only by removed triangles
-  std::size_t joined_vertices = 0;    ///< copies at the same position, as created by seams of textures or normals
+  std::size_t joined_vertices = 0;    ///< copies at the same position, made for different UVs or normals
 };
 
 /// Interpretation of the lengths and axes of a mesh file. The mesh is rotated upright if the file (glTF, FBX, Collada)
@@ -53,9 +53,9 @@ struct Welded {
   double widest = 0;         ///< largest distance between merged vertices [m]
 };
 
-/// Welds nearly coincident border vertices, as in files that keep panels separate at seams: those nearer to each other
-/// than `ratio` times the shortest border edge at either vertex, at their mean. Does nothing where this would create an
-/// edge of three triangles, or of two that face opposite ways.
+/// Welds nearly coincident border vertices, as in files that keep panels separate: pairs nearer to each other than
+/// `ratio` times the shortest border edge at either vertex are merged at their mean. Changes nothing at all if this
+/// would create an edge of three triangles, or of two that face opposite ways.
 Welded weld_borders(LoadedMesh& loaded, double ratio);
 
 }  // namespace weft::assets

@@ -18,7 +18,8 @@ namespace {
 /// Maximum size of the positions of all files [bytes]: far more than is practical.
 constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 
-/// The vertex indices of the faces of an OBJ file, since assimp splits all corners. Empty for other files.
+/// The vertex indices of the faces of an OBJ file as text, since assimp gives each corner a vertex of its own. Empty
+/// for other files.
 std::string face_numbers(const std::filesystem::path& file) {
   std::string numbers;
   if (file.extension() != ".obj" && file.extension() != ".OBJ") return numbers;

@@ -25,7 +25,7 @@ namespace {
 
 using Transform = Eigen::Matrix4d;
 
-/// Faces flatter than this (area / longest side squared) count as having no area: their normal is rounding noise of
+/// Triangles flatter than this (area / longest side squared) count as having no area: their normal is rounding noise of
 /// assimp's single precision.
 constexpr double kMinFaceArea = 1e-7;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -102,15 +102,15 @@ std::vector<PlacedNode> placed_nodes(const aiNode& root) {
     nodes.emplace_back(node, to_world);
     for (unsigned c = node->mNumChildren; c-- > 0;) {
       const aiNode* child = node->mChildren[c];
-      // The reader of RAW files leaves gaps.
+      // Children can be null in RAW files.
       if (child != nullptr) stack.emplace_back(child, to_world * to_eigen(child->mTransformation));
     }
   }
   return nodes;
 }
 
-/// Placement of a mesh: its node or, with bones, the rest position given by its most important bone, as for characters
-/// (character_reader.cpp). glTF shows skinned meshes there, whichever node refers to them.
+/// Placement of a mesh: its node or, with bones, the rest position given by the bone with the largest sum of weights,
+/// as for characters (character_reader.cpp). glTF places skinned meshes by their bones, whichever node refers to them.
 Transform placement_of(const aiMesh& part, const Transform& of_node,
                        const std::unordered_map<std::string, Transform>& placed) {
   Transform placing = of_node;

@@ -18,7 +18,7 @@ struct Soup {
   std::vector<Vec3> positions;  ///< in metres if the file states its unit
   std::vector<Vec2> uv;         ///< per position, v upward; NaN if its mesh has none
   std::vector<Vec3> colors;     ///< per position; NaN if its mesh has none
-  /// Weight of a vertex in a group or bone: indices into group_names and positions, and weight.
+  /// Weight of a vertex in a group or bone; `group` and `vertex`: indices into group_names and positions.
   struct Weight {
     Index group, vertex;
     double weight;
@@ -30,9 +30,10 @@ struct Soup {
   std::vector<int> up;  ///< up axis of the file or its format, 0 x, 1 y, 2 z; empty: not stated
 };
 
-/// Reads the meshes of a file with the transforms of their nodes: those named `object`, or whose node is, or all if it
-/// is empty. Triangulates larger polygons, ignores points and lines. Throws std::runtime_error with assimp's message,
-/// or with the existing names. Damaged files can crash assimp or block it for ever: call it through run_isolated.
+/// Reads the meshes of a file with the transforms of their nodes: those whose name or node's name is `object`, or all
+/// if `object` is empty. Triangulates larger polygons, ignores points and lines. Throws std::runtime_error with
+/// assimp's message, or with the existing names. Damaged files can crash assimp or block it for ever: call it through
+/// run_isolated.
 Soup read_soup(const std::filesystem::path& file, const std::string& object = {});
 
 /// Appends a polygon; one with more than four corners is triangulated.

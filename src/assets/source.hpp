@@ -21,11 +21,11 @@ inline constexpr double kMaxCoordinate = 1e6;
 struct Source {
   std::filesystem::path file;
   std::string where;          ///< scene entry that names it, such as "scenes/a.toml:12:8: obstacle.chair"
-  std::string kind = "mesh";  ///< "mesh", "character", "motion"
+  std::string kind = "mesh";  ///< "mesh", "character", "motion", "camera"
 
   /// Throws Error(asset_unreadable) with `where` and the file.
   [[noreturn]] void fail(const std::string& why) const;
-  /// The same text, for a warning.
+  /// The text of fail(), for a warning.
   std::string describe(const std::string& what) const;
 
   /// Throws for files that are missing, empty, too large, or known to block the reader for ever.

@@ -20,9 +20,10 @@ using scene::Integrator;
 // Fixed steps, relative to the scene's.
 constexpr double kSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
 // Ratio of the shortest measured step to the step of the references. Without contact, a second-order reference then has
-// less than a sixtieth of the error. With contact, chaotic divergence dominates the error of steps.
+// 1/64 of the error of that shortest step. With contact, chaotic divergence exceeds the error of such steps.
 constexpr int kReferenceStepDivisor = 8, kReferenceStepDivisorWithContact = 2;
-// Values of time.tolerance [m] are half a decade apart, until the steps become shorter than the fixed ones.
+// Values of time.tolerance [m] fall from kLargestTolerance by half a decade each, until a run has more steps than that
+// with the shortest fixed step.
 constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
 // newton_tolerance falls by decades from the scene's value down to this minimum.
@@ -37,8 +38,9 @@ constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
 constexpr double kStartShift = 1e-6;
 // Runs shorter than this [s] are timed twice.
 constexpr double kShortRun = 0.3;
-// A run that keeps halving its steps is stopped after this multiple of its expected number of steps, or of that of the
-// finest run if larger. With a tolerance, the limit is at most the number of steps of the reference.
+// A run is stopped after this multiple of its expected number of steps, or of that of the shortest step if larger. With
+// a tolerance, the limit is this multiple of the steps at the shortest step, or the number of steps of the reference if
+// smaller.
 constexpr int kMaxStepRatio = 3;
 
 // Runs of one setting from one or several starts. With contact, medians of functionals are compared; otherwise the
@@ -55,7 +57,7 @@ Errors difference(const Sample& a, const Sample& b, const std::vector<std::size_
   return a.contact ? compare(a.middle, b.middle) : compare(a.starts[0], b.starts[0], same);
 }
 
-// Largest difference between any start and the median, or without contact the first start.
+// Largest difference of any start: with contact to the median, otherwise to the first start.
 Errors spread_of(const Sample& sample) {
   Errors spread{};
   for (const Trajectory& start : sample.starts) {
@@ -86,8 +88,8 @@ class Campaign {
   int steps_of(double step) const {
     return result_.frames * static_cast<int>(std::lround(1 / (scene_.time.fps * step)));
   }
-  // Smallest factor by which the error falls if the step becomes `shorter` times as short. It uses half of the order,
-  // as waves and contact lower it; the full order would understate the uncertainty.
+  // Assumed factor by which the error falls if the step is divided by `shorter`. It uses half of the order, as waves
+  // and contact lower the order; the full order would understate the uncertainty.
   double error_ratio(Integrator integrator, double shorter) const {
     const double order = result_.contact ? 1 : expected_order({.setting = {.integrator = integrator}});
     return std::pow(shorter, 0.5 * order);
@@ -162,8 +164,8 @@ scene::Scene Campaign::scene_with(const Setting& setting) const {
   return scene;
 }
 
-// Expected number of steps, times the particles relative to the scene's. With a tolerance t, steps scale as t^(1/2) for
-// Euler and t^(1/3) for the others; t = 1e-3 m is assumed to give the longest fixed step.
+// Expected number of steps, times the particles relative to the scene's. With a tolerance t, the step length is assumed
+// to scale as t^(1/2) for Euler and t^(1/3) for the others, and t = kLargestTolerance to give the longest fixed step.
 double Campaign::work_of(const Setting& setting) const {
   const double root = setting.integrator == Integrator::implicit_euler ? 2 : 3;
   const double step = setting.tolerance
@@ -224,8 +226,9 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
   return sample;
 }
 
-// Divides newton_tolerance at twice the step of a reference by ten until that changes less than a tenth of what the
-// step of the reference does, or the run fails. `coarse` becomes the last successful run. Returns the last change.
+// Divides newton_tolerance, at twice the step of a reference, by ten until a division changes less than a tenth of what
+// halving the step is expected to change, or less than the starts differ, or until a run fails. `coarse` becomes the
+// last successful run. Returns the last change.
 Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
   const double order = expected_order({.setting = twice});
@@ -233,7 +236,7 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
     Run tighter{.setting = twice};
     tighter.setting.newton_tolerance = std::max(kMinNewtonTolerance, kDecade * twice.newton_tolerance);
     const SamplePtr sample = run(tighter, coarse);
-    // A failure is accepted only if the effect of a tenfold smaller tolerance is already known.
+    // A failure is accepted only if the effect of an earlier tenfold decrease is known.
     if (!sample && at(change, decides) == 0) throw Error(ExitCode::simulation_failed, "{}", tighter.failure);
     if (!sample) return change;
     change = tighter.errors;
@@ -324,7 +327,8 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   return exact;
 }
 
-// Measures all fixed steps. The shortest one checks the reference; the one before it gives its own uncertainty.
+// Measures all fixed steps. The shortest step checks the reference; the difference to the step before gives the
+// uncertainty of this check.
 void Campaign::measure_steps(Integrator integrator) {
   SamplePtr before, last;
   double step_before = 0, step_last = 0;
@@ -373,7 +377,8 @@ void Campaign::measure_linear() {
   }
 }
 
-// Runs meshes from fine to coarse, each compared with that of twice the cells; results are listed from coarse to fine.
+// Runs meshes from fine to coarse and compares each with that of twice the cells along each side. Results are listed
+// from coarse to fine.
 void Campaign::measure_meshes() {
   std::map<double, SamplePtr> by_refinement;  // factors are multiples of an eighth, exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
@@ -402,7 +407,8 @@ void Campaign::measure_meshes() {
 }
 
 Accuracy Campaign::measure() {
-  // Rough estimate: three tolerances for each step, and references with three runs at twice their step.
+  // Rough estimate: three values of newton_tolerance for each step, half as much for the other axes, and as much as
+  // three runs at its step for each reference.
   constexpr double kRunsOfAStep = 3, kRunsOfAReference = 3;
   for (const double step : steps_)
     work_ += static_cast<double>(integrators_.size()) * kRunsOfAStep * work_of(as_in_scene(best_, step));

@@ -39,12 +39,12 @@ struct Run {
   Setting setting;
   std::string failure = {};  ///< why the run did not reach the end; empty if it did
   Errors errors{};           ///< with contact: of the median over the starts, see measure_accuracy()
-  Errors spread{};           ///< largest difference between one start and the median; 0 if there is only one start
+  Errors spread{};           ///< largest difference of a start to the median (without contact: to the first start)
   /// Only for Axis::grid, in the deciding quantity; otherwise NaN. `change`: difference to the run with a tenth of this
   /// newton_tolerance. `left`: difference to the most exactly solved run with the same step.
   double change = std::numeric_limits<double>::quiet_NaN(), left = change;
-  /// Only for Axis::grid: `change` is below a tenth of the error, or below the error's uncertainty, so that the step
-  /// and not the solver determines the error.
+  /// Only for Axis::grid: `change` is at most a tenth of the error of the run with a tenth of this newton_tolerance, or
+  /// at most that error's uncertainty, so that the step and not the solver determines the error ("the step decides").
   bool step_decides = false;
   Work work = {};  ///< CPU time is the minimum over all starts; a short single run is timed twice
   int particles = 0;
@@ -57,25 +57,26 @@ inline double error_of(const Run& run, Quantity quantity) {
   return at(run.errors, quantity);
 }
 
-/// Parameter that the error of a run depends on: step [s], time.tolerance [m], linear_tolerance or relative cell size.
+/// The parameter that varies along the axis of a run: step [s], time.tolerance [m], linear_tolerance or relative cell
+/// size.
 double control_of(const Run& run);
-/// Expected order of the error in control_of(run); for meshes a lower bound.
+/// Expected order of the error in control_of(run); for meshes a lower bound, for Axis::linear 0 (unknown).
 double expected_order(const Run& run);
 
 /// A run that may serve as the reference for errors.
 struct Candidate {
   Setting setting;
   std::string failure = {};
-  Errors step{};    ///< error of its step: extrapolated from twice the step, with half of the expected order
-  Errors solver{};  ///< change by a tenfold newton_tolerance, at twice its step
-  Errors spread{};  ///< largest difference between one start and the median
+  Errors step{};    ///< error of its step, extrapolated from the difference to twice the step
+  Errors solver{};  ///< change by a tenfold newton_tolerance, at twice the step
+  Errors spread{};  ///< as Run::spread
   double energies_in_play = 0;
 
   /// Uncertainty of this run: root of the sum of squares of the three errors above.
   Errors doubt() const;
 };
 
-/// The finest run of an integrator in which the step decides. It bounds the error of the reference.
+/// The run of an integrator with the shortest step, if the step decides there. It checks the error of the reference.
 struct CrossCheck {
   Setting setting;
   Errors apart{};  ///< difference to the reference
@@ -92,10 +93,10 @@ struct Accuracy {
   double largest_energy = 0;    ///< energies in play of the reference [J]; see Functionals::energies_in_play
   Candidate reference, second;  ///< `reference` is the more certain one, `second` checks it
   Errors apart{};               ///< difference between these two; 0 if the second failed
-  Errors uncertainty{};         ///< of the reference: its own, raised by what the second and the cross checks show
+  Errors uncertainty{};  ///< of the reference: its doubt(), raised where the second or the cross checks show more
   std::vector<CrossCheck> cross_checks;
   Setting of_scene;       ///< settings of the scene, with the step shortened so that it divides a frame evenly
-  std::vector<Run> runs;  ///< grouped by axis and integrator, each series from coarse to fine
+  std::vector<Run> runs;  ///< each series (one axis and integrator) is contiguous and runs from coarse to fine
 
   /// Uncertainty of the error of `run`.
   double doubt(const Run& run, Quantity quantity) const {
@@ -111,7 +112,8 @@ struct Accuracy {
   std::vector<const Run*> decided(scene::Integrator integrator) const;
 };
 
-/// The quantities that are reported. Without contact: errors of the trajectory; with contact: of functionals.
+/// The quantities that are reported: without contact position, velocity and some functionals, with contact only
+/// functionals.
 std::vector<Quantity> quantities_of(const Accuracy& accuracy);
 /// The quantity that settings are judged by: position, or with contact the centre of mass.
 Quantity deciding_quantity(const Accuracy& accuracy);
@@ -128,8 +130,8 @@ void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross
 /// Runs the scene some hundred times. With contact, each setting runs from several starts that differ by micrometres,
 /// and their median counts. Two references are computed independently: midpoint and BDF2; with contact BDF2 and Euler,
 /// as midpoint does not damp contact. Their steps are an eighth (with contact half) of the shortest measured step, and
-/// newton_tolerance is lowered until the last tenfold decrease changed less than a tenth of what the step does. The
-/// more certain reference is used, and checked against the finest run of each integrator. Throws
+/// newton_tolerance is lowered until a tenfold decrease changes less than a tenth of what the step does, or less than
+/// the starts differ. The more certain reference is used, and checked against the finest run of each integrator. Throws
 /// Error(simulation_failed) if both references fail, and Error(usage) if the plan does not suit the scene.
 Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each = {}, const AccuracyPlan& plan = {});
 

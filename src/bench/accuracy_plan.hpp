@@ -8,7 +8,7 @@
 
 namespace weft::bench {
 
-/// The program chooses a list that is not given; an empty list omits its axis.
+/// If a list is absent, the program chooses it; an empty list omits its axis.
 struct AccuracyPlan {
   std::optional<std::vector<scene::Integrator>> integrators;
   std::optional<std::vector<double>> steps;       ///< relative to the scene's time.step

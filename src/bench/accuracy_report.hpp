@@ -9,8 +9,8 @@
 
 namespace weft::bench {
 
-/// Runs of all integrators: of one axis; of Axis::grid where the step decides; of Axis::grid with the solver settings
-/// of the scene.
+/// Runs of all integrators. runs_of_axis: of one axis. deciding: of Axis::grid where the step decides.
+/// with_solver_of_scene: of Axis::grid with the solver settings of the scene.
 std::vector<const Run*> runs_of_axis(const Accuracy& accuracy, Axis axis);
 std::vector<const Run*> deciding(const Accuracy& accuracy);
 std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy);
@@ -23,8 +23,8 @@ std::string work_svg(const std::string& title, const Accuracy& accuracy);
 /// Errors against step, solver tolerance and mesh.
 std::string settings_svg(const std::string& title, const Accuracy& accuracy);
 
-/// The run with the least CPU time whose error is certain to be at most `target`. All runs that refine it along the
-/// same axis must reach the target too. nullptr if there is none.
+/// The run with the least CPU time whose error is certain to be at most `target`. All runs that are solved more exactly
+/// along the same axis must reach the target too. nullptr if there is none.
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target);
 /// The Pareto front: runs for which no other run is both cheaper and more exact, cheapest first.
 std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity);

@@ -12,13 +12,13 @@ namespace {
 
 // Displacement of the start that should not affect the result [m].
 constexpr double kStartDisplacement = 1e-6;
-// The motion is chaotic if this displacement grows to more than this fraction of the step and solver errors.
+// The motion is chaotic if kStartDisplacement grows to more than this fraction of the step and solver errors.
 constexpr double kChaosRatio = 0.3;
 // It is also chaotic if the displacement grows more than a thousandfold, however large those errors are.
 constexpr double kMaxAmplification = 1e3;
 constexpr double kCompanionToleranceRatio = 0.1;  // newton_tolerance of the companion, relative to the run's
 // Observed orders are limited to the range from this fraction of the expected order to all of it. Stiff waves and
-// borders lower the order; below the range, differences do not fall reliably with step or spacing.
+// borders lower the order. Below the range, differences hardly fall with step or spacing.
 constexpr double kMinOrderRatio = 0.5;
 // Fraction of the expected order that is assumed if there is only one companion.
 constexpr double kAssumedOrderRatio = 0.75;
@@ -41,8 +41,9 @@ struct Change {
   Errors errors;
 };
 
-// Order p in [least, most] for which an error C h^p explains two changes C h^p |r^p - 1|. `quotient` is the change of
-// the coarser companion over that of the finer one; it grows with p.
+// Order p in [least, most] for which an error C h^p explains both changes C h^p |r^p - 1|, where h is the step or
+// spacing of the run and r the ratio of the companion. `quotient`: change of the coarser companion / change of the
+// finer one, which grows with p.
 double observed_order(double coarse_ratio, double fine_ratio, double quotient, double least, double most) {
   constexpr int kHalvings = 30;
   const auto expected = [&](double p) {
@@ -55,7 +56,7 @@ double observed_order(double coarse_ratio, double fine_ratio, double quotient, d
   return 0.5 * (least + most);
 }
 
-// Error of a run of this order from the change to one companion, and if given from that to a coarser one.
+// Error of a run, from the change to one companion and, if given, to a coarser one. `order`: the expected order.
 Errors richardson(double order, const Change& change, const std::optional<Change>& coarser) {
   Errors errors{};
   for (std::size_t q = 0; q < kQuantities; ++q) {
@@ -115,11 +116,11 @@ ErrorPart Companions::part(ErrorSource source, const std::function<Errors()>& me
   return part;
 }
 
-// Uses the step nearest to `ratio` times that of the run that divides a frame evenly.
+// Uses the shortest step that is at least `ratio` times that of the run and divides a frame evenly.
 Change Companions::change_with_step(double ratio) {
   scene::Scene companion = scene_;
   if (scene_.time.tolerance) {
-    // Steps scale as t^(1 / (p + 1)).
+    // The step scales as tolerance^(1 / (order + 1)).
     *companion.time.tolerance *= std::pow(ratio, order_of(scene_.time.integrator) + 1);
     return {ratio, difference(companion)};
   }

@@ -23,8 +23,8 @@ struct ErrorPart {
 };
 
 struct ErrorEstimate {
-  /// A start moved by a micrometre moves the run by more than 0.3 of the step and solver errors (but at least 10 µm),
-  /// or by more than a millimetre, or this companion fails.
+  /// A start moved by a micrometre changes the run by more than 0.3 of the step and solver errors (this limit is at
+  /// least 10 µm and at most a millimetre), or this companion fails.
   bool start_matters = false;
   /// Doubling the step fails, or changes the run too little compared with halving it: the error does not follow the
   /// order of the method.
@@ -33,7 +33,7 @@ struct ErrorEstimate {
   Errors all{};      ///< root of the sum of squares of the parts
   double cpu_s = 0;  ///< CPU time of all companions
 
-  /// Whether the motion is chaotic, so that the estimate is only a lower bound.
+  /// Whether the estimate is only a lower bound: the motion is chaotic, or the step error does not follow the order.
   bool is_lower_bound() const { return start_matters || steps_irregular; }
   /// The part with the largest error in position.
   const ErrorPart& largest() const;
@@ -41,15 +41,16 @@ struct ErrorEstimate {
 
 struct CompanionOptions {
   bool mesh = false;                   ///< whether coarser meshes are simulated too
-  std::function<bool()> proceed = {};  ///< called before each frame of a companion; false interrupts
+  std::function<bool()> proceed = {};  ///< called before each frame of a companion; false: interrupt
 };
 
 /// Estimates the distance of a run from the limit of infinitely short, exactly solved steps, and with options.mesh of
 /// infinitely small cells. Companions: a start moved by a micrometre; a tenth of solver.newton_tolerance; and, with
-/// that tolerance, half and twice the step (time.tolerance accordingly), and half and a quarter of the cells. The
-/// differences are extrapolated by Richardson's method with the observed order, limited to that of the method. Only the
-/// frames in `run` are compared. If a companion fails, its part is marked as missing. Throws Error(interrupted) if
-/// options.proceed returns false.
+/// that tolerance, half and twice the step (time.tolerance accordingly), and half and a quarter of the cells.
+/// Differences between steps and between meshes are extrapolated by Richardson's method with the observed order,
+/// limited to half to all of the expected order. Only the frames in `run` are compared. If a companion other than that
+/// with twice the step fails, its part is marked as missing. Throws Error(interrupted) if options.proceed returns
+/// false.
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options = {});
 
 }  // namespace weft::bench

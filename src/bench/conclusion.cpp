@@ -51,7 +51,7 @@ bool certainly_reaches(const Accuracy& accuracy, const Run& run, Quantity quanti
          });
 }
 
-// Rounds up to four digits: with a step rounded down, a frame would need one more step.
+// Rounds up to four digits: if the step were rounded down, a frame would need one more step.
 double shown_step(double step) {
   const double scale = std::pow(10, 3 - std::floor(std::log10(step)));
   return std::ceil(step * scale - 1e-6) / scale;
@@ -94,7 +94,7 @@ std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
                                                                            : cheapest_text(accuracy, quantity, target);
     text += fmt::format("{}{} m: {}", text.empty() ? "" : "; ", target, choice);
   }
-  // The smallest error that can be verified; with contact it is limited by the spread over starts.
+  // Add the smallest target that the reference can verify.
   if (uncertainty > kMaxUncertaintyRatio * kTargets[2]) {
     const double known = uncertainty / kMaxUncertaintyRatio;
     text += fmt::format("; {:.1e} m, as exact as this report can show: {}", known,
@@ -111,7 +111,7 @@ class Line {
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     ++n_, x_ += x, y_ += y, xx_ += x * x, xy_ += x * y;
   }
-  // CPU time factor for a tenth of the error, for example "3.6 times", or "unknown" if the fit is not conclusive.
+  // Factor of CPU time for a tenth of the error as text, such as "3.6 times"; "unknown" if the fit is not conclusive.
   std::string cost_of_a_digit() const {
     const double spread = n_ * xx_ - x_ * x_, slope = (n_ * xy_ - x_ * y_) / spread;
     if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "unknown";
@@ -122,7 +122,7 @@ class Line {
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
 };
 
-// What a decimal digit of accuracy costs, fitted to the finest resolved runs of a series.
+// cost_of_a_digit() of the finest resolved runs of a series.
 std::string digit_of_series(const Accuracy& accuracy, const std::vector<const Run*>& series, Quantity quantity) {
   Line line;
   std::size_t used = 0;
@@ -153,7 +153,7 @@ std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
       line.cost_of_a_digit(), each);
 }
 
-// Errors due to step, solver and mesh, at the scene's step and integrator.
+// Errors due to step and solver, at the scene's step and integrator, and due to the mesh of the scene.
 std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
   std::map<std::string, double> left;
   for (const Run& run : accuracy.runs) {
@@ -221,7 +221,7 @@ std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
 namespace {
 
 // The most exact setting that reaches the target at a cost of at most kEqualRatio times `cpu_s`. A setting with the
-// scene's own solver tolerance is preferred if its error is at most kEqualRatio times larger.
+// scene's own newton_tolerance is preferred if its error is at most kEqualRatio times that of others.
 const Run* most_exact_at_cost(const Accuracy& accuracy, Quantity quantity, double target, double cpu_s) {
   const Run* best = nullptr;
   double least = std::numeric_limits<double>::infinity();

@@ -107,8 +107,8 @@ scene::Scene scene_of(const Specimen& specimen, const scene::Material& material,
 }
 
 Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, Solved solved) {
-  // Measured for wool, cotton, jersey and faille: a third of this tolerance changes the drape by 0.0 to 0.3 points,
-  // half of the step by 0.4 to 1.0.
+  // Measured for wool, cotton, jersey and faille: a third of this tolerance changes the drape by 0.0 to 0.3 percentage
+  // points, half of the step by 0.4 to 1.0.
   constexpr double kExact = 0.01;
   scene.time = {.duration = 1.5, .fps = 10, .step = 0.01};
   scene.contact.self = true;
@@ -133,7 +133,7 @@ Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, So
 
 namespace {
 
-// Tangent of the angle below the horizontal at which the tip of a strip is seen from the edge after hanging for 8 s.
+// Tangent of the angle between the horizontal and the line from the edge to the tip of a strip that has hung for 8 s.
 double droop(const scene::Material& material, double overhang) {
   constexpr int kCells = 40;
   const double l = overhang / kCells, width = 0.025;
@@ -155,8 +155,8 @@ double droop(const scene::Material& material, double overhang) {
 
 Cantilever cantilever(const scene::Material& material) {
   const double target_slope = std::tan(41.5 * kPi / 180), weight = material.density * kGravity;
-  // tan(angle) grows with about the cube of small overhangs and slower beyond. An assumed exponent of 2.5 converges to
-  // 1e-3 of the length within a few attempts.
+  // droop() grows with about the cube of small overhangs, and more slowly for larger ones. An assumed exponent of 2.5
+  // converges to 1e-3 of the length within a few attempts.
   double overhang = 2 * std::cbrt(material.bend / weight);
   for (int attempt = 0; attempt < 8; ++attempt) {
     const double change = std::pow(target_slope / droop(material, overhang), 1 / 2.5);

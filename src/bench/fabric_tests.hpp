@@ -21,8 +21,8 @@ struct Specimen {
 };
 
 /// A disc of concentric rings of triangles; ring k has 6 k vertices, and `free` rings lie outside the plates. Vertices
-/// of the free rings are displaced by up to 0.15 of the spacing, so that no direction is preferred (those of the border
-/// only along it); `seed` selects the displacements. The last held ring is the edge of the plates.
+/// of the free rings are displaced by up to 0.15 of the spacing (on the border: only along it), so that no direction is
+/// preferred; `seed` selects the displacements. The last held ring is the edge of the plates.
 Specimen rings(int free, int seed);
 
 /// A scene that contains only the specimen, which is written to `file` (OBJ) and read from there.
@@ -33,17 +33,16 @@ std::vector<scene::Pin> pins_at(const std::vector<Vec3>& x, const std::vector<st
 
 struct Drape {
   double coefficient = 0;     ///< visible fraction of the overhanging area, seen from above [1]
-  double strain = 0;          ///< larger of weft and warp [1]
+  double strain = 0;          ///< in the last frame, larger of weft and warp [1]
   double kinetic_energy = 0;  ///< in the last frame [J]
   double cpu_s = 0;
 };
 
 /// Bending friction holds cloth where it first comes to rest, so that the solver's residual affects the drape.
-/// `exactly`: with a newton_tolerance so small that a tenth of it gives the same drape. `with_default_tolerance`: with
-/// the default tolerance.
+/// `exactly`: with a newton_tolerance so small that a third of it changes the drape by at most 0.3 percentage points.
 enum class Solved { exactly, with_default_tolerance };
 
-/// Lets the level specimen fall for 1.5 s, within which it comes to rest. Throws Error(simulation_failed).
+/// Simulates the fall of the level specimen for 1.5 s, within which it comes to rest. Throws Error(simulation_failed).
 Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, Solved solved = Solved::exactly);
 
 }  // namespace cusick
@@ -54,7 +53,7 @@ struct Cantilever {
   double bending_length = 0;  ///< half of the overhang [m]
   double rigidity = 0;        ///< density · 9.81 m/s² · bending_length³ [N·m]
 };
-/// Each trial overhang starts level and is measured after 8 s. Throws Error(simulation_failed).
+/// Repeats the test with different overhangs; each starts level and hangs for 8 s. Throws Error(simulation_failed).
 Cantilever cantilever(const scene::Material& material);
 
 enum class Direction { weft, warp };

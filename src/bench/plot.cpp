@@ -39,7 +39,7 @@ PlotAxis fit(const Panel& panel, int coordinate, double start, double length) {
   return {low - room, high + room, start, length};
 }
 
-// For example 0.02, 5, 200; outside 10^±3 a power of ten, such as 10^4 or 2·10^4.
+// Text of part · 10^decade: for example 0.02, 5, 200; for decades beyond ±3 as 10^4 or 2·10^4.
 std::string tick_name(double part, int decade) {
   const double value = part * std::pow(10.0, decade);
   if (decade >= -3 && decade <= 3) return fmt::format("{:g}", value);
@@ -47,7 +47,7 @@ std::string tick_name(double part, int decade) {
                      decade);
 }
 
-// Multiples of each decade that get a label: enough for at least three labels, without overlap.
+// Multiples of powers of ten that get a label: enough for three labels, without overlap. `decades`: length of the axis.
 std::vector<double> labelled_multiples(double decades) {
   if (decades < 0.5) return {1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9};
   if (decades < 1) return {1, 2, 3, 4, 5, 7};
@@ -55,9 +55,9 @@ std::vector<double> labelled_multiples(double decades) {
   return {1};
 }
 
-// Grid lines at each decade and at 2 and 5 times it; labels where space allows.
+// Grid lines at powers of ten and at 2 and 5 times these; labels where space allows.
 std::string ticks(const PlotAxis& axis, bool vertical) {
-  constexpr double kMaxLabelledDecades = 12;  // decades
+  constexpr double kMaxLabelledDecades = 12;
   std::string text;
   const auto line = [&](double place, const char* color) {
     text += vertical ? fmt::format("<path d='M{:.1f} {:.1f}h{}' stroke='{}'/>\n", kLeft, place, kPlotWidth, color)

@@ -14,7 +14,7 @@
 namespace weft::bench {
 namespace {
 
-// A trial is aborted if its CPU time exceeds that of the unchanged scene by this ratio plus these seconds.
+// A trial is aborted if its CPU time exceeds kSlowRatio times that of the unchanged scene plus kSlowSeconds.
 constexpr double kSlowRatio = 20, kSlowSeconds = 5;
 
 constexpr std::size_t index_of(VariedParameter axis) {
@@ -48,7 +48,7 @@ void scale_materials(scene::Scene& scene, const Factors& factors) {
   }
 }
 
-// Returns false if the cells cannot be divided by this factor.
+// Multiplies the cells along each side; returns false if they cannot be multiplied by this factor.
 bool scale_mesh(scene::Scene& scene, double factor) {
   if (factor == 1) return true;
   const bool all_patterns = std::ranges::all_of(
@@ -241,7 +241,7 @@ SceneStability measure_scene_stability(const scene::Scene& scene,
   const auto report_trial = [&](const Trial& trial) {
     if (each) each(trial, static_cast<double>(result.trials.size() + 1) / static_cast<double>(plan.size() + 1));
   };
-  // If the scene cannot be simulated at all, its error is passed on to the user.
+  // If the scene cannot be built at all, throws its error.
   { const simulation::Simulation whole(scene); }
   result.as_is = try_factors(scene, {1, 1, 1, 1, 1, 1}, std::numeric_limits<double>::infinity(), {}, stop);
   report_trial(result.as_is);

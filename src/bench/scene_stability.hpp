@@ -1,4 +1,4 @@
-// Stability margins of a scene: each of its values is varied alone, and stiffness together with the step.
+// Stability margins of a scene: each of its parameters is varied alone, and stiffness together with the step.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ enum class TrialVerdict {
   warned,      ///< ran to the end, but something broke on the way
   refused,     ///< the simulation ended with an error
   not_finite,  ///< a position is not finite
-  too_slow,    ///< aborted: it takes many times as long as the scene itself
+  too_slow,    ///< aborted: it takes many times as long as the unchanged scene
   impossible,  ///< such a scene cannot be built; not counted
 };
 std::string_view describe(TrialVerdict verdict);
@@ -67,8 +67,8 @@ inline constexpr std::array<double, 5> kMapStiffness{0.01, 0.1, 1, 10, 100};
 inline constexpr std::array<double, 5> kMapSteps{0.25, 0.5, 1, 2, 4};
 
 /// Runs all frames of the scene once per trial, some fifty trials. Calls `each` after each trial with the fraction of
-/// the work done. Returns early with the trials so far if `stop` returns true. Throws what the unchanged scene throws,
-/// except Error(simulation_failed).
+/// the work done. Returns early with the trials so far if `stop` returns true; throws Error(interrupted) if that
+/// happens in the unchanged scene. Also throws what Simulation(scene) throws.
 SceneStability measure_scene_stability(
     const scene::Scene& scene, const std::function<void(const Trial&, double done)>& each = {},
     const std::function<bool()>& stop = [] { return false; });
@@ -76,7 +76,7 @@ SceneStability measure_scene_stability(
 /// The range of a parameter, on one side of the scene's own value, in which the scene holds.
 struct Margin {
   VariedParameter axis;
-  double holds = 1;               ///< last factor, going away from 1, before the first that breaks
+  double holds = 1;               ///< last factor before the first that breaks, going away from 1; 1: none holds
   const Trial* breaks = nullptr;  ///< the trial at that first factor; nullptr if no trial breaks
 };
 /// One margin below and one above 1 for each parameter that could be varied.

@@ -15,19 +15,21 @@ namespace weft::bench {
 namespace {
 
 // Lower bound on the bytes moved by one linear iteration, in single precision. Full block: nine numbers and a column
-// index. Isotropic block: one number and a column index. Particle: its preconditioner block (three padded vectors) and
-// padded vectors: the product reads p and writes q; the step along p reads p and q, and reads and writes x and r; the
-// preconditioner reads r and writes z; the new direction reads z, and reads and writes p.
+// index. Isotropic block (multiple of the identity): one number and a column index. Particle: its preconditioner block
+// (three padded vectors) and padded vectors of conjugate gradients (direction p, product q, solution x, residual r,
+// preconditioned residual z): the product reads p and writes q; the step reads p and q, and reads and writes x and r;
+// the preconditioner reads r and writes z; the new direction reads z, and reads and writes p.
 constexpr double kPaddedVec3Bytes = 16;
 constexpr double kFullBlock = 9 * 4 + 4, kIsotropicBlock = 4 + 4,
                  kParticle = 3 * kPaddedVec3Bytes + (2 + 6 + 2 + 3) * kPaddedVec3Bytes;
-// A linearisation adds to precomputed constants, writes the matrix in double precision and reads it for the copy in
+// A linearisation reads precomputed constants, writes the matrix in double precision, reads it, and writes a copy in
 // single precision. Positions, velocities and forces are moved in each of three evaluations: linearisation, line
 // search, final residual. Data of the elements are not counted.
 constexpr double kFullBlockAssembled = 9 * (8 + 8 + 8 + 4), kIsotropicBlockAssembled = 8 + 8 + 8 + 4,
                  kParticleEvaluated = 3 * 3 * 24;
 
-// Typical exponents of cost over particles and step, and gain per thread; used only to predict run times.
+// Typical exponents of cost in particles and 1 / step, and speed-up per additional thread; used only to predict run
+// times.
 constexpr double kUsualExponent = 1.3, kUsualStepExponent = 0.6, kUsualGainOfAThread = 0.4;
 
 // FNV-1a hash.
@@ -150,7 +152,7 @@ double read_bandwidth(double bytes) {
   };
   int times = 1;
   while (read(times) < kMinTimedSeconds) times *= 2;
-  // Disturbances only slow it down, so the best of three counts.
+  // Other processes can only slow the measurement down, so the best of three counts.
   double best = 0;
   for (int k = 0; k < 3; ++k)
     best = std::max(best, times * static_cast<double>(numbers.size() * sizeof numbers[0]) / read(times));

@@ -35,7 +35,7 @@ struct SpeedSetting {
 struct SpeedRun {
   SpeedSetting setting;
   std::string failure = {};  ///< why the run gave no measurement; empty if it did
-  std::int64_t particles = 0, full_blocks = 0, isotropic_blocks = 0;
+  std::int64_t particles = 0, full_blocks = 0, isotropic_blocks = 0;  ///< isotropic: multiple of the 3 × 3 identity
   int frames = 0;  ///< number of measured frames; the counts and times below are sums over them
   int steps = 0, rejected_steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::array<StageTime, kSpeedStages> stages{};
@@ -58,8 +58,8 @@ struct SpeedFrames {
 };
 
 /// Runs the scene with the given settings and returns its cost. Call it in a process of its own: it measures the memory
-/// of the process, and assigns the CPU time of all its threads to stages. If `open_drawing` is given, it is called once
-/// the simulation is built, and its result for each frame. Throws what a simulation throws.
+/// of the process, and assigns the CPU time of all its threads to stages. If `open_drawing` is given, it is called
+/// after the preroll, and its result for frame 0 and each measured frame. Throws what a simulation throws.
 using Drawing = std::function<void(const frame::FrameSnapshot&)>;
 SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, const SpeedFrames& frames,
                        const std::function<Drawing()>& open_drawing = {});
@@ -69,24 +69,24 @@ template <class Archive>
 void serialize(Archive& archive, SpeedRun& run);
 
 /// Lower bound on the bytes that one iteration must move through memory if each number is read and written once per
-/// purpose. bytes_of_newton_iteration does not include its linear iterations.
+/// purpose. A Newton iteration is counted without its linear iterations.
 double bytes_of_linear_iteration(const SpeedRun& run);
 double bytes_of_newton_iteration(const SpeedRun& run);
-/// Lower bound [s] on the time of forces, preconditioner and linear solver, if memory bandwidth were the only limit.
+/// Time of forces, preconditioner and linear solver if memory bandwidth were the only limit [s]; 0: bandwidth unknown.
 double memory_bound_s(const SpeedRun& run);
 
-/// Speed at which all threads that are set read `bytes` of memory repeatedly [bytes/s]. It is the speed of the cache
-/// level into which they fit.
+/// Speed at which thread_count() threads read `bytes` of memory repeatedly [bytes/s]: that of the smallest cache level,
+/// or memory, that holds these bytes.
 double read_bandwidth(double bytes);
 
 /// The settings of all runs: every size with every number of threads; and every step at the size nearest to the
 /// scene's, with the first number of threads. Each list must have at least one entry.
 std::vector<SpeedSetting> speed_settings(const std::vector<double>& sizes, const std::vector<int>& threads,
                                          const std::vector<double>& steps);
-/// Rough cost relative to a run at 1, 1, 1; used to predict the remaining time.
+/// Rough cost relative to SpeedSetting{1, 1, 1}; used to predict the remaining time.
 double expected_work(const SpeedSetting& setting);
 
-/// The changes, in the syntax of `--set`, that turn the scene into that of the setting; empty for the scene's own.
+/// The changes, in the syntax of `--set`, that apply a setting to the scene; empty if nothing changes.
 std::vector<std::string> overrides_of(const scene::Scene& scene, const SpeedSetting& setting);
 /// Whether the scene has a cloth whose size is given by `particles`.
 bool has_sizes(const scene::Scene& scene);

@@ -11,7 +11,7 @@
 namespace weft::bench {
 namespace {
 
-// Fraction of the energies in play that may appear because steps are solved to a tolerance; rounding errors [J].
+// Allowed energy gain: this fraction of the energies in play for solver tolerances, plus [J] for rounding errors.
 constexpr double kSolverEnergyRatio = 0.1, kEnergyRounding = 1e-9;
 
 double mechanical_energy(const simulation::FrameReport& report) {
@@ -42,8 +42,8 @@ class Watch {
     before_ = snapshot;
     const double energy = mechanical_energy(report);
     if (!std::isfinite(energy)) return false;
-    // Scale of allowed errors: largest kinetic energy at the start, largest elastic energy, and the range of potential
-    // energy so far.
+    // Scale of allowed errors: the larger of kinetic + elastic energy at the start and the largest elastic energy so
+    // far, plus the range of potential energy so far.
     largest_energy_ = std::max(largest_energy_, report.elastic_energy);
     potential_low_ = std::min(potential_low_, report.potential_energy);
     potential_high_ = std::max(potential_high_, report.potential_energy);
@@ -159,7 +159,7 @@ double stiffest_period(double stiffness) {
 
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each) {
   constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2};
-  // Instabilities show within two swings, or within many periods of the stiffest mode.
+  // Long enough for an instability to show.
   constexpr double kSwings = 2;
   constexpr int kDecades = 10, kMaxMapSteps = 25'000;
   std::vector<MapCell> cells;

@@ -12,7 +12,7 @@ namespace weft::bench {
 enum class Verdict {
   solved,     ///< ran to the end with finite numbers and without unexplained energy
   refused,    ///< ended with a stated reason; earlier frames are kept
-  warned,     ///< finite, but with more energy than possible; some frame has a warning
+  warned,     ///< finite, but with more energy than allowed; some frame has a warning
   unbounded,  ///< as `warned`, but without any warning
   not_finite,
 };
@@ -30,8 +30,8 @@ struct Outcome {
   double cpu_s = 0;
 };
 
-/// Largest energy that a scene may gain [J], from driven pins and bodies. 0: nothing is driven, so that only a fixed
-/// fraction of the energies in play is allowed, for solver tolerances.
+/// Largest energy that a scene may gain from driven pins and bodies [J], in addition to a fixed fraction of the
+/// energies in play for solver tolerances.
 struct EnergyLimit {
   double driven = 0;
 };
@@ -59,8 +59,8 @@ struct MapCell {
   double swings = 0, stiffest_periods = 0;
 };
 
-/// Periods of the map's sheet [s]: of the sheet swinging as a plate about its upper edge; of neighbouring particles of
-/// a thread that vibrate against each other.
+/// Periods of the map's sheet [s]. swing_period: of the sheet as a rigid plate that swings about its upper edge.
+/// stiffest_period: of neighbouring particles of a thread that vibrate against each other.
 double swing_period();
 double stiffest_period(double stiffness);
 

@@ -18,12 +18,12 @@ namespace weft::bench {
 enum class Quantity : std::size_t {
   position,     ///< mass-weighted root mean square, largest over all frames [m]
   velocity,     ///< likewise [m/s]
-  energy,       ///< kinetic, elastic and gravitational, largest over all frames, relative to the energies in play
-  drift,        ///< of that energy in the last frame, likewise
+  energy,       ///< kinetic + elastic + gravitational, largest over all frames, relative to energies_in_play
+  drift,        ///< the same energy in the last frame, likewise relative
   centre,       ///< centre of mass in the last frame [m]
   top,          ///< height of the highest particle in the last frame [m]
-  shadow,       ///< sum of the projected areas of all cloths seen from above in the last frame, relative to their area
-  rest_energy,  ///< elastic and gravitational in the last frame, relative to the energies in play
+  shadow,       ///< sum of all cloths' areas as seen from above in the last frame, relative to the area at the start
+  rest_energy,  ///< elastic + gravitational in the last frame, relative to energies_in_play
 };
 inline constexpr std::size_t kQuantities = 8;
 std::string_view name_of(Quantity quantity);
@@ -78,7 +78,7 @@ class Recorder {
  private:
   std::size_t cloths_;
   Vec3 up_;
-  // largest kinetic and elastic energy; range of the potential energy
+  // area of all cloths in frame 0 [m²]; largest kinetic, largest elastic, lowest and highest potential energy [J]
   double start_area_, kinetic_, elastic_, low_, high_;
   frame::SnapshotPtr last_;
   Trajectory trajectory_;
@@ -88,16 +88,17 @@ class Recorder {
 struct FollowLimits {
   int last_frame = std::numeric_limits<int>::max();  ///< default: the scene's last frame
   int steps = std::numeric_limits<int>::max();       ///< maximum number of steps, including rejected ones
-  std::function<bool()> proceed = {};                ///< called before each frame; false interrupts
+  std::function<bool()> proceed = {};  ///< called before each frame, also of the preroll; false: interrupt
 };
 
-/// Simulates the frames of the scene. Throws Error(simulation_failed), or Error(interrupted) through `proceed`.
+/// Simulates the frames of the scene. Throws Error(simulation_failed), also for too many steps, and Error(interrupted)
+/// if `proceed` returns false.
 Trajectory follow(const scene::Scene& scene, const FollowLimits& limits = {});
 
-/// Errors of the functionals; those of trajectories are 0.
+/// Errors of the functionals; those of position and velocity are 0.
 Errors compare(const Functionals& run, const Functionals& reference);
 /// Errors of a motion against a reference. Particle i of `run` is compared with particle same[i] of `reference`, or
-/// with particle i if `same` is empty. Velocities are compared only if both have them.
+/// with particle i if `same` is empty. Velocities are compared only if both motions have them.
 Errors compare(const Trajectory& run, const Trajectory& reference, const std::vector<std::size_t>& same = {});
 
 /// Longest side of the box around the largest cloth [m].

@@ -19,7 +19,7 @@ namespace {
 template <class Archive>
 constexpr bool kReading = std::is_same_v<Archive, ByteReader>;
 
-// Bytes may only be turned into values that the type allows.
+// An enumeration or boolean as one byte; throws if the byte exceeds `last`, the largest value of the type.
 template <class Archive, class Value>
 void serialize_byte(Archive& archive, Value& value, Value last) {
   auto byte = static_cast<std::uint8_t>(value);
@@ -37,7 +37,7 @@ void serialize_flag(Archive& archive, bool& flag) {
 // drawn. For comparison, an object that falls for an hour is 6.4e7 m away.
 constexpr double kFarthest = 1e9;
 
-// Also applies to all other numbers of a frame: angles, fractions, intensities.
+// The same limit for the other numbers except those of the report: angles, fractions, intensities.
 void check_finite(double number) {
   if (!(std::abs(number) <= kFarthest))
     throw std::runtime_error(fmt::format("a number is not finite, or beyond {:g}", kFarthest));
@@ -69,7 +69,7 @@ void serialize_optional(Archive& archive, std::optional<Value>& value) {
   serialize_finite(archive, *value);
 }
 
-// Serialises entries in planes; their number is known.
+// Serialises entries in planes (codec.hpp); the list already has its length.
 template <class Entry>
 void serialize_planes(ByteWriter& archive, std::vector<Entry>& list) {
   const std::size_t count = list.size(), start = archive.bytes.size();
@@ -139,12 +139,12 @@ void serialize(Archive& archive, Textures& textures) {
         frame::Texture texture = pointer ? *pointer : frame::Texture{};
         serialize_values(archive, texture.width, texture.height);
         serialize_plain(archive, texture.rgba);
-        constexpr int kMaxTextureSide = 1 << 15;  // limit of a side [pixels]
+        constexpr int kMaxTextureSide = 1 << 15;  // exclusive [pixels]
         const bool sized = texture.width > 0 && texture.height > 0 && texture.width < kMaxTextureSide &&
                            texture.height < kMaxTextureSide;
         if (!sized || texture.rgba.size() != 4 * static_cast<std::size_t>(texture.width) * texture.height)
           throw std::runtime_error("a picture has the wrong number of bytes");
-        // Textures are not copied when writing, as paints are matched to them by pointer.
+        // When writing, the pointer stays: paints are matched to textures by pointer.
         if constexpr (kReading<Archive>) pointer = std::make_shared<const frame::Texture>(std::move(texture));
       },
       kMinTextureBytes);
@@ -238,8 +238,8 @@ void serialize(Archive& archive, frame::Light& light) {
   serialize_finite(archive, light.softness);
 }
 
-// Frame and time are taken from the snapshot. All members are named, so that a new one causes a compile error until it
-// is serialised and the format version raised.
+// Frame and time are those of the snapshot. All members are named, so that a new one causes a compile error here:
+// serialise it and raise kFormatVersion.
 template <class Archive>
 void serialize(Archive& archive, frame::FrameReport& report) {
   auto& [frame, time, simulate, collide, forces, preconditioner, linear, steps, rejected_steps, inexact_steps,
@@ -280,7 +280,7 @@ struct FrameHead {
 
 template <class Archive>
 void serialize(Archive& archive, FrameHead& head) {
-  constexpr std::size_t kMinCameraBytes = 121, kMinLightBytes = 129;  // [bytes], without a name
+  constexpr std::size_t kMinCameraBytes = 121, kMinLightBytes = 129;  // [bytes], with empty texts and lists
   serialize_finite(archive, head.time);
   serialize_each(
       archive, head.cameras, [&](frame::Camera& camera) { serialize(archive, camera); }, kMinCameraBytes);
@@ -344,7 +344,7 @@ std::string encode_surfaces(const Surfaces& surfaces) {
 }
 
 Surfaces decode_surfaces(std::string_view payload) {
-  constexpr std::size_t kMinSurfaceBytes = 200;  // [bytes], without name, faces and uv
+  constexpr std::size_t kMinSurfaceBytes = 200;  // [bytes], with empty texts and lists
   ByteReader reader{payload};
   frame::Stage stage;
   serialize(reader, stage);
@@ -375,7 +375,7 @@ std::string encode_frame(const frame::FrameSnapshot& snapshot, const frame::Fram
     frame::SurfaceState state = snapshot.states[s];
     const std::vector<Vec3>& start = surfaces.positions.at(s);
     if (state.positions.size() != start.size()) throw std::logic_error("a surface has lost or gained vertices");
-    // Compares bits, since -0 is not 0.
+    // Compares bits, as −0 and 0 compare equal.
     bool moved = std::memcmp(state.positions.data(), start.data(), start.size() * sizeof(Vec3)) != 0;
     serialize_flag(writer, moved);
     if (moved) serialize_planes(writer, state.positions);

@@ -1,5 +1,6 @@
 // Payloads of the files of a frame cache. A list is its length (u64), then its entries; a text is a list of bytes;
-// enumerations and booleans take one byte; all numbers are little endian, f64 unless noted otherwise.
+// enumerations and booleans take one byte; all numbers are little endian. Integers have the size of their C++ type;
+// other numbers are f64 unless noted otherwise.
 //
 //   surfaces  the stage (surroundings); list of textures; list of surfaces; for each surface the positions in frame 0
 //             (count u64, then planes)
@@ -35,7 +36,7 @@ struct Surfaces {
 struct CachedFrame {
   frame::SnapshotPtr snapshot;
   frame::FrameReport report;
-  std::uint64_t scene_hash = 0;  ///< of the scene whose looks the frame has
+  std::uint64_t scene_hash = 0;  ///< of the scene whose colours, cameras and lights the frame has; set by Reader
 };
 
 Surfaces surfaces_of(const frame::FrameSnapshot& first);
@@ -44,7 +45,7 @@ std::string encode_surfaces(const Surfaces& surfaces);
 /// Throws std::runtime_error with the defect.
 Surfaces decode_surfaces(std::string_view payload);
 
-/// The snapshot must have the same surfaces as `surfaces`.
+/// `surfaces` must be those of the snapshot.
 std::string encode_frame(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report,
                          const Surfaces& surfaces);
 

@@ -1,11 +1,10 @@
 // Container format of all binary files of a frame cache. Little endian:
 //
 //   offset  size  content
-//        0     8  89 57 45 46 54 0D 0A 1A ("\x89WEFT\r
-// \x1A": reveals text mode and line-end conversions)
+//        0     8  89 57 45 46 54 0D 0A 1A ("\x89WEFT\r\n\x1A": reveals line-end conversions)
 //        8     4  format version, kFormatVersion
 //       12     4  kind: 1 surfaces, 2 frame, 3 state
-//       16     4  frame k, signed (0 for surfaces; negative for the state of a preroll)
+//       16     4  frame number, signed (0 for surfaces; negative for the state of a preroll)
 //       20     4  reserved, 0
 //       24     8  scene hash
 //       32     8  size of the payload
@@ -37,10 +36,10 @@ struct Content {
 
 std::string pack(const Label& label, std::string_view payload);
 
-/// Checks everything except the meaning of the payload. Throws std::runtime_error with the defect.
+/// Checks everything except the content of the payload, and decompresses it. Throws std::runtime_error with the defect.
 Content unpack(std::string_view bytes);
 
-/// Checks sizes and checksum without decompressing. Throws std::runtime_error.
+/// Checks magic bytes, version, stored size and checksum without decompressing. Throws std::runtime_error.
 Label verify(std::string_view bytes);
 
 }  // namespace weft::cache

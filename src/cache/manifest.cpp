@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "weft frame cache";
 constexpr std::array kKinds{"cloth", "obstacle", "character", "rope"};
-constexpr int kMaxSceneFrames = 100'001;  // of a scene
+constexpr int kMaxSceneFrames = 100'001;
 constexpr int kMaxPrerollFrames = 10'000'000;
 
 void require(bool good, const char* what) {
@@ -65,7 +65,7 @@ Manifest parse(const Json& json) {
   require(is_plain_name(manifest.scene), "scene: expected a name");
   manifest.title = json.at("title").get<std::string>();
   manifest.scene_hash = parse_hash(json.at("scene_hash").get<std::string>());
-  // Older caches have neither.
+  // Caches of older builds have neither of these two keys.
   if (json.contains("simulation_hash"))
     manifest.simulation_hash = parse_hash(json.at("simulation_hash").get<std::string>());
   if (json.contains("former_hashes"))

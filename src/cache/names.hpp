@@ -13,7 +13,7 @@ namespace weft::cache {
 
 inline constexpr const char *kManifestFile = "manifest.json", *kSceneFile = "scene.effective.toml",
                             *kSurfacesFile = "surfaces.weft", *kStateFile = "state.weft", *kLockFile = "lock",
-                            *kOutputsFile = "outputs.txt";  // of the run that fills it
+                            *kOutputsFile = "outputs.txt";  // list of the other outputs of the run
 
 /// First bytes of all .weft files, and of the manifest.
 inline constexpr std::string_view kMagic = "\x89WEFT\r\n\x1A",

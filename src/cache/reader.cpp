@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Reads the file only if it starts with the magic bytes, as any other file may be large.
+// Throws without reading the whole file if its start is not kMagic, as any other file may be large.
 std::string read_container(const fs::path& file) {
   const std::string start = read_start(file, kMagic.size());
   if (start.size() == kMagic.size() && start != kMagic) throw std::runtime_error("it is no file of a frame cache");
@@ -77,7 +77,7 @@ std::string Reader::read_part(const char* name, Kind kind, std::optional<int> fr
 
 std::string Reader::scene_text() const {
   const fs::path file = folder_ / kSceneFile;
-  // Runs copy this file beside their output, so a link must not expose a file from elsewhere.
+  // Runs copy this file to their output folder, so a link must not expose a file from elsewhere.
   std::error_code ignored;
   if (fs::is_symlink(file, ignored))
     throw Error(ExitCode::asset_unreadable, "{}: broken: expected a file of the cache, got a link", file.string());

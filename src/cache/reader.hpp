@@ -18,8 +18,8 @@ struct SolverState {
   std::string bytes;
 };
 
-/// Frames with which looks (colours, cameras, lights) are accepted: only those of the scene, or also former ones, which
-/// a --resume has not yet replaced.
+/// Accepted looks (colours, cameras, lights) of frames: only those of the scene, or also those of former scenes, whose
+/// frames a --resume has not yet replaced.
 enum class Looks { of_scene, any };
 
 /// All functions are thread-safe, and throw Error(asset_unreadable) with the file name and the defect.
@@ -30,7 +30,7 @@ class Reader {
 
   const std::filesystem::path& folder() const { return folder_; }
   const Manifest& manifest() const { return manifest_; }
-  /// The effective scene as TOML, for people; drawing does not need it.
+  /// The effective scene as TOML, for people.
   std::string scene_text() const;
 
   /// Frames whose files exist now, ascending; looked up at each call.
@@ -55,7 +55,7 @@ class Reader {
   std::filesystem::path folder_;
   Looks looks_;
   Manifest manifest_;
-  std::optional<Surfaces> surfaces_;  // absent until frame 0 exists
+  std::optional<Surfaces> surfaces_;  // absent if frame 0 did not exist when the reader was created
 };
 
 /// Whether the folder has a manifest, readable or not.

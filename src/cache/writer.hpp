@@ -13,7 +13,7 @@
 
 namespace weft::cache {
 
-/// Exclusive right to write to a folder; only one process has it at a time, and it ends with that process.
+/// Exclusive right of one process to write to a folder, until the Lock is destroyed or the process ends.
 class Lock {
  public:
   /// Creates the folder if it is missing. Throws Error(output_failed) if another process holds the lock, if the folder
@@ -25,11 +25,12 @@ class Lock {
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Removes all files of a cache, the manifest before the frames, so that the remains never look like a cache.
+  /// Removes all files of a cache except the lock, the manifest before the frames, so that no cache remains if this is
+  /// interrupted.
   void clear() const;
   /// Removes all files of a cache and the folder.
   void remove() const;
-  /// Whether the folder contains no files of the cache other than those of the lock and the list of outputs.
+  /// Whether the folder contains nothing but the lock and the list of outputs.
   bool empty() const;
 
  private:
@@ -40,7 +41,7 @@ class Lock {
 /// All functions throw Error(output_failed).
 class Writer {
  public:
-  /// Writes the manifest and the scene. The folder must be empty, or a cache of the same scene that is continued.
+  /// Writes the manifest and the scene. The folder must be empty, or a cache of the same simulation.
   Writer(const Lock& lock, Manifest manifest, std::string_view scene_text);
 
   /// Frame 0 must come first, unless the folder already has it. Replaces a frame that existed when the writer was
@@ -50,7 +51,7 @@ class Writer {
   /// Replaces the stored state by that of `frame`. All frames up to it must have been added.
   void save_state(int frame, std::string_view bytes);
 
-  /// Size of all added frames and of the data that they share.
+  /// Size of all added frames and, if frame 0 is one of them, of the data that they share [bytes].
   std::uintmax_t bytes_added() const { return bytes_added_; }
 
  private:

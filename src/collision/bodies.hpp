@@ -15,14 +15,14 @@ namespace weft::collision {
 /// How a surface collides.
 struct BodyTraits {
   bool deformable = false;  ///< its vertices are particles, which the solve moves
-  double thickness = 0;     ///< of the cloth [m]; 0 for obstacles
+  double thickness = 0;     ///< of cloth, and of bodies that forces move [m]; 0 for obstacles
   double friction = 0;      ///< Coulomb coefficient; a pair uses the geometric mean
   bool moving = true;       ///< false: its vertices never leave their start positions
   bool rigid = false;       ///< its vertices keep their distances from each other
-  Index frame = -1;         ///< of a deformable rigid body: the first of the four particles that its vertices follow
+  Index frame = -1;  ///< if deformable and rigid: first of the four particles that carry its vertices; −1: none
 };
 
-/// A set of vertices of a body that has a thickness and friction of its own.
+/// Some vertices of a body, with a thickness and friction of their own.
 struct Patch {
   std::span<const std::uint8_t> vertices;  ///< one flag per vertex of the body; 1: belongs to the patch
   double thickness = 0;                    ///< [m]
@@ -36,7 +36,7 @@ struct ContactMaterial {
 };
 
 /// Owns the triangles that the other parts of the engine view. The vertices of all bodies share the numbering of the
-/// position arrays. Particles come first, so deformable bodies are added before obstacles.
+/// position arrays. Particles come first, so deformable bodies are added before obstacles, cloth before rigid ones.
 class Bodies {
  public:
   Bodies() = default;
@@ -44,8 +44,8 @@ class Bodies {
   Bodies& operator=(Bodies&&) = default;
 
   /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`: number of positions
-  /// before these vertices that belong to the body but to no triangle. If patches share a vertex, the last one counts.
-  /// `limbs`: limb number of each vertex, from 0; empty: the body is one limb.
+  /// before these vertices that belong to the body but to no triangle; patches and `limbs` count them too. If patches
+  /// share a vertex, the last one counts. `limbs`: limb number of each vertex, from 0; empty: the body is one limb.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
            std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
 
@@ -69,7 +69,8 @@ class Bodies {
   const std::vector<ContactMaterial>& materials() const { return materials_; }
   std::size_t material_of(Index vertex) const { return material_of_[vertex]; }
 
-  /// Number, within its body, of the triangle with these corners. An edge repeats its second end.
+  /// Number, within its body, of the first triangle that has these corners in any order. An edge repeats its second end
+  /// and gives the first triangle at that edge.
   Index triangle_of(const Triangle& corners) const;
 
   /// The section of a global array that belongs to this body.

@@ -7,7 +7,7 @@
 namespace weft::collision {
 namespace {
 
-// With coherence the pairs must include those that share a vertex. Otherwise ProximityFinder looks these up itself.
+// With coherence the pairs must include those that share a vertex. Otherwise ProximityFinder finds these itself.
 BroadPhaseOptions options_of(const SearchParameters& parameters) {
   BroadPhaseOptions options = parameters.broad_phase;
   options.one_shared = parameters.coherence;
@@ -97,7 +97,7 @@ void CandidateCache::find_clear_bodies(const Motion& motion) {
   }
 }
 
-// A still obstacle keeps its bounds.
+// The bounds of an obstacle that does not move are not refitted.
 void CandidateCache::refit(const Motion& motion, double margin) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto stays = [&](std::span<const Vec3> x) {
@@ -121,7 +121,7 @@ bool CandidateCache::is_kept_clear(std::size_t vertex, const Vec3& x) const {
   return clear_[bodies_.body_of(static_cast<Index>(vertex))].holds(x);
 }
 
-// Whether x is within the margin of the collected end of the vertex, or its body is clear of all cloth.
+// Whether x is within the margin of the box of the vertex's collected end, or in the half-space of its obstacle.
 bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin) const {
   const Vec3 beyond = (x - high_end()[vertex]).cwiseMax(low_[vertex] - x);
   // Boxes grow by the margin along each axis; bounds with more directions hold only what is that close.

@@ -23,14 +23,15 @@ struct SearchParameters {
 
 /// Collects candidate pairs for the trajectories of all vertices from x_t0 to x_t1, with bounds enlarged by a margin at
 /// both ends. The pairs stay valid for all trajectories whose ends lie inside these bounds. The margin is half the
-/// detection distance plus, in slow steps, a Verlet margin. While no vertex leaves its start by more than the Verlet
-/// margin, the pairs within radius() at the collection include all pairs that are near now. Cloth at rest is searched
-/// once.
+/// detection distance plus a Verlet margin, if the step is slow: no vertex moves farther than that along an axis. While
+/// each vertex is within the Verlet margin of where it was when the pairs were collected, all features that are near
+/// now were within radius() of each other then. Cloth at rest is searched once.
 ///
-/// An obstacle that an axis-aligned plane separates from all cloth may move on its side without invalidating the pairs.
+/// An obstacle that an axis-aligned plane separates from all cloth may move on its side of that plane without
+/// invalidating the pairs.
 ///
-/// Bounds cover start and end, not the whole trajectory, so surfaces that move together are not listed (measured: 4
-/// instead of 70 pairs per particle in sphere_drape at 256²).
+/// Bounds at the start and at the end are compared separately, so surfaces that move together are not listed (measured:
+/// 4 instead of 70 pairs per particle in sphere_drape at 256²).
 class CandidateCache {
  public:
   /// `bodies` must outlive it. `x`: all vertices at the start [m]. `detection_distance` [m]: closer features are near.
@@ -41,12 +42,11 @@ class CandidateCache {
   /// sets the bounds that covers_start() and covers_end() test. The caller may remove pairs from the list.
   CandidatePairs& collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Collects again, for all that was covered before and for x_t1, the positions after pushing apart. Each vertex that
-  /// has left its bounds may then end anywhere between its start and its end, because it may be backtracked. `all`:
-  /// every vertex may.
+  /// Collects again after pushing apart has moved vertices to x_t1. If a vertex has left the bounds of its end, they
+  /// grow to contain its start and x_t1, because it may be backtracked. `all`: the bounds of every vertex grow.
   CandidatePairs& collect_more(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, bool all);
 
-  /// As above, with the end of each vertex anywhere in the box between `low_t1` and `high_t1`.
+  /// As the first collect(), with the end of each vertex anywhere in the box between `low_t1` and `high_t1`.
   CandidatePairs& collect(std::span<const Vec3> x_t0, std::span<const Vec3> low_t1, std::span<const Vec3> high_t1);
 
   /// The list that collect() fills.
@@ -56,16 +56,16 @@ class CandidateCache {
   double radius() const { return 2 * margin_; }
   double detection_distance() const { return detection_distance_; }
 
-  /// Whether all features within the detection distance at x were closer than radius() when the pairs were collected.
+  /// Whether each vertex is within the Verlet margin of where it was when the pairs were collected (see radius()).
   bool covers_start(std::span<const Vec3> x) const;
   /// Whether x is inside the bounds of the end. The pairs then include all that can meet on the way from a covered
   /// start.
   bool covers_end(std::span<const Vec3> x) const;
 
-  /// Whether all features within the detection distance at x, an end of the trajectory, are listed.
+  /// True only if all features within the detection distance at x, an end of the trajectory, are listed.
   bool lists_near(std::span<const Vec3> x) const;
 
-  /// Whether a vertex at x lies in the half-space that holds its obstacle and no cloth.
+  /// Whether a vertex at x lies in the half-space that contains its obstacle and no cloth.
   bool is_kept_clear(std::size_t vertex, const Vec3& x) const;
 
   /// For callers that collect pairs themselves: declares them valid within `margin` [m] of the given trajectory.
@@ -74,12 +74,12 @@ class CandidateCache {
     cover(Motion(x_t0, x_t1), margin);
   }
 
-  /// Whether cloth cannot meet this body as long as the pairs are covered.
+  /// Whether cloth cannot meet this body while covers_start() and covers_end() are true.
   bool is_clear(std::size_t body) const { return clear_[body].sign != 0; }
 
   /// The pairs of surfaces that are searched.
   const std::vector<SurfacePair>& wanted() const { return wanted_; }
-  /// The hierarchies. Their bounds hold the vertices on every covered trajectory.
+  /// The hierarchies. Their bounds contain the vertices on every covered trajectory.
   BroadPhase& hierarchies() { return broad_phase_; }
   const BroadPhase& hierarchies() const { return broad_phase_; }
 
@@ -89,7 +89,8 @@ class CandidateCache {
   /// Drops, between two steps, state that only speeds up the search and does not follow from positions.
   void forget();
 
-  /// The positions that the pairs were collected for. Collecting for them again gives the same pairs.
+  /// The starts, and the boxes of the ends, that the pairs were collected for. Collecting for them again gives the same
+  /// pairs.
   std::span<const Vec3> from() const { return from_; }
   std::span<const Vec3> low_end() const { return low_; }
   std::span<const Vec3> high_end() const { return high_.empty() ? low_ : high_; }
@@ -106,7 +107,7 @@ class CandidateCache {
   BroadPhase broad_phase_;
   std::vector<SurfacePair> wanted_;
   CandidatePairs pairs_;
-  // Positions for which the pairs were collected [m]. They cover starts and ends within the margin of these.
+  // Positions for which the pairs were collected [m]: starts, and boxes of the ends.
   std::vector<Vec3> from_, low_, high_;  // high_ is empty if it equals low_
   double margin_ = -1;                   // [m]; negative: no pairs
   /// Half-space without cloth: sign · x[axis] >= from. A trajectory with both ends inside stays inside.
@@ -116,7 +117,7 @@ class CandidateCache {
     double from = std::numeric_limits<double>::infinity();  // [m]
     bool holds(const Vec3& x) const { return sign * x[axis] >= from; }
   };
-  std::vector<HalfSpace> clear_;  // per body: a half-space that holds it
+  std::vector<HalfSpace> clear_;  // per body: a half-space that contains it, if any
 };
 
 }  // namespace weft::collision

@@ -44,7 +44,7 @@ double stiffness_fraction(const Proximity& proximity, bool with_cloth) {
          ramp(0, numerics.contact.fade, smallest_weight);
 }
 
-// A pair has its own coefficients, or else the geometric mean of both.
+// A pair of bodies uses the coefficients given for it, or else the geometric mean of those of both materials.
 ContactBuilder::ContactBuilder(const Bodies& bodies, const ContactParameters& parameters,
                                std::span<const double> masses)
     : bodies_(bodies), stiffness_(parameters.stiffness), step_(parameters.step), masses_(masses) {
@@ -100,7 +100,7 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& 
   return is_new;
 }
 
-// Keeps all corners of the cloth triangle beyond the plane through the obstacle's closest point.
+// Adds a wall for each corner of the cloth triangle, parallel to the plane through the obstacle's closest point.
 void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                ContactResponse& response) const {
   const Triangle& cloth = is_particle(pair.a[0]) ? pair.a : pair.b;
@@ -109,8 +109,8 @@ void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closes
       response.add_wall(*contact, motion.x_t0);
 }
 
-// Each corner contact has its present distance as activation distance, so it exerts no force now. It has no friction:
-// that belongs to the closest features.
+// The activation distance of a corner contact is at most its present distance, so it exerts no force now. It has no
+// friction, because the contact of the closest features has it.
 void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                  ContactResponse& response) const {
   for (const Triangle& corners : {pair.a, pair.b}) {
@@ -129,7 +129,7 @@ void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& clos
   }
 }
 
-// Returns nothing if neither side has a particle.
+// Returns nullopt if neither side has a particle.
 std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double fraction, double range_limit,
                                              const StepMotion& motion) const {
   Contact contact;

@@ -26,7 +26,7 @@ struct PairFriction {
 };
 
 struct ContactParameters {
-  double stiffness = 100;                   ///< minimum stiffness of a contact [N/m]
+  double stiffness = 100;                   ///< minimum stiffness of a contact, before stiffness_fraction() [N/m]
   double step = 0.01;                       ///< time step for which contacts must be stiff enough [s]
   std::vector<PairFriction> friction = {};  ///< pairs with coefficients of their own
 };
@@ -40,11 +40,12 @@ struct StepMotion {
 };
 
 /// Fraction of the full stiffness that a near pair gets. Vertex-face pairs get 1. Edge pairs get 1 if the contact
-/// direction lies well inside the wedges of both edges, as for a box edge on smooth cloth or two crossed creases. The
-/// fraction fades to 0 as the surface becomes flat (vertices and faces then keep the layers apart), as the direction
-/// leaves a wedge (a neighbouring face is then closer), and towards the ends of an edge. So no contact switches on or
-/// off while cloth rests. Between two smooth layers a fifth of the contacts remain. Without cloth (rigid blocks) only
-/// directions outside a wedge fade: the rims of stacked faces may cross where no vertex is near.
+/// direction lies well inside the wedges (see Proximity) of both edges and the closest points lie well inside the
+/// edges, as for a box edge on smooth cloth or two crossed creases. The fraction fades to 0 as the surface becomes flat
+/// (vertices and faces then keep the layers apart), as the direction leaves a wedge (a neighbouring face is then
+/// closer), and towards the ends of an edge. So no contact switches on or off while cloth rests. Between two smooth
+/// layers a fifth of the contacts remain. Without cloth (two rigid bodies) the fraction fades only outside a wedge,
+/// because the rims of stacked boxes may cross where no vertex is near.
 double stiffness_fraction(const Proximity& proximity, bool with_cloth = true);
 
 class ContactBuilder {
@@ -56,19 +57,21 @@ class ContactBuilder {
   void begin_step() { in_contact_.clear(); }
 
   /// Adds a contact for each near pair whose stiffness fraction is not 0. Skips pairs of pinched cloth and its
-  /// obstacle, because their direction does not show on which side the cloth belongs.
+  /// obstacle, because their normal does not show on which side the cloth belongs.
   void add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
            ContactResponse& response);
 
   /// Adds the contact that pushes pinched cloth back to its own side of the obstacle, without friction and no faster
-  /// than the maximum depenetration speed. If the exit is blocked, the stiffness is reduced to avoid clamping.
+  /// than the maximum depenetration speed. If the exit is blocked, the stiffness is reduced, so that two obstacles do
+  /// not clamp the cloth.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts between the closest features of two triangles without a separating plane; returns false if these
-  /// features have full stiffness already. On the first piece of a trajectory the contact only keeps a pair that is
-  /// inside the activation distance from coming closer. On later pieces it restores the full activation distance, and
-  /// each corner is kept on its side of the plane between the triangles, because features that slide past the closest
-  /// ones would meet there. `features`: the closest features at x_from.
+  /// features have full stiffness already. Before Engine::continue_from the contact only prevents a pair inside the
+  /// activation distance from coming closer. After it, the contact restores the full activation distance, and further
+  /// contacts keep each corner on its side of the plane between the triangles, because other features could slide past
+  /// the closest ones and meet there. With velocity constraints, the corners of cloth near an obstacle get walls
+  /// instead. `features`: the closest features at x_from.
   bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
                    ContactResponse& response);
 

@@ -12,7 +12,7 @@
 namespace weft::collision {
 namespace {
 
-// Contacts are prepared below this distance [m].
+// Distance below which features get contacts [m].
 double detection_distance_of(const Bodies& bodies) {
   double range = 0;
   for (const ContactMaterial& verlet_margin : bodies.materials()) range = std::max(range, verlet_margin.thickness);
@@ -117,7 +117,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
                         double h, std::span<const RigidMotion> motions) {
   step_ = h;
   x_t0_ = x_t0;
-  gathered_at_.clear();  // near pairs must depend on the start of the step alone
+  gathered_at_.clear();  // near pairs must not depend on earlier steps
   pinched_pushes_.clear();
   carried_.begin_step(x_t0, x_t1, motions);
   begin_contacts(x_t0, x_t1);
@@ -145,8 +145,9 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   return is_moved;
 }
 
-// Pushes an estimate with intersections apart. Contacts found there would have meaningless directions, and layers that
-// push each other would be found one per iteration. Nothing is exempted for an estimate.
+// Pushes an estimate with intersections apart. Contacts found at intersecting positions would have meaningless
+// directions, and of several layers that push each other, only one would be found per iteration. Nothing is exempted
+// for an estimate.
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || is_separated(x_t0, x_t1)) return false;
   const std::vector<Vec3> expected(x_t1.begin(), x_t1.end());
@@ -158,8 +159,8 @@ bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, st
 }
 
 // Finds near pairs at the expected end of the step. On a curved surface, directions of the start would oppose sliding
-// and take energy. A pair that no plane separates on the trajectory is searched at the start, which shows the side of
-// its features.
+// and take energy. A pair that no plane separates on the trajectory is searched at the start, where its features are
+// still on their own sides.
 void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<FeatureKey> failing;
   for (const auto& [a, b] : failing_)
@@ -233,7 +234,7 @@ bool Engine::is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1
   return !find_failing(x_t0, x_t1, PlaneKinds::all);
 }
 
-// Whether any pair lacks a separating plane of the given kind.
+// Whether any pair has no separating plane of the allowed kinds.
 bool Engine::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, PlaneKinds which) {
   if (!candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
   failing_ = separation_.find_failing(x_t0, x_t1, &pinched_, &carried_, which);
@@ -250,7 +251,7 @@ std::span<const CornerPair> Engine::find_intersections(std::span<const Vec3> x) 
   return failing_;
 }
 
-// Counts, for each particle, how often its pairs are pushed apart.
+// Records the failing pairs, and adds one to the count of each of their particles.
 void Engine::count_failures() {
   std::vector<std::uint8_t> fails(failures_.size());
   for (const CornerPair& pair : failing_)
@@ -263,8 +264,8 @@ void Engine::count_failures() {
 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                     std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_move_pins) {
-  // Corrections can move vertices out of the bounds of the candidate pairs. Then collect again; after
-  // kTightCollections, for every trajectory between start and end.
+  // Corrections can move vertices out of the bounds of the candidate pairs. Then the pairs are collected again; after
+  // kTightCollections times, for every trajectory between start and end.
   constexpr int kCollections = 8, kTightCollections = 3;
   SeparationReport report;
   count_failures();
@@ -322,7 +323,7 @@ void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
     candidates_.drop();
 }
 
-// Saves only the positions: candidate pairs and features follow from them.
+// Saves the positions, from which candidate pairs and features follow, and the planes that do not follow from them.
 template <class Archive>
 void Engine::serialize_candidates(Archive& archive) {
   const auto copy = [](std::span<const Vec3> x) { return std::vector<Vec3>(x.begin(), x.end()); };

@@ -32,7 +32,7 @@ struct EngineParameters {
   SearchParameters search;
   ContactParameters contact;
   ResponseForm response = ResponseForm::springs;
-  double stick_speed = numerics.contact.stick_velocity;  ///< for the springs [m/s]
+  double stick_speed = numerics.contact.stick_velocity;  ///< of the springs: friction sticks below it [m/s]
 };
 
 class Engine {
@@ -43,9 +43,10 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   /// Finds the contacts of a step over h [s] from x_t0. x_t1: expected end; exact for obstacles, an estimate for
-  /// particles. `motions`: rigid motion of each body that keeps its shape; empty: none moves so. x_t0 and x_t1 must
-  /// outlive the step. With springs, if surfaces intersect in the estimate, x_t1 is pushed apart; `movable` says which
-  /// vertices may move (see Separation; empty: none). Returns whether x_t1 has changed.
+  /// particles. `motions`: per body, its rigid motion, or the identity if it deforms; empty: no body moves rigidly.
+  /// x_t0 and x_t1 must outlive the step. With springs, if a pair has no separating plane on the way to x_t1, x_t1 is
+  /// pushed apart; `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns whether x_t1 has
+  /// changed.
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {});
 
@@ -53,7 +54,7 @@ class Engine {
   /// contacts anew around x and adds those of all pairs that were pushed apart in this step. Friction still measures
   /// slip from the start of the step. x replaces x_t0 in the calls that follow and must outlive the step.
   void continue_from(std::span<const Vec3> x);
-  /// Pairs for which the last call of is_separated() found no separating plane.
+  /// Pairs for which is_separated() found no separating plane. Valid until the next call that tests or pushes apart.
   std::span<const CornerPair> failing() const { return failing_; }
 
   /// Drops, between two steps, state that only speeds up the search and does not follow from positions.
@@ -63,17 +64,17 @@ class Engine {
   template <class Archive>
   void serialize(Archive& archive, std::span<const Vec3> x);
 
-  /// The contacts, for use inside the solve.
+  /// The contacts of the present step.
   ContactResponse& response() { return response_; }
   const ContactResponse& response() const { return response_; }
 
-  /// Whether every pair of triangles has a separating plane on the trajectory to x_t1.
+  /// Whether every pair of triangles that is not exempted has a separating plane on the trajectory to x_t1.
   bool is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Adds contacts for the failing pairs of the last call of is_separated(); returns how many are new.
   int add_failing_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Marks the step as accepted.
+  /// Call when the step is accepted; see ContactResponse::accept().
   void accept() { response_.accept(); }
 
   /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. `may_pinch`: allows exempting
@@ -82,25 +83,25 @@ class Engine {
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                               bool may_pinch = false, bool may_move_pins = true);
 
-  /// Number of pinched cloth triangles, each counted once per obstacle limb.
+  /// Number of exempted cloth triangles, each counted once per obstacle limb.
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
   /// The pinched cloths and their obstacles, with places at x [m], the start of the last step.
   std::vector<Pinch> pinches(std::span<const Vec3> x) const {
     return list_pinches(pinched_, bodies_, candidates_.hierarchies(), x);
   }
 
-  /// The exempted triangles, and a way to add one between two steps, for an engine that takes over from another.
+  /// The exempted triangles. exempt() adds one between two steps, for an engine that replaces another.
   const PinchedPairs& exempted() const { return pinched_; }
   void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
 
-  /// Number of near pairs within the detection distance at the expected end of the last step. A pair without a
-  /// separating plane was searched at the start of the step instead.
+  /// Number of near pairs within the detection distance at the expected end of the last step. With velocity constraints
+  /// all pairs, else those without a separating plane, are searched at the start of the step instead.
   int proximities() const { return static_cast<int>(proximities_.size()); }
   /// Smallest distance of these pairs [m]; infinite if there are none.
   double min_distance() const;
 
-  /// All pairs of triangles that touch or cross at x [m]. Valid until the next call of this, is_separated() or
-  /// begin_step().
+  /// All pairs of triangles that touch or cross at x [m], or are closer than Numerics::Separation::least_gap. Valid as
+  /// long as failing().
   std::span<const CornerPair> find_intersections(std::span<const Vec3> x);
 
   const Bodies& bodies() const { return bodies_; }
@@ -132,7 +133,7 @@ class Engine {
   Separation separation_;
   ProximityFinder finder_;
   std::vector<Vec3> gathered_at_;               // where the near features were gathered [m]; empty: not gathered
-  PairList near_candidates_;                    // scratch: candidate pairs that are near there
+  PairList near_candidates_;                    // scratch: candidate pairs that are near at gathered_at_
   std::optional<CoherentDetection> coherence_;  // if enabled, keeps pairs and closest points instead of the cache
   ContactBuilder builder_;
   ContactResponse response_;
@@ -145,8 +146,8 @@ class Engine {
   std::span<const Vec3> x_t0_;                      // start of the step
   std::vector<PinchedPairs::Push> pinched_pushes_;  // contacts that push pinched cloth out, in this step
   std::vector<CornerPair> pushed_pairs_;            // pairs that were pushed apart in this step
-  std::vector<Proximity> proximities_;              // at the expected end of the step, or at its start
-  std::vector<Proximity> near_continuation_;        // where the step was last continued
+  std::vector<Proximity> proximities_;              // near pairs at the expected end of the step, or at its start
+  std::vector<Proximity> near_continuation_;        // near pairs at the positions of continue_from()
   std::span<const CornerPair> failing_;             // of the last call of is_separated()
 };
 

@@ -51,8 +51,8 @@ struct ByteReader {
       raw(static_cast<void*>(&value), sizeof value);
     }
   }
-  /// Resizes the list. Each entry takes at least `min_entry_size` bytes, so a broken count cannot allocate
-  /// more than the bytes can fill.
+  /// Resizes the list. Each entry takes at least `min_entry_size` bytes, so a broken count cannot ask for more entries
+  /// than the remaining bytes can hold.
   template <class List>
   void size(List& list, std::size_t min_entry_size = 1) {
     std::size_t count = 0;
@@ -86,7 +86,8 @@ void serialize_each(Archive& archive, List& list, const Serialize& serialize_one
   for (auto& entry : list) serialize_one(entry);
 }
 
-/// A list of finite points or vectors, whose length `count` is known before it is read.
+/// A list of `count` finite points or vectors. Throws std::runtime_error if it reads another number, or values that are
+/// not finite.
 template <class Archive>
 void serialize_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
   serialize_plain(archive, points);

@@ -30,7 +30,8 @@ class BoundedQueue {
     return true;
   }
 
-  /// Waits for an item. Returns nothing at the end of the queue; if the producer failed, throws its exception there.
+  /// Waits for an item. Returns nothing after cancel() and at the end of a closed queue; if the producer failed, throws
+  /// its exception at that end.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     arrived_.wait(lock, [&] { return !items_.empty() || closed_ || cancelled_; });

@@ -10,7 +10,7 @@
 
 namespace weft {
 
-/// Sets of 0 to count − 1, initially of one member each. The root of a set is its least member.
+/// Disjoint sets of the numbers 0 to count − 1, initially of one member each. The root of a set is its least member.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }

@@ -1,4 +1,4 @@
-// Reads input files: regular files only, because a pipe or a device may never end. Every error names its file.
+// Reads input files: regular files only, because a pipe or a device may never end. Every Error names its file.
 #pragma once
 
 #include <cstdint>

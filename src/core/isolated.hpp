@@ -11,15 +11,15 @@ namespace weft {
 struct Isolation {
   std::string name = "the process";  ///< used in messages
   unsigned cpu_seconds = 0;          ///< CPU time limit; 0: none
-  unsigned wall_seconds = 0;         ///< wall time limit, after which it is killed, also if it waits forever; 0: none
+  unsigned wall_seconds = 0;         ///< wall time limit, after which the child is killed, even if it waits; 0: none
   std::uint64_t addresses = 0;       ///< address space limit [bytes]; 0: none
   const std::atomic<bool>* stop = nullptr;  ///< if it becomes true, the child is killed; nullptr: never
 };
 
 /// Calls `work` in a child process and returns its bytes. This process survives whatever happens to the child (a crash,
-/// an endless loop, a runaway allocation): it throws std::runtime_error with the reason, or with the text of the
-/// exception that `work` threw; Error(interrupted) if it was stopped. Other threads of this process do not exist in the
-/// child: `work` must not wait for them.
+/// an endless loop, a runaway allocation). run_isolated() then throws std::runtime_error with the reason, or with the
+/// text of the exception that `work` threw; Error(interrupted) if `stop` became true. Other threads of this process do
+/// not exist in the child: `work` must not wait for them.
 std::string run_isolated(const std::function<std::string()>& work, const Isolation& isolation);
 
 }  // namespace weft

@@ -11,7 +11,8 @@
 namespace weft {
 
 /// Throws std::exception if the text is no JSON, nests too deep (nlohmann::json copies, compares and writes
-/// recursively), or has too many keys in one object (nlohmann::ordered_json compares each key with all keys before it).
+/// recursively), or has too many keys in its objects (nlohmann::ordered_json compares each key with all keys before it
+/// in its object).
 template <class Json = nlohmann::ordered_json>
 Json parse_json(std::string_view text);
 
@@ -38,13 +39,13 @@ T value_or(const Json& json, const char* key, T otherwise) {
   return fits ? found->template get<T>() : otherwise;
 }
 
-/// Contents of a file; null if it cannot be read.
+/// Contents of a file; null if it cannot be read or parsed.
 nlohmann::ordered_json read_json_or_null(const std::filesystem::path& file);
 
 enum class JsonLetters { all, ascii };
 
-/// JSON as text, on one line if `indent` is negative. Strings that are not UTF-8, such as names of files, are replaced,
-/// as JSON cannot hold them.
+/// JSON as text, on one line if `indent` is negative. Bytes that are not UTF-8, as in names of files, become U+FFFD, as
+/// JSON cannot hold them.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1, JsonLetters letters = JsonLetters::all);
 
 /// The same for JSON with sorted keys.

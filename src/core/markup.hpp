@@ -5,8 +5,8 @@
 
 namespace weft {
 
-/// `text` as the content of an element, or of an attribute in double quotes. Control characters become spaces; bytes
-/// that are not UTF-8, as in names of files, become U+FFFD.
+/// `text` as the content of an element, or of an attribute in double quotes. Control characters below U+0020 become
+/// spaces; bytes that are not UTF-8, as in names of files, become U+FFFD.
 std::string markup_text(const std::string& text);
 
 }  // namespace weft

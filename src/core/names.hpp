@@ -5,8 +5,8 @@
 
 namespace weft {
 
-/// Whether a name from outside can be used in file names as it is: it leads into no other folder, and contains no
-/// control characters for terminals, lists or logs. Bytes beyond ASCII are not checked.
+/// Whether a name from outside can be used in file names as it is: it leads into no other folder, and contains no ASCII
+/// control characters, which terminals, lists and logs could interpret. Bytes beyond ASCII are not checked.
 inline bool is_plain_name(std::string_view name) {
   if (name.empty() || name == "." || name == "..") return false;
   for (const char c : name)

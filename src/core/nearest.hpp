@@ -8,10 +8,11 @@
 namespace weft {
 
 /// Fewest insertions, deletions, replacements and swaps of neighbours that turn one text into the other (Damerau, "A
-/// technique for computer detection and correction of spelling errors", 1964; each position edited once).
+/// technique for computer detection and correction of spelling errors", 1964; no letter edited twice).
 int edit_distance(std::string_view from, std::string_view to);
 
-/// The closest of `known`, the first of several; empty if half of the letters or more would have to be edited.
+/// The closest of `known`, the first of equally close ones; empty if the edits are half of the letters of the longer
+/// name or more.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
 }  // namespace weft

@@ -9,8 +9,8 @@ namespace weft {
 /// Each level takes less than 1 kB of a stack of 8 MB.
 inline constexpr int kMaxDepth = 128;
 
-/// Whether TOML or JSON text nests deeper than kMaxDepth. The result is arbitrary for invalid text: up to the first
-/// mistake, at which the parser stops, this function counts at least as many levels as the parser creates.
+/// Whether TOML or JSON text nests deeper than kMaxDepth. Up to the first mistake of a text, where the parser stops,
+/// this function counts at least as many levels as the parser creates; behind it the result is arbitrary.
 bool nests_too_deep(std::string_view text);
 
 }  // namespace weft

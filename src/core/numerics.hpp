@@ -5,72 +5,82 @@
 namespace weft {
 
 /// Tuned on the shipped scenes and those of tests/bench/scenes: cloth of 0.05 to 1 kg/m², spacings of 1 cm to 1 m,
-/// steps of 1 to 40 ms. Each comment gives meaning, unit, and the effect of other values. Members without a unit are
-/// ratios or counts. `tests/tools/change_numerics.sh` shows which tests fail if a member is ten times as large.
+/// steps of 1 to 40 ms. Comments give meaning, unit, and the effect of other values, as far as it was measured. Members
+/// without a unit are ratios or counts. `tests/tools/change_numerics.sh` shows which tests fail if a member is ten
+/// times as large.
 struct Numerics {
   /// The linear solver (src/solver).
   struct Linear {
-    /// Multigrid: fraction that a member takes from the aggregates of its neighbours. 0: aggregates move as wholes, and
-    /// iterations grow with finer meshes.
+    /// Multigrid: fraction of a member's motion that comes from the aggregates of its neighbours; the rest comes from
+    /// its own aggregate. 0: aggregates move as wholes, and iterations grow with finer meshes.
     double interpolation = 0.6;
-    /// Stiffness between aggregates, relative to the next finer level. 1: plain sums, which are too stiff.
+    /// Factor per level on the stiffness that aggregates sum up. 1: plain sums, which are too stiff.
     double level_stiffness = 0.5;
-    /// Weight of contacts on aggregates. 1: a quarter more iterations in scenes with many contacts.
+    /// Factor on the stiffness of contacts on all levels but the coarsest. 1: a quarter more iterations in scenes with
+    /// many contacts.
     double contact_weight = 2;
-    /// Stiffness of a particle, relative to the mass-weighted norm of its whole block, from which aggregates move as
-    /// wholes. Larger: threads of 1e6 N/m take ten times the iterations; smaller: soft cloth takes twice as many.
+    /// Trace of a particle's 3×3 block, relative to the sum of `LinearSystem::norm_weights` over its diagonal block. If
+    /// any particle exceeds it, all aggregates move as wholes. Larger: threads of 1e6 N/m take ten times the
+    /// iterations; smaller: soft cloth takes twice as many.
     double stiff_particle = 1e3;
-    /// Cost of the incomplete factor, in iterations; it pays off if more than 2.5 times as many are left.
+    /// Every so many iterations, the solver predicts how many are left; at 2.5 times as many, it makes the incomplete
+    /// factor.
     int factor_cost = 40;
-    /// Weight of the incomplete factor beside the multigrid levels. 1: long waves count twice, twice the iterations.
+    /// Weight of the incomplete factor beside the multigrid levels. 1: long waves count in both, twice the iterations.
     double factor_weight = 16;
     /// First diagonal shift if the factorisation fails, relative to the diagonal. 0.1: a third more iterations.
     double factor_shift = 1e-3;
-    /// Number of last iterations from which the error is estimated: at least `least_delay`, and one in `delay_fraction`
-    /// of all. Fewer: solves end on a plateau, and a viscosity of 1e4 N·s/m gains energy.
+    /// Number of last iterations from which the error is estimated: `least_delay`, or all so far divided by
+    /// `delay_fraction` if that is more. Fewer: solves end on a plateau, and a viscosity of 1e4 N·s/m gains energy.
     int least_delay = 3;
     int delay_fraction = 5;
-    /// Maximum number of aggregates on the coarsest level; its dense factorisation costs 9 times their third power.
+    /// Maximum number n of aggregates of cloth on the coarsest level (or one per cloth); its dense factorisation takes
+    /// 9 n³ multiplications.
     int coarsest_aggregates = 70;
-    /// Ratio of length to width from which an aggregate grows in width only. Larger: strips of slender cells swing with
-    /// 0.8 of their energy.
+    /// Ratio of length to width above which an aggregate grows in width only. Larger: strips of slender cells swing
+    /// with 0.8 of their energy.
     double slender_aggregate = 2;
   } linear;
 
   /// Newton's method (src/integrator).
   struct Newton {
-    /// Allowed linear error, relative to the allowed Newton error; a block below it is not solved again.
+    /// Allowed linear error, relative to the allowed Newton error; a diagonal block whose error is below it is not
+    /// solved again.
     double linear_fraction = 0.8;
     /// Factor on `linear_fraction` and on the linear tolerance for the midpoint rule, which damps nothing. Larger: flat
     /// sheets fold in free fall.
     double undamped = 0.1;
-    /// Slopes behind and before the minimum, relative to the initial one, that end a line search.
+    /// A line search ends at a slope between −`overshoot` and `undershoot` times the initial one; once a trial has
+    /// overshot, between −`overshoot` and `overshoot` times.
     double overshoot = 0.7;
     double undershoot = 0.5;
     /// Longest step of a line search, relative to the solution of the linear system; maximum number of evaluations.
     double longest_search = 4;
     int line_trials = 6;
-    /// Newton iteration from which compressed threads count with the absolute value of their stiffness. 0: cloth at
-    /// rest takes four times the iterations; 4: folding cloth a quarter more.
+    /// Newton iteration, counted from 0, from which compressed threads count with the absolute value of their
+    /// stiffness. 0: cloth at rest takes four times the iterations; 4: folding cloth a quarter more.
     int clamped_iterations = 2;
-    /// Iterations after which the trajectory is checked for contacts that only the solve reveals.
+    /// Newton iterations after which the trajectory is checked for contacts that only the solve reveals.
     int check_after = 4;
-    /// Linearisations of a step in which friction follows the normal forces. After as many, a velocity error below the
-    /// visibility threshold, and half of Euler's velocity error, are allowed; after half as many, all blocks are solved
-    /// together. Larger: friction and normal forces, or cloths that press on each other, oscillate.
+    /// Newton iterations of a step in which friction follows the normal forces. After as many, a velocity error below
+    /// the visibility threshold, and `velocity_ratio` of implicit Euler's own, are allowed; after half as many, all
+    /// diagonal blocks are solved together. Larger: friction and normal forces, or cloths that press on each other,
+    /// oscillate.
     int patience = 20;
     double velocity_ratio = 0.5;
     /// Time for which a velocity error counts [s]. Shorter: the solver dominates the error; longer: more iterations.
     double lasting_time = 0.15;
-    /// Visibility thresholds of acceleration [m/s²] and velocity [m/s], to be multiplied by the tolerance.
+    /// Visibility thresholds of acceleration [m/s²] and velocity [m/s]; as bounds of errors, multiplied by the
+    /// tolerance.
     double unseen_acceleration = 0.01;
     double unseen_velocity = 1e-3;
-    /// Allowed sliding error of a whole cloth, relative to the allowed velocity error. Larger: sheets slide too slowly.
+    /// Allowed sliding error of a diagonal block, relative to the allowed velocity error. Larger: sheets slide too
+    /// slowly.
     double sliding_fraction = 0.2;
-    /// Friction, relative to its limit, from which a cloth counts as about to slide.
+    /// Friction, relative to its limit, above which a diagonal block counts as about to slide.
     double about_to_slide = 0.9;
-    /// Motion since the last linearisation, in particle spacings, that keeps rows of the matrix. Larger: more
-    /// iterations.
+    /// Largest motion since the rows of a cloth were assembled, in particle spacings, at which they are kept. Larger:
+    /// more iterations.
     double stale_motion = 0.005;
   } newton;
 
@@ -86,10 +96,10 @@ struct Numerics {
     /// Minimum step size [s], 1e-4 m at 10 m/s: errors do not reduce a step below it, and unsolved steps below it end
     /// the run.
     double least = 1e-5;
-    /// Maximum growth between steps after a rejection. Larger: cloth that is wrung is rejected again and again.
+    /// Maximum factor between successive steps after a rejection. Larger: cloth that is wrung is rejected again and
+    /// again.
     double recovery = 1.1;
-    /// Cloth rests if it is slower than this [m/s] and its acceleration is below the visibility threshold; then a frame
-    /// is one step.
+    /// Maximum speed of cloth at rest [m/s]; see StepLoop::may_rest(). A frame at rest is one step.
     double rest_velocity = 0.02;
   } steps;
 
@@ -102,26 +112,29 @@ struct Numerics {
     double margin = 0.25;
     /// Maximum contact thickness, in particle spacings. Larger: a sheared sheet collides with itself.
     double thickness_of_spacing = 0.25;
-    /// Contact stiffness in m/h² (particle mass, `time.step`): impacts stop within a hundredth of a step's trajectory.
+    /// Minimum contact stiffness in m/h² (m: mean particle mass, h: `time.step`): impacts stop within a hundredth of a
+    /// step's trajectory.
     double inertial_stiffness = 100;
-    /// Stiffening as the gap closes, k d (1 + stiffening (d/r)⁴). 10: tips penetrate; 1000: more iterations.
+    /// Stiffening of the normal force k d (1 + stiffening (d/r)⁴) at depth d, with stiffness k and activation distance
+    /// r. 10: tips penetrate; 1000: more iterations.
     double stiffening = 100;
-    /// Range over which an edge pair fades out: between twice and half of this fold of its edges (a sum of sines of
-    /// half the angles), over this sine outside of its wedge, and over this fraction of an edge at its ends. 0:
-    /// contacts switch on and off; larger: only separating planes keep crossing creases apart.
+    /// An edge pair has full stiffness at a fold (−Σ `Proximity::outside_wedge`) of twice `fade`, none at half of it.
+    /// It fades out over this sine outside of a wedge, and over this fraction of an edge at its ends. 0: contacts
+    /// switch on and off; larger: only separating planes keep crossing creases apart.
     double fade = 0.1;
     double flat_fold() const { return 0.5 * fade; }
-    /// Slip velocity below which friction sticks [m/s], or in particle spacings per second if that is more. Larger:
-    /// cloth creeps down slopes; smaller: a stiffer system.
+    /// Slip velocity below which friction sticks [m/s]; for springs, in particle spacings per second if that is more.
+    /// Larger: cloth creeps down slopes; smaller: a stiffer system.
     double stick_velocity = 2e-4;
     double stick_spacings = 0.002;
     /// Slip velocity, in stick velocities, from which friction is no longer static.
     double slide_velocity = 5;
-    /// How often in a step a contact that slides back may stick again. 0: ribbons take 1.4 times the iterations; 20:
-    /// friction of 10 does not settle.
+    /// How often in a step a contact may begin to slide and still stick when it slides back. 0: ribbons take 1.4 times
+    /// the iterations; 20: friction of 10 does not settle.
     int returns = 2;
-    /// Factor on the stiffness of a contact with a moving obstacle after each failure that pushed its cloth apart;
-    /// maximum number of factors. 0: cloth that a plate hits at 30 m/s takes 1.5 times the iterations.
+    /// Factor on the stiffness of a contact with a moving obstacle for each time but the first that its particles were
+    /// pushed apart in the step; maximum number of such factors. 0: cloth that a plate hits at 30 m/s takes 1.5 times
+    /// the iterations.
     double hardening = 3;
     int hardenings = 5;
     /// Depenetration speed of pinched cloth [m/s], 8 mm per frame; its relative stiffness while there is no space.
@@ -133,58 +146,64 @@ struct Numerics {
   struct Separation {
     /// Minimum gap along a plane at the end of a step [m]. Smaller: rounding decides; larger: thin cloth fails.
     double least_gap = 1e-6;
-    /// Gap that pushing apart restores [m]: a tenth of a fabric's thickness.
+    /// Gap that pushing apart restores [m], at most half of the gap at the start: a tenth of a fabric's thickness.
     double restored_gap = 2e-4;
     /// Number of halvings of a trajectory in the search for planes. 0: a tenth more iterations.
     int halvings = 3;
-    /// Rounds of pushing apart; half as many rounds of backtracking by halves follow. Fewer: particles move back
-    /// farther than necessary.
+    /// Rounds of pushing apart. Half as many rounds of backtracking by halves follow, then as many of backtracking
+    /// entirely. Fewer: particles move back farther than necessary.
     int rounds = 24;
     /// Distance between an obstacle's arc and its chord, in detection distances, above which a step is halved; also the
     /// motion of an obstacle in a step below which shorter steps find no more space.
     double creep = 0.25;
   } separation;
 
-  /// Velocity constraints of the paper (`contact.response`).
+  /// Velocity constraints of the seed, the paper that README names (`contact.response`).
   struct Walls {
-    /// Fraction of a missing distance that a step restores (Eq. 4).
+    /// Fraction of a missing distance that a step restores (seed, Eq. 4).
     double correction = 0.2;
-    /// Sine of the angle between two walls below which they count as one.
+    /// Sine of the angle between two walls below which the second one holds no direction of its own.
     double same_direction = 0.05;
-    /// Maximum number of changes between sticking and sliding in a step, of solves in a step, of walls per particle.
+    /// Maximum number of: changes of a particle's constraints in a step; solves in a step; walls per particle.
     int flips = 3;
     int solves = 6;
     int most = 8;
-    /// Accelerations [m/s²] and relative changes of friction that are left to the next step.
+    /// Accelerations [m/s²] and relative changes of friction below which a change of constraints needs no further
+    /// solve.
     double negligible_acceleration = 0.5;
     double negligible_change = 0.2;
   } walls;
 
   /// Repairs of a step (src/simulation/step_loop.cpp).
   struct Repair {
-    /// Halvings before cloth counts as pinched, and before a diverged or overstretched solve is accepted.
+    /// Rejections of a step before cloth may count as pinched, and before a diverged or overstretched solve is
+    /// accepted.
     int halvings = 3;
     /// How often a solve continues from cloth that was pushed apart. 0: a ring takes four times the steps.
     int restarts = 16;
-    /// Energy, relative to the energy in play, and strain that pushing apart may add. Beyond that the solve continues;
-    /// if it cannot, the step is halved for the energy alone.
+    /// Energy, relative to the kinetic and elastic energy at the start of the step, and strain that pushing apart may
+    /// add. Beyond either, the solve continues; if it cannot, a step is halved only because of the energy.
     double added_energy = 0.1;
     double added_strain = 0.05;
-    /// Energy, relative to the energy in play, from which an unfinished solve starts anew with fixed normal forces.
+    /// Energy gain, relative to the same energy, above which an unfinished solve starts anew with fixed normal forces.
     double astray_energy = 3;
     /// Maximum increase in a step: of stretch, in stretch limits; of strain, by an unfinished solve.
     double overstretch = 2;
     double diverged_strain = 0.5;
-    /// Maximum number of attempts with released pins.
+    /// Maximum number of attempts at a step while pins are obstructed. Each further attempt releases their particles;
+    /// the last one may also move pinned particles.
     int tries = 4;
   } repair;
 
   /// Pins that an obstacle keeps from their position (src/simulation/yielding_pins.cpp).
   struct Pins {
-    /// Velocity of the return [m/s]; lower bound of the velocity that forces are divided by [m/s].
+    /// Speed [m/s], relative to its target, at which a particle returns; lower bound [m/s] of the speed by which the
+    /// maximum force is divided to get the damping.
     double return_velocity = 1;
     double slowest = 1e-3;
-    /// Force on the pin: as acceleration [m/s²], in weights of the cloth, and as maximum acceleration [m/s²].
+    /// Maximum force on a lagging particle: the largest of `acceleration` [m/s²] times its mass; `weights` times the
+    /// weight of the cloth, divided among all particles of the pin; the same divided among those that lag, but at most
+    /// `most_acceleration` [m/s²] times its mass.
     double acceleration = 2000;
     double weights = 3;
     double most_acceleration = 20000;
@@ -192,10 +211,10 @@ struct Numerics {
 
   /// Rigid bodies that move by forces (forces/rigidity.hpp).
   struct Bodies {
-    /// Squared frequency of their stretching [1/step²]. Smaller: an impact of 1 m/s compresses them by more than 1e-6
-    /// m; larger: rounding in single precision.
+    /// Squared angular frequency of their stretching [1/`time.step`²]. Smaller: an impact of 1 m/s compresses them by
+    /// more than 1e-6 m; larger: rounding in single precision.
     double rigidity = 1e4;
-    /// Contact thickness [m], at most this fraction of the smallest standard deviation of the mass. Smaller: bodies at
+    /// Contact thickness [m]; its maximum, relative to the smallest standard deviation of the mass. Smaller: bodies at
     /// rest on each other rattle; larger: gaps are visible.
     double thickness = 5e-4;
     double thickness_of_size = 0.1;
@@ -203,7 +222,7 @@ struct Numerics {
 
   /// Energy without a source (src/simulation/energy_bound.cpp), relative to the energy in play.
   struct Energy {
-    /// Gain from which a run fails, also the work of the residual from which it warns; gain from which it warns.
+    /// Gain above which a run fails, also the work of the residual above which it warns; gain above which it warns.
     double failing_gain = 0.3;
     double doubtful_gain = 0.1;
     /// Energy that is never an error [J/kg]: lifts cloth by 1 cm.

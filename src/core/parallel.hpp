@@ -15,12 +15,12 @@ namespace weft {
 void set_thread_count(int threads);
 int thread_count();
 
-/// Items per chunk, for 10 to 50 µs each: of vectors and lists of pairs; and of more expensive items (contacts,
-/// leaves). Changing them changes the bits of sums.
+/// Items per chunk, so that a chunk takes 10 to 50 µs: the first for vectors and lists of pairs, the second for more
+/// expensive items (contacts, leaves). Changing them changes the bits of sums.
 inline constexpr std::size_t kGrainSize = 1024, kFineGrainSize = 256;
 
-/// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each. Chunks must write to disjoint
-/// data.
+/// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each, or fewer in the last. Chunks
+/// must write to disjoint data.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;

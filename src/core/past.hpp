@@ -7,17 +7,17 @@
 
 namespace weft {
 
-/// Positions at an earlier time, and their weight. With v = rate (x − Σ weight xₖ), the rate of any quantity q of the
-/// positions is rate (q(x) − Σ weight q(xₖ)). For a length, and unlike n·v, this rate is zero if a body turns rigidly,
-/// however large the angle per step.
+/// Positions at an earlier time, and their weight. For entries k with positions xₖ and weights wₖ, v = rate (x − Σ wₖ
+/// xₖ), and the rate of any quantity q of the positions is rate (q(x) − Σ wₖ q(xₖ)). The rate of a length is then zero
+/// if a body turns rigidly, however large the angle per step; that of ∂q/∂x v is not.
 struct Past {
   std::span<const Vec3> x;
   double weight = 0;
 };
 
-/// Particles at the start of a step, and at the start of the step before. Positions [m], velocities [m/s].
+/// Particles at the start of a step, and at the start of the previous step. Positions [m], velocities [m/s].
 struct StepStart {
-  double h = 0;                ///< [s]
+  double h = 0;                ///< length of the step [s]
   std::span<const Vec3> x, v;  ///< all particles
   double h_before = 0;         ///< length of the previous step [s]; 0: none
   std::span<const Vec3> x_before, v_before = {};

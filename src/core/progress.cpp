@@ -68,14 +68,15 @@ std::optional<double> RemainingTime::seconds() const {
 
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,
                          int columns) {
-  // Each frame of each stage counts the same: the bar moves from the start and is full only when all is written.
+  // Each frame of each stage counts the same: the bar moves from the start, and is full only when all frames are
+  // written.
   const int all = std::max(1, totals[kSimulate] + totals[kDraw] + totals[kWrite]);
   const double fraction = static_cast<double>(done[kSimulate] + done[kDraw] + done[kWrite]) / all;
   constexpr int kCells = 12;
   const int filled = std::clamp(static_cast<int>(fraction * kCells), 0, kCells);
   std::string line =
       fmt::format("[{:#>{}}{:->{}}] {:3.0f} %", "", filled, "", kCells - filled, std::floor(100 * fraction));
-  // Before the counts, because it matters most, and a narrow terminal cuts the end.
+  // The remaining time comes before the counts, because it matters most, and a narrow terminal cuts the end.
   if (seconds_left) line += fmt::format("  {} left", format_duration(*seconds_left));
   if (totals[kSimulate] > 0) line += fmt::format("  sim {}", done[kSimulate]);
   if (totals[kWrite] > 0) line += fmt::format("  drawn {}  written {}", done[kDraw], done[kWrite]);

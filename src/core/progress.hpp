@@ -42,7 +42,7 @@ class RemainingTime {
   std::deque<Sample> samples_;
 };
 
-/// `[######------]  50 %  12 s left  sim 60  drawn 57  written 55 of 120`, truncated to `columns`.
+/// `[#####-------]  47 %  12 s left  sim 60  drawn 57  written 55 of 120`, cut to less than `columns`.
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,
                          int columns);
 
@@ -55,7 +55,7 @@ class Progress {
  public:
   enum class Style { automatic, bar, plain, none };
 
-  /// `totals`: frames of each stage. Automatic: a bar if standard error is a terminal, else lines.
+  /// `totals`: frames of each stage. Automatic: a bar if standard error is a terminal that is not `dumb`, else lines.
   Progress(Style style, StageCounts totals);
   ~Progress();
   Progress(const Progress&) = delete;

@@ -13,7 +13,7 @@ namespace weft {
 inline std::atomic<long long> stop_requested_at{0};
 static_assert(std::atomic<long long>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-/// Time after a request in which work may end by itself [ns]: most frames do, and are not lost.
+/// Time after a request in which work may end by itself [ns]: most frames end within it, and are not lost.
 inline constexpr long long kStopGrace = 3'000'000'000;
 
 /// Time on the monotonic clock [ns]. Safe in a signal handler.
@@ -23,8 +23,8 @@ inline long long monotonic_ns() {
   return clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
 }
 
-/// Throws Error(interrupted) if a stop was requested more than kStopGrace ago. Loops within a step that may take longer
-/// than that call it in each iteration.
+/// Throws Error(interrupted) if a stop was requested more than kStopGrace ago. Loops that may run longer than
+/// kStopGrace call this function in each iteration.
 inline void end_if_stopped() {
   const long long requested = stop_requested_at.load(std::memory_order_relaxed);
   if (requested != 0 && monotonic_ns() - requested > kStopGrace)

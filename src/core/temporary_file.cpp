@@ -64,7 +64,7 @@ bool lock(int descriptor) {
   return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
 }
 
-// Removes a temporary file without a lock: its process was killed.
+// Removes a temporary file or folder if no process holds its lock: the one that made it was killed.
 void remove_abandoned(const fs::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -73,8 +73,8 @@ void remove_abandoned(const fs::path& path) {
   ::close(descriptor);
 }
 
-// Creates a folder and removes what killed processes have left in it, once per folder: if somebody removes it later,
-// further output is not wanted there. Returns false, with the reason, if it cannot be created.
+// Creates a folder and removes what killed processes have left in it, once per folder: if somebody removes the folder
+// later, further output is not wanted there. Returns false, with the reason, if the folder cannot be created.
 bool prepare_once(const fs::path& folder, std::error_code& error) {
   static std::mutex mutex;
   static std::set<fs::path> prepared;
@@ -145,7 +145,8 @@ TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
 
 TemporaryName::~TemporaryName() {
   const fs::path path = path_;
-  // A file is removed without its descriptor, as there may be none left; a folder after its lock is released.
+  // unlink() removes a file without a new descriptor, as none may be left; remove_all() needs some for a folder, so
+  // release() closes one first.
   const bool removed = path.empty() || ::unlink(path.c_str()) == 0;
   release();
   std::error_code ignored;

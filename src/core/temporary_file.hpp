@@ -6,14 +6,14 @@
 
 namespace weft {
 
-/// Whether a file is flushed to disk before it gets its name. Without it, a process that dies still leaves complete
-/// files only, but a machine that crashes may leave empty ones, which the reader must notice.
+/// Whether a file is flushed to disk before it gets its name. Without the flush, a process that dies still leaves
+/// complete files only, but a machine that crashes may leave empty ones, which the reader must notice.
 enum class Flush { yes, no };
 
 /// A temporary name for a file or folder while it is written: `.<name>.weft-<process>.tmp` in the folder of the final
-/// name, so that the rename stays within one file system. It is locked (flock) as long as its process lives; the next
-/// process that writes into the folder removes temporary files without a lock. Process numbers are not sufficient, as
-/// containers that share a folder do not share them.
+/// name, so that the rename stays within one file system. The process keeps it locked (flock); the next process that
+/// writes into the folder removes temporary files without a lock. Process numbers do not suffice to tell whose process
+/// is alive, as containers that share a folder do not share them.
 class TemporaryName {
  public:
   enum class Kind { file, folder };
@@ -34,7 +34,7 @@ class TemporaryName {
  private:
   std::filesystem::path path_;
   int descriptor_ = -1;  // holds the lock
-  int slot_ = -1;  // in the table that the signal handler reads; -1: table full, only the destructor removes the file
+  int slot_ = -1;        // in the table that the signal handler reads; -1: none (folder, long path, full table)
 };
 
 /// A temporary file. Unless committed, the destructor or remove_temporary_files() removes it.
@@ -65,14 +65,14 @@ std::string_view final_name_of(std::string_view temporary_name);
 /// Whether a file has exactly this content.
 bool holds(const std::filesystem::path& file, std::string_view content);
 
-/// Removes every temporary file of this process, for the moment before _exit(). Async-signal-safe.
+/// Removes the temporary files that have a slot, but no folders. For the moment before _exit(). Async-signal-safe.
 void remove_temporary_files() noexcept;
 
 /// Writes `content` to `file` through a TemporaryFile. Throws Error(output_failed) with the system's reason.
 void write_file(const std::filesystem::path& file, std::string_view content, Flush flush = Flush::yes);
 
-/// Creates and removes a file beside `file`, because permissions alone do not show whether it can be written (read-only
-/// mounts, root, quotas). Creates missing folders. Throws Error(output_failed) with the system's reason.
+/// Creates and removes a file beside `file`, because permissions alone do not show whether `file` can be written
+/// (read-only mounts, root, quotas). Creates missing folders. Throws Error(output_failed) with the system's reason.
 void check_writable(const std::filesystem::path& file);
 
 }  // namespace weft

@@ -49,7 +49,7 @@ constexpr double kMaxFootSlide = 0.07;
 /// Smallest vertical component of the trunk's direction, averaged over a motion, of a body that stands.
 constexpr double kMinUprightness = 0.7;
 
-/// Largest distance of the soles at rest from the origin of a file whose origin is on the floor, not in the body [m].
+/// If the soles at rest are within this distance from the height of the file's origin, they count as at it [m].
 constexpr double kMaxSoleOffset = 0.05;
 
 /// The clip that the scene names, or else the first one.
@@ -76,7 +76,8 @@ void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::v
                                  source, fmt::join(names, "\", \"")));
 }
 
-/// Loads a motion file. If its format does not say which axis is up (BVH), y is up, unless bodies in it stand along z.
+/// Loads a motion file. If neither the scene nor the format (BVH) states the up axis, it is y, or z if bodies in the
+/// file stand along z.
 assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acting,
                                      std::vector<std::string>& warnings) {
   const auto load = [&](scene::FileUp up) {
@@ -103,7 +104,7 @@ double leg_length(const character::Rig& rig) {
   return skeleton.leg_length(skeleton.at(character::rest_pose(rig.character)));
 }
 
-/// The clip with the travel that the scene asks for. `size`: of the body, relative to the skeleton of the clip.
+/// The clip with the travel that the scene asks for. `size`: leg length of the body / that of the clip's skeleton.
 character::Clip travel(const Cast& cast, const scene::Acting& acting, const character::Rig& rig,
                        const character::Clip& clip, double size, std::vector<std::string>& warnings) {
   if (acting.travel.kind == scene::Travel::Kind::file || clip.duration <= 0) return clip;
@@ -123,7 +124,7 @@ character::Clip travel(const Cast& cast, const scene::Acting& acting, const char
   return std::move(traveled.clip);
 }
 
-/// Moves the soles of a body to the origin of its file, so that a motion from another file walks on the floor.
+/// Moves the soles of a body to the height of its file's origin, so that a motion from another file walks on the floor.
 void put_on_floor(const Cast& cast, Body& body) {
   const Vec3 up = cast.up();
   std::vector<Vec3> x(body.character.mesh.positions.size());
@@ -191,13 +192,13 @@ Body make_body(const Cast& cast, const scene::Mannequin& source) {
     body.character.clips.push_back(character::make_walk(
         body.character,
         {.speed = source.pace, .distance = source.walk, .turn_back = source.turn_back, .arms_out = source.arms_out}));
-  // Shapes with their axis along z are turned in the same way.
+  // The same rotation as in turned_up() of environment.cpp.
   const Mat3 z_to_y{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
   if (cast.scene.up == scene::UpAxis::y) assets::transform(body.character, 1, z_to_y);
   return body;
 }
 
-/// The body, with the clip that it plays if it plays one.
+/// The body, with its clip if it plays one.
 template <class Source>
 Body make_playing_body(const Cast& cast, const Source& source) {
   Body body = make_body(cast, source);
@@ -245,7 +246,7 @@ struct KeyTimes {
   }
 };
 
-/// `clip_rate`: key frames per second of the motion that is sampled; 0 if it does not move.
+/// `clip_rate`: key frames per second of the sampled motion; 0 if nothing moves.
 KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   const scene::Character& settings = cast.settings;
   KeyTimes times;
@@ -268,7 +269,8 @@ void check_memory(const Cast& cast, const KeyTimes& times, std::size_t vertices)
                                              kMaxKeyFrameBytes, bytes, times.count, vertices));
 }
 
-/// Samples a body at the times of its key frames. `vertices_at` writes its vertices at a time of the scene.
+/// Samples a body at the times of its key frames. `vertices_at` writes its vertices, in its own coordinates, at a time
+/// of the scene.
 KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
                  const std::function<void(double, std::vector<Vec3>&)>& vertices_at) {
   check_memory(cast, times, vertices);
@@ -360,7 +362,7 @@ std::optional<character::Room> room_of(const Cast& cast, const Source& source, c
   return character::Room({body.character, joints}, touched, std::move(near_cloth), room, grounds_below(cast));
 }
 
-/// The largest displacement of the skin over all keys, with its time and place.
+/// The largest displacement of the skin over all keys, its time and its place (body's coordinates) [m].
 struct MaxDisplacement {
   character::Moved moved;
   double time = 0;  // [s]
@@ -408,7 +410,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   const character::Pose start = performance.at(begin_of(cast.scene));
   for (const FollowingPin& pin : following) add_following_pin(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
-  std::vector<Vec3> bones;  // without particles of following pins
+  std::vector<Vec3> bones;  // positions on the bones from which vertices grow; without following pins
   if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
   const std::vector<character::Ground> grounds = grounds_below(cast);

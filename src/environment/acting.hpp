@@ -21,7 +21,7 @@ struct Part {
   std::string name;
   character::VertexMask vertices;  ///< of the body's mesh
   bool collide = true;
-  std::optional<double> friction;  ///< if none, that of the body
+  std::optional<double> friction;  ///< absent: that of the body
   double thickness = 0;            ///< [m]
 
   bool is_patch() const { return friction || thickness > 0; }
@@ -43,7 +43,7 @@ struct ClothAtStart {
 /// A body that moves by key frames of its vertices, computed before the simulation starts.
 struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
-  KeyFrames keys;            ///< of the vertices; of a body with bones then of the particles of all following pins
+  KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the particles of all following pins
   std::vector<Part> parts;   ///< those of the scene, and those that pins follow
   std::vector<Index> limbs;  ///< limb of each vertex of the mesh, from 0
   std::vector<std::string> warnings;
@@ -51,16 +51,16 @@ struct Actor {
   std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if that has none
 };
 
-/// Reads the files of a character and computes its key frames, from when it begins to move to the end of the scene.
-/// Moves its skin to leave space for the `cloths` on it. Throws Error(asset_unreadable, scene_invalid) with scene line,
-/// file and part.
+/// Reads the files of a character and computes its key frames, from the time at which it begins to grow or move to the
+/// end of the scene. Moves its skin to leave space for the `cloths` on it. Throws Error(asset_unreadable,
+/// scene_invalid) with scene line, file and part.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowingPin> following = {}, std::span<const ClothAtStart> cloths = {});
 
 /// A body with bones at the start of a scene, before its preroll.
 struct StandingBody {
   mesh::Mesh mesh;                          ///< in the world [m]
-  std::vector<std::optional<Vec3>> joints;  ///< positions of joint_names() in the world [m]; none: unknown
+  std::vector<std::optional<Vec3>> joints;  ///< positions of joint_names() in the world [m]; absent: unknown
   std::vector<character::Limb> limbs;       ///< of each vertex of the mesh
 };
 

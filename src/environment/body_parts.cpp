@@ -10,7 +10,7 @@
 namespace weft::environment {
 namespace {
 
-/// Finds the vertices of a part that the scene describes, or that is known by its name alone.
+/// Finds the vertices of a part by its bone, material or name.
 class PartFinder {
  public:
   PartFinder(const Cast& cast, const scene::Acting& acting, const Body& body)

@@ -14,7 +14,7 @@ namespace weft::environment {
 
 /// A body with what is needed to sample its motion.
 struct Body {
-  std::string source;  ///< file that it comes from, for messages
+  std::string source;  ///< its file, for messages
   character::Character character;
   std::optional<character::Clip> clip;
   std::vector<std::string> warnings;
@@ -29,7 +29,7 @@ struct Cast {
 
   Vec3 up() const { return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY(); }
   assets::FileAxes axes() const { return {settings.scale, settings.up, scene.up}; }
-  /// Time at which it begins to move [s].
+  /// Time at which the character begins to move [s].
   double motion_start() const { return settings.dressing - scene.preroll_frames() / scene.time.fps; }
   character::Timing timing() const { return {motion_start(), settings.blend, settings.start, settings.speed}; }
 

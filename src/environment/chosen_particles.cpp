@@ -20,7 +20,7 @@ namespace {
 
 // Smallest fraction that counts: half a level of an 8-bit picture.
 constexpr double kMinFraction = 0.5 / 255;
-// Smallest fraction at which a pin without a strength holds a particle; it then holds it fully.
+// Smallest fraction at which a pin without a strength holds a particle (then fully).
 constexpr double kMinHeldFraction = 0.5;
 
 /// Grey value in [0, 1] of a picture at (u, v), with v upward, times its opacity. Interpolates linearly between the
@@ -83,7 +83,8 @@ class ParticleFinder {
     for (std::size_t i = nearest(at.x()); i <= nearest(at.y()); ++i) fractions[i % fractions.size()] = 1;
   }
 
-  // Particles of one panel within the bounds and the mask. Where its edges meet in a dart, the largest fraction counts.
+  // Particles of one panel within the bounds and the mask. If a vertex has several UVs, as at darts, the largest
+  // fraction counts.
   void on_panel(const scene::ClothPart& part, const std::string& key, std::vector<double>& fractions) const {
     const auto found = std::ranges::find(object_.panels, part.panel);
     if (found == object_.panels.end()) refuse_name(part.panel, object_.panels, key, "panel", "a panel of its pattern");
@@ -103,7 +104,7 @@ class ParticleFinder {
     });
   }
 
-  // Where islands of UVs meet, the largest fraction counts.
+  // If a vertex has several UVs, the largest fraction counts.
   void under_mask(const image::Picture& picture, const std::string& key, std::vector<double>& fractions) const {
     std::vector<double> greys(fractions.size());
     if (!from_file_) {
@@ -161,7 +162,7 @@ class ParticleFinder {
   const ClothObject& object_;
 };
 
-/// Distances along a cloth at rest: along edges of triangles; of quads, along diagonals too.
+/// Shortest distances along a cloth at rest, along edges of triangles, and edges and diagonals of quads.
 class RestDistances {
  public:
   explicit RestDistances(const ClothObject& cloth) : neighbours_(cloth.fractions.size()) {
@@ -182,9 +183,9 @@ class RestDistances {
       }
   }
 
-  /// Appends the particles that are nearer to a region than `fade` [m]. Their fractions fall to 0 at that distance,
-  /// with zero slope at both ends, from the fraction of the nearest particle of the region. Shortest paths: E. W.
-  /// Dijkstra, "A note on two problems in connexion with graphs", 1959.
+  /// Appends the particles that are nearer to a region, `part`, than `fade` [m]. Their fractions fall from that of the
+  /// region's nearest particle to 0 at that distance, with zero slope at both ends. Shortest paths: E. W. Dijkstra, "A
+  /// note on two problems in connexion with graphs", 1959.
   void fade(double fade, std::vector<Chosen>& part) const {
     struct FrontParticle {
       double distance;

@@ -13,8 +13,8 @@
 namespace weft::environment {
 namespace {
 
-/// Layers of cloth that must fit between two limbs: two folds, as in a shirt under an arm that comes down (measured:
-/// with 4 layers, 13 of 51 frames of such a shirt were pinched).
+/// Layers of cloth that must fit between two limbs, as where an arm comes down on the folds of a shirt (measured: with
+/// 4 layers, 13 of 51 frames of such a shirt were pinched).
 constexpr double kLayersBetweenLimbs = 8;
 
 /// Largest distance from cloth at which skin moves [m].
@@ -52,7 +52,7 @@ class PointCubes {
     for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(x[k] / kNearCloth));
     return cell;
   }
-  /// 21 bits per axis: points about 100 km apart may share a list, but are not near.
+  /// 21 bits per axis: points about 100 km apart may share a list, which only costs time.
   static std::uint64_t key(const std::array<std::int64_t, 3>& cell) {
     constexpr std::uint64_t kMask = (1U << 21) - 1;
     return (static_cast<std::uint64_t>(cell[0]) & kMask) << 42 | (static_cast<std::uint64_t>(cell[1]) & kMask) << 21 |

@@ -1,4 +1,4 @@
-// Where the skin of a character must leave space for cloth: the ground, and skin near cloth.
+// Grounds, and parts of a character's skin near cloth, between which cloth needs space.
 #pragma once
 
 #include <span>

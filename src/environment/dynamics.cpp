@@ -15,7 +15,7 @@ std::shared_ptr<const Dynamics> make_dynamics(const scene::Scene& scene, const s
     mesh::RigidFrame frame(mesh.topology.triangles, mesh.positions);
     const double mass = obstacle.mass > 0 ? obstacle.mass : obstacle.density * frame.volume();
     const Vec3 turn = std::numbers::pi / 180 * obstacle.spin;
-    // Without a release, it is free from the start, even in a preroll.
+    // Without a release, forces move the obstacle from the start, even in a preroll.
     const double release = obstacle.release > 0 ? obstacle.release : -std::numeric_limits<double>::infinity();
     return std::make_shared<const Dynamics>(Dynamics{std::move(frame), mass, obstacle.velocity, turn, release});
   } catch (const std::invalid_argument& expected) {

@@ -15,7 +15,7 @@ struct Dynamics {
   double mass = 0;                 ///< [kg]
   Vec3 velocity{0, 0, 0};          ///< at the start [m/s]
   Vec3 angular_velocity{0, 0, 0};  ///< at the start [rad/s]
-  double release = 0;              ///< until then its keys move it; minus infinity: it is free from the start [s]
+  double release = 0;              ///< time from which forces move it, not its keys [s]; minus infinity: always
 };
 
 /// For an obstacle with a mass; `mesh`: its mesh. Throws Error(scene_invalid) if the mesh encloses no volume.

@@ -44,7 +44,7 @@ double noise(std::uint64_t z) {
   return static_cast<double>(z >> 11) * 0x1p-52 - 1;
 }
 
-// Positions of the particles at the start: the rest shape, scaled about its middle, with noise.
+// Positions of the particles at the start: the rest shape, scaled about the position of the cloth's pose, with noise.
 std::vector<Vec3> start_positions(const scene::Cloth& cloth, const mesh::Mesh& rest) {
   std::vector<Vec3> x = rest.positions;
   if (cloth.start_scale == Vec2(1, 1) && cloth.start_noise == 0) return x;
@@ -91,7 +91,7 @@ mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
 }
 
 /// Makes cloth from a pattern. Garments stand upright along z, like shapes; those with panels around parts of a wearer
-/// are made where the wearer stands. Their regions are given in fractions of width and height.
+/// are made where the wearer stands. `fractions` are those of width and height.
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
                  ClothObject& object) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
@@ -138,11 +138,11 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
 }
 
 // Largest ratio of a cloth's longest edge to the smallest height of its triangles, or smallest spacing of its quads, if
-// it touches obstacles. Measured with a row of needles in an even sheet that falls on a ball, at default settings: at
-// 71, eight of nine runs were solved, at 141 none; rectangles graded by 50: all, by 100: none.
+// it touches obstacles. Measured with a row of flat triangles in an even sheet that falls on a ball, at default
+// settings: at 71, eight of nine runs succeeded, at 141 none; of rectangles graded by 50 all did, by 100 none.
 constexpr double kMaxUnevenness = 80;
 
-/// The axes of a mesh file. If a character has the same file, its axes, even if the file does not name them.
+/// The axes of a mesh file. If a character uses the same file, those of the character; y is up if nothing states it.
 assets::MeshAxes axes_of(const scene::Scene& scene, const std::filesystem::path& file, double scale, scene::FileUp up) {
   assets::MeshAxes axes{scale, up, scene.up};
   std::error_code ignored;
@@ -205,7 +205,7 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
                                                                            : ", which its UVs do not fit as panels do",
                                  rest.describe());
   if (!takes) return false;
-  constexpr double kMaxDrapeStretch = 0.25;  // draped cloth is stretched less, relative to its panels
+  constexpr double kMaxDrapeStretch = 0.25;  // relative to the panels; draped cloth is stretched less
   if (!rest.has_panel_lengths())
     object.warnings.push_back(
         fmt::format("{}: its UVs may not be the pattern that it was sewn from: {}; rest = \"mesh\" takes its own shape",
@@ -230,7 +230,7 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
   if (cloth.rest == scene::ClothRest::mesh) object.rest_from = "the mesh: the scene says so";
   const bool panels = cloth.rest != scene::ClothRest::mesh && uses_uv(cloth, rest, where, object);
   if (panels) {
-    constexpr double kMaxSeamGap = 0.1;  // relative to edges there; programs leave less between the sides of a seam
+    constexpr double kMaxSeamGap = 0.1;  // relative to the edges there; gaps at the seams of files are narrower
     if (const assets::Welded welded = assets::weld_borders(loaded, kMaxSeamGap); welded.vertices > 0)
       object.rest_from += fmt::format("; {} vertices of its borders are joined to others, at most {:.2g} mm away",
                                       welded.vertices, 1e3 * welded.widest);

@@ -28,24 +28,24 @@ namespace weft::environment {
 /// A particle of a region of a cloth; numbered within the cloth.
 struct Chosen {
   Index particle = 0;
-  double share = 1;    ///< in (0, 1]: fraction of the strength or mass that the region has per particle
+  double share = 1;    ///< in (0, 1]: factor on the strength; the mass of a weight is distributed in proportion to it
   bool faded = false;  ///< in the fade around the region of a pin, not in the region itself
 };
 
 /// A cloth as it starts: a deformable sheet of quads or triangles, or a rope.
 struct ClothObject {
   std::string name;
-  mesh::Grid grid;    ///< if it is made of quads
+  mesh::Grid grid;    ///< of quads; of a rope: one row
   mesh::Sheet sheet;  ///< if it is made of triangles, in its own coordinates; else empty
   mesh::Mesh mesh;    ///< rest shape, in the pose of the start in the world; uv: along weft and warp, from its corner
   std::vector<Vec2> fractions;  ///< position of each particle along weft and warp, in fractions of the rest size
   std::map<std::string, std::vector<Index>> edges;  ///< of a pattern: particles by "panel.edge"
   std::vector<std::string> panels;                  ///< of a pattern: names
   std::vector<std::int32_t> panel_of;               ///< of a pattern: panel number of each triangle
-  /// Of cloth sewn from panels: corners of each triangle, along the grain of the panel [m].
+  /// Of cloth sewn from panels: coordinates of the corners of each triangle in its panel (weft, warp) [m].
   std::vector<std::array<Vec2, 3>> paint_uv;
-  /// Smallest distance between particles of a grid [m]. For triangles, √2 times the smallest height, which gives the
-  /// same value for the two halves of a square.
+  /// Smallest distance between neighbouring particles of a grid or rope [m]. For triangles, √2 times the smallest
+  /// height, which gives the same value for the two halves of a square.
   double spacing = 0;
   /// Particles of each pin and weight of the scene; for a pin, first its region, then its fade.
   std::vector<std::vector<Chosen>> pins, weights;
@@ -56,7 +56,7 @@ struct ClothObject {
   Vec3 velocity{0, 0, 0};   ///< of all particles at the start [m/s]
   double put_on = 0;        ///< time since the start of the run, preroll included, at which it is put on [s]
   std::string fitted;       ///< of a pattern that was scaled to its wearer: describes how
-  std::string rest_from;    ///< of a mesh file: source of its rest shape, and why
+  std::string rest_from;    ///< of a mesh file: what gives the rest shape, and why
   std::vector<std::string> warnings;
 };
 
@@ -74,7 +74,7 @@ struct BodyObject {
   std::shared_ptr<const character::Coloring> coloring;  ///< from the file of a character; null if there is none
   std::vector<Part> parts;                              ///< of characters
   std::shared_ptr<const Dynamics> dynamics;             ///< of obstacles with a mass; else null
-  std::vector<Index> limbs;  ///< of characters: limb of each vertex, from 0; limbs may overlap
+  std::vector<Index> limbs;  ///< of characters: limb of each vertex, from 0; limbs may intersect
   /// A pin that follows a body with bones. Environment::vertex() has its particles from `first_vertex` on, after the
   /// mesh.
   struct Follower {
@@ -96,15 +96,15 @@ assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obs
 mesh::Grid grid_of(const scene::Cloth& cloth);
 
 /// Throws Error(scene_invalid) if the cells of a rectangle are too uneven for contact with obstacles. make_cloth()
-/// calls this, and also checks the triangles of files.
+/// calls this, and also checks the triangles of all other cloths.
 void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 
-/// Makes a cloth as it starts. Throws Error(asset_unreadable, scene_invalid) with the scene line for its file.
+/// Makes a cloth as it starts. Throws Error(asset_unreadable, scene_invalid) with the scene line.
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers);
 
 struct Followers;
 
-/// All objects of a scene. Only set_motion() changes it, so results for one time stay valid.
+/// All objects of a scene. Only set_motion() changes their motion, so results for one time stay valid.
 class Environment {
  public:
   /// Makes meshes and motions. Throws Error(asset_unreadable, scene_invalid) with file and scene line.
@@ -114,11 +114,11 @@ class Environment {
   Environment with_cloths(std::span<const std::size_t> numbers) const;
 
   /// Writes the positions of all vertices of a body at time t [s]; `positions` has the size of its mesh. Takes time
-  /// linear in the vertices, in parallel; allocates nothing. A body that does not move is at its place of time 0.
+  /// linear in the vertices, in parallel; allocates nothing. A body that does not move has its pose of time 0.
   void place(std::size_t body, double t, std::span<Vec3> positions) const;
 
-  /// Replaces the motion of an obstacle from now on; it no longer follows anything. The obstacle must be `moving`, and
-  /// its current pose must stay the same.
+  /// Replaces the motion of an obstacle, which from then on follows nothing. The obstacle must be `moving`, and its
+  /// current pose must stay the same.
   void set_motion(std::size_t obstacle, const scene::PoseTrack& motion) {
     movers_[obstacle] = std::make_shared<const Mover>(Track(motion));
     if (!parents_.empty()) parents_[obstacle] = {};

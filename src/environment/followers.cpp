@@ -9,7 +9,7 @@ FollowingPin frame_at(const std::string& part, const Vec3& origin) {
   return frame;
 }
 
-/// Position of an obstacle at its first key, or, without keys, where it stands.
+/// Position of an obstacle at its first key, or of its pose if it has no keys.
 const Vec3& place_of(const scene::Obstacle& obstacle) {
   return obstacle.motion.keys.empty() ? obstacle.pose.position : obstacle.motion.keys.front().pose.position;
 }

@@ -13,7 +13,7 @@ namespace weft::environment {
 struct PartFollower {
   bool camera = false;
   std::size_t number = 0;  ///< number of the obstacle or camera
-  std::size_t first = 0;   ///< index of its four points among all that follow the character
+  std::size_t first = 0;   ///< index of the first of its four points among all points that follow the character
 };
 
 struct Followers {

@@ -7,12 +7,13 @@
 namespace weft::environment {
 namespace {
 
-// Shells of wave numbers, each kRatio times the one below, around k_e: from eddies of several integral lengths down to
-// a thirtieth of it, finer than meshes of cloth. A tenth of the spectrum's energy is below them.
+// Shells of wave numbers around k_e, each kRatio times the one before: 1 / k falls from four integral lengths to a
+// thirtieth of one, finer than meshes of cloth. A tenth of the spectrum's energy is in still finer eddies.
 constexpr int kShells = 13;
 constexpr double kRatio = 1.5;
 constexpr int kShellsBelow = 3;
-// k_e times the integral length: π/2 Σ E/k over 2/3 Σ E of these shells (0.747 for the whole spectrum).
+// k_e times the integral length: (π/2 Σ E/k) / (2/3 Σ E), with the energies E and wave numbers k (relative to k_e) of
+// these shells. It is 0.747 for the whole spectrum.
 constexpr double kLengthFactor = 0.837;
 // Rate at which waves change, relative to the turnover rate of eddies (Fung et al., 1992, Section 2).
 constexpr double kUnsteadiness = 0.5;

@@ -12,10 +12,10 @@ namespace weft::environment {
 /// turbulence by unsteady random Fourier modes", J. Fluid Mech. 236, 1992). The energies of the waves follow von
 /// Kármán's spectrum,
 ///
-///     E(k) ~ k⁴ / (k² + k_e²)^(17/6),
+///     E(k) ~ k⁴ / (k² + k_e²)^(17/6) for the wave number k,
 ///
-/// which falls with k^(−5/3) at large k; k_e is chosen so that `size` is the integral length. The mean wind carries the
-/// waves along; they change at half the turnover rate of eddies of their size.
+/// which falls with k^(−5/3) at large k; k_e is chosen so that scene::Gusts::size is the integral length. The mean wind
+/// carries the waves along; they change at half the turnover rate of eddies of their size.
 class Gusts {
  public:
   /// `wind`: the mean velocity of the air [m/s].
@@ -28,7 +28,7 @@ class Gusts {
   struct Wave {
     Vec3 wave_number;    // [1/m]
     Vec3 amplitude;      // perpendicular to wave_number [m/s]
-    double rate, phase;  // [1/s], [rad]
+    double rate, phase;  // [rad/s], [rad]
   };
   std::vector<Wave> waves_;
 };

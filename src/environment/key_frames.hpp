@@ -15,8 +15,8 @@ struct VertexMotion {
   Vec3 position, velocity, acceleration;
 };
 
-/// Interpolates vertices between equally spaced key frames as Spline does: linearly, or by natural cubic splines, whose
-/// second derivative is continuous. Before the first key and after the last one, the body stands still.
+/// Interpolates vertices between equally spaced key frames linearly, or by cubic splines with a continuous second
+/// derivative. Before the first key and after the last one, the body stands still.
 class KeyFrames {
  public:
   /// `from_rest`: the spline starts with zero velocity, because the body stands still before the first key; otherwise
@@ -35,7 +35,7 @@ class KeyFrames {
   std::size_t bytes() const;
 
  private:
-  /// Position of a time among the keys: `s` [s] after key i; `stands` before the first and after the last key.
+  /// Position of a time among the keys: `s` [s] after key i; `stands`: before the first or after the last key.
   struct Piece {
     std::size_t i;
     double s;
@@ -47,7 +47,7 @@ class KeyFrames {
 
   double first_time_, interval_;  // [s]
   std::vector<std::vector<Vec3>> keys_;
-  std::vector<std::vector<Vec3>> second_derivatives_;  // second derivatives at the keys [m/s²]; empty for linear motion
+  std::vector<std::vector<Vec3>> second_derivatives_;  // at the keys [m/s²]; empty for linear motion
 };
 
 }  // namespace weft::environment

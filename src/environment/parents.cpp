@@ -16,7 +16,7 @@ Quat nearest_rotation(const Mat3& matrix) {
   return Quat(Mat3(svd.matrixU() * svd.matrixV().transpose()));
 }
 
-/// The obstacle that `follow` names; none if it names a part of a character, or is empty.
+/// The obstacle that `follow` names; none if `follow` names a part of a character or is empty.
 Parent parent_of(const scene::Scene& scene, const std::string& follow) {
   const auto found = std::ranges::find(scene.obstacles, follow, &scene::Obstacle::name);
   if (follow.empty() || found == scene.obstacles.end()) return {};

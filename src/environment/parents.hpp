@@ -20,14 +20,16 @@ struct Parent {
   bool is_any() const { return obstacle != kNone || part; }
 };
 
-/// Motion of an object relative to its parent: `own` is its motion if the parent stays at parent_start. Returns P(t)
-/// P(start)⁻¹ own(t), with exact derivatives.
+/// Motion of an object that follows `parent`, in the world: the product of poses parent · parent_start⁻¹ · own, with
+/// exact derivatives. `own` is the motion that the object has if the parent stays at `parent_start`.
 PoseSample compose(const PoseSample& parent, const scene::Pose& parent_start, const PoseSample& own);
 
-/// Distance of the points of a frame on the skin from its origin [m]: so small that all are at one place of the skin.
+/// Distance of the other three points of a frame from its origin on the skin [m]: so small that all follow the same
+/// skin.
 inline constexpr double kFrameAxis = 1e-3;
 
-/// Rigid motion closest to that of a frame (four points from vertex `first` on), with keys at the same times.
+/// Rigid motion closest to that of a frame (an origin and three points along the axes, from vertex `first` on), with
+/// keys at the times of `keys`.
 std::shared_ptr<const Track> track_of_frame(const KeyFrames& keys, std::size_t first,
                                             scene::Interpolation interpolation);
 

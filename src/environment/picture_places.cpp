@@ -36,7 +36,8 @@ double angle_in_turns(double x, double y, double near) {
   return turn + std::round(near - turn);
 }
 
-/// Turns of the corners around the z axis, without a jump in the triangle; on the axis, that of the triangle's middle.
+/// Angles of the corners around the z axis in turns, without a jump in the triangle; a corner on the axis has the angle
+/// of the triangle's middle.
 std::array<double, 3> turns_around(const Corners& corners, double radius) {
   const Vec3 middle = corners.middle();
   const double at_middle = angle_in_turns(middle.x(), middle.y(), 0);
@@ -69,7 +70,7 @@ std::array<Vec2, 3> place_on_side(const Corners& corners, const Vec3& size, cons
 struct PlaceOnShape {
   const Corners& corners;
   const Tiling& tiling;
-  bool y_up;  ///< whether y is up in the scene, along whose axes the sizes of boxes are given
+  bool y_up;  ///< whether y is up in the scene; sizes of boxes are along the scene's axes
 
   using Places = std::array<Vec2, 3>;
 
@@ -102,7 +103,7 @@ struct PlaceOnShape {
     if (is_level()) return place_on_side(corners, {2 * s.radius, 2 * s.radius, s.height}, tiling);
     return around(s.radius, std::hypot(s.radius, s.height), [&](const Vec3& x) { return 0.5 + x.z() / s.height; });
   }
-  /// Upward around the tube, from its inner side over the bottom, so that the middle of the picture is on the outside.
+  /// Upward: around the tube, from its inner side over the bottom, so that the middle of the picture is on the outside.
   Places operator()(const scene::Torus& s) const {
     const auto turn_of = [&](const Vec3& x, double near) {
       return angle_in_turns(x.z(), -(std::hypot(x.x(), x.y()) - s.radius), near);

@@ -8,11 +8,11 @@
 namespace weft::environment {
 namespace {
 
-// Heights of people and toy figures, and a usual one [m]; a file in centimetres is a hundred times taller.
+// Limits of height for people and toy figures, and a usual height [m]; a file in centimetres gives 100 times that.
 constexpr double kMinHeight = 0.3, kMaxHeight = 3, kUsualHeight = 1.7;
 // Largest number of turning nodes without skin that is not reported: a head or a camera may be beside the body.
 constexpr int kMaxIdleNodes = 3;
-// Largest plausible speed of a body [m/s]: the mean of a sprint over 100 m is 10, of a run 3 to 6.
+// Largest speed of a body without a warning [m/s]: people run at 3 to 6; only sprinters over 100 m reach 10.
 constexpr double kMaxSpeed = 9;
 // Largest distance of feet from the floor that is not visible [m].
 constexpr double kMaxFloorDistance = 0.05;
@@ -70,7 +70,8 @@ std::optional<std::string> warn_of_speed(const KeyFrames& keys, double begin, do
   return fmt::format("it moves at up to {:.3g} m/s; people who run reach {:g} m/s", fastest, kMaxSpeed);
 }
 
-// Bodies that jump touch the floor at times, and bodies that roll sink into it at times: uses minimum and median.
+// A body that jumps is above the floor only at times, so the minimum counts there; a body that rolls sinks into the
+// floor only at times, so the median counts there.
 std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone) {
   if (lowest.empty()) return std::nullopt;
   std::ranges::sort(lowest);

@@ -1,4 +1,4 @@
-// Warns of sizes and speeds that no body of a person or animal has: they suggest a wrong unit or rate.
+// Warns of implausible sizes, speeds and heights of characters, which suggest a wrong unit or rate.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,14 @@
 namespace weft::environment {
 
 /// Warns of an implausible height of a body along `up`. `x`: its vertices [m]; `scale`: metres per unit of its file;
-/// `said`: the scene gives the scale, and may want giants or dwarfs up to ten times beyond the limits.
+/// `said`: the scene sets the scale; then heights up to ten times beyond the limits are accepted.
 std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said);
 
-/// Warns of a body whose clip moves limbs although no limb has skin bound to it.
+/// Warns of a body whose skin is all bound to one node, although the clip turns several others.
 std::optional<std::string> warn_of_missing_skin(const character::Character& body, const character::Clip& clip);
 
-/// Warns of an implausible speed: `count` key frames of `vertices` points from `begin` [s] on, `rate` per second.
+/// Warns of an implausible speed of the mean of `vertices` points, over `count` key frames from `begin` [s] on, `rate`
+/// per second.
 std::optional<std::string> warn_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
                                          std::size_t vertices);
 

@@ -13,8 +13,8 @@
 
 namespace weft::environment {
 
-/// Second derivatives at the keys of the natural cubic spline (zero at both ends); `h`: segment lengths, `d`: slopes of
-/// the segments (difference of values over length). Standard tridiagonal system, for inner keys i:
+/// Second derivatives m at the keys of the natural cubic spline (zero at both ends); `h`: segment lengths, `d`: slopes
+/// of the segments (difference of values over length). Standard tridiagonal system, for inner keys i:
 ///   h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (d[i] - d[i-1])
 template <class Value>
 std::vector<Value> natural_second_derivatives(std::span<const double> h, std::span<const Value> d) {
@@ -32,10 +32,10 @@ std::vector<Value> natural_second_derivatives(std::span<const double> h, std::sp
 }
 
 /// Slopes at the keys of the natural cubic spline, limited per component so that the curve stays between the values of
-/// neighbouring keys. If the chords on both sides of a key differ in sign, the slope is 0; otherwise it is at most
-/// three times the flatter chord (Fritsch & Carlson, "Monotone piecewise cubic interpolation", SIAM J. Numer. Anal. 17,
-/// 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). Without the limit, an object swings back
-/// before it begins to move.
+/// neighbouring keys. If the slopes d on both sides of a key differ in sign, the slope at the key is 0; otherwise its
+/// magnitude is at most three times the smaller of theirs (Fritsch & Carlson, "Monotone piecewise cubic interpolation",
+/// SIAM J. Numer. Anal. 17, 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). Without the limit,
+/// an object moves backward before it begins to move forward.
 template <class Value>
 std::vector<Value> slopes_between_keys(std::span<const double> h, std::span<const Value> d) {
   const std::size_t n = h.size();

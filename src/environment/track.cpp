@@ -15,7 +15,7 @@ constexpr double kHalfTurnTolerance = 1e-6;
 
 Quat exp(const Vec3& w) {
   const double angle = w.norm();
-  // sin(a/2)/a; by its series for small angles, where the quotient loses digits.
+  // sin(angle / 2) / angle; by its series for small angles, where the quotient loses digits.
   const double factor = angle > 1e-4 ? std::sin(0.5 * angle) / angle : 0.5 - angle * angle / 48;
   return Quat(std::cos(0.5 * angle), factor * w.x(), factor * w.y(), factor * w.z());
 }
@@ -32,7 +32,7 @@ Vec3 log(const Quat& q) {
 Vec3 log_near(const Quat& q, const Vec3& guess) {
   const Vec3 w = log(q);
   const double angle = w.norm();
-  // If q does not turn, it does not give the axis of whole turns.
+  // If q is the identity, it does not define the axis of whole turns.
   const Vec3 axis = angle > 1e-9 ? Vec3(w / angle) : Vec3(guess.stableNormalized());
   return w + 2 * kPi * std::round((guess.dot(axis) - angle) / (2 * kPi)) * axis;
 }
@@ -66,8 +66,8 @@ std::vector<Vec3> rotation_vectors_between(const std::vector<scene::Pose>& poses
   return turns;
 }
 
-/// Multiplies a rotation with known angular velocity and acceleration by exp(b w) from the left; db, ddb: time
-/// derivatives of b. For q = e p: omega = db w + R_e omega_p, and its derivative.
+/// Multiplies a rotation p with known angular velocity and acceleration by e = exp(b w) from the left; db, ddb: time
+/// derivatives of b. The angular velocity becomes db w + e (angular velocity of p); the acceleration is its derivative.
 void rotate_sample(RotationSpline::Sample& p, const Vec3& w, double b, double db, double ddb) {
   const Quat e = exp(b * w);
   const Vec3 carried = e * p.angular_velocity;
@@ -115,7 +115,7 @@ RotationSpline::RotationSpline(scene::Interpolation interpolation, std::vector<d
     const double h = lengths[i];
     Segment segment{times_[i], h, rotations_[i], Vec3::Zero(), turns[i], Vec3::Zero()};
     if (interpolation_ == scene::Interpolation::cubic) {
-      // Angular velocities at both keys, times h/3, are the tangents of the Bézier curve; the middle takes the rest.
+      // w1 and w3 give the angular velocities (slopes) at both keys; w2 is the rotation that remains between them.
       segment.w1 = h / 3 * slopes[i];
       segment.w3 = h / 3 * slopes[i + 1];
       const Quat middle = exp(-segment.w3) * rotations_[i + 1] * rotations_[i].conjugate() * exp(-segment.w1);
@@ -148,7 +148,7 @@ Track::Track(const scene::PoseTrack& track, const scene::Pose& rest)
       rotation_(track.interpolation, times_of(track), poses_of(track, rest)),
       moving_(track.keys.size() > 1) {}
 
-// A time that differs from a key's only by rounding counts as the key's. Otherwise a track that stops there would
+// A time that differs from a key's only by rounding counts as the key's. Otherwise a track that ends at this key would
 // differ by rounding from one that continues, and contacts of cloth amplify this to millimetres.
 PoseSample Track::at(double t) const {
   constexpr double kRounding = 1e-12;  // [s]

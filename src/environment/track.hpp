@@ -26,12 +26,13 @@ struct PoseSample {
   }
 };
 
-/// Interpolates rotations through keys. If exactly one angle changes between two keys, the rotation turns by that
-/// change, including whole turns. Otherwise it takes the shortest way; a half turn continues the direction of the turn
-/// before it. Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit
-/// quaternions with derivatives in closed form (Kim, Kim & Shin, "A general construction scheme for unit quaternion
-/// curves with simple high order derivatives", SIGGRAPH 1995); angular velocity is continuous. Its values at the keys
-/// come from the spline (spline.hpp) over the turns between keys, so motion about one axis is the spline of the angle.
+/// Interpolates rotations through keys. If at most one angle changes between two keys, the rotation turns by that
+/// change, including whole turns. Otherwise it turns by the smallest angle; a half turn continues the direction of the
+/// turn before it. Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of
+/// unit quaternions with derivatives in closed form (Kim, Kim & Shin, "A general construction scheme for unit
+/// quaternion curves with simple high order derivatives", SIGGRAPH 1995); angular velocity is continuous. Angular
+/// velocities at the keys are the slopes_between_keys() (spline.hpp) of the turns, so rotation about one axis is the
+/// Spline of the angle.
 class RotationSpline {
  public:
   struct Sample {

@@ -15,7 +15,7 @@ class Wearers {
   explicit Wearers(const scene::Scene& scene) : scene_(scene) {}
 
   /// The wearer of a cloth. Throws Error(scene_invalid) that begins with `where` if there is no character, if the cloth
-  /// names no wearer and there are several, or if the wearer has no bones.
+  /// names no wearer and there are several, or if the wearer has no bones or not the joints that define its axes.
   const garment::Wearer& of(const scene::Cloth& cloth, const std::string& where);
 
  private:

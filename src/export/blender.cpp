@@ -42,7 +42,7 @@ const char* extension(const Material& material) {
   return "REPEAT";
 }
 
-// By material: its picture with the mapping, as MTL cannot express every mapping.
+// Picture and mapping of each material, as MTL cannot express every mapping.
 Json pictures_json(const frame::Surface& surface) {
   Json result = Json::object();
   const Materials materials = materials_of(surface);
@@ -59,7 +59,7 @@ Json pictures_json(const frame::Surface& surface) {
   return result;
 }
 
-// By material: linear colour of the back, if cloth has another colour there.
+// Linear colour of the back of each material of cloth, if it differs from the front.
 Json backs_json(const frame::Surface& surface) {
   Json result = Json::object();
   if (surface.kind != frame::ObjectKind::cloth) return result;

@@ -13,7 +13,7 @@ namespace weft::exporter {
 /// Data that the script sets in addition to the meshes, which it reads from files named after the objects.
 class BlenderScript {
  public:
-  /// `width`, `height`: of the pictures [pixels].
+  /// `width`, `height`: of the rendered pictures [pixels].
   BlenderScript(const frame::FrameSnapshot& first, const Lighting& lighting, std::string name, double fps, int width,
                 int height);
 

@@ -12,12 +12,12 @@
 namespace weft::exporter {
 
 enum class Format {
-  ply,   ///< per object and frame: triangles, positions in double precision, weft and warp; cut open at seams of panels
-  obj,   ///< per object and frame: simulated faces, weft and warp, normals, materials (MTL) and pictures
-  pc2,   ///< per object: a point cache, and the OBJ of the first frame to which it applies; y is up
-  gltf,  ///< one file with all visible objects, their colours, pictures and motion, and cameras
-  usd,   ///< likewise, as text; with the axes of the scene
-  usdz,  ///< the same, packed
+  ply,      ///< per object and frame: triangles, positions in double precision, weft and warp; panels are separate
+  obj,      ///< per object and frame: simulated faces, weft and warp, normals, materials (MTL) and pictures
+  pc2,      ///< per object: a point cache, and the OBJ of the first frame to which it applies; y is up
+  gltf,     ///< one file with all visible objects, their colours, pictures and motion, and cameras
+  usd,      ///< the contents of gltf as text, with the axes of the scene
+  usdz,     ///< as usd, but packed in one file
   blender,  ///< pc2, and a script that loads all of it with cameras and lights
 };
 
@@ -37,7 +37,7 @@ struct Request {
 /// All files that will be written except shared_files(); `first` is the first requested frame.
 std::vector<std::filesystem::path> files(const Request& request, const frame::FrameSnapshot& first);
 
-/// Materials, and pictures beside them, which are the same for all parts of a film.
+/// A material file or a picture, the same for all parts of a film.
 struct SharedFile {
   std::filesystem::path file;
   std::string content;

@@ -46,7 +46,7 @@ int wrap_number(frame::Paint::Wrap wrap) {
   return kRepeat;
 }
 
-// Duplicates places on creases, so that each has one normal group; returns the group of each place.
+// Duplicates places (seams.hpp) on creases, so that each has one normal group; returns the group of each place.
 std::vector<Index> cut_at_creases(CutSurface& cut, const NormalGroups& groups) {
   std::vector<Index> group_of(cut.vertex_of.size(), -1);
   std::map<std::pair<Index, Index>, Index> copies;  // by place and group
@@ -142,7 +142,7 @@ int GltfFile::append(const void* data, std::size_t size, int target) {
   return static_cast<int>(document_["bufferViews"].size()) - 1;
 }
 
-// Returns the index of the accessor, as the next functions do.
+// Returns the index of the accessor, as add_values() and add_places() do.
 int GltfFile::add_vectors(const std::vector<float>& vectors) {
   std::array<float, 3> low, high;
   low.fill(std::numeric_limits<float>::max());

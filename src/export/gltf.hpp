@@ -14,15 +14,16 @@
 
 namespace weft::exporter {
 
-/// Each object is a mesh with the vertices of the first frame, and one morph target per later frame. At the time of
-/// frame k, the weight of its target is 1 and all others are 0; between frames, weights and thus positions are
-/// interpolated linearly. Morph targets are the standard's only way to move vertices freely, and common readers support
-/// them (assimp, Blender, three.js). Objects that never move have no targets.
+/// Each object is a mesh with the vertices of the first frame, and one morph target per later frame. At the time of a
+/// later frame, the weight of its target is 1 and those of all others are 0; between frames, weights and thus positions
+/// are interpolated linearly. Morph targets are the only way of the standard to move vertices independently; assimp,
+/// Blender and three.js read them. Objects that never move have no targets.
 ///
 /// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender reverses. Normals have targets
 /// as well, since those of the first frame would be wrong in all others. Texture coordinates are (weft, 1 − warp) [m],
-/// as v points down in glTF; vertices on a seam occur once for each panel. A second pair of coordinates places
-/// pictures, which are embedded. Parts with their own materials are separate primitives over the same vertices.
+/// as v points down in glTF; vertices on a seam occur once for each panel. A second pair of coordinates maps pictures,
+/// which are embedded, if their mapping differs from the first pair. Parts with their own materials are separate
+/// primitives over the same vertices.
 class GltfFile {
  public:
   /// Adds the visible objects of the first frame.

@@ -10,17 +10,17 @@
 
 namespace weft::exporter {
 
-/// A picture beside or inside the exported files. Other programs show it unchanged, so the effect of the surface's
-/// colour (multiplied in, or visible through and around the picture) is baked into its pixels.
+/// A picture beside or inside the exported files. Other programs show it unchanged, so its pixels include the effect of
+/// the surface's colour: as a factor, or visible through and around the picture.
 struct PictureFile {
   std::string name;  ///< file name
   std::shared_ptr<const frame::Texture> texture;
   Vec3 color;  ///< linear colour of the surface
   frame::Paint::Alpha alpha = frame::Paint::Alpha::ignored;
-  bool rim_u = false, rim_v = false;  ///< whether a transparent rim of one pixel is added on this axis, to be continued
-                                      ///< beyond the edges
+  bool rim_u = false, rim_v = false;  ///< whether a transparent rim of one pixel is added at both ends of
+                                      ///< this axis, which readers continue beyond the edges
 
-  /// The PNG file; it has alpha only if the picture cuts holes.
+  /// The bytes of the PNG file; it has alpha only if the picture cuts holes.
   std::string png() const;
 };
 

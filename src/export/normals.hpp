@@ -8,7 +8,7 @@
 
 namespace weft::exporter {
 
-/// Groups of triangle corners that share a normal: all corners of a vertex, or those between its creases.
+/// Groups of triangle corners that share a normal: all corners at a vertex, or those between two of its creases.
 struct NormalGroups {
   std::vector<std::array<Index, 3>> of_corner;  ///< group, per triangle
   std::vector<Index> vertex_of;                 ///< vertex, per group

@@ -16,7 +16,7 @@ class Places {
  public:
   explicit Places(std::size_t vertices) : places_(vertices), next_(vertices, kNone), taken_(vertices, 0) {}
 
-  /// Returns the index of the place; appends to `vertex_of` if it is new.
+  /// Returns the index of the place; appends its vertex to `vertex_of` if the place is an additional one.
   Index of(Index vertex, const Place& place, std::vector<Index>& vertex_of) {
     Index at = vertex;
     if (taken_[index(at)] == 0) {

@@ -1,4 +1,4 @@
-// Surfaces cut open along seams, where texture coordinates differ between both sides.
+// Surfaces cut open along the edges at which texture coordinates differ between both sides.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace weft::exporter {
 
-/// Triangles over places. A place is a vertex of the surface with one pair of texture coordinates, so that panels are
-/// separate along their seams. Place i is vertex i; additional places follow.
+/// Triangles whose corners are places. A place is a vertex of the surface with one pair of texture coordinates, so that
+/// panels are separate along their seams. The first place of vertex i has the index i; additional places follow.
 struct CutSurface {
   std::vector<Index> vertex_of;  ///< per place
   std::vector<Vec2> uv;          ///< per place; empty if the surface has none

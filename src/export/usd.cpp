@@ -21,8 +21,8 @@
 namespace weft::exporter {
 namespace {
 
-// Film width of a 35 mm camera; only its ratio to the focal length matters. USD gives both in tenths of the stage's
-// unit, which is a metre.
+// Film width of a 35 mm camera in tenths of the stage's unit (metre), as USD prescribes; only its ratio to the focal
+// length matters.
 constexpr double kFilmWidth = 0.36;
 
 // A valid name of a primitive: letters, digits and underscores, no leading digit.
@@ -70,7 +70,7 @@ std::string box_of(const std::vector<Vec3>& positions) {
   return tuples(std::array{Vec3(box.min()), Vec3(box.max())});
 }
 
-// USD multiplies row vectors from the left, so the rows are the images of the axes.
+// USD multiplies row vectors by the matrix: its rows are the images of the axes, and the position.
 std::string matrix_text(const Eigen::Matrix4d& matrix) {
   std::string text = "( ";
   for (int column = 0; column < 4; ++column)
@@ -154,7 +154,7 @@ bool UsdFile::Samples::add(int frame, std::string value) {
   const bool changed = value != last_;
   if (changed && text_.empty()) {
     text_ = fmt::format("            {}: {},\n", first_frame_, first_);
-    // It was constant until now: repeats the value at the last frame, as samples are interpolated linearly.
+    // The value was constant until now: repeats it at the last frame, as samples are interpolated linearly.
     if (last_frame_ != first_frame_) text_ += fmt::format("            {}: {},\n", last_frame_, first_);
   }
   if (!text_.empty()) text_ += fmt::format("            {}: {},\n", frame, value);
@@ -235,7 +235,7 @@ void UsdFile::write_materials(std::ostream& out) const {
   out << "    }\n";
 }
 
-// `st` places pictures; without a picture mapping it is weft and warp.
+// `st` maps pictures; without a mapping of its own it is weft and warp.
 void UsdFile::write_places(std::ostream& out, const frame::Surface& surface, const Object& object) {
   const CutSurface cut = cut_at_seams(surface, object.materials, object.vertices);
   if (cut.uv.empty()) return;

@@ -12,7 +12,7 @@ namespace weft::exporter {
 /// Clipping planes of exported cameras [m].
 inline constexpr double kNearPlane = 0.01, kFarPlane = 1000;
 
-/// A camera with a definite pose, placed by the scene or found.
+/// A camera with its pose in one frame.
 struct View {
   std::string name;
   Eigen::Matrix4d world_from_view = Eigen::Matrix4d::Identity();  ///< columns: right, up, backward; position [m]

@@ -46,7 +46,7 @@ std::string entry_of(const StoredFile& file) {
 }
 
 void append_file(std::string& bytes, const StoredFile& file, const std::string& entry) {
-  // An extra field pads to the alignment; its own header takes four bytes.
+  // An extra field with a header of four bytes pads the content to the alignment.
   std::size_t padding = (kAlignment - (bytes.size() + kLocalHeader + file.name.size()) % kAlignment) % kAlignment;
   if (padding > 0 && padding < 4) padding += kAlignment;
   bytes += "PK\x03\x04" + entry;

@@ -3,7 +3,7 @@
 namespace weft::forces {
 namespace {
 
-// Inlined, as a call would pass its twelve numbers through memory.
+// Inlined, as a call would return its twelve numbers through memory.
 template <class Differences, class Points>
 [[gnu::always_inline]] inline VecLanes weighted_sum(const Differences& d, Points x) {
   VecLanes sum = d.weights[0] * gather(x, d.particles[0]);
@@ -11,7 +11,7 @@ template <class Differences, class Points>
   return sum;
 }
 
-// Adds size w_a w_b for all pairs.
+// Adds size × weights[a] × weights[b] for all pairs.
 template <class Differences>
 void add_pairs(const Differences& d, const Lanes& size, const solver::AssemblyRows& assembly) {
   for (std::size_t a = 0, pair = 0; a < d.particles.size(); ++a) {
@@ -32,7 +32,7 @@ void Bend::hold(std::span<const char> held) {
   create_differences(held);
 }
 
-// Creates the same differences in the same order, whatever is held.
+// Creates differences of the same particles in the same order, whatever is held; weights and areas depend on it.
 void Bend::create_differences(std::span<const char> held) {
   lines_.size = cells_.size = 0;
   const mesh::Grid& grid = grid_;
@@ -44,7 +44,7 @@ void Bend::create_differences(std::span<const char> held) {
         add_line({at(i - 1, j), at(i, j), at(i + 1, j)}, grid.du(i - 1), grid.du(i), grid.width_v(j), held);
       if (j > 0 && !last_j)
         add_line({at(i, j - 1), at(i, j), at(i, j + 1)}, grid.dv(j - 1), grid.dv(j), grid.width_u(i), held);
-      // 2 ‖s_uv‖²: the mixed derivative counts twice.
+      // 2 ‖s_uv‖²: twice the area.
       if (last_i || last_j) continue;
       const double cell = grid.du(i) * grid.dv(j), uv = 1 / cell;
       cells_.add({at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)}, {uv, -uv, -uv, uv}, 2 * cell);
@@ -58,7 +58,7 @@ void Bend::List<Count>::add(const std::array<Index, Count>& particles, const std
   const std::size_t lane = size++ % 4;
   if (packs.size() < packs_of(size)) packs.emplace_back();
   Differences<Count>& pack = packs[packs_of(size) - 1];
-  // Following lanes may stay unused: they repeat this one, with area 0.
+  // The following lanes may stay unused: they repeat this difference, with area 0.
   for (std::size_t l = lane; l < 4; ++l) {
     for (std::size_t k = 0; k < Count; ++k) pack.particles[k][l] = particles[k], pack.weights[k][l] = weights[k];
     pack.area[l] = l == lane ? area : 0;
@@ -66,8 +66,8 @@ void Bend::List<Count>::add(const std::array<Index, Count>& particles, const std
 }
 
 // Adds the second derivative at the middle of three particles, from their spacings; exact for parabolas. It is the turn
-// divided by the length over which it happens: half of both spacings, or half of the free one. The weights sum to
-// exactly zero, so that a translation leaves no rounding.
+// of the line divided by the length that contains it: half of both spacings, or half of the free one. The weights sum
+// to exactly zero, so that a translation adds no rounding.
 void Bend::add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                     std::span<const char> held) {
   const auto is_held = [&](std::size_t k) { return !held.empty() && held[particles[k]]; };
@@ -115,8 +115,8 @@ void Bend::add(const Evaluation& at) const {
   cells_.ranges.for_each(at.range, cells_.packs.size(), [&](std::size_t p) { add(cells_.packs[p], at); });
 }
 
-// The definite form of damping would be a stiffness c cᵀ; ‖c‖² I is used instead. Curvature points along the normal,
-// where both are equal; across it the membrane is far stiffer. So all of bending needs scalars only, no blocks.
+// The definite form of damping would be a stiffness c cᵀ; ‖c‖² I is used instead. Along c, nearly the normal, both are
+// equal; across it the membrane is far stiffer. So all of bending needs scalars only, no 3×3 blocks.
 template <std::size_t Count>
 void Bend::add(const Differences<Count>& d, const Evaluation& at) const {
   const VecLanes curvature = weighted_sum(d, at.x);

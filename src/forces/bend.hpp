@@ -9,18 +9,19 @@
 
 namespace weft::forces {
 
-/// Seed "Elastic Model", bending f = −B Δ² along the normal (restoring sign): a plate with ν = 0 and energy density ½ B
-/// (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), by central differences on lines and in cells. Free edges follow from the energy.
+/// Seed "Elastic Model", bending f = −B Δ² s along the normal N (sign: restoring): a plate with rigidity B, ν = 0 and
+/// energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), by central differences on lines and in cells. The energy also
+/// determines the forces at free edges.
 ///
 /// The full second differences are used, not their component along N. On an inextensible sheet both are equal, and the
 /// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,
-/// "A Quadratic Bending Model for Inextensible Surfaces", 2006). The in-plane components add B/l² to k: for cotton at l
-/// = 1 cm, 0.5 N/m to 1000 N/m.
+/// "A Quadratic Bending Model for Inextensible Surfaces", 2006). The in-plane components add B/l² to the stretch
+/// stiffness: for cotton at a spacing l = 1 cm, 0.5 N/m are added to 1000 N/m.
 ///
 /// A difference covers half a spacing on either side of its middle particle. If the middle and one end are held, that
-/// side keeps its direction, and the whole turn happens in the free half spacing: the clamp acts at the last held
-/// particle. If both halves counted, it would act half a spacing behind, an error of first order. For viscosity and
-/// friction see BendDamping.
+/// side keeps its direction, and the other half spacing contains the whole turn: the clamp acts at the last held
+/// particle. If both halves counted, the clamp would act half a spacing behind it, an error of first order. For
+/// viscosity and friction see BendDamping.
 class Bend final : public Force {
  public:
   Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters);
@@ -34,12 +35,12 @@ class Bend final : public Force {
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  /// Assembles the whole elastic stiffness.
+  /// Adds the whole elastic stiffness.
   void add_constant_stiffness(solver::Assembly& assembly) const override;
   void hold(std::span<const char> held) override;
 
  private:
-  /// Four second differences Σ w_k x_k [1/m], each with the area that it covers.
+  /// Four second differences Σ weights[k] x_k [1/m], each with the area that it covers, twice for s_uv.
   template <std::size_t Count>
   struct Differences {
     std::array<Four, Count> particles{};

@@ -9,35 +9,35 @@ namespace weft::forces {
 
 struct BendParameters {
   double rigidity = 0;   ///< B [N·m]
-  double viscosity = 0;  ///< moment per rate of curvature [N·m·s]
-  double friction = 0;   ///< moment per width that a change of curvature must overcome [N]; half of 2HB of KES
+  double viscosity = 0;  ///< η, moment per width and rate of curvature [N·m·s]
+  double friction = 0;   ///< τ, moment per width against a change of curvature [N]; half of 2HB of Kawabata's KES
 };
 
 /// Viscosity and friction act on the curvature κ, each of the second derivatives s_uu, s_uv and s_vv of the surface
 /// s(u, v). Only the part of the rate κ̇ along the curvature counts, so that a curved piece turns rigidly without loss.
 /// Friction models Kawabata's bending hysteresis ("The Standardization and Analysis of Hand Evaluation", 1980): a
 /// moment of constant magnitude against the change, smoothed below a rate of kStickRate. It brings cloth to rest:
-/// without it the hem of a draped sheet keeps tipping at centimetres per second.
+/// without friction the hem of a draped sheet keeps tipping at centimetres per second.
 ///
 /// Moment per width [N]:
 ///
 ///     η (c·κ̇) c / (‖c‖² + κ_f²)  +  τ (c·κ̇) c / (D √((c·κ̇)² + ε² D²)),  D² = ‖c‖² + κ_r².
 ///
-/// c is κ at x̂ = x − v β, the start of the step (for BDF2 a third of a step later), κ_f is kFlatCurvature, κ_r is
-/// residual_curvature_, ε is kStickRate. c is constant during a step, so that the moment is the gradient of a convex
-/// function of κ̇. The direction at the iterate would turn with every ripple of nearly flat cloth, and Newton's method
-/// would oscillate (measured: a strip pulled over a rod, at a tolerance of 0.01, took 6,650 iterations and 68 rejected
-/// steps instead of 631 and none). With the curvature where unchanged velocity leads, a draped sheet with steps of 40
-/// ms trembles at 1 to 10 mm/s.
+/// c is κ at x̂ = x − v / rate (Evaluation), the start of the step (for BDF2 with constant steps a third of a step
+/// later), κ_f is kFlatCurvature, κ_r is residual_curvature_, ε is kStickRate. As c is constant during a step, the
+/// moment is the gradient of a convex function of κ̇. The direction of κ at the iterate would turn with every ripple of
+/// nearly flat cloth, and Newton's method would oscillate (measured: a strip pulled over a rod, at a tolerance of 0.01,
+/// took 6,650 iterations and 68 rejected steps instead of 631 and none). With c at the positions that constant velocity
+/// predicts, a draped sheet with steps of 40 ms trembles at 1 to 10 mm/s.
 ///
-/// The direction fades out if the sheet is flat: for viscosity below kFlatCurvature, for friction below the larger
-/// of kFlatCurvature and the curvature τ / B that friction can hold against bending. A full moment about an axis that
-/// turns with every ripple would be stiffer than the bending itself.
+/// Damping fades out if the sheet is flat: viscosity below kFlatCurvature, friction below the larger of kFlatCurvature
+/// and the curvature τ / B that friction can hold against bending. A full moment about an axis that turns with every
+/// ripple would be stiffer than the bending itself.
 class BendDamping {
-  // Curvature below which its direction is too uncertain for damping [1/m]: a radius of 10 m looks flat.
+  // Curvature below which its direction is too uncertain for damping [1/m]: a sheet of radius 10 m looks flat.
   static constexpr double kFlatCurvature = 0.1;
-  // Rate of curvature at which friction has most of its magnitude [1/(m·s)]: a flap 10 cm long then moves at 5 mm/s.
-  // Smaller values hold better and make the system stiffer: friction / kStickRate acts like a viscosity.
+  // Rate of curvature at which friction has 0.7 of its magnitude [1/(m·s)]: the end of a flap 10 cm long then moves at
+  // 2.5 mm/s. Smaller values hold better and make the system stiffer: friction / kStickRate acts like a viscosity.
   static constexpr double kStickRate = 0.5;
 
  public:
@@ -45,9 +45,9 @@ class BendDamping {
 
   bool any() const { return viscosity_ > 0 || friction_ > 0; }
 
-  /// The moment is secant(‖c‖², c·κ̇) (c·κ̇) c. `Scalar`: double, or Lanes. Newton's matrix uses the secant, too: with
-  /// the tangent, definite as well, Newton's method oscillates at the kink of friction at rest and takes 1.5 times the
-  /// iterations.
+  /// The moment is secant(‖c‖², c·κ̇) (c·κ̇) c. `Scalar`: double, or Lanes. Newton's matrix uses the secant, too. With
+  /// the tangent, which is definite as well, Newton's method oscillates where friction changes sign, and takes 1.5
+  /// times the iterations.
   template <class Scalar>
   Scalar secant(const Scalar& c_sq, const Scalar& rate) const {
     using forces::sqrt, std::sqrt;
@@ -60,7 +60,7 @@ class BendDamping {
 
  private:
   double viscosity_, friction_;
-  double residual_curvature_;  // friction fades below [1/m]
+  double residual_curvature_;  // κ_r [1/m]
 };
 
 }  // namespace weft::forces

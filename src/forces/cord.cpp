@@ -51,7 +51,7 @@ Cord::Cord(std::span<const double> lengths, bool closed, Index first, const Cord
   }
 }
 
-// If the middle and one end are held, the whole turn happens in the free half piece; see Bend.
+// If the middle and one end are held, the free half piece contains the whole turn; see Bend.
 void Cord::compute_weights(Turn& turn, std::span<const char> held) const {
   const auto is_held = [&](std::size_t k) { return !held.empty() && held[slot(turn.particles[k])] != 0; };
   turn.length = 0.5 * (turn.before + turn.after);

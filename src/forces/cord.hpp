@@ -10,22 +10,22 @@ namespace weft::forces {
 
 struct CordParameters {
   double stretch = 0;            ///< force per strain, EA [N]
-  double stretch_viscosity = 0;  ///< force per rate of strain [N·s]
+  double stretch_viscosity = 0;  ///< η, force per rate of strain [N·s]
   double bend = 0;               ///< bending stiffness, EI [N·m²]
   double bend_viscosity = 0;     ///< moment per rate of curvature [N·m²·s]
-  double air_density = 0;        ///< [kg/m³]; 0: no air
+  double air_density = 0;        ///< ρ [kg/m³]; 0: no air
   Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], unless an evaluation provides its own
-  double drag = 0;               ///< drag coefficient across the cord
-  double diameter = 0;           ///< for drag [m]
+  double drag = 0;               ///< c, drag coefficient across the cord
+  double diameter = 0;           ///< d, for drag [m]
 };
 
 /// The forces within one chain.
 ///
 /// Stretch: a piece of length l and rest length r has the energy ½ EA r (l / r − 1)² and the viscous tension η d/dt (l
 /// / r). Bending: energy ½ EI L ‖s''‖² at each particle between two pieces, where s'' is the second difference of the
-/// positions by rest lengths and L half of both pieces (as Bend on the lines of a sheet); straight at rest. For
-/// viscosity of bending see BendDamping. Air: −½ ρ c d l ‖v_n‖ v_n on a piece, half at either end, where v_n is the
-/// component across the piece of its velocity relative to the air.
+/// positions by initial rest lengths and L the mean of both (as Bend on the lines of a sheet, clamps included);
+/// straight at rest. For viscosity of bending see BendDamping. Air: −½ ρ c d l ‖v_n‖ v_n on a piece, half at either
+/// end, where v_n is the part across the piece of its velocity relative to the air.
 class Cord final : public Membrane {
  public:
   /// `lengths`: rest lengths of the pieces [m]; `closed`: the last piece connects the last particle to the first.
@@ -41,7 +41,7 @@ class Cord final : public Membrane {
   void add_constant_stiffness(solver::Assembly& assembly) const override;
   void hold(std::span<const char> held) override;
 
-  /// Sets the rest lengths to this ratio of the initial ones.
+  /// Sets the rest lengths of stretch to this ratio of the initial ones.
   void set_length_ratio(double ratio);
 
   double max_strain(std::span<const Vec3> x) const override;
@@ -51,14 +51,14 @@ class Cord final : public Membrane {
   struct Piece {
     std::array<Index, 2> particles;
     double initial_length;  // rest length at construction [m]
-    double rest;            // current rest length [m]
+    double rest;            // r, current rest length [m]
     double elasticity;      // EA / r [N/m]
     double viscosity;       // η / r [N·s/m]
     Index block = 0;
   };
   struct Turn {
     std::array<Index, 3> particles;
-    double before, after;                      // rest lengths of its pieces [m]
+    double before, after;                      // initial rest lengths of its pieces [m]
     std::array<double, 3> weights;             // of s'' [1/m²]
     double length;                             // L [m]
     std::array<Index, 3> scalars{}, blocks{};  // of the pairs 01, 12, 20

@@ -11,16 +11,16 @@ using solver::PackedBlock;
 
 namespace {
 
-// See TriangleMembrane.
+// Smallest relative length, as kMinStretch of TriangleMembrane.
 constexpr double kCollapsed = 1e-12;
 // θ: fraction of ⟨g²⟩ that counts. At 1, a cell that bends along one direction becomes narrower along the other, while
 // its neighbours and clamps do not (measured: errors of a cantilever of 16 cells at 1e4, 1e5 and 1e6 N/m are −0.7, −3.5
 // and −8.1 % at 1; 0.1, −0.5 and −2.8 % at a quarter; 0.2, 0.1 and −0.8 % at a tenth). Smaller values flatten cells
 // less under tension.
 constexpr double kHeightFraction = 0.1;
-// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. For a smaller cell the normal of the diagonals is a bad reference for
-// the middle, as it turns by 1 / size (measured: at a tenth, a corner of leather pulled by a pin reduced steps to 1
-// µs).
+// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. If the product is smaller, the normal turns too fast to be a reference
+// for the middle: by 1 / ‖D₁ × D₂‖ (measured: with S₀ at a tenth, a corner of leather pulled by a pin reduced steps to
+// 1 µs).
 constexpr double kFoldedSize = 0.5;
 
 // Indices of the corners of triangle k among the five particles of a cell.
@@ -31,7 +31,7 @@ std::array<std::size_t, 3> corners_of(std::size_t k) {
 // Weights of the corners in the twist; the middle has none.
 constexpr std::array<double, 5> kTwist{1, -1, 1, -1, 0};
 
-// Stiffness of tension across a thread: exact, and in two definite forms; see Stretch.
+// Stiffness across a thread by tension: exact, and in two definite forms; see Stretch.
 double exact_lateral(double length) {
   return 1 - 1 / length;
 }
@@ -94,7 +94,7 @@ CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const Five& p
   state.flat = positions;
   const auto& [a, b, c, d, middle] = state.flat;
   state.diagonals = {c - a, d - b};
-  // From differences, so that only these are rounded.
+  // Of differences, so that only these are rounded, not the coordinates.
   state.middle_offset = (middle - a) - 0.25 * ((b - a) + (c - a) + (d - a));
   const Vec3 product = state.diagonals[0].cross(state.diagonals[1]);
   const double size = product.norm(), min_size = cell.min_size;
@@ -110,14 +110,14 @@ CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const Five& p
   return state;
 }
 
-// δn = (I − (1 − κ) e eᵀ) δ(D₁ × D₂) / S. The matrix is symmetric.
+// δn = (I − (1 − κ) e eᵀ) `product` / S, where `product` is δ(D₁ × D₂). The matrix is symmetric.
 Vec3 CrossedMembrane::normal_change(const State& state, const Vec3& product) {
   return (product - (1 - state.kept_change) * state.direction.dot(product) * state.direction) / state.size;
 }
 
-// Converts forces on the flat cell, along its height and on its skew q, to forces on the particles:
+// Converts forces on the flat cell, on its height w and on its skew q to forces on the particles; o is middle_offset:
 //
-//     δm' = δm − n δw − w δn,   δw = n·δd + d·δn,   δq = 2 ‖n‖² t·δt + 2 ‖t‖² n·δn,
+//     δm' = δm − n δw − w δn,   δw = n·δo + o·δn,   δq = 2 ‖n‖² t·δt + 2 ‖t‖² n·δn,
 //     δ(D₁ × D₂) = δD₁ × D₂ + D₁ × δD₂.
 void CrossedMembrane::pull_back(const State& state, Five& force, double along_height, double along_skew) {
   const auto& [d1, d2] = state.diagonals;
@@ -134,7 +134,7 @@ void CrossedMembrane::pull_back(const State& state, Five& force, double along_he
   force[4] += along * n;
 }
 
-// The transpose: converts velocities of the particles to rates of the flat cell, its height and its skew.
+// The transpose of pull_back: converts velocities of the particles to rates of the flat cell, its height and its skew.
 void CrossedMembrane::push_forward(const State& state, Five& flat, double& height, double& skew) {
   const Vec3 middle_offset = flat[4] - 0.25 * (flat[0] + flat[1] + flat[2] + flat[3]);
   const Vec3 twist = (flat[0] - flat[1]) + (flat[2] - flat[3]);
@@ -235,9 +235,9 @@ Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& stat
   return {length.x(), length.y(), s.u.dot(s.v)};
 }
 
-// Sums k (1 − lateral) ∂L ∂Lᵀ over the lengths L, and likewise for shear. Then adds the stiffness of the stresses:
-// across n on the slopes between corners and middle; along n on the slopes between corners, with the middle at their
-// mean, and on the height; in all directions on the twist.
+// Sums stiffness (1 − lateral) ∂L ∂Lᵀ over the relative lengths L, and likewise for shear. Then adds the stiffness of
+// the stresses by the gradients of each triangle: across n with the flat cell's; along n with the middle at the mean of
+// the corners, and on the height; in all directions on the twist.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];

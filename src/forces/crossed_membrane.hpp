@@ -5,20 +5,20 @@
 
 namespace weft::forces {
 
-/// TriangleMembrane without locking. Four triangles that keep their lengths keep the middle of their cell in the plane
-/// of its corners: cells stay flat, and kinks between cells replace bending. Here the height w of the middle above its
-/// corners, along the normal n of the diagonals, lengthens all four triangles alike, instead of each by its own
-/// inclination. With m' = m − w n instead of the middle m,
+/// TriangleMembrane without locking. If four triangles keep their lengths, the middle m of their cell stays in the
+/// plane of its corners a, b, c, d: cells stay flat, and kinks between cells replace bending. Here the height w of the
+/// middle above the mean of the corners, along the normal n of the diagonals, lengthens all four triangles equally,
+/// instead of each by its own inclination. With m' = m − w n instead of m,
 ///
 ///     ‖s_u‖² + θ w² ⟨g_u²⟩ + ‖n‖² ‖t‖² g_u² / 16   replaces ‖s_u‖²,   likewise along v,
 ///
 /// where g is the gradient of the middle's weight, ⟨⟩ the average over the cell, and θ a tenth, so that tension still
 /// flattens cells. t = a − b + c − d is the twist of the cell. If the threads at two opposite sides are skew, both keep
-/// their lengths, but the line between the two sides' middles is the mean of both vectors and its square is shorter by
-/// exactly ‖t‖² / 4. Plane parallelograms have w = 0 and t = 0: nothing changes. n = D₁ × D₂ / S with the diagonals D
-/// and S = ‖D₁ × D₂‖; for folded cells with ‖D₁ × D₂‖ < S₀, S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2, so that their triangles
-/// increasingly act by themselves. (Averages against locking: Chen et al., "Locking-free Simulation of Isometric Thin
-/// Plates", 2019, for strains around vertices.)
+/// their lengths, but the thread halfway between them is the mean of both vectors: its square is exactly ‖t‖² / 4 less
+/// than the mean of theirs. Plane parallelograms have w = 0 and t = 0: nothing changes. n = D₁ × D₂ / S with the
+/// diagonals D₁ = c − a, D₂ = d − b and S = ‖D₁ × D₂‖; for folded cells with ‖D₁ × D₂‖ < S₀, S = (S₀ + ‖D₁ × D₂‖² / S₀)
+/// / 2, so that w and t count less, the more a cell is folded. (Averages against locking: Chen et al., "Locking-free
+/// Simulation of Isometric Thin Plates", 2019, for strains around vertices.)
 class CrossedMembrane final : public TriangleMembrane {
  public:
   /// The sheet's triangles must be cells of four: (a, b, m), (b, c, m), (c, d, m), (d, a, m).
@@ -28,8 +28,8 @@ class CrossedMembrane final : public TriangleMembrane {
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
   void cut(std::span<const Index> bounds) override;
-  /// The matrix and the Jacobian contain the Gauss-Newton part and the stresses, but not the force that the stresses
-  /// exert by a change of n.
+  /// The matrix and add_jacobian() contain the Gauss-Newton part and the stiffness of elastic stresses, but neither the
+  /// force that stresses exert by a change of n nor the stiffness of viscous stresses.
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -42,7 +42,7 @@ class CrossedMembrane final : public TriangleMembrane {
     double min_size = 0;                // S₀ [m²]
   };
   using Five = std::array<Vec3, 5>;
-  /// Weights of height and skew in one triangle: θ ⟨g²⟩ and g² / 16, along weft and warp [1/m²].
+  /// Factors of w² and of the skew in one triangle: θ ⟨g²⟩ and g² / 16, along weft and warp [1/m²].
   struct CellWeights {
     Vec2 of_height, of_skew;
   };
@@ -63,7 +63,7 @@ class CrossedMembrane final : public TriangleMembrane {
   static Vec3 normal_change(const State& state, const Vec3& product);
   static Five vectors_of(const Cell& cell, std::span<const Vec3> of);
   static Five vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of);
-  /// Stiffness of tension across a thread, relative to k, from the thread's relative length.
+  /// Stiffness across a thread by tension, relative to its stretch stiffness, as a function of its relative length.
   using Lateral = double (*)(double length);
   using Blocks = std::array<solver::PackedBlock, 25>;  // row-major over pairs of particles
   static Gradient gradient_of(const Element& element, const Five& flat, std::size_t k);
@@ -76,7 +76,7 @@ class CrossedMembrane final : public TriangleMembrane {
   Blocks blocks_of(std::size_t cell, const State& state, double rate, Lateral lateral_of, bool definite) const;
 
   std::vector<Cell> cells_;
-  std::vector<std::array<Index, 25>> cell_blocks_;  // of pairs, in the order of particle numbers
+  std::vector<std::array<Index, 25>> cell_blocks_;  // of pair (a, b) at 5 a + b, if a's particle is before b's
   Ranges ranges_;                                   // of cells
 };
 

@@ -17,7 +17,7 @@ std::size_t index_of(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-// Loops of border edges, each opposite to the direction in its triangle.
+// Loops of border edges, each in the reverse of its direction in its triangle.
 std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> triangles) {
   // A border edge is one whose reverse is in no triangle.
   std::map<std::array<Index, 2>, int> runs;
@@ -73,7 +73,7 @@ double EnclosedVolume::evaluate(std::span<const Vec3> x, std::span<Vec3> gradien
   const auto place = [&](Index i) -> const Vec3& {
     return index_of(i) < x.size() ? x[index_of(i)] : middles[index_of(i) - x.size()];
   };
-  // Differences to the vertex itself keep the products accurate far from the origin.
+  // Positions relative to the vertex itself keep the products accurate far from the origin.
   const auto derivative = [&](std::size_t i) {
     const Vec3& own = place(static_cast<Index>(i));
     Vec3 sum = Vec3::Zero();

@@ -21,7 +21,7 @@ enum class Linearisation {
   absolute_value,  ///< absolute values where edges are compressed: shorter steps where clamping overshoots
 };
 
-/// The forces on particles [begin, end); what is added to others is ignored.
+/// The forces on particles [begin, end); forces that are added to others are ignored.
 class ForceRows {
  public:
   ForceRows(std::span<solver::PaddedVec3<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
@@ -43,16 +43,16 @@ class ForceRows {
 
 struct LockLinearisation;
 
-/// One evaluation of the forces at (x, v). A Quad holds three numbers and a zero.
+/// One evaluation of the forces at (x, v). A PaddedVec3 holds three numbers and a zero.
 struct Evaluation {
   std::span<const solver::PaddedVec3<double>> x;  ///< positions [m]
   std::span<const solver::PaddedVec3<double>> v;  ///< velocities [m/s]
-  ForceRows force;                                ///< receives += f [N]
-  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m], made symmetric and positive semidefinite term by term, as conjugate
+  ForceRows force;                                ///< the forces f are added to it [N]
+  /// −(∂f/∂x + rate ∂f/∂v) is added to it [N/m], made symmetric and positive semidefinite term by term, as conjugate
   /// gradients and line search require. Empty: forces only.
   solver::AssemblyRows assembly = {};
-  double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂) [1/s]; 0: none
-  /// Earlier positions from which v is computed. Empty: rates follow from v at x.
+  double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂), x̂ fixed in a step [1/s]; 0: none
+  /// Earlier positions from which v is computed. Empty: rates of strain follow from v at x.
   std::span<const Past> past = {};
   Linearisation linearisation = Linearisation::clamped;
   /// Range of Force::cut() to evaluate; kAll: everything.
@@ -63,9 +63,10 @@ struct Evaluation {
   /// Linearisation points of the locks of the threads; null: linearise at x.
   const LockLinearisation* locks = nullptr;
 
-  /// Rate of a quantity of the positions whose value at x is `now`; without past, `by_velocity()`. Viscosity uses it:
-  /// with ∂q/∂x v, implicit Euler sees an edge that turns by θ in a step lengthen by 1 − cos θ. Stiff viscosity would
-  /// then shorten it by that amount in every step, and create energy.
+  /// Rate of a quantity q of the positions, q(x) = `now`, q(earlier positions) = `of_places`; without past,
+  /// `by_velocity()`. Viscosity uses it: with ∂q/∂x v, implicit Euler sees an edge that turns by θ in a step lengthen
+  /// by the fraction 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step, and create
+  /// energy.
   template <class Quantity, class OfPlaces, class ByVelocity>
   Quantity rate_of(const Quantity& now, const OfPlaces& of_places, const ByVelocity& by_velocity) const {
     if (past.empty()) return by_velocity();
@@ -80,45 +81,46 @@ class Force {
  public:
   virtual ~Force() = default;
 
-  /// Appends the pairs of particles that the Jacobian couples.
+  /// Appends the pairs of particles that the Jacobian couples, in either order; pairs may repeat.
   virtual void couple(std::vector<std::pair<Index, Index>>& pairs) const = 0;
   /// Whether everything added to an Assembly is a multiple of the identity.
   virtual bool isotropic() const { return false; }
   /// Looks up the blocks of the pairs. Call once, when the pattern is known.
   virtual void attach(const solver::Assembly& assembly) = 0;
 
-  /// Divides the particles at these bounds into ranges that threads may evaluate at the same time. Call after attach().
+  /// Divides the particles at these bounds, ends included, into ranges that threads may evaluate at the same time. Call
+  /// after attach().
   virtual void cut(std::span<const Index> bounds) = 0;
 
   virtual void add(const Evaluation& at) const = 0;
   /// Elastic energy [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
-  /// Adds the part of −∂f/∂x that only hold() changes, if there is one; `add` does not add it.
+  /// Adds the part of −∂f/∂x that only hold() can change, if there is one; `add` omits it.
   virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
 
-  /// Adds the exact −(∂f/∂x + rate ∂f/∂v), element by element: indefinite under compression, unsymmetric with
-  /// viscosity. For vibrations and tests; air adds nothing.
+  /// Adds the exact −(∂f/∂x + rate ∂f/∂v) without past, element by element: indefinite under compression, unsymmetric
+  /// with viscosity. For vibrations and tests. Exceptions: CrossedMembrane omits parts; air and Rigidity add nothing.
   virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
                             solver::BlockMatrix& /*jacobian*/) const {}
 
-  /// Sets which particles of all cloths are held or moved from now on, as clamps change the resistance of free ones.
-  /// The pattern of the Jacobian stays.
+  /// Sets which particles of all cloths are held or moved from now on: a clamp changes the stiffness of the free
+  /// particles beside it. The pattern of the Jacobian stays.
   virtual void hold(std::span<const char> /*held*/) {}
 };
 
-/// A force that resists deformation within the sheet, and measures its strain.
+/// A force that resists deformation within the sheet or along a cord, and measures its strain.
 class Membrane : public Force {
  public:
-  /// Largest relative change of length of a piece of weft or warp.
+  /// Largest relative change of length of a piece of weft, warp or cord.
   virtual double max_strain(std::span<const Vec3> x) const = 0;
-  /// Raises heat[particle − first] to the largest strain next to the particle.
+  /// Raises heat[particle − first] to the largest strain of the pieces or triangles at the particle.
   virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const = 0;
 };
 
 /// Lumped masses of a grid [kg]: ρ times the area of each particle. `density`: ρ [kg/m²].
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
-/// Lumped masses of triangles [kg], a third at each corner, and those of bands.
+/// Lumped masses of triangles [kg], a third at each corner, and of bands and their allowances, half at each end.
 std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density);
 
 }  // namespace weft::forces

@@ -58,7 +58,7 @@ inline VecLanes lanes_of(const Vec3& a) {
   return {lanes_of(a.x()), lanes_of(a.y()), lanes_of(a.z())};
 }
 
-/// The entries of four particles.
+/// The entries of four particles in `of`.
 inline VecLanes gather(std::span<const solver::PaddedVec3<double>> of, const Four& i) {
   const Lanes &a = of[i[0]], &b = of[i[1]], &c = of[i[2]], &d = of[i[3]];
   const Lanes xz_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), xz_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
@@ -122,8 +122,8 @@ inline void add_scalars(const solver::AssemblyRows& assembly, const Four& scalar
   for (std::size_t l = 0; l < 4; ++l) assembly.add_scalar(scalar[l], value[l]);
 }
 
-/// Calls body(index, lane, is_used) for the four lanes of a pack of `count` elements. Lanes behind the last element
-/// repeat it, with is_used false.
+/// Calls body(index, lane, is_used) for the four lanes of this pack of a list of `count` elements. Lanes behind the
+/// last element repeat it, with is_used false.
 template <class Body>
 void for_each_lane(std::size_t count, std::size_t pack, const Body& body) {
   for (std::size_t l = 0; l < 4; ++l) body(std::min(4 * pack + l, count - 1), l, 4 * pack + l < count);
@@ -133,7 +133,7 @@ inline std::size_t packs_of(std::size_t count) {
   return (count + 3) / 4;
 }
 
-/// Ranges::cut() for packs of four elements; all_of(pack) lists their particles.
+/// Ranges::cut() for packs of four elements; all_of(pack) lists their particles as Fours.
 template <class Pack, class AllOf>
 void cut_packs(std::span<const Index> bounds, const std::vector<Pack>& packs, const AllOf& all_of, Ranges& ranges) {
   ranges.cut(bounds, packs.size(), [&](std::size_t p, const auto& visit) {

@@ -1,4 +1,4 @@
-// Elements by the particle ranges that they touch, so that threads can add forces to ranges at the same time.
+// Elements by the ranges of particles that they act on, so that threads can add forces to ranges at the same time.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace weft::forces {
 
-/// For each range of particles, the elements (or packs of elements) of a list that touch a particle in it. Elements at
-/// a border are in two ranges; each adds only its own particles (ForceRows, AssemblyRows).
+/// For each range of particles, the elements (or packs of elements) of a list that act on a particle in it. Elements at
+/// a bound are in several ranges; each range adds only to its own particles (ForceRows, AssemblyRows).
 class Ranges {
  public:
   /// `bounds`: see Force::cut(). touch(element, visit) must call visit(particle) for all particles of an element.

@@ -9,16 +9,17 @@
 
 namespace weft::forces {
 
-/// Keeps the distances of the four particles p_k of a rigid body (mesh::RigidFrame). B = ¼ Σ p_k t_kᵀ equals R diag(s)
-/// if the body is rigid. The energy is κ m / 8 ‖W Bᵀ B W − W⁻²‖², W = diag(s)^-½: that of the strain AᵀA − I of an
-/// affine body (Lan et al., "Affine Body Dynamics", 2022), scaled so that all stretches have the same frequency √κ and
-/// thin bodies are as rigid as round ones.
+/// Keeps the distances of the four particles p_k of a rigid body (mesh::RigidFrame, with deviations s and corners t_k).
+/// B = ¼ Σ p_k t_kᵀ equals R diag(s) with a rotation R if the body is rigid. The energy is κ m / 8 ‖W Bᵀ B W − W⁻²‖², W
+/// = diag(s)^-½, m its mass: that of the strain AᵀA − I of an affine body, A = B diag(s)⁻¹ (Lan et al., "Affine Body
+/// Dynamics", 2022), scaled so that all stretches have the same angular frequency √κ and thin bodies are as rigid as
+/// round ones.
 ///
-/// The strain is that of the end of the step; it acts along the directions of the stage. Thus a body turns without
-/// resistance with the midpoint rule, and its strain is damped with every method.
+/// The strain is that of the end of the step; its force acts along the derivatives of the strain at the stage. Thus a
+/// body turns without resistance with the midpoint rule, and its strain is damped with every method.
 class Rigidity final : public Force {
  public:
-  /// `first`: its first particle; `mass`: of the body [kg]; `stiffness`: κ [1/s²].
+  /// `first`: the body's first particle; `mass`: of the body [kg]; `stiffness`: κ [1/s²].
   Rigidity(const mesh::RigidFrame& frame, Index first, double mass, double stiffness);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
@@ -33,8 +34,8 @@ class Rigidity final : public Force {
   Mat3 strain_of(const Mat3& shape) const;
 
   Index first_;
-  Vec3 deviations_;
-  double modulus_;  // κ m [N/m]
+  Vec3 deviations_;  // s [m]
+  double modulus_;   // κ m [N/m]
   std::array<Index, 6> blocks_{};
 };
 

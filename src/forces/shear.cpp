@@ -5,7 +5,7 @@
 namespace weft::forces {
 namespace {
 
-// s_u = Σ kAlong[k] x_k / 2l_u and s_v = Σ kAcross[k] x_k / 2l_v over the corners of a cell.
+// s_u = Σ kAlong[k] x_k / (2 lu) and s_v = Σ kAcross[k] x_k / (2 lv) over the corners of a cell.
 constexpr std::array<double, 4> kAlong{-1, 1, -1, 1};
 constexpr std::array<double, 4> kAcross{-1, -1, 1, 1};
 
@@ -90,7 +90,7 @@ void Shear::add(const Evaluation& at) const {
       };
       stress += cells.viscosity * at.rate_of(c, strain_at, by_velocity);
     }
-    // ∂c/∂x_k; opposite corners get opposite signs, so two vectors serve all four.
+    // stress × ∂c/∂x_k; opposite corners get opposite signs, so two vectors serve all four.
     const VecLanes u_part = stress * cells.half_u * s.sv, v_part = stress * cells.half_v * s.su;
     const VecLanes main = u_part + v_part, cross = u_part - v_part;
     forces::add(at.force, cells.corners[0], main);
@@ -101,12 +101,12 @@ void Shear::add(const Evaluation& at) const {
   });
 }
 
-// The second derivative is ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²); the definite form keeps the half whose sign agrees with
-// the stress. Opposite corners have opposite derivatives, so four blocks, with signs, serve all pairs.
+// The second derivative of c is ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²); the definite form keeps the half whose sign agrees
+// with the stress. Opposite corners have opposite derivatives, so four blocks, with signs, serve all pairs.
 void Shear::add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at) {
   const Lanes sign = c < 0 ? lanes_of(-1) : lanes_of(1), curvature = 0.5 * cells.elasticity * abs(c);
   const Lanes size = cells.elasticity + at.rate * cells.viscosity;
-  // ∂c/∂x of corners 3 and 1; those of 0 and 2 are the negatives. The kept half has the same symmetry.
+  // ∂c/∂x of corners 3 and 1; those of 0 and 2 are their negatives, also in the kept half.
   const VecLanes u_part = cells.half_u * s.sv, v_part = cells.half_v * s.su;
   const VecLanes main = u_part + v_part, cross = u_part - v_part;
   const Lanes main_half = cells.half_u + sign * cells.half_v, cross_half = cells.half_u - sign * cells.half_v;

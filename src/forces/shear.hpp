@@ -9,17 +9,17 @@
 namespace weft::forces {
 
 struct ShearParameters {
-  double modulus = 0;    ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
-  double viscosity = 0;  ///< shear stress per rate of ½⟨s_u, s_v⟩·2, the same form as mu [N·s/m]
+  double modulus = 0;    ///< μ [N/m]; the shear modulus of linear elasticity is μ / 2
+  double viscosity = 0;  ///< η, shear stress per rate of ½ ⟨s_u, s_v⟩ [N·s/m]
 };
 
-/// Seed Eq. (1), entry 12: ½ μ ⟨s_u, s_v⟩ [N/m], from the energy density ¼ μ ⟨s_u, s_v⟩².
+/// Seed Eq. (1), entry 12: stress ½ μ ⟨s_u, s_v⟩ [N/m], from the energy density ¼ μ ⟨s_u, s_v⟩².
 ///
-/// s_u and s_v are central differences in the middle of each cell, each the mean of the cell's two edges, O(l²). The
-/// seed uses central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / 2l, with the same four particles per term;
-/// these do not see a pattern that repeats at every second particle in one direction. The differences here miss only
-/// the checkerboard, which stretches the edges. The seed prints O(l³) for its difference; a test measures slope 2 for
-/// this one.
+/// s_u and s_v are central differences in the middle of each cell, each the mean over two opposite edges, with an error
+/// of O(l²) for spacing l. The seed uses central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), also
+/// with four particles per term; these do not see a pattern that repeats at every second particle in one direction. The
+/// differences here miss only the checkerboard, which stretches the edges. The seed prints O(l³) for its difference; a
+/// test measures order 2 for this one.
 class Shear final : public Force {
  public:
   Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters);
@@ -36,7 +36,7 @@ class Shear final : public Force {
   struct Cell {
     std::array<Index, 4> corners;  // in the order (0,0), (1,0), (0,1), (1,1) of (weft, warp)
     double lu, lv;                 // rest size [m]
-    double elasticity;             // ½ μ A [N·m]
+    double elasticity;             // ½ μ A, A = lu lv [N·m]
     double viscosity;              // ½ η A [N·m·s]
   };
 
@@ -50,7 +50,7 @@ class Shear final : public Force {
   struct Cells {
     std::array<Four, 4> corners{};
     std::array<Four, 6> blocks{};  // of the pairs of corners 01, 02, 03, 12, 13, 23
-    Lanes half_u{}, half_v{};      // 1 / 2l_u, 1 / 2l_v [1/m]
+    Lanes half_u{}, half_v{};      // 1 / (2 lu), 1 / (2 lv) [1/m]
     Lanes elasticity{}, viscosity{};
   };
   struct StrainLanes {

@@ -55,7 +55,7 @@ void Stretch::add(const Evaluation& at) const {
   ranges_.for_each(at.range, packs_.size(), [&](std::size_t p) {
     const Edges& edges = packs_[p];
     const VecLanes d = gather(at.x, edges.j) - gather(at.x, edges.i);
-    // A collapsed edge has no direction and no pull; the tiny length keeps the matrix finite.
+    // A collapsed edge has no direction; the lower bound of its length keeps the matrix finite.
     const Lanes length = max(sqrt(dot(d, d)), 1e-12 * edges.rest_length);
     const VecLanes n = 1 / length * d;
     Lanes tension = edges.elasticity * (length - edges.rest_length);
@@ -72,9 +72,9 @@ void Stretch::add(const Evaluation& at) const {
     subtract(at.force, edges.j, pull);
     if (!at.assembly) return;
 
-    // Across the edge, tension stiffens a stretched edge and compression softens a short one. The absolute-value
-    // projection uses the modulus (Chen, Liu, Levin, Zheng & Jacobson, "Stabler Neo-Hookean Simulation: Absolute
-    // Eigenvalue Filtering for Projected Newton", 2024), at most the stiffness along the edge.
+    // Across the edge, tension adds stiffness and compression subtracts it. The absolute-value projection uses the
+    // absolute value (Chen, Liu, Levin, Zheng & Jacobson, "Stabler Neo-Hookean Simulation: Absolute Eigenvalue
+    // Filtering for Projected Newton", 2024), but at most the stiffness along the edge.
     const Lanes ratio = 1 - edges.rest_length / length;
     const Lanes lateral =
         edges.elasticity *
@@ -84,9 +84,9 @@ void Stretch::add(const Evaluation& at) const {
   });
 }
 
-// Includes d/dd of (n·w) n, where w is the relative velocity, because the direction turns with the edge. This part is
-// unsymmetric and O(η‖w‖/l), so the definite form omits it: the residual stays exact, and Newton's method converges
-// linearly in it.
+// Includes d/dd of (n·w) n, where w is the relative velocity, because the direction n turns with the edge. This part is
+// unsymmetric and O(η‖w‖/l), so the definite form omits it. The residual stays exact; Newton's method converges only
+// linearly because of this part.
 void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                            solver::BlockMatrix& jacobian) const {
   for (const Edge& edge : edges_) {

@@ -10,15 +10,15 @@
 namespace weft::forces {
 
 struct StretchParameters {
-  double weft = 0, warp = 0;  ///< k1, k2 [N/m]
-  double viscosity = 0;       ///< stress per strain rate, both directions [N·s/m]
+  double weft = 0, warp = 0;  ///< stiffness k1, k2 [N/m]
+  double viscosity = 0;       ///< η, stress per strain rate, both directions [N·s/m]
 };
 
 /// Tension along the grid lines: seed Eq. (1), entries 11 and 22, with the spring formula of "Elastic Model".
 ///
-/// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)². The seed's force
-/// density, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force here. Viscosity:
-/// dissipation ½ η A (d/dt ‖d‖/l)², the same form on the strain rate.
+/// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)², k = k1 or k2. The
+/// seed's force density, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force here.
+/// Viscosity has the same form in the rate of strain: dissipation ½ η A (d/dt (‖d‖/l))².
 class Stretch final : public Membrane {
  public:
   Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);

@@ -7,8 +7,8 @@
 namespace weft::forces {
 namespace {
 
-// A piece needs some stiffness below the onset, so that its tension determines its extension. The
-// solution does not depend on the value.
+// A piece needs some stiffness below the onset, so that its tension determines its extension. The solution does not
+// depend on the value.
 StretchParameters with_min_stiffness(StretchParameters below) {
   constexpr double kMinStiffness = 1;  // [N/m]
   below.weft = std::max(below.weft, kMinStiffness), below.warp = std::max(below.warp, kMinStiffness);
@@ -19,8 +19,8 @@ StretchParameters with_min_stiffness(StretchParameters below) {
 constexpr int kMaxExtensionIterations = 20;
 constexpr double kExtensionTolerance = 1e-3;
 
-// Extension with this tension [N/m], starting from an extension `e` with at least this tension. The law is convex, so
-// Newton's method converges from above.
+// Returns the extension with this tension [N/m], starting from an extension `e` with at least this tension. As the
+// tension is convex, Newton's method converges from above.
 double find_extension(const Lock& lock, double stiffness, double tension, double e) {
   if (tension <= stiffness * lock.onset()) return tension / stiffness;
   for (int k = 0; k < kMaxExtensionIterations; ++k) {
@@ -100,11 +100,11 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights,
   return solver::vec3_of(s);
 }
 
-// Calls body(piece, corner_forces, block_of) for each piece that locks; block_of(a, b) is a block of its Jacobian.
+// Calls body(piece, corner_forces, block_of) for each piece beyond its onset; block_of(a, b): a block of −∂f/∂x.
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
                                  const Body& body) const {
-  // For nearly all pieces the squared length shows that they are below the onset.
+  // For nearly all pieces the squared length suffices to see that they are below the onset.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
   ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
     const Vec3 s = derivative(threads_[t], threads_[t].along, x);
@@ -161,7 +161,7 @@ StretchLimit::Tangent StretchLimit::tangent(double lag, double e) const {
   return stress > 0 ? Tangent{stress, stiffness} : Tangent{0, 0};
 }
 
-// The thread is in tension, so the derivative is definite.
+// The thread is in tension, so the derivative is positive semidefinite.
 template <class Body>
 void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const {
   const double length = s.norm(), e = length - 1, stress = piece.area * Lock(stretch_).stress(e);
@@ -215,14 +215,14 @@ void StretchLimit::add_lag(std::span<const Vec3> x, const LockLinearisation& lag
   }
 }
 
-// As in Shear: the exact second derivative, or the half whose sign agrees with the stress.
+// As in Shear: the exact second derivative of |sine|, or the half whose sign agrees with the stress.
 template <class Body>
 void StretchLimit::lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const {
   const Lock lock(shear_);
   const double sine = s_u.dot(s_v), sign = sine < 0 ? -1 : 1;
   const double stress = piece.area * lock.stress(std::abs(sine)),
                stiffness = piece.area * lock.stiffness(std::abs(sine));
-  CornerForces gradient{}, corner_forces{};  // ∂|c|/∂x_k
+  CornerForces gradient{}, corner_forces{};  // ∂|sine|/∂x_k; stress × that
   for (std::size_t k = 0; k < piece.corners; ++k) {
     gradient[k] = sign * (piece.weft[k] * s_v + piece.warp[k] * s_u);
     corner_forces[k] = stress * gradient[k];
@@ -247,7 +247,7 @@ double StretchLimit::energy(std::span<const Vec3> x) const {
 }
 
 StretchLimit::Worst StretchLimit::worst(std::span<const Vec3> x) const {
-  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², and minus the index: the first of several counts
+  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², and minus the index: the first of equal ones counts
   const Longest none{1, 1},
       longest = parallel_max(threads_.size(), kGrainSize, none, [&](std::size_t begin, std::size_t end) {
         Longest longest_in_range = none;

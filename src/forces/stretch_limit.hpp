@@ -10,23 +10,24 @@
 
 namespace weft::forces {
 
-/// Stress over a strain e near its limit; energy() is its integral, stiffness() its derivative:
+/// Stress σ as a function of a strain e near its limit; energy() is its integral, stiffness() its derivative:
 ///
 ///     σ = 0                                e ≤ onset = kOnset limit
 ///     σ = kTension u³,                     u = (e − onset) / (limit − onset)
 ///     σ = kTension U² (U + 3 (u − U))      u ≥ U = kStraight
 ///
-/// The energy is convex and twice differentiable, and the stress linear far beyond the limit, so that Newton's method
+/// The energy is convex and twice differentiable. The stress is linear beyond kStraight, so that Newton's method
 /// returns from any strain in a few iterations.
 class Lock {
  public:
-  /// Strain relative to the limit at which threads begin to lock. Below it nothing is added, to the bit.
+  /// Strain from which threads lock, relative to the limit. Below it nothing is added, to the bit.
   static constexpr double kOnset = 0.7;
-  /// Stress at the limit [N/m]; a tenth beyond it is 9,500. A ball at 100 m/s pulls with ρ v² / (2 √e), 3,500 to 9,000
-  /// N/m in the fabrics of [scene] (a transverse wave along a thread of strain e; Smith, McCrackin & Schiefer,
-  /// "Stress-Strain Relationships in Yarns Subjected to Rapid Impact Loading", 1958). Measured with 2e4 and linear from
-  /// the limit on: Newton's method oscillates at the corner, multi_sheet with a limit of 0.1 took 2,033 instead of
-  /// 1,710 iterations (1,503 without limit), a ball at 100 m/s 1,500 instead of 1,269 with the same strain.
+  /// Stress at the limit [N/m]; at 1.1 times the limit it is 9,500. A ball at 100 m/s pulls with ρ v² / (2 √e), 3,500
+  /// to 9,000 N/m in the fabrics of scene/fabrics.hpp (a transverse wave along a thread of strain e, with the density ρ
+  /// per area and the speed v of the ball; Smith, McCrackin & Schiefer, "Stress-Strain Relationships in Yarns Subjected
+  /// to Rapid Impact Loading", 1958). Measured with 2e4 and stress linear from the limit on: Newton's method oscillates
+  /// at the kink, multi_sheet with a limit of 0.1 took 2,033 instead of 1,710 iterations (1,503 without limit), a ball
+  /// at 100 m/s 1,500 instead of 1,269 with the same strain.
   static constexpr double kTension = 4e3;
   static constexpr double kStraight = 1.5;
 
@@ -50,26 +51,27 @@ class Lock {
   double onset_, span_;
 };
 
-/// Extensions at which Newton's method linearises the locks of a cloth's threads: not the extension of the iterate, but
-/// that at which a piece has the tension that the last linearisation predicted (a dual unknown, as for contacts).
-/// Linearised at the iterate, a piece loses only a third of its excess over the onset per iteration.
+/// Extensions at which Newton's method linearises the locks of a cloth's threads: those at which a piece has the
+/// tension that the last linearisation predicted (a dual unknown, as for contacts). If a piece were linearised at the
+/// iterate, it would lose only a third of its excess over the onset per iteration.
 struct LockLinearisation {
-  std::vector<double> extensions;   ///< per piece
-  std::vector<std::uint32_t> near;  ///< pieces beyond their onset, at this extension or at the iterate
+  std::vector<double> extensions;   ///< per piece of a thread
+  std::vector<std::uint32_t> near;  ///< pieces beyond the onset by this extension or by that of the iterate
 };
 
-/// The energy A ∫ Lock of each piece of weft and warp at its extension ‖s‖ − 1, and of each cell or triangle at its
-/// shear
-/// |⟨s_u, s_v⟩|, the sine of the deviation of weft and warp from a right angle. Pieces, cells and their derivatives s
-/// are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
+/// The energy A Lock::energy() of each piece of weft and warp at its extension ‖s‖ − 1, and of each cell or triangle of
+/// area A at its shear |⟨s_u, s_v⟩|: if both have unit length, the sine of the deviation of weft and warp from a right
+/// angle. Pieces, cells and their derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no
+/// limit: threads buckle.
 class StretchLimit final : public Force {
  public:
-  /// `stretch`: largest extension; `shear`: largest sine. Infinite: no limit. `below`: stiffness below the onset.
+  /// `stretch`: limit of the extension; `shear`: limit of the sine. Infinite: no limit. `below`: stiffness below the
+  /// onset.
   StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch, double shear);
   StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
-  /// Does nothing: few pieces lock at a time, and look up their blocks then.
+  /// Does nothing: few pieces lock at a time; add() looks up their blocks.
   void attach(const solver::Assembly& /*assembly*/) override {}
   void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
@@ -81,13 +83,13 @@ class StretchLimit final : public Force {
   void begin(std::span<const Vec3> x, LockLinearisation& lag) const;
   /// Updates `lag` before the linearisation at x. `first`: first iteration of a step, without a predicted tension.
   void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
-  /// Adds the linearised force minus the force, at any x.
+  /// Adds the force linearised at `lag` minus the exact force, at any x.
   void add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
 
-  /// Copies the rest shape of the membrane that it was constructed with.
+  /// Copies the current rest shape of `membrane`, which must be that of the constructor.
   void follow(const TriangleMembrane& membrane);
 
-  /// The piece with the largest extension.
+  /// The piece with the largest extension; zero if none is extended.
   struct Worst {
     double extension = 0;       ///< ‖s‖ − 1
     Vec3 place = Vec3::Zero();  ///< position of the piece [m]
@@ -114,10 +116,10 @@ class StretchLimit final : public Force {
     Weights weft, warp;
     double area;  // [m²]
   };
-  /// Forces of one piece on its corners.
+  /// Derivative of a piece's energy with respect to its corners: minus its forces [N].
   using CornerForces = std::array<Vec3, kMaxCorners>;
 
-  /// Stress and stiffness of the tangent [N/m].
+  /// Stress at e and stiffness of the Lock's tangent at `lag` [N/m].
   struct Tangent {
     double stress, stiffness;
   };
@@ -137,7 +139,7 @@ class StretchLimit final : public Force {
   StretchParameters below_;
   double stretch_, shear_;
   std::vector<Thread> threads_;
-  std::vector<Crossing> crossings_;  // empty without a limit of shear
+  std::vector<Crossing> crossings_;  // empty if `shear` is infinite
   Ranges ranges_of_threads_, ranges_of_crossings_;
 };
 

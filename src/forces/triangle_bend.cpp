@@ -11,7 +11,7 @@ namespace {
 
 // 2 ‖s_uv‖²: the mixed derivative counts twice.
 const Vec3 kMultiplicity(1, 1, 2);
-// Rest curvature times the size of the triangle; smaller values are rounding.
+// Smallest rest curvature, times the root of the triangle's area; smaller values are rounding.
 constexpr double kMinRestCurvature = 1e-9;
 
 /// The plane of a triangle: its unit normal, and the gradients of the corners' linear weights.
@@ -38,7 +38,8 @@ std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const
   return {solver::vec3_of(x[particles[0]]), solver::vec3_of(x[particles[1]]), solver::vec3_of(x[particles[2]])};
 }
 
-/// Returns the signed rest curvature s_uu, s_vv, s_uv; subtracts its in-plane components from the stencil.
+/// Returns the signed rest curvatures κ_uu, κ_vv and κ_uv; removes the rest shape's in-plane curvature from the
+/// stencil.
 Vec3 extract_rest_curvature(CurvatureStencil& stencil, double area, const std::array<Vec2, 3>& material,
                             std::span<const Vec3> rest) {
   Mat3 curved = Mat3::Zero();
@@ -79,7 +80,7 @@ void TriangleBend::hold(std::span<const char> held) {
   rebuild_elements();
 }
 
-// Creates the same particles in the same order, whatever is held.
+// Creates elements with the same particles in the same order, whatever is held.
 void TriangleBend::rebuild_elements() {
   elements_.clear(), particles_.clear(), weights_.clear();
   std::size_t pairs = 0;
@@ -135,7 +136,7 @@ void TriangleBend::couple(std::vector<std::pair<Index, Index>>& pairs) const {
       for (std::size_t b = a + 1; b < element.end; ++b) pairs.emplace_back(particles_[a], particles_[b]);
 }
 
-// True unless a moment of rest curvature needs full blocks.
+// False if rest curvature needs full blocks.
 bool TriangleBend::isotropic() const {
   return std::ranges::all_of(elements_, [](const Element& element) { return element.rest.isZero(0); });
 }
@@ -198,7 +199,7 @@ void TriangleBend::add(const Evaluation& at) const {
   });
 }
 
-// Adds Σ_c stiffness_c w_ac w_bc for all pairs, four at a time.
+// Adds Σ_c stiffness[c] w_a[c] w_b[c], c over uu, vv and uv, for all pairs of particles with weights w, four at a time.
 void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std::vector<double>& scratch,
                              const solver::AssemblyRows& assembly) const {
   const std::size_t count = element.end - element.begin, stride = 4 * packs_of(count);
@@ -224,12 +225,12 @@ void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std:
   }
 }
 
-// Forces and stiffness of the energy −B A n·m, m = Σ κ_ab s_ab = Σ_k c_k x_k. Calls push(k, force) per particle, and
-// add_block(a, b, block) for all pairs with a corner.
+// Forces and stiffness of the energy −B A n·m, m = Σ κ_ab s_ab = Σ_k rest_weight(k) x_k. Calls push(k, force) for
+// particles, corners repeatedly, and add_block(a, b, block) for all pairs with a corner.
 //
-// With g_k the in-plane gradient of corner k's weight, δn = −Σ_k g_k (n·δx_k) and δg_k = −Σ_j g_j (g_k·δx_j) + n Σ_j
-// (g_k·g_j)(n·δx_j). The definite form is the Gauss-Newton matrix of ‖s_ab − κ_ab n‖², which is definite together with
-// the constant part.
+// With g_k the in-plane gradient of corner k's linear weight, δn = −Σ_k g_k (n·δx_k) and δg_k = −Σ_j g_j (g_k·δx_j) + n
+// Σ_j (g_k·g_j)(n·δx_j). The definite form adds what the Gauss-Newton matrix of ‖s_ab − κ_ab n‖² has beyond the
+// constant part; the sum of both is definite.
 template <class Push, class AddBlock>
 void TriangleBend::rest_moment(const Element& element, const Mat3& curved, const std::array<Vec3, 3>& corners,
                                bool exact, const Push& push, const AddBlock& add_block) const {

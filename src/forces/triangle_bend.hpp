@@ -8,15 +8,15 @@
 namespace weft::forces {
 
 /// The plate of Bend on triangles: energy ½ B A Σ_ab ‖s_ab − κ_ab n‖², summed over uu, vv and twice uv, with the
-/// curvature vectors of CurvatureStencil, the triangle's unit normal n and the signed rest curvature κ_ab, positive if
-/// the sheet bends toward its front. If the rest shape is curved, the in-plane components of its s_ab are subtracted
-/// along s_u and s_v, so that the rest shape has no energy.
+/// rigidity B, the area A, the curvature vectors s_ab of CurvatureStencil, the triangle's unit normal n and the signed
+/// rest curvature κ_ab, positive if the sheet bends toward its front. If the rest shape is curved, the in-plane
+/// components of its s_ab are subtracted along s_u and s_v, so that the rest shape has no energy.
 ///
-/// The part without κ is quadratic with a constant, definite Jacobian, as for grids. Only triangles with rest curvature
-/// need another part in every evaluation, −B A κ_ab n·s_ab. For viscosity and friction see BendDamping.
+/// The part without κ_ab is quadratic with a constant, definite Jacobian, as for grids. Only for triangles with rest
+/// curvature, every evaluation adds another part, −B A Σ_ab κ_ab n·s_ab. For viscosity and friction see BendDamping.
 class TriangleBend final : public Force {
  public:
-  /// `pinned`: per particle of all cloths, whether hold() may hold it; all of these start held. Empty: none.
+  /// `pinned`: per particle of all cloths, whether hold() may hold it; these particles start held. Empty: none.
   TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters,
                std::span<const char> pinned = {});
 
@@ -34,8 +34,8 @@ class TriangleBend final : public Force {
  private:
   using Quad = solver::PaddedVec3<double>;
   struct Element {
-    std::size_t begin, end;    // its particles, corners first
-    std::size_t pairs;         // index of its first pair; pairs are in the order 01, 02, ... 12, ...
+    std::size_t begin, end;    // its range in particles_ and weights_, corners first
+    std::size_t pairs;         // index of its first pair, in scalars_ and blocks_; order 01, 02, ... 12, ...
     double area;               // [m²], times the reinforcement
     Vec3 rest = Vec3::Zero();  // κ_uu, κ_vv, κ_uv [1/m]
   };
@@ -59,8 +59,8 @@ class TriangleBend final : public Force {
   Index first_;
   double rigidity_;
   BendDamping damping_;
-  mesh::Sheet sheet_;                // for the stencils, if pins may change; else empty
-  std::vector<char> pinned_, held_;  // per vertex of the sheet
+  mesh::Sheet sheet_;                // for the stencils, if any vertex is pinned; else empty
+  std::vector<char> pinned_, held_;  // per vertex of the sheet; empty: none
   std::vector<Element> elements_;
   // Concatenated over all elements.
   std::vector<Index> particles_;

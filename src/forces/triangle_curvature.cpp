@@ -14,12 +14,12 @@ namespace {
 using Point = std::complex<double>;
 
 // Largest number of triangle rings around an edge whose vertices define its slope. One suffices for nearly all edges;
-// near a border, or if the vertices are nearly on a conic, two are necessary.
+// near a border, or if the vertices are nearly on a conic, two or three are necessary.
 constexpr int kMaxRings = 3;
-// Largest correction of the slope between the two opposite vertices, relative to that slope. A larger one would make
-// the slope a small difference of large numbers; another ring is better.
+// Largest norm of the corrections of a slope's weights, relative to that of the uncorrected ones (across_opposite). A
+// larger one would make the slope a small difference of large numbers; another ring is better.
 constexpr double kMaxCorrection = 1;
-// Rounding of the moments of a stencil whose lengths are about one.
+// Rounding of the moments of a stencil whose coordinates are about one.
 constexpr double kMomentTolerance = 1e-9;
 
 /// Derivative of a function at the middle of an edge, along the outward normal of the edge's first triangle [1/m].
@@ -74,14 +74,14 @@ class Slopes {
   std::span<const char> pinned_, held_;
 };
 
-// Index of this edge among the triangle's sides.
+// Returns the index of this edge among the triangle's sides.
 std::size_t Slopes::side_of(Index triangle, const mesh::Edge& edge) const {
   const auto& of = edges_.of_triangle[at(triangle)];
   const auto index = static_cast<Index>(&edge - edges_.edges.data());
   return static_cast<std::size_t>(std::find(of.begin(), of.end(), index) - of.begin());
 }
 
-// Unfolds the triangle beyond one side of a member, if there is one and the patch does not contain it.
+// Unfolds the triangle beyond one side of patch.triangles[member], if it exists and is not in the patch.
 void Slopes::add_neighbour(Patch& patch, std::size_t member, std::size_t side) const {
   const auto [triangle, corners] = patch.triangles[member];
   const mesh::Edge& edge = edges_.edges[at(edges_.of_triangle[at(triangle)][side])];
@@ -120,16 +120,16 @@ Eigen::VectorXd correct_weights(const Eigen::VectorXd& weights, const Eigen::Mat
   return {};
 }
 
-// Difference of the two vertices opposite the edge: ∂/∂b of linear functions that are constant along the edge.
+// Difference of the two vertices opposite the edge: ∂/∂b, exact for linear functions.
 Eigen::VectorXd across_opposite(std::size_t count) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count));
   weights[3] = 1, weights[2] = -1;
   return weights;
 }
 
-// Starts from the difference of the two opposite vertices, which is exact for linear functions, and adds the smallest
-// weights that make it exact for quadratic ones. The result is invariant under linear maps of the patch, so that
-// stretched meshes are as accurate as others.
+// Starts from the difference of the two opposite vertices and adds the smallest weights that make the slope exact for
+// quadratic functions. The result is invariant under linear maps of the patch, so that stretched meshes are as accurate
+// as others.
 Eigen::VectorXd Slopes::fit_quadratic(Patch& patch, const Axes& axes) const {
   for (int ring = 1; ring <= kMaxRings; ++ring) {
     add_ring(patch);
@@ -147,7 +147,7 @@ Eigen::VectorXd Slopes::fit_quadratic(Patch& patch, const Axes& axes) const {
   return across_opposite(patch.vertices.size());
 }
 
-// Slope of a patch with held triangles; empty if it has none, or too few vertices beside them.
+// Slope of a patch with held triangles; empty if no triangle is held, or too few vertices are beside them.
 Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const {
   // At its edge, the slope of a held triangle is that of the linear function through its corners.
   for (std::size_t member : {0, 1}) {
@@ -181,7 +181,7 @@ Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const 
 Eigen::VectorXd Slopes::fit_in_front_of_clamp(const Patch& patch, const Axes& axes,
                                               const std::array<Point, 2>& clamp) const {
   const Point line = clamp[1] - clamp[0];
-  // relative to the length of the clamp, as a and b are to that of the edge
+  // Relative to the length of the clamp, as a and b are to the lengths of `along` and `over`.
   const auto distance = [&](const Point& at) { return std::max(0.0, cross(at - clamp[0], line) / std::norm(line)); };
   const auto count = static_cast<Eigen::Index>(patch.vertices.size());
   std::vector<char> in_clamp(patch.vertices.size());
@@ -219,7 +219,7 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   if (slope.near_pin)
     if (const Eigen::VectorXd of_clamp = fit_clamped(patch, axes); of_clamp.size() > 0) best = of_clamp;
 
-  // Converts from the direction `over` to the outward normal: over = c t + d n.
+  // Converts from the direction `over` to the outward normal n, with the unit tangent t: over = c t + d n.
   const double length = std::abs(axes.along), c = (std::conj(axes.along) * axes.over).real() / length,
                d = -cross(axes.along, axes.over) / length;
   best[1] -= c / length;
@@ -228,12 +228,12 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   return slope;
 }
 
-// A symmetric matrix as (uu, vv, √2 uv): the dot product of these vectors is that of the matrices.
+// A symmetric matrix as (uu, vv, √2 uv): the dot product of two such vectors is that of the matrices.
 Vec3 packed(const Eigen::Matrix2d& m) {
   return {m(0, 0), m(1, 1), std::numbers::sqrt2 * 0.5 * (m(0, 1) + m(1, 0))};
 }
 
-// Projection that removes the moments about free borders, given the packed n nᵀ of the borders.
+// Projection that removes the moments about free borders. `border_normals`: n nᵀ of each border's normal n, packed.
 Mat3 project_out_borders(const std::vector<Vec3>& border_normals) {
   Mat3 p = Mat3::Identity();
   for (const Vec3& direction : border_normals) {
@@ -286,7 +286,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
       stencils[t].weights.push_back(weight);
     };
     for (Index corner : corners) append(corner, weights.at(corner));
-    // Weights that cancel by symmetry are only rounding, unless pins may change them.
+    // Weights that cancel by symmetry are only rounding; they stay if pins may change them.
     for (const auto& [vertex, weight] : weights)
       if (std::find(corners.begin(), corners.end(), vertex) == corners.end() &&
           (near_pin || weight.norm() * area > kMomentTolerance))

@@ -15,24 +15,25 @@ struct CurvatureStencil {
   std::vector<Vec3> weights;    ///< for s_uu, s_vv and s_uv [1/m²]
 };
 
-/// Returns one stencil per triangle. In a triangle of area A with edges of length l and outward normals n,
+/// Returns one stencil per triangle. In a triangle of area A with edges of length l, unit tangents t and outward
+/// normals n,
 ///
-///     s_ab = 1/A Σ_edges l sym(n_a g_b),    g = n ∂s/∂n + t ∂s/∂t at the middle of the edge:
+///     s_ab = 1/A Σ_edges l sym(n_a g_b),    g = n ∂s/∂n + t ∂s/∂t at the middle of the edge, a, b = u or v:
 ///
 /// the plate element of Morley ("The Triangular Equilibrium Element in the Solution of Plate Bending Problems", 1968).
 /// Its unknown slopes ∂s/∂n across the edges are replaced by weighted sums of the vertices around the edge that are
 /// exact for quadratic functions. Therefore s_ab is exact for these, too; and because both triangles at an edge use the
-/// same slope, a constant moment leaves no force on inner vertices. Both properties are necessary for the correct plate
-/// stiffness on any mesh (measured: a quadratic through each triangle and its three neighbours, with the first only, is
-/// 33 % too soft on crossed meshes and 6 % on Delaunay meshes at every resolution).
+/// same slope, a constant moment exerts no force on inner vertices. Both properties are necessary for the correct plate
+/// stiffness on any mesh (measured: a quadratic through each triangle and its three neighbours, which has only the
+/// first property, is 33 % too soft on crossed meshes and 6 % on Delaunay meshes at every resolution).
 ///
-/// The slope across a border edge is free: it takes the value of least energy, at which the moment about the border
-/// vanishes (κ_nn = 0, ν = 0).
+/// The slope across a border edge is free: it has the value of least energy, at which the moment about the border
+/// vanishes (curvature across it 0, for ν = 0).
 ///
-/// A triangle with three held corners is a clamp: at its edges the slope is the triangle's own. A slope from vertices
-/// on both sides of such an edge is exact for functions that are linear in the clamp and s² in front of it, where s is
-/// the distance from it. `held`: per vertex, now; `pinned`: per vertex, at any time, so that the vertices of stencils
-/// do not depend on `held`. Empty: none.
+/// A triangle with three held corners is a clamp: at its edges the slope is the triangle's own. At other edges near a
+/// clamp, the slope is exact for linear functions, and for the squared distance from the clamp in front of it (0 in the
+/// clamp). `held`: per vertex, now; `pinned`: per vertex, at any time, so that the vertices of stencils do not depend
+/// on `held`. Empty: none.
 std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::span<const char> pinned = {},
                                                  std::span<const char> held = {});
 

@@ -8,7 +8,7 @@ namespace weft::forces {
 
 namespace {
 
-// Below this stretch a thread has no direction and no pull; the matrix stays finite.
+// Lower bound of ‖s‖: a collapsed thread has no direction, but the matrix stays finite.
 constexpr double kMinStretch = 1e-12;
 
 // ‖s‖, at least kMinStretch
@@ -60,7 +60,7 @@ void TriangleMembrane::pack() {
     });
 }
 
-// U of the polar decomposition: the square root of the metric tensor, in closed form for 2 × 2.
+// U of the polar decomposition: the square root of the metric tensor, whose entries are s_u·s_u, s_u·s_v and s_v·s_v.
 Eigen::Matrix2d TriangleMembrane::stretch_of(const Gradient& s) {
   Eigen::Matrix2d metric;
   metric << s.u.dot(s.u), s.u.dot(s.v), s.u.dot(s.v), s.v.dot(s.v);
@@ -68,7 +68,7 @@ Eigen::Matrix2d TriangleMembrane::stretch_of(const Gradient& s) {
   return (metric + area * Eigen::Matrix2d::Identity()) / std::sqrt(metric.trace() + 2 * area);
 }
 
-// `inverse`: of the matrix with two sides as columns.
+// `inverse`: of the matrix whose columns are the sides from the first corner.
 void TriangleMembrane::set_rest_shape(const Eigen::Matrix2d& inverse, Element& element) {
   element.gradients[1] = inverse.row(0);
   element.gradients[2] = inverse.row(1);
@@ -98,7 +98,7 @@ void TriangleMembrane::attach(const solver::Assembly& assembly) {
     }
 }
 
-// From differences to the first corner, so that only these are rounded.
+// Of differences to the first corner, so that only these are rounded, not the coordinates.
 TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
   const auto& [a, b, c] = element.particles;
   const Vec3& origin = x[a];
@@ -151,9 +151,9 @@ void TriangleMembrane::add(const Evaluation& at) const {
   });
 }
 
-// Blocks Σ gradients[a] gradients[b] ∂²/∂s∂s. Along and across a thread as in Stretch, with an edge of unit rest
-// length. In shear as in Shear: of the second derivative 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), the half
-// whose sign agrees with the stress.
+// Blocks of the pairs (a, b): gradients[a] gradients[b] times the second derivatives of the energy by s_u and s_v.
+// Along and across a thread as in Stretch, with an edge of unit rest length. In shear as in Shear: of the second
+// derivative 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), the half whose sign agrees with the stress.
 void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s, const Lanes& length_u,
                                      const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
   const auto lateral_of = [&](const Lanes& length) {
@@ -180,7 +180,7 @@ void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s,
     }
 }
 
-// ∂/∂s + rate ∂/∂ṡ of the tension along a thread, times s/‖s‖.
+// Derivative ∂/∂s + rate ∂/∂ṡ of T s/‖s‖, where T is the tension along a thread and `speed` is ṡ.
 Mat3 TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec3& speed, double rate) const {
   const double length = std::max(s.norm(), kMinStretch), lateral = 1 - 1 / length;
   const Vec3 n = s / length;

@@ -11,12 +11,12 @@ namespace weft::forces {
 
 /// The continuum of Stretch and Shear on triangles of constant strain: s_u and s_v are the derivatives of the positions
 /// along weft and warp, constant in each triangle (the elements of Baraff & Witkin, "Large Steps in Cloth Simulation",
-/// 1998, with the energy of the continuum). Energy density
+/// 1998, with the energy of the continuum). The energy density is
 ///
 ///     ½ k1 (‖s_u‖ − 1)² + ½ k2 (‖s_v‖ − 1)² + ¼ μ ⟨s_u, s_v⟩²
 ///
-/// and the same forms on the rates. Every linear map has exactly the stress of the continuum, for any orientation of
-/// the triangles.
+/// and dissipation has the same form in the rates. For every linear map, the stress is exactly that of the continuum,
+/// for any orientation of the triangles.
 class TriangleMembrane : public Membrane {
  public:
   /// A triangle; s_u and s_v are linear in its corners.
@@ -36,9 +36,9 @@ class TriangleMembrane : public Membrane {
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
-  /// For sewn sheets: interpolates the rest shape of each triangle between that of the start (progress 0), which has no
-  /// stress then, and that of the pattern (progress 1). The stretch U of the start, in weft and warp, is blended with
-  /// the identity.
+  /// For sewn sheets: interpolates the rest shape of each triangle between that of the start (progress 0), in which the
+  /// start has no stress, and that of the pattern (progress 1). The stretch U of the start relative to the pattern, in
+  /// weft and warp, is blended with the identity.
   void interpolate_rest_shape(double progress);
   std::span<const Element> elements() const { return elements_; }
   double max_strain(std::span<const Vec3> x) const override;
@@ -49,7 +49,7 @@ class TriangleMembrane : public Membrane {
   struct Gradient {
     Vec3 u, v;
   };
-  /// The larger change of length along weft and warp, in absolute value.
+  /// The larger relative change of length, along weft or warp, in absolute value.
   virtual double strain(std::size_t triangle, std::span<const Vec3> x) const;
 
   StretchParameters stretch_;
@@ -80,7 +80,7 @@ class TriangleMembrane : public Membrane {
 
   Index first_;
   std::vector<Element> elements_;
-  /// For sewn sheets: inverse of each triangle's sides in the pattern, and the stretch of its start minus 1.
+  /// For sewn sheets: inverse of each triangle's matrix of sides in the pattern, and U of its start minus the identity.
   struct Start {
     Eigen::Matrix2d inverse, excess;
   };

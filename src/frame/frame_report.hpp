@@ -29,7 +29,7 @@ struct FrameReport {
   double time = 0;  ///< [s]
   StageTime simulate;
   /// Parts of `simulate`: contact detection and separation of surfaces; forces and their matrix; setting up the
-  /// preconditioner; iterations of the linear solver.
+  /// preconditioner, and applying it outside of linear solves; linear solves.
   StageTime collide, forces, preconditioner, linear;
   int steps = 0;              ///< accepted
   int rejected_steps = 0;     ///< repeated with shorter steps
@@ -38,11 +38,11 @@ struct FrameReport {
   double solver_error = 0;    ///< the same, of errors of the solver [m]
   int newton_iterations = 0;
   int linear_iterations = 0;
-  /// Near pairs of features (within 1.5 activation distances) at the predicted end of the last step.
+  /// Number of near pairs of features (within the detection distance) at the predicted end of the last step.
   int proximities = 0;
-  int constraints = 0;                ///< contacts and pins that acted in the last step
+  int constraints = 0;                ///< contacts and held particles in the last step
   double min_distance = 0;            ///< smallest distance of these near pairs [m]; infinite if there are none
-  double max_strain = 0;              ///< largest |length / rest length - 1| of weft and warp edges, in all steps
+  double max_strain = 0;              ///< largest |length / rest length - 1| of weft and warp, in all steps
   double stretch_ratio = 0;           ///< largest ratio of extension to material.max_stretch, in all steps
   double kinetic_energy = 0;          ///< [J]
   double potential_energy = 0;        ///< of gravity, zero at the origin [J]
@@ -50,11 +50,11 @@ struct FrameReport {
   double air_energy = 0;              ///< of enclosed air [J]
   double pin_work = 0;                ///< work of pins on the cloth since the frame before [J]
   double solver_work = 0;             ///< work of the residual of the equation of motion since the frame before [J]
-  int pinched_pairs = 0;              ///< largest number of triangles of cloth that obstacles pinched at once
-  int lagging_particles = 0;          ///< largest number that something kept from their targets at once
+  int pinched_pairs = 0;              ///< largest number of pinched cloth triangles at once, per obstacle limb
+  int lagging_particles = 0;          ///< largest number of pinned particles kept from their targets at once
   std::vector<EnclosedAir> enclosed;  ///< of each cloth with pressure
   std::vector<AttachmentLoad> attachments;  ///< of each attachment of the scene
-  /// About what begins or ends: "frame 37: 'sheet' has no room between ..., near (x, y, z) m".
+  /// Warnings of this frame, such as "frame 37: 'sheet' has no room between ..., near (x, y, z) m".
   std::vector<std::string> warnings;
 };
 

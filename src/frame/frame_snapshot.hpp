@@ -76,7 +76,8 @@ struct Surface {
   std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 if cloth passes through it; empty: none
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if they are quads; else empty
   std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
-  /// Bounding box in world space [m]: of a body over the whole run, of a cloth at its start; absent: unknown.
+  /// Bounding box in world space [m]: of a body from time 0 to the end of the scene, of a cloth at its start; absent:
+  /// unknown.
   std::optional<Box3> run_bounds;
   /// Edges with a larger angle are drawn sharp [degrees] (180: all are smooth, as for cloth).
   double crease_angle = 30;
@@ -153,7 +154,7 @@ struct Stage {
   double exposure = 0;     ///< brightening of the picture [stops]
   double motion_blur = 0;  ///< shutter angle [degrees, 360 per frame]; 0: everything is sharp
   Heat heat = Heat::none;
-  double heat_max = 0;  ///< value at the hot end of the scale (strain: 1, speed: m/s); 0: the frame's largest
+  double heat_max = 0;  ///< value at the hot end of the scale (strain, or speed [m/s]); 0: the frame's largest
 };
 
 /// One frame, never changed after it is made.

@@ -11,17 +11,18 @@
 namespace weft::integrator {
 
 /// Friction can hide a remaining error: sticking cloth is held stiffly until it slides as a whole, and the normal
-/// contacts are stiffer still. If friction is near its limit, this class therefore measures the momentum that is
-/// missing along it, and the friction in excess of what the normal force allows (measured: sheets on slopes half a
-/// degree too steep slid 1.00 to 1.01 of a block's distance; with a preconditioned residual alone 0.92 to 0.97, and
-/// 0.57 with velocity constraints). The measure is per block; per particle, sphere_drape takes two to three times the
-/// iterations.
+/// contacts are stiffer still. If friction is near its limit, this class therefore measures the residual force along
+/// the friction, and the friction in excess of what the normal force allows (measured on slopes half a degree too steep
+/// for sticking: sheets slid 1.00 to 1.01 of a rigid body's distance; with a preconditioned residual alone 0.92 to
+/// 0.97, with velocity constraints 0.57). It measures sums over a diagonal block; per particle, sphere_drape takes two
+/// to three times the iterations.
 class Sliding {
  public:
   /// Evaluates the contact forces of a system at this stage. Returns false if there is no contact.
   bool evaluate(const System& system, const StagePoint& at);
 
-  /// Error [N] of the friction on a block as a whole, from its residual [N]; 0 unless it is about to slide.
+  /// Error [N] of the friction on a diagonal block as a whole, from its residual [N]; 0 unless the block is about to
+  /// slide.
   double friction_error(const solver::DiagonalBlock& rows, std::span<const Vec3> residual) const;
 
  private:
@@ -29,8 +30,8 @@ class Sliding {
   std::vector<double> limit_;          // [N]
 };
 
-/// Whether constraints hold a block against sliding. A wall along which it slides leaves two directions free, and does
-/// not count.
+/// Whether constraints hold a diagonal block against sliding. A wall along which the block slides leaves two directions
+/// free, and does not count.
 bool is_held(const solver::DiagonalBlock& rows, std::span<const solver::ParticleConstraint> constraints);
 
 }  // namespace weft::integrator

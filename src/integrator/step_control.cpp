@@ -41,7 +41,7 @@ void StepControl::record_accepted_step(double h, double error) {
   after_failure_ = false;
 }
 
-// The elementary controller: after a rejected step, the ratio of the step before it does not count.
+// The elementary controller, without `last_ratio_`.
 void StepControl::record_rejected_step(double h, double error) {
   const double factor = std::pow(aim_to_error_ratio(error), 1 / order_plus_one_);
   wanted_ = std::max(h * std::clamp(factor, numerics.steps.least_factor, 1 - numerics.steps.kept_change),

@@ -9,22 +9,24 @@
 
 namespace weft::integrator {
 
-/// Keeps the local error of each step at a tolerance: error per step, not per second. An impact changes velocity by Δv
-/// at once, which leaves an error of at least h Δv in its step; an error per second would reduce h to 0. With a method
-/// of order p, step sizes scale as tolerance^(1/(p+1)) and the final error as tolerance^(p/(p+1)): 1/2 for Euler, 2/3
-/// for midpoint and BDF2.
+/// Keeps the local error of each step at a tolerance: error per step, not per second. An impact changes the velocity by
+/// Δv at once, so the error of its step is of the order h Δv however small h is; a bound of the error per second would
+/// reduce h to 0. With a method of order p, step sizes scale as tolerance^(1/(p+1)) and the final error as
+/// tolerance^(p/(p+1)): 1/2 for Euler, 2/3 for midpoint and BDF2.
 ///
-/// Its state, the ratio of the last step and the wanted step size, is part of the state of a simulation.
+/// `wanted_` and `last_ratio_` are part of the state of a simulation.
 class StepControl {
  public:
   /// `tolerance`: bound of the local error [m]; `first`: length of the first step [s].
   StepControl(Method method, double tolerance, double first);
 
-  /// Whether a step over h with this error is accepted, as every step of the minimum length with a finite error.
+  /// Whether a step over h [s] with this error [m] is accepted. A step of the minimum length or less needs only a
+  /// finite error.
   bool accepts(double h, double error) const;
   bool meets(double error) const { return error <= tolerance_; }
 
-  /// Length [s] of the next step, after a step over h that was accepted, too inexact, or not solved.
+  /// Length of the next step [s]. The functions below update it after a step over h [s] that was accepted, too inexact,
+  /// or not solved.
   double next_step_size() const { return wanted_; }
   void record_accepted_step(double h, double error);
   void record_rejected_step(double h, double error);

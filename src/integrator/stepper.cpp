@@ -82,14 +82,13 @@ void Stepper::gather_residual(std::span<const double> masses, const Stage& stage
   cg_.filter(residual_);
 }
 
-// Linearises at the current stage.
 void Stepper::linearise(System& system, const State& now, const Stage& stage, int iteration) {
   const Stopwatch watch(times_.forces);
   evaluate(now, stage);
   system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, iteration, force_);
 }
 
-// P⁻¹ times the residual. Valid until the next call.
+// The preconditioner times the residual. Valid until the next call.
 std::span<const Vec3> Stepper::precondition(std::span<const Vec3> residual) {
   const Stopwatch watch(times_.preconditioner);
   return cg_.precondition(residual);
@@ -105,8 +104,8 @@ void Stepper::residual(System& system, const State& now, const Stage& stage, Equ
 }
 
 // Sets the velocity error [m/s], root mean square over the mass of a block, that the solver may leave: it displaces the
-// block by `tolerance` times the local error of positions within `lasting_time`. To allow that displacement in each
-// step would be too much: if step sizes are adaptive, the method would lose one order.
+// block by `tolerance` times the local error of positions within `lasting_time`. If that displacement were allowed in
+// each step, adaptive step sizes would lose one order.
 void Stepper::update_tolerances(double h, int iterations) {
   const double time = numerics.newton.lasting_time;
   double unseen = numerics.newton.unseen_acceleration * h * time;
@@ -136,7 +135,8 @@ void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<
 
 // Estimates the velocity error of each block after a linear solve and a line search. The linear solver reports its own
 // error. The nonlinear error is known only as a residual, which the preconditioner converts to a displacement that is
-// too small. The correction is the ratio of the last solution to its preconditioned right hand side.
+// too small. The result is corrected by the ratio of the last solution to its preconditioned right hand side, if that
+// is above 1.
 void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, double fraction,
                                             std::span<const double> masses) {
   const bool is_full_step = fraction == 1 && solved.definite;
@@ -156,7 +156,7 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
 
 // Estimates the velocities by which whole blocks slide wrongly; only for blocks that otherwise count as solved.
 // Friction can at most stop a block, so the error is bounded by the velocity that the block has or gains in the step,
-// however large a force a stiff contact makes of it.
+// however large the force of a stiff contact is.
 void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) {
   const auto masses = system.masses();
   const auto needs_check = [](const PartState& part) { return !part.holds_sliding && part.left <= part.allowed; };
@@ -196,8 +196,8 @@ void Stepper::select_unsolved(int iterations) {
 // Returns the factor of delta_, or a slope that is not finite.
 double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
   // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
-  // of the energy: positive before the minimum along delta, negative behind it. It can turn steeply negative if
-  // contacts or compressed edges become active on the way; full steps would then oscillate. It can stay as it was if
+  // of the energy: positive before the minimum along delta, negative behind it. It becomes strongly negative if
+  // contacts or compressed edges become active on the way; full steps would then oscillate. It hardly decreases if
   // friction and compression make the matrix too stiff.
   const std::size_t n = x_.size();
   const double start_slope = dot(residual_, delta_);
@@ -243,7 +243,7 @@ void Stepper::prepare_guess(const System& system, const State& now, const Stage&
   system.constant_forces(constant_force_);
 }
 
-// Direction in which velocities are expected to change: as in the last step, or at the start as by constant forces.
+// Direction in which velocities are expected to change: as in the last step; without a history, as by constant forces.
 // Cloth that falls, slides or drifts uniformly is then exact at any linear tolerance, and flat sheets stay flat.
 std::span<const Vec3> Stepper::predict_velocity_change(std::span<const double> masses, const State& now) {
   for_each_particle(masses.size(), [&](std::size_t i) {
@@ -364,8 +364,8 @@ void Stepper::balance_momentum(std::span<const double> masses, const solver::Lin
 }
 
 // Solves the linear system for the unsolved blocks. `start`: see solver::Directions. The remaining residual does no
-// work along velocities of the stage, β v = x − x̂, and none along the displacement of the step, x − x0, if that is
-// another direction.
+// work along the velocities of the stage, β v = x − x̂ (`motion_`), and, with BDF2, none along the displacement of the
+// step, x − x0 (the sum of `motion_` and `drift_`).
 solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0) {
   goals_.clear();
   const double tightening = method_ == Method::implicit_midpoint ? numerics.newton.undamped : 1;
@@ -413,7 +413,6 @@ void Stepper::split_impacts(System& system, const State& now, const Stage& stage
   for_each_particle(x_.size(), [&](std::size_t i) { v_[i] += (1 - h / stage.beta) * impact_changes_[i]; });
 }
 
-// Computes the end of the step from its stage.
 void Stepper::write_end_state(const State& now, const Stage& stage, std::span<const HeldParticle> held,
                               State& next) const {
   for_each_particle(x_.size(), [&](std::size_t i) {
@@ -428,7 +427,6 @@ void Stepper::write_end_state(const State& now, const Stage& stage, std::span<co
   }
 }
 
-// Velocity of particle i at the end of the step.
 Vec3 Stepper::v_end(const State& now, const Stage& stage, std::size_t i) const {
   return stage.end_rate == 1 ? v_[i] : Vec3(2 * v_[i] - now.v[i]);
 }

@@ -24,9 +24,9 @@ struct NewtonParameters {
   /// with a visibility threshold as floor; see update_tolerances() in stepper.cpp.
   double tolerance = 0.3;
   int max_iterations = 60;
-  double linear_tolerance = 0.1;  ///< of one linear solve, relative to its own solution, in the energy norm
+  double linear_tolerance = 0.1;  ///< error of a linear solve, relative to its solution, in the energy norm
   int max_linear_iterations = 1000;
-  /// Tolerance of the local error if step sizes are adaptive [m], else 0. It bounds the visibility threshold.
+  /// Tolerance of the local error if step sizes are adaptive [m], else 0. Upper bound of the visibility thresholds.
   double position_tolerance = 0;
 };
 
@@ -44,13 +44,15 @@ struct StepReport {
   int newton_iterations = 0;
   int linear_iterations = 0;
   double local_error = 0;  ///< estimate of the error of positions that the method adds in this step [m]
-  /// Estimate of the error that the solver adds: the remaining velocity times `Numerics::Newton::lasting_time` [m].
+  /// Estimate of the error that the solver adds: the remaining velocity error times `Numerics::Newton::lasting_time`
+  /// [m].
   double solver_error = 0;
   double left = 0, allowed = 0;  ///< velocity error that remains in the worst block, and its bound [m/s]
   StageTimes times;
 };
 
-/// Every method is one implicit stage  x = x̂ + β v,  M (v − v̂) = β f(x, v)  with its own β, x̂ and v̂:
+/// Every method is one implicit stage x = x̂ + β v, M (v − v̂) = β f(x, v) with its own β, x̂ and v̂. Below, 0 marks
+/// the start of the step, ₋ that of the previous step, whose length is h₋, and 1 the end; y is x or v:
 ///
 ///     method     β              x̂, v̂                                         end of the step
 ///     Euler      h              x0, v0                                       the stage
@@ -59,13 +61,13 @@ struct StepReport {
 ///
 /// Tests compare each method on x'' = −ω² x with its exact damping and phase (tests/integrator).
 ///
-/// BDF2 assumes a smooth trajectory. Without further measures it rebounds from obstacles with up to half of the impact
-/// velocity (measured: a sheet that falls on a table kept 48 % of its energy). Therefore impacts are integrated as in
-/// Euler's method, and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls,
-/// Int. J. Numer. Meth. Engng 96, 2013). Impacts move particles by δ, A δ = F, with the forces F of impacts and the
-/// matrix A of the step without contacts and ties. Positions stay as they are; velocities change by δ/h instead of δ/β.
-/// The history gets the same change, so that the next step starts from a smooth trajectory. Changes of velocity by
-/// corrections after a solve count as impacts, too.
+/// BDF2 assumes a smooth trajectory. Without further measures, cloth rebounds from obstacles with up to half of its
+/// energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's method,
+/// and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls, Int. J. Numer.
+/// Meth. Engng 96, 2013). Impacts move particles by δ, A δ = F, with the forces F of impacts and the matrix A of the
+/// step, whose only terms are those of friction in impacts. Positions stay as they are; velocities change by δ/h
+/// instead of δ/β. The start velocity in the history also changes by δ/h, so that the next step starts from a smooth
+/// trajectory. Changes of velocity by corrections after a solve count as impacts, too.
 ///
 /// The local error of positions is estimated from known velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of
 /// the mean acceleration from the last step to this one; then the leading terms of the error are
@@ -76,10 +78,10 @@ struct StepReport {
 ///
 /// (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, III.2 and III.5). The factor 3/2 of BDF2
 /// accounts for the following steps, which propagate a third of each change of the error. Steps without a history use
-/// Euler's estimate: exact for BDF2, whose first step is Euler's; an upper bound for midpoint. Errors of velocity are
+/// Euler's estimate (BDF2: 3/2 of it, as its first step is Euler's; midpoint: an upper bound). Errors of velocity are
 /// not included; they affect positions only in later steps. The error is the root mean square over the mass of each
-/// diagonal block (a cloth), so that it neither depends on the mesh resolution nor on a single particle in contact; the
-/// largest block counts. Held directions have no error.
+/// diagonal block (a cloth or a rigid body), so that it depends neither on the mesh resolution nor on a single particle
+/// in contact; the block with the largest error counts. Held directions have no error.
 class Stepper {
  public:
   /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I, III.5). At
@@ -97,18 +99,18 @@ class Stepper {
 
   /// Computes `next` from `now` over h [s]. Does not change the history: see accept(). `gravity` [m/s²] acts on all
   /// particles. A step that is not solved after `pause_after` Newton iterations ends with Verdict::unfinished; the
-  /// caller can inspect it and continue with Start::next.
+  /// caller can inspect `next` and continue with Start::next. After other failures, `next` is unspecified.
   StepReport step(System& system, const State& now, double h, const Vec3& gravity, std::span<const HeldParticle> held,
                   State& next, Start start = Start::unchanged_velocity,
                   int pause_after = std::numeric_limits<int>::max());
 
-  /// Force [N] with which the constraint acted on a particle of this mass [kg], at the end of the last computed step.
+  /// Force [N] with which the constraint acted on a particle of this mass [kg] at the stage of the last computed step.
+  /// On a free particle: minus the remaining residual.
   Vec3 constraint_force(Index particle, double mass) const;
 
-  /// Force [N] of the constraint on a particle of this mass [kg] at the end of the last computed step.
+  /// Makes an accepted step over h [s] the history of the next one. `before`, `after`: states at its start and end.
   void accept(const State& before, const State& after, double h);
 
-  /// Makes an accepted step over h the history of the next one. `before`, `after`: states at its start and end.
   struct History {
     State before;  ///< start of the last accepted step
     double h = 0;  ///< its length [s]; 0: no history
@@ -122,7 +124,8 @@ class Stepper {
   /// Forgets the history: the next BDF2 step is an Euler step. For the first step and after discontinuities.
   void restart() { history_.h = 0; }
 
-  /// Saves or restores the history of `particles` particles. Throws std::runtime_error if it is impossible.
+  /// Saves or restores the history of `particles` particles. Throws std::runtime_error if a restored value is
+  /// impossible.
   template <class Archive>
   void serialize(Archive& archive, std::size_t particles) {
     archive.value(history_.h);
@@ -142,7 +145,7 @@ class Stepper {
     solver::DiagonalBlock rows;
     double mass = 0;             // [kg]
     double local_error = 0;      // of the method, at the current iterate [m]
-    double velocity_error = 0;   // of the method, if it is known [m/s]
+    double velocity_error = 0;   // of implicit Euler, if there is a history; else 0 [m/s]
     double allowed = 0;          // bound of the remaining velocity error [m/s]
     double left = 0;             // remaining velocity error [m/s]
     double rounding = 0;         // velocity that corresponds to rounding of its positions [m/s]
@@ -197,7 +200,7 @@ class Stepper {
   Sliding sliding_;
   std::vector<PartState> parts_;
   std::vector<std::size_t> unsolved_;
-  // Per block: allowed energy norms of the linear error, and velocities [m/s].
+  // Per block: allowed linear errors in the mass-weighted norm, and velocities [m/s].
   std::vector<double> goals_, predicted_speeds_, solved_speeds_, speeds_;
   std::vector<Past> past_;
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, motion_,

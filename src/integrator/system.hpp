@@ -19,11 +19,11 @@ struct State {
 /// Point at which the implicit equation of a step is evaluated.
 struct StagePoint {
   std::span<const Vec3> x;      ///< stage positions
-  std::span<const Vec3> v;      ///< stage velocities, (x − x̂) / β
+  std::span<const Vec3> v;      ///< stage velocities, (x − x̂) / β as in Stepper
   std::span<const Vec3> x_end;  ///< positions at the end of the step that belongs to this stage; contacts act there
   double rate = 0;              ///< dv/dx = 1/β [1/s]
   double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
-  /// Earlier positions that x̂ consists of. Empty for the midpoint rule, where ∂q/∂x v is the exact change of a
+  /// Earlier positions that x̂ consists of. Empty for the midpoint rule, where ∂q/∂x v is the exact mean rate of a
   /// quadratic q over the step.
   std::span<const Past> past = {};
 };
@@ -40,19 +40,21 @@ class System {
   /// Adds all other forces at a stage [N]. May update caches of the system, but must not change its results.
   virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
 
-  /// As `forces`, but forces that the last linearise() replaced by their tangent are evaluated as such. A line search
-  /// along the solution of that linear system must use these.
+  /// As `forces`, but with the tangent in place of each force that the last linearise() replaced by its tangent. A line
+  /// search along the solution of that linear system must use these.
   virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
 
   /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. Forces
-  /// that lag behind the positions are updated first. `iteration`: Newton iteration, from 0 in each solve.
+  /// that lag behind the positions are updated first. `iteration`: Newton iteration, from 0 in each solve; a continued
+  /// solve counts on.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
   /// Whether translating a diagonal block changes no force except through terms, constraints, and air.
   virtual bool is_translation_invariant() const { return false; }
 
-  /// Adds the contact part of `forces` [N] at each particle: friction, all other contact forces (`push`), and the
-  /// largest friction that the current normal forces allow. Returns false, and adds nothing, if there is no contact.
+  /// Adds the contact part of `forces` [N] at each particle: `friction`, all other contact forces (`push`), and the
+  /// largest friction that the current normal forces allow (`limit`). Returns false, and adds nothing, if there is no
+  /// contact.
   virtual bool contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                               std::span<double> limit) const {
     (void)at, (void)push, (void)friction, (void)limit;
@@ -70,7 +72,7 @@ class System {
   virtual solver::LinearSystem& linear_system() = 0;
 };
 
-/// A particle that is held in some directions, in which it ends the step at `x_end` with velocity `v_end`.
+/// A particle that is held in some directions, in which it ends the step at `x_end` [m] with velocity `v_end` [m/s].
 struct HeldParticle {
   solver::ParticleConstraint constraint;
   Vec3 x_end, v_end;

@@ -71,7 +71,7 @@ include(CPack)
 
 # An archive that needs nothing from the machine that it runs on: ninja bundle
 add_executable(weft_start EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/.packaging/start.c)
-target_compile_options(weft_start PRIVATE -march=x86-64 -Wall -Wextra)  # an older CPU is named by the program
+target_compile_options(weft_start PRIVATE -march=x86-64 -Wall -Wextra)  # runs on older CPUs, too
 target_link_options(weft_start PRIVATE -static)
 add_custom_target(bundle
                   COMMAND ${PROJECT_SOURCE_DIR}/.packaging/bundle.sh ${CMAKE_BINARY_DIR} $<TARGET_FILE:weft_start>

@@ -14,8 +14,8 @@ namespace {
 constexpr double kMaxBevel = 0.49;
 
 /// A box is the hull of eight octants of a small sphere. Each octant is a triangular lattice of points (i, j, k) with i
-/// + j + k = steps; (steps, 0, 0) lies on the side of the box across the x axis, and so on. Strips along the edges and
-/// the six flat sides join neighbouring octants. steps = 0 means sharp corners: one point each.
+/// + j + k = steps; (steps, 0, 0) lies on the side of the box perpendicular to the x axis, and so on. Strips along the
+/// edges and the six flat sides join neighbouring octants. steps = 0 means sharp corners: one point each.
 class RoundedBox {
  public:
   RoundedBox(const Vec3& size, double bevel, int steps) : steps_(steps) {
@@ -47,7 +47,7 @@ class RoundedBox {
 
   Index vertex(int corner, const Lattice& p) const {
     const int octant = (steps_ + 1) * (steps_ + 2) / 2;
-    // Rows before row i hold steps + 1, then steps, … points.
+    // The rows before row p[0] have steps + 1, then steps, … points.
     const int before = p[0] * (steps_ + 1) - p[0] * (p[0] - 1) / 2;
     return corner * octant + before + p[1];
   }
@@ -75,7 +75,7 @@ class RoundedBox {
     }
   }
 
-  /// Lattice point with `first` on axis + 1 and the remainder on axis + 2.
+  /// Lattice point with `first` on axis + 1 (modulo 3) and the remainder on axis + 2.
   Lattice rim(int axis, int first) const {
     Lattice p{};
     p[(axis + 1) % 3] = first;

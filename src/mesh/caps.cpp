@@ -10,7 +10,7 @@
 namespace weft::mesh {
 namespace {
 
-using DirectedEdge = std::array<Index, 2>;  // directed edge, in the order of its triangle
+using DirectedEdge = std::array<Index, 2>;  // start and end, in the order of its triangle
 
 std::set<DirectedEdge> directed_edges(std::span<const Triangle> triangles) {
   std::set<DirectedEdge> edges;
@@ -31,7 +31,7 @@ void close_cuts(std::span<const Triangle> whole, std::span<const Vec3> positions
   while (!lid.empty()) {
     if (path.empty()) path.push_back(lid.begin()->first);
     const auto next = lid.find(path.back());
-    if (next == lid.end()) {  // a cut that ends at a border of `whole` closes nothing
+    if (next == lid.end()) {  // a cut that ends at a border of `whole` needs no lid
       path.pop_back();
       continue;
     }

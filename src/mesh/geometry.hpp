@@ -7,7 +7,7 @@
 
 namespace weft::mesh {
 
-/// Half the cross product of two sides: its length is the area [m²], its direction the front normal.
+/// Half the cross product of two sides: length = area [m²], direction = front normal.
 inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return x[t[k]]; };
   return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0));

@@ -10,7 +10,7 @@
 namespace weft::mesh {
 namespace {
 
-/// Nodes of a cubic lattice with x from 0. Values are evaluated on first use and cached.
+/// Nodes of a cubic lattice that starts at x = 0. Values are evaluated on first use and cached.
 class Lattice {
  public:
   Lattice(const Field& field, const Box3& box, double cell) : field_(field), cell_(cell) {

@@ -1,4 +1,4 @@
-// Triangulates the zero set of a function with triangles of even size and shape.
+// Triangulates the zero set of a function, and makes its triangles even in size and shape.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace weft::mesh {
 
-/// Implicit function: negative inside. Near its zero set it must be continuously differentiable and at least about as
-/// steep as a distance [m]; its slope must stay below 3.
+/// Implicit function [m], negative inside. The length of its gradient must stay below 3 everywhere. Near the zero set,
+/// the gradient must be continuous and its length about 1 (as of a distance) or more.
 using Field = std::function<double(const Vec3&)>;
 
 /// Wanted edge length [m] at a point; it should vary slowly.
@@ -26,7 +26,7 @@ Mesh march_half_space(const Field& field, const Box3& box, double cell);
 void remesh(Mesh& surface, const Field& field, const Sizing& edge_length, int rounds);
 
 /// A surface whose border lies in x = 0, joined to its mirror image. Border vertices come first and are their own
-/// images; any other vertex v of the half has its image at v + (number of vertices off the border).
+/// images, then come the other vertices of the half; the image of vertex v among them is v + (their number).
 struct MirroredMesh {
   Mesh mesh;
   std::vector<Index> image;  ///< index of the mirrored vertex, per vertex; itself on the plane

@@ -11,10 +11,10 @@
 
 namespace weft::mesh {
 
-/// Faces of a surface. Quads keep their four corners and are also split into two triangles. Collision, drawing and
-/// files all use these triangles, so that there is only one surface.
+/// Faces of a surface. Quads keep their four corners and are also split into two triangles. Collision and drawing both
+/// use these triangles, so that there is only one surface.
 struct Topology {
-  std::vector<std::array<Index, 4>> quads;      ///< faces as simulated; empty for a triangle mesh
+  std::vector<std::array<Index, 4>> quads;      ///< empty for a triangle mesh
   std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise from the front; quad q owns triangles 2q, 2q+1
 };
 
@@ -28,7 +28,7 @@ struct Mesh {
 struct Grid {
   int nu = 0, nv = 0;                         ///< particles along weft and warp, at least 2
   double lu = 0, lv = 0;                      ///< mean rest spacing along weft and warp [m]
-  double weft_grading = 1, warp_grading = 1;  ///< last / first spacing, geometric in between; 1: all equal
+  double weft_grading = 1, warp_grading = 1;  ///< last / first spacing; geometric series in between
   Index index(int i, int j) const { return static_cast<Index>(i + nu * j); }
   Index size() const { return static_cast<Index>(nu * nv); }
 
@@ -48,7 +48,7 @@ struct Grid {
   double min_spacing() const { return std::min({du(0), du(nu - 2), dv(0), dv(nv - 2)}); }
 
  private:
-  // In units of the mean spacing.
+  // Distance of column or row i from the first one, in units of the mean spacing.
   static double spacings_before(int i, int count, double grading) {
     return grading == 1 ? i : graded_fraction(i, count, grading) * (count - 1);
   }

@@ -27,12 +27,12 @@ std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> 
   return flat;
 }
 
-/// Smallest allowed ratio of an ear's height to its longest side, tried one after the other. Corners along a straight
-/// side are off it by rounding errors: an ear there has no area, and its corner is lost.
+/// Smallest allowed ratios of an ear's height to its longest side, tried one after the other. Rounding errors move
+/// corners off a straight side; an ear there has hardly any area, and would later be removed together with its corner.
 constexpr std::array<double, 3> kMinEarHeightRatios = {1e-3, 1e-6, 0};
 
-/// Whether corner k of the ring turns left and its triangle, rim included, holds no other corner. Corners nearer to the
-/// rim than `flatness` times the longest side count as on it; triangles less high than that are no ears.
+/// Whether corner k of the ring turns left and its triangle, sides included, holds no other corner. Corners nearer to a
+/// side than `flatness` times the longest side count as on it; triangles less high than that are no ears.
 bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vector<Vec2>& flat, double flatness) {
   const std::size_t n = ring.size();
   const Vec2 &a = flat[ring[(k + n - 1) % n]], &b = flat[ring[k]], &c = flat[ring[(k + 1) % n]];
@@ -53,7 +53,7 @@ bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vect
 /// A triangle with a lower ratio of height to longest side is a needle.
 constexpr double kNeedleHeightRatio = 0.05;
 
-/// Maximum number of rounds over all edges. Each edge of a strip is flipped a few times.
+/// Maximum number of rounds over all edges.
 constexpr int kMaxFlipRounds = 100;
 
 using Corners = std::array<std::size_t, 3>;
@@ -65,7 +65,7 @@ bool is_needle(const Corners& t, const std::vector<Vec2>& flat) {
   return twice_signed_area(flat[t[0]], flat[t[1]], flat[t[2]]) < kNeedleHeightRatio * longest_sq;
 }
 
-/// Whether d lies inside the circle through a, b and c by more than rounding errors. The points a b c turn left.
+/// Whether d lies inside the circle through a, b and c (counter-clockwise) by more than rounding errors.
 bool in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   constexpr double kRounding = 1e-5;  // for coordinates of single precision
   Mat3 m;
@@ -76,7 +76,8 @@ bool in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
 }
 
 /// Flips edges inside the polygon until each is locally Delaunay (Lawson, "Software for C1 Surface Interpolation",
-/// 1977). Ear clipping leaves vertex stars of needles in narrow polygons with many corners, which become even.
+/// 1977). In narrow polygons with many corners, ear clipping makes flat triangles around one vertex; flipping widens
+/// them.
 void flip_edges(std::vector<Corners>& triangles, const std::vector<Vec2>& flat) {
   bool has_flipped = true;
   for (int round = 0; has_flipped && round < kMaxFlipRounds; ++round) {
@@ -121,7 +122,7 @@ std::vector<Corners> clip_ears(const std::vector<Vec2>& flat, std::span<const do
     }
     ears.push_back({ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]});
     ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(k));
-    // Skip the next corner, to spread the cuts; staying here would make a star of needles.
+    // Skip the next corner, so that ears do not all share one vertex.
     k = (k + 1) % ring.size();
     tried = 0;
   }

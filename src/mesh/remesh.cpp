@@ -16,8 +16,8 @@ std::size_t z(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Projects a point to the zero set by two Newton steps along the gradient (forward differences). If `in_plane`, x is
-/// kept.
+/// Projects a point to the zero set by two Newton steps along the gradient (forward differences). If `in_plane`, the x
+/// coordinate is kept.
 Vec3 project_to_surface(const Field& field, Vec3 p, bool in_plane) {
   constexpr double step = 1e-6;  // m
   for (int n = 0; n < 2; ++n) {
@@ -144,7 +144,7 @@ class Remesher {
            std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
   }
 
-  /// Whether, with `v` moved to p, triangles around `v` without `other` keep their orientation and stay small.
+  /// Whether the triangles around `v` without `other` turn by at most 60° and need no split if `v` moves to p.
   bool shape_allows(Index v, Index other, const Vec3& p) const {
     for (const Index t : around_[z(v)]) {
       Triangle corner = triangles_[z(t)];
@@ -194,7 +194,7 @@ class Remesher {
     }
   }
 
-  /// Makes edges locally Delaunay: keeps the diagonal if the two angles opposite to it add up to less than π.
+  /// Makes edges locally Delaunay: keeps an edge if the two angles opposite to it add up to less than π.
   void flip_edges() {
     for (const Edge& edge : edges_) {
       if (edge.triangles[1] < 0) continue;

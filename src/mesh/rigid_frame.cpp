@@ -8,14 +8,15 @@
 namespace weft::mesh {
 namespace {
 
-// Volume, first and second moments of a solid: the sum over the tetrahedra from one point to each surface triangle.
+// Integrals over a solid, summed over the tetrahedra between one point and each surface triangle: ∫1, ∫x, ∫x xᵀ.
 struct Moments {
   double volume = 0;
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();
 };
 
-// Adds the tetrahedron (0, a, b, c): V = det / 6, ∫x = V (a + b + c) / 4, ∫x xᵀ = V / 20 (Σ v vᵀ + (Σ v)(Σ v)ᵀ).
+// Adds the tetrahedron (0, a, b, c): V = det(a b c) / 6, ∫x = V (a + b + c) / 4, ∫x xᵀ = V / 20 (Σ v vᵀ + (Σ v)(Σ v)ᵀ),
+// sums over v = a, b, c.
 void add_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, Moments& moments) {
   const double volume = a.dot(b.cross(c)) / 6;
   const Vec3 sum = a + b + c;

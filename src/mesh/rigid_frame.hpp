@@ -1,4 +1,4 @@
-// Four particles that carry a rigid body: its mass, its inertia and the positions of its vertices.
+// Four particles that represent the mass, the inertia and the vertices of a rigid body.
 #pragma once
 
 #include <array>
@@ -10,16 +10,16 @@
 
 namespace weft::mesh {
 
-/// Four particles of equal mass with the mass, the centre and the moments of inertia of a body. With s the standard
-/// deviations of the mass along the principal axes R, the particles are at c + R diag(s) t_k, where t_k are the corners
-/// (±1, ±1, ±1) of a regular tetrahedron. Every point of an affine body (Lan et al., "Affine Body Dynamics", 2022) is a
-/// weighted sum of the four, so the inertia of the body is exactly that of the particles.
+/// Four particles of equal mass with the mass, the centre and the moments of inertia of a body. The particles are at c
+/// + R diag(s) t_k: c is the centre of mass, the columns of R are the principal axes, s are the standard deviations of
+/// the mass along them, and t_k = corner(k). Every point of an affine body (Lan et al., "Affine Body Dynamics", 2022)
+/// is a weighted sum of the four, so the inertia of the body is exactly that of the particles.
 class RigidFrame {
  public:
   static constexpr std::size_t kParticles = 4;
   using Weights = std::array<double, kParticles>;  ///< sum to 1
 
-  /// t_k: corner k of the regular tetrahedron.
+  /// Corner k of the regular tetrahedron with coordinates ±1.
   static Vec3 corner(std::size_t k);
 
   /// Takes the volume inside a closed mesh of outward triangles as the body. Throws std::invalid_argument if the mesh

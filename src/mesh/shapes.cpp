@@ -24,8 +24,8 @@ void add_quad(Mesh& mesh, const Quad& q, bool first_diagonal) {
   for (const Triangle& t : split_quad(q, first_diagonal)) mesh.topology.triangles.push_back(t);
 }
 
-/// Number of pieces of a length that give square cells of width about `edge`, at most `limit`: thin bars would
-/// otherwise get thousands of rows.
+/// Number of pieces into which `length` is cut so that each has about the length `edge`; at most `limit`, as thin bars
+/// would otherwise get thousands of rows.
 int piece_count(double length, double edge, int limit) {
   return static_cast<int>(std::clamp(std::round(length / edge), 1.0, static_cast<double>(limit)));
 }
@@ -101,8 +101,8 @@ Mesh icosahedron() {
 }  // namespace
 
 Mesh make_sphere(double radius, int segments) {
-  // Edges cut into n pieces: mean length 1.20 radius / n (measured), 5.24 n around the sphere. An even n puts vertices
-  // on the axes.
+  // With n pieces per side, pieces have a mean length of 1.20 radius / n (measured), so 5.24 n go around the sphere. An
+  // even n puts vertices on the axes.
   const int pieces_per_side = 2 * std::max(1, static_cast<int>(std::lround(segments / (2 * 5.24))));
   const Mesh coarse = icosahedron();
   Mesh mesh;
@@ -149,7 +149,7 @@ Mesh make_cylinder(double radius, double height, int segments) {
 
 Mesh make_torus(double radius, double tube_radius, int segments) {
   segments = std::max(segments, kMinSegments);
-  // The outer equator determines the width of a cell. A multiple of four puts a ring at the very bottom, to stand on.
+  // Cells are square at the outer equator. A multiple of four puts a ring of vertices at the very bottom.
   const double edge = 2 * kPi * (radius + tube_radius) / segments;
   const int around_tube = 4 * std::max(2, static_cast<int>(std::lround(2 * kPi * tube_radius / edge / 4)));
   std::vector<ProfilePoint> circle;

@@ -1,6 +1,6 @@
 // Procedural bodies in closed form, with z up and centred on the origin. All but the plane are watertight and have
-// outward, counter-clockwise triangles. Vertices of round parts lie on the true surface, so the polyhedron of a convex
-// shape is inscribed in it.
+// outward, counter-clockwise triangles. Vertices of round parts lie on the true surface, so a convex shape contains its
+// polyhedron.
 #pragma once
 
 #include "mesh/mesh.hpp"
@@ -25,7 +25,8 @@ Mesh make_torus(double radius, double tube_radius, int segments);
 Mesh make_cylinder(double radius, double height, int segments);
 
 /// Lower half of a pipe around the x axis, open upward, rims at z = 0. `radius` is the inner radius, `thickness` the
-/// wall outside of it; the pipe runs from x = -length / 2 to +length / 2. The half turn gets segments / 2 faces.
+/// wall outside of it; the pipe runs from x = -length / 2 to +length / 2. The half turn gets segments / 2 faces, at
+/// least two.
 Mesh make_half_pipe(double radius, double length, double thickness, int segments);
 
 /// One quad in the plane z = 0, front toward +z.

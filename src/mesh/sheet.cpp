@@ -9,7 +9,7 @@
 namespace weft::mesh {
 namespace {
 
-// Minimum length of the projection of the x axis into a triangle [1]; below it (slope 84°) the warp decides.
+// Minimum length of the projection of the x axis onto a triangle [1] (x at 84° to it); below, warp follows y.
 constexpr double kMinProjectedWeft = 0.1;
 
 // Unit directions of weft and warp in a triangle with this normal.

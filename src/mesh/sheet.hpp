@@ -18,18 +18,18 @@ struct Band {
   double stiffness = 0;         ///< force per strain [N]
   double mass = 0;              ///< per length of cloth [kg/m]
   double bend = 0;              ///< bending stiffness [N·m²]
-  double allowance = 0;         ///< width of the extra cloth that lies along it, not part of the triangles [m]
+  double allowance = 0;         ///< width of extra cloth along the band, not part of the triangles [m]
 };
 
 /// Two vertices that a button or a tooth of a zip holds together while it is closed. Times are scene times [s];
 /// infinite: the event never happens.
 struct Tie {
   Index a = 0, b = 0;
-  double strength = 0;  ///< maximum force that it pulls with [N]
+  double strength = 0;  ///< maximum force [N]
   double open = std::numeric_limits<double>::infinity(), closed = std::numeric_limits<double>::infinity();
 };
 
-/// Factors of one triangle on the material of its cloth: in-plane stiffness, bending stiffness and mass.
+/// Factors by which one triangle multiplies in-plane stiffness, bending stiffness and mass of its cloth.
 struct Reinforcement {
   double stretch = 1, bend = 1, density = 1;
 
@@ -51,8 +51,8 @@ struct Sheet {
 double rest_area(const Sheet& sheet, std::size_t triangle);
 
 /// Makes a sheet whose rest shape is the mesh. In each triangle the weft runs along the projection of x; in triangles
-/// across x it runs along −z. A flat mesh in the x-y plane has x as weft and y as warp. Each triangle has its own
-/// coordinates; they differ from those of its neighbours by a rigid motion.
+/// nearly perpendicular to x, along the cross product of y and the normal. A flat mesh in the x-y plane has x as weft
+/// and y as warp. Each triangle has its own coordinates; they differ from those of its neighbours by a rigid motion.
 Sheet make_sheet_from_mesh(const Mesh& mesh);
 
 /// Shortest height of a triangle at rest [m].

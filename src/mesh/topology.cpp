@@ -8,7 +8,7 @@
 namespace weft::mesh {
 namespace {
 
-/// One side of one triangle: `low < high`; `forward` if the triangle runs from low to high.
+/// One side of one triangle: `low <= high`; `forward` if the triangle runs from low to high.
 struct Side {
   Index low, high;
   Index triangle;

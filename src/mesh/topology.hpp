@@ -37,13 +37,13 @@ struct TopologyReport {
   std::vector<std::array<Index, 2>> misoriented;  ///< edges that both of their triangles traverse in the same direction
   std::vector<std::array<Index, 2>> border;       ///< edges of one triangle
 
-  /// Whether every edge joins two equally oriented triangles or lies on the border.
+  /// Whether all triangles are valid, and every edge joins two equally oriented triangles or lies on the border.
   bool manifold() const {
     return out_of_range.empty() && degenerate.empty() && non_manifold.empty() && misoriented.empty();
   }
 };
 
-/// Checks any index list. Edges are judged only among triangles that are neither out of range nor degenerate.
+/// Checks any index list. Only triangles that are neither out of range nor degenerate count for edges.
 TopologyReport inspect(std::span<const Triangle> triangles, std::size_t vertex_count);
 
 /// The connected component of each vertex; components are numbered in the order of their first vertices.

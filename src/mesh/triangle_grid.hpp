@@ -38,7 +38,7 @@ class TriangleGrid {
   }
 
  private:
-  /// Fraction of the path at which it crosses the triangle from the front; 2 if it does not.
+  /// Fraction of the path at which the path crosses the triangle from the front; 2 if it does not.
   double crossing_of(const Triangle& triangle, const Vec3& from, const Vec3& to) const;
   std::span<const Index> in_cell(const std::array<int, 3>& cell) const;
 
@@ -59,7 +59,7 @@ class TriangleGrid {
 template <class Visit>
 void TriangleGrid::walk(const Vec3& from, const Vec3& to, const Visit& visit) const {
   std::array<int, 3> at{}, step{};
-  Vec3 next, stride;  // fraction of the path at the next cell boundary of each axis, and between boundaries
+  Vec3 next, stride;  // fraction of the path: at the next cell boundary of each axis, and between two
   const Vec3 path = to - from;
   for (int k = 0; k < 3; ++k) {
     const double place = (from[k] - low_[k]) / cell_;

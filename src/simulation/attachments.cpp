@@ -105,7 +105,7 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
 
 void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
   for (Attachment& attachment : attachments_) {
-    // this attempt at the step is shorter
+    // A longer attempt at this step has tied it already.
     if (attachment.state == State::tied && t1 < attachment.begin) attachment.state = State::open;
     attachment.holds = holds_at(attachment, t1);
     if (!attachment.holds) continue;

@@ -17,8 +17,9 @@ namespace weft::simulation {
 
 /// When an attachment begins, it ties each of its particles to the nearest point on its target: a point of a triangle
 /// that moves with the corners, or, on a body that forces move, a weighted sum of the four particles of its frame. If
-/// the distance l of particle and point exceeds L, a spring pulls with k (l − L). L is the `length` of the scene, or
-/// else the distance at which the particle was tied. A shorter distance causes no force: contact keeps surfaces apart.
+/// the distance l of particle and point exceeds L, a spring pulls with k (l − L), k = Spring::stiffness. L is the
+/// `length` of the scene, or else the distance at which the particle was tied. A shorter distance causes no force:
+/// contact keeps surfaces apart.
 ///
 /// The springs act at the end of the step, as contacts do.
 class Attachments {
@@ -38,7 +39,7 @@ class Attachments {
 
   /// Adds the spring forces to `force` [N]; `x_end`: all particles at the end of the step [m].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  /// Adds the stiffness of the springs, times `end_rate`, to the terms of the system.
+  /// Adds the stiffness of the springs in tension, times `end_rate`, to the terms of the system.
   void add_terms(std::span<const Vec3> x_end, double end_rate, solver::LinearSystem& system) const;
   /// Energy of the springs [J].
   double energy(std::span<const Vec3> x_end) const;
@@ -75,7 +76,7 @@ class Attachments {
     std::vector<Spring> springs;
     State state = State::open;
     bool holds = false;  // in the current step
-    double load = 0;     // sum of the spring forces at the end of the last step [N]
+    double load = 0;     // sum of the spring forces at the end of the last accepted step [N]
   };
   struct Tension {
     Vec3 direction;    // unit vector from the particle to its point

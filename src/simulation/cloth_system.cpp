@@ -25,7 +25,7 @@
 namespace weft::simulation {
 namespace {
 
-// Smallest number of particles in a range, and largest number of ranges per cloth and thread: several balance the load.
+// Smallest number of particles in a range, and largest number of ranges per part and thread: several balance the load.
 constexpr Index kMinRangeSize = 512;
 constexpr Index kMaxRangesPerThread = 2;
 
@@ -79,7 +79,8 @@ Lattice lattice_of(const environment::ClothObject& cloth) {
   return lattice;
 }
 
-// Doubles the short sides of boxes first, because cloth is stiffest between close particles.
+// Doubles all sides but those that are longer than `slender_aggregate` times the shortest one, because cloth is
+// stiffest between close particles.
 void coarsen(Lattice& lattice) {
   Box last{0, 0, 0};
   for (const Box& box : lattice.boxes)
@@ -245,7 +246,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   const Index first = first_[cloth];
   const bool crossed = of.shape == scene::ClothShape::crossed_triangles;
   std::unique_ptr<forces::TriangleMembrane> membrane;
-  if (crossed && bends(material))  // without bending stiffness, the membrane does not lock
+  if (crossed && bends(material))  // membrane locking matters only with bending stiffness
     membrane = std::make_unique<forces::CrossedMembrane>(sheet, first, stretch_of(material), shear_of(material));
   else
     membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
@@ -295,8 +296,9 @@ void ClothSystem::divide_into_ranges() {
   }
 }
 
-// Builds the aggregates of the preconditioner. Each level merges 2 × 2 boxes of the level below, until there are at
-// most numerics.linear.coarsest_aggregates, or one per cloth. Frame particles stay aggregates of their own.
+// Builds the aggregates of the preconditioner. Each level merges the boxes of the next finer one (coarsen()), until at
+// most numerics.linear.coarsest_aggregates boxes are left, or one per cloth. Frame particles stay aggregates of their
+// own.
 void ClothSystem::build_aggregates(const environment::Environment& environment) {
   std::vector<Lattice> lattices;
   for (const environment::ClothObject& cloth : environment.cloths) lattices.push_back(lattice_of(cloth));

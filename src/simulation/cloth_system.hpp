@@ -49,9 +49,9 @@ class ClothSystem {
   /// Smallest distance between neighbouring particles of all cloths [m].
   double spacing() const { return spacing_; }
 
-  /// Sets gravity for the following steps [m/s²].
+  /// Sets gravity for cancel_weight_of_sewn_cloth() in the following steps [m/s²].
   void use_gravity(const Vec3& gravity) { gravity_ = gravity; }
-  /// Cancels the weight of cloth that is being sewn, which would otherwise fall before it fits.
+  /// Cancels the weight of cloth that is being sewn: it would fall before it fits.
   void cancel_weight_of_sewn_cloth(std::span<Vec3> force) const;
 
   /// Particles of one part whose forces can be evaluated in parallel with those of other ranges.
@@ -66,7 +66,7 @@ class ClothSystem {
   /// Adds the forces on one part, without its weight; `at` has positions, velocities and forces of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
-  /// State of the thread locks (forces::StretchLimit), per cloth; empty for cloths without a limit.
+  /// State of the thread locks (forces::StretchLimit), per cloth; empty for cloths without a limit to stretch.
   using LockLinearisations = std::vector<forces::LockLinearisation>;
   void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
   void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
@@ -112,7 +112,7 @@ class ClothSystem {
     Vec3 place = Vec3::Zero();
   };
   Overstretch overstretch(std::span<const Vec3> x) const;
-  /// Largest strain of the edges at each particle of one cloth.
+  /// Largest |strain| of weft and warp next to each particle of one cloth.
   std::vector<float> strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const;
 
  private:
@@ -133,7 +133,7 @@ class ClothSystem {
   std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;          // per part
   std::vector<Range> ranges_;                                                // in the order of particles
   std::vector<const forces::Membrane*> membranes_;                           // one per cloth; owned by forces_
-  std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // of cloths that have one
+  std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // of cloths with a limit to stretch
   /// A cloth that is sewn during the run.
   struct Sewing {
     std::size_t cloth;

@@ -133,7 +133,7 @@ double radius_of(const environment::BodyObject& body) {
   return std::sqrt(radius_sq);
 }
 
-// Largest distance of an arc of this angle [rad] from its chord.
+// Upper bound of the distance of an arc of this angle [rad] from its chord [m].
 double sagitta(double radius, double angle) {
   return radius * angle * angle / 8;
 }

@@ -18,8 +18,8 @@
 
 namespace weft::simulation {
 
-/// The state of everything at one time. `x` has the particles, then the vertices of the bodies that collide, those of
-/// bodies that forces move first. `v` has the particles alone.
+/// State of all particles and bodies at one time. `x` has the particles, then the vertices of the bodies that collide,
+/// those of bodies that forces move first. `v` has the particles alone.
 struct SystemState : integrator::State {
   double bodies_time = 0;  ///< time at which the key-framed bodies in x are placed [s]
 
@@ -44,14 +44,16 @@ class CollisionStage {
   /// against penetration holds only for surfaces that start apart.
   std::vector<IntersectionPlace> find_intersections(const SystemState& start);
 
-  /// Lifts bodies that forces move off what they touch at the start, because scenes place a block exactly where it
-  /// stands. Of two bodies that touch, the upper one rises by 0.2 mm at a time, until nothing touches; bodies held by
-  /// keys stay. Returns the largest lift [m]. If something still touches in the end, changes nothing and returns 0.
+  /// Lifts bodies that forces move off what they touch at the start, because scenes place a box exactly on what carries
+  /// it. Of two bodies that touch, the upper one rises by 0.2 mm along the unit vector `up`, at most 33 times; bodies
+  /// that keys hold at t [s] stay. Returns the largest lift [m]. If something still touches in the end, changes nothing
+  /// and returns 0.
   double lift_bodies(const Vec3& up, double t, SystemState& start);
 
-  /// Moves cloth that touches or crosses something at the start, if may_be_untangled() is true for it, until nothing
-  /// does. Particles in `held` stay, as do cloths that were `dressed` before (numbers); others get outside of a dressed
-  /// cloth if one of them is worn over it. Throws Error(scene_invalid) with objects and places if there is no solution.
+  /// Moves cloth that touches or crosses something at the start, if may_be_untangled() is true for the cloth. Particles
+  /// in `held` stay, as do cloths that were `dressed` before (numbers); all others end up outside of a dressed cloth
+  /// that one of them is worn over. Throws Error(scene_invalid) with objects and places if an obstacle goes through
+  /// cloth that has no way out. Other intersections may remain: see find_intersections().
   void untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
                 std::span<const std::size_t> dressed, SystemState& start);
 
@@ -64,8 +66,8 @@ class CollisionStage {
   bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, SystemState& now,
                   SystemState& next);
 
-  /// Whether an obstacle with cloth near it turns so far between t and t + h that its vertices leave the straight
-  /// trajectories that the search assumes.
+  /// Whether an obstacle with cloth near it turns so far between t and t + h [s] that its vertices leave the straight
+  /// trajectories that the search assumes by more than `numerics.separation.creep` detection distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
   /// Whether no body near the cloth moves between t0 and t1 [s]; t0 is the time of `now`. Places bodies in both states.
@@ -90,22 +92,22 @@ class CollisionStage {
     return engine_.is_separated(trajectory_start(now), next.x);
   }
 
-  /// After is_separated() has failed: makes contacts of the pairs that would meet, and returns how many are new. If
-  /// some are, solving again lets forces do what push_apart() would do by moving particles.
+  /// After is_separated() has failed: makes contacts of the pairs that would meet, and returns how many are new. In a
+  /// further solve, new contacts keep pairs apart by forces, where push_apart() would move particles.
   int add_failing_contacts(const SystemState& now, const SystemState& next) {
     return engine_.add_failing_contacts(now.x, next.x);
   }
 
-  /// Corrects positions and velocities of `next` so that no pair meets. Cloth that obstacles leave no space becomes
-  /// pinched: exempted from this. Without `may_pinch`, only obstacles that pinched a cloth before may pinch it. With
+  /// Corrects positions and velocities of `next` so that no pair meets. Cloth between obstacles without space becomes
+  /// pinched: exempted from this. Without `may_pinch`, only obstacles that pinch a cloth already may pinch it. With
   /// `may_move_pins`, pinned particles may move too if nothing else helps; without it, obstructed_pins() only lists
   /// them. Returns nothing on success, else a text that says which objects are stuck, and where.
   std::optional<std::string> push_apart(double h, bool may_pinch, bool may_move_pins, const SystemState& now,
                                         SystemState& next);
-  /// Restarts the trajectory of the step from `next`, where push_apart() has led, and finds contacts there.
+  /// Restarts the trajectory of the step from `next`, as push_apart() has corrected it, and finds contacts there.
   void continue_from(const SystemState& next);
-  /// Whether pins hold particles of pairs of cloth that is_separated() found to meet. If so, obstructed_pins() lists
-  /// them.
+  /// Whether pins hold particles of two cloth triangles that is_separated() found to meet. obstructed_pins() then lists
+  /// those particles.
   bool find_pins_between_cloths();
   /// The pinned particles that the last push_apart() or find_pins_between_cloths() found.
   std::span<const collision::ObstructedPin> obstructed_pins() const { return obstructed_pins_; }
@@ -120,7 +122,6 @@ class CollisionStage {
   };
   Pinches take_pinches(const SystemState& last_start);  ///< `last_start`: start of the last step
 
-  /// Accepts the step.
   void accept() { engine_.accept(); }
 
   /// Before a frame: clears the caches of an optional part of the search, see Engine::forget.

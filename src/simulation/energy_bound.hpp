@@ -1,4 +1,5 @@
-// Detects energy without a source, since an unstable run stays finite for long, and motion left unsolved.
+// Detects energy without a source, as an unstable run may stay finite for long, and large work of the solver's
+// residual.
 #pragma once
 
 #include <optional>
@@ -13,14 +14,13 @@
 namespace weft::simulation {
 
 /// If nothing but pins drives a scene (no moving body, no wind), its mechanical energy grows at most by the work of the
-/// pins, and by what inexact solves add. A run that gains more is warned (numerics.energy.doubtful_gain); a run that
-/// gains much more fails (failing_gain). If cloth can touch something and the method damps, the run is only warned:
-/// contacts at long steps can add energy, which the method then damps away.
-/// In any scene, a run is warned if the residual of the solver does much of the work: the motion stays finite but may
-/// be far off.
+/// pins, and by what inexact solves add. A run that gains more warns (numerics.energy.doubtful_gain); a run that gains
+/// much more fails (failing_gain). If cloth can touch something and the method damps, the run only warns: contacts at
+/// long steps can add energy, which the method then damps away. In any scene, a run warns if the work of the solver's
+/// residual is large: the motion stays finite but may be far off.
 class EnergyBound {
  public:
-  /// `mass`: of all cloths [kg].
+  /// `mass`: of all particles [kg].
   EnergyBound(const scene::Scene& scene, double mass, const FrameReport& start);
 
   /// Checks a frame. Returns warnings, each once in a run; throws Error(simulation_failed) if far too much is gained.
@@ -45,7 +45,7 @@ class EnergyBound {
   double start_energy_;                    // mechanical energy at the start [J]
   double start_kinetic_, start_elastic_;   // at the start [J]
   double potential_low_, potential_high_;  // lowest and highest so far [J]
-  // since the start, with its lowest and highest value [J]
+  // Work of pins since the start, with its lowest and highest value [J].
   double pin_work_ = 0, pin_work_low_ = 0, pin_work_high_ = 0;
   double solver_work_ = 0;  // sum of its magnitudes, frame by frame [J]
   double highest_ = 0;      // largest sum of kinetic and elastic energy so far [J]

@@ -12,7 +12,7 @@ namespace weft::simulation {
 namespace {
 
 // Smallest V / A (see the header) for the gas law; below it, the pressure continues as a straight line. 1/V has no
-// bound, and a line search may reach a volume of zero. Cloth that contact keeps apart encloses more.
+// bound, and a line search may reach a volume of zero. At the end of a step, contacts keep the volume larger.
 constexpr double kMinVolumeRatio = 1e-3;
 
 environment::Spline<1> air_track_of(const scene::Pressure& pressure) {

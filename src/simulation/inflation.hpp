@@ -14,9 +14,9 @@
 
 namespace weft::simulation {
 
-/// The gauge pressure p (above the pressure outside) pushes with the force p ∂V/∂x. If the scene gives p, the energy is
-/// −p V. If it gives an amount of air, as the volume A that the air has at the outside pressure p₀, the air is
-/// isothermal: (p₀ + p) V = p₀ A, with the energy p₀ (V − A − A ln(V / A)).
+/// The gauge pressure p (above the pressure outside) of an enclosed volume V pushes with the force p ∂V/∂x. If the
+/// scene gives p, the energy is −p V. If it gives an amount of air, as the volume A that the air has at the outside
+/// pressure p₀, the air is isothermal: (p₀ + p) V = p₀ A, with the energy p₀ (V − A − A ln(V / A)).
 ///
 /// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ, but not the change of ∂V/∂x, which is indefinite and small against the
 /// stiffness of cloth under tension.
@@ -33,13 +33,14 @@ class Inflation {
   bool empty() const { return cloths_.empty(); }
 
   /// Begins a step that ends at time t of the scene [s]. Cloth that is not closed yet, for which is_closed(cloth) is
-  /// false, has no pressure. When it is closed, the volume that it encloses at x [m] becomes its air. Throws
-  /// Error(scene_invalid) if the scene gives an amount of air, but the closed cloth encloses no volume.
+  /// false, has no pressure. In the step in which it is closed, the volume that it encloses at x [m] becomes the
+  /// reference of its amount of air. Throws Error(scene_invalid) if the scene gives an amount of air, but the cloth
+  /// encloses no volume then.
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
   /// Whether the values of the scene are equal at t0 and t1 [s].
   bool is_constant_between(double t0, double t1) const;
 
-  /// Positions, forces [N] and rows are those of all particles.
+  /// `x`, `force` [N] and the rows of `system` are those of all particles.
   void add_forces(std::span<const Vec3> x, std::span<Vec3> force) const;
   void linearise(std::span<const Vec3> x, std::span<Vec3> force, solver::LinearSystem& system) const;
 

@@ -41,7 +41,7 @@ std::vector<IntersectionPlace> group_intersections(std::span<const collision::Co
       Box3 box;
       for (const auto& [a, b] : group) {
         triangles.insert({a, b});
-        // Uses the smaller triangle, since a large triangle of a floor does not make the place large.
+        // Uses the smaller triangle, because a large triangle of a floor would make the place too large.
         const auto box_of = [&](const collision::Triangle& t) { return Box3(x[t[0]]).extend(x[t[1]]).extend(x[t[2]]); };
         const Box3 box_a = box_of(a), box_b = box_of(b);
         box.extend(box_a.diagonal().norm() < box_b.diagonal().norm() ? box_a : box_b);

@@ -20,13 +20,13 @@ namespace {
 constexpr double kMaxPinSpeed = 20;
 // Smallest jump of a pin at the start that is reported [m].
 constexpr double kMinJump = 1e-3;
-// Largest distance at the start of a pin from the body that it follows, if it is worn [m]: capes are 5 cm off.
+// Largest distance at the start of a pin from the body that it follows, without a warning [m]: capes are 5 cm off.
 constexpr double kMaxPinDistance = 0.1;
 // Depth in an obstacle from which on a particle counts as inside [m].
 constexpr double kEntryDepth = 1e-3;
 // Sampled times per frame.
 constexpr int kSamplesPerFrame = 4;
-// Largest number of particles of one pin whose distances from those of other pins are measured.
+// Largest number of sampled particles of one pin, its last one aside.
 constexpr std::size_t kMaxSampledParticles = 41;
 
 using HeldParticles = std::vector<integrator::HeldParticle>;
@@ -103,7 +103,7 @@ bool overlap(const environment::ClothObject& cloth, std::size_t a, std::size_t b
   });
 }
 
-// Largest distance of particles of two regions, relative to their distance at rest.
+// Largest ratio of distance to distance at rest, between particles of two regions.
 double stretch_between(const HeldRegion& a, const HeldRegion& b) {
   double max_ratio = 0;
   for (std::size_t i = 0; i < a.x.size(); ++i)

@@ -12,7 +12,7 @@
 
 namespace weft::simulation {
 
-/// All pins of a scene, evaluated at the end of each step.
+/// All pins of a scene; they move particles along key frames or with a body.
 class Pins {
  public:
   /// `first_particle`: of each cloth.
@@ -21,7 +21,6 @@ class Pins {
 
   bool empty() const { return groups_.empty(); }
 
-  /// What is known of one pin.
   struct Info {
     std::size_t cloth = 0, number = 0;  ///< of the cloth in the scene, and of the pin in its cloth; from 0
     std::size_t particles = 0;
@@ -31,11 +30,12 @@ class Pins {
   const Info& info(std::size_t pin) const { return groups_[pin].info; }
   /// The pin that has this particle. The particle must belong to a pin.
   std::size_t pin_of(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].pin; }
-  /// Fraction of that pin's strength for this particle, in (0, 1]. The particle must belong to a pin.
+  /// Fraction of that pin's strength for this particle, in (0, 1]; 0 for a particle without a pin.
   double strength_fraction(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].fraction; }
 
-  /// Particles held at time t [s], without those of pins released before t. One entry per particle: where pins overlap,
-  /// the first pin of the scene wins, but the region of any pin wins over the fade of another.
+  /// Particles of all pins with their targets at time t [s], without those of pins released before t. One entry per
+  /// particle: where pins overlap, the first pin of the scene wins, but the region of any pin wins over the fade of
+  /// another.
   void held_at(double t, const environment::Environment& environment,
                std::vector<integrator::HeldParticle>& held) const;
   /// Whether a pin is released at a time in [t0, t1) [s].

@@ -67,7 +67,7 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
               "physics.gusts.speed, air_density or drag is zero"));
 }
 
-// Parts that are listed only if the scene uses them.
+// Parts that are listed only if the scene has them.
 void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
   const auto counted = [](std::size_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");

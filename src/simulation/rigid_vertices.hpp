@@ -18,7 +18,7 @@ class RigidVertices {
   /// `first`: number of the first vertex, which equals the number of particles.
   explicit RigidVertices(Index first) : first_(first) {}
 
-  /// Appends the vertices of a body. `first_of_frame`: first particle of its frame. The frame must outlive this.
+  /// Appends the vertices of a body. `first_of_frame`: first particle of its frame. The frame must outlive this object.
   void add(const mesh::RigidFrame& frame, Index first_of_frame);
 
   bool empty() const { return bodies_.empty(); }

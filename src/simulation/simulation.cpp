@@ -137,7 +137,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
       frame(-scene.preroll_frames()),
       snapshots(scene, environment) {
   set_put_on_times(scene, layers, environment);
-  // A later layer obstructs no earlier one, but a body that crosses it is reported now.
+  // Checks each later layer alone against the bodies now, so that its start is refused before anything is simulated.
   for (std::size_t later = 1; later < layers.size(); ++later) {
     DressedScene alone(scene, environment, layers[later].cloths);
     StepLoop trial(alone.scene, alone.environment, time());
@@ -156,7 +156,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
   for (const std::string& text : find_jumps(scene, environment)) log::warn(text);
 }
 
-// Makes the step loop of all cloths up to this layer, with these at their start.
+// Makes the step loop of all cloths up to this layer, with all of them at their start.
 void Simulation::Impl::begin_layer(std::size_t number) {
   layer = number;
   dressed_scene = all_dressed() ? nullptr : std::make_unique<DressedScene>(scene, environment, layers[layer].dressed);
@@ -179,7 +179,8 @@ void Simulation::Impl::put_on_next() {
   }
 }
 
-// Prepares the start of the dressed cloths. Throws Error(scene_invalid) if surfaces still touch or cross.
+// Lifts bodies and untangles cloth at the start of a layer. Throws Error(scene_invalid) if surfaces still touch or
+// cross.
 void Simulation::Impl::make_start() {
   const scene::Scene& dressed = dressed_scene ? dressed_scene->scene : scene;
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)

@@ -21,7 +21,7 @@ inline constexpr double kMaxStretchRatio = 1.1;
 using frame::FrameReport;
 using frame::ObjectInfo;
 
-/// All particles, cloth by cloth in the order of the scene.
+/// All particles of the cloths that are put on, cloth by cloth in the order of the scene.
 struct ParticleState {
   std::span<const Vec3> positions, velocities;  ///< [m], [m/s]
   std::span<const double> masses;               ///< [kg]
@@ -84,8 +84,8 @@ class Simulation {
   /// The current frame. After construction: frame 0, or the first frame of the preroll (with a negative number).
   frame::SnapshotPtr snapshot() const;
 
-  /// Simulates the next frame. If that fails, keeps the last good frame and throws Error(simulation_failed) with the
-  /// reason.
+  /// Simulates the next frame. If that fails, keeps the last snapshot and throws Error(simulation_failed) with the
+  /// reason, or Error(scene_invalid) if a cloth that is put on or closed in this frame does not fit.
   FrameReport advance();
 
   /// The report of frame 0: energies and distances of the start.

@@ -24,7 +24,7 @@ using LightValue = environment::Spline<10>::Value;
 // Characters are round: faces that meet below this angle are shaded smoothly [degrees].
 constexpr double kCharacterCrease = 80;
 
-// Largest roll of a camera in a file that counts as rounding [degrees].
+// Largest roll of a camera in a file that is ignored without a warning [degrees].
 constexpr double kMinRoll = 0.1;
 
 // Default paleness of the back of a cloth: fraction of the way from the front's colour to white.
@@ -47,7 +47,8 @@ frame::Appearance appearance(const scene::Look& look) {
 constexpr double kGarmentHem = 0.015, kHem = 0.010;
 // Thickness per density of fabrics without a name, estimated from the named ones [m per kg/m²].
 constexpr double kThicknessPerDensity = 2.2e-3;
-// Turn of a strand in a rope, in diameters. Smallest diameter with strands [m]: those finer than pixels flicker.
+// Lay length of a rope (along which a strand turns once), in diameters. Smallest diameter with strands [m]: those finer
+// than pixels flicker.
 constexpr double kStrandTurnLength = 3.2, kMinTwistedDiameter = 0.009;
 
 /// The look of a cloth. Values that the scene does not set come from the finish of its fabric.

@@ -12,7 +12,7 @@
 
 namespace weft::simulation {
 
-// Repeats the attempt without the pins that obstacles or other cloth keep from their targets.
+// Repeats the attempt without the pinned particles that obstacles or other cloth keep from their targets.
 StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool is_last, FrameReport& report) {
   for (int tries = 1;; ++tries) {
     const Attempt attempt{t, h, rejections, is_last, tries == numerics.repair.tries};
@@ -51,7 +51,7 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   return start;
 }
 
-// Gravity of the step, and the air where unchanged velocities lead particles until its stage.
+// Sets gravity and air of the step: at its stage, and at the positions that unchanged velocities lead to.
 void StepLoop::update_weather(double t, double h) {
   const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
   gravity_ = weather_.gravity(t + until_stage);
@@ -66,8 +66,8 @@ void StepLoop::update_weather(double t, double h) {
   problem_.set_air_velocity(std::move(air));
 }
 
-// Solves, checks, pushes apart and continues from there with the contacts of that place, until every candidate pair has
-// a separating plane.
+// Solves, checks, pushes particles apart and continues the solve from there, with the contacts there, until every
+// candidate pair has a separating plane.
 StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
   const SystemState& now = progress_.now;
   int continuations = 0;
@@ -103,7 +103,8 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
   }
 }
 
-// The paper's response. After each solve constraints are set and released; pairs without a separating plane add some.
+// The response of the seed (contact.response). After each solve, constraints are set and released, and pairs without a
+// separating plane add some.
 StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
                                                               FrameReport& report) {
   const SystemState& now = progress_.now;
@@ -135,8 +136,8 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
   collisions_->append_prescribed_particles(held_);
   integrator::StepReport step = solve(attempt.h, start, check_early, report);
   // Normal forces that follow friction, and friction that follows them, can increase each other without end. With fixed
-  // normal forces friction has a potential, and dissipates (measured: a sheet of 0.5 J with friction 10 gained 1,300
-  // J).
+  // normal forces, friction has a potential, and dissipates (measured without: a sheet of 0.5 J with friction 10 gained
+  // 1,300 J).
   if (is_first && step.verdict == integrator::Verdict::unfinished &&
       added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.astray_energy) {
     problem_.fix_normal_forces();
@@ -226,8 +227,8 @@ double StepLoop::energy(const SystemState& moment) const {
          cloth_.potential_energy(moment.particles(), gravity_);
 }
 
-// Energy of `next_` beyond `before` [J], relative to the energy in play at the start of the step. The kinetic energy
-// counts as at least that of a free fall over h [s], so that cloth at rest has a scale.
+// Energy of `next_` beyond `before` [J], relative to the kinetic and elastic energy at the start of the step. The
+// kinetic energy counts as at least that of a free fall over h [s], so that cloth at rest has a scale.
 double StepLoop::added_energy_ratio(double before, double h) const {
   double mass = 0;
   for (const double m : cloth_.masses()) mass += m;

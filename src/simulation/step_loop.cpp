@@ -14,7 +14,7 @@
 namespace weft::simulation {
 namespace {
 
-// A cloth is reported again once it is stretched this many times as far as when it was last reported.
+// A cloth is reported again once its stretch is this many times the last reported one.
 constexpr double kReportAgainRatio = 1.5;
 
 }  // namespace
@@ -103,7 +103,7 @@ std::vector<Vec3> StepLoop::vertices_of(std::size_t body) const {
 }
 
 void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
-  if (cloth_.masses().empty()) return;  // bodies alone are shown
+  if (cloth_.masses().empty()) return;  // no particles: nothing to simulate
   if (collisions_) collisions_->forget();
   progress_.control ? advance_controlled(t_t0, t_t1, report) : advance_equally(t_t0, report);
 }
@@ -119,9 +119,9 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, scene_.solver.halvings, report);
 }
 
-// Whether all cloth is slow, has settled in its last step, and everything that keys move stays where it is at t until
-// the ends of so many steps of length h. Motion that begins is never tried in one long step: contacts that only the
-// long step needs would remain for the steps that follow.
+// Whether all cloth is slow, has settled in its last step, and everything that keys move stays where it is at t, at the
+// ends of the next `steps` steps of length h [s]. Motion that begins is never tried in one long step: contacts that
+// only the long step needs would remain for the steps that follow.
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints release and stick again from step to step.
@@ -158,7 +158,8 @@ bool StepLoop::is_slow(const SystemState& moment) {
   });
 }
 
-// Takes one step in place of several. Returns false if something begins to move; the step then counts as rejected.
+// Takes one step in place of several. Returns false if something begins to move; the step is then discarded, and not
+// counted.
 bool StepLoop::rest(double t, double h, FrameReport& report) {
   if (attempt(t, h, 0, false, report)) return false;
   if (!is_slow(next_) || local_error_ > 0.5 * h * h * numerics.newton.unseen_acceleration) return false;
@@ -184,8 +185,9 @@ void StepLoop::advance_over(double t, double h, int rejections, int halvings_lef
   advance_over(t + 0.5 * h, 0.5 * h, rejections, halvings_left, report);
 }
 
-// Takes steps whose local error is time.tolerance. The remainder of the frame is divided into equal steps no longer
-// than wanted: no step is much shorter than those before it, and lengths change rarely.
+// Takes steps whose local error is at most time.tolerance, as far as their minimum length allows. The remainder of the
+// frame is divided into equal steps no longer than wanted: no step is much shorter than those before it, and lengths
+// change rarely.
 void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report) {
   integrator::StepControl& control = *progress_.control;
   double t = t_t0, h = 0;
@@ -238,8 +240,8 @@ void StepLoop::accept(double h, FrameReport& report) {
   report.solver_error += solver_error_;
 }
 
-// Of the step from `next_` to now. Warns when a cloth exceeds its limit to stretch, and again once it exceeds the last
-// report by half: a tight waist would otherwise be reported with every breath.
+// Measures the accepted step, whose start is in `next_`. Warns when a cloth exceeds kMaxStretchRatio, and again once it
+// exceeds the last report by half: a tight waist would otherwise be reported with every breath.
 void StepLoop::measure_stretch(FrameReport& report) {
   report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
   const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());

@@ -42,8 +42,8 @@ class StepLoop {
     return collisions_ ? collisions_->find_intersections(progress_.now) : std::vector<IntersectionPlace>{};
   }
 
-  /// Advances from the time t_t0 of a frame to the time t_t1 of the next one [s], which is report.frame, and counts in
-  /// the report. Throws Error(simulation_failed) if a step is rejected at every length.
+  /// Advances from the time t_t0 of a frame to the time t_t1 of the next one [s], whose number is report.frame, and
+  /// adds counts to `report`. Throws Error(simulation_failed) if a step is rejected at every length.
   void advance(double t_t0, double t_t1, FrameReport& report);
 
   /// State from which the next step begins.
@@ -68,7 +68,7 @@ class StepLoop {
   const environment::Weather& weather() const { return weather_; }
   const Attachments& attachments() const { return attachments_; }
   const StepProblem& problem() const { return problem_; }
-  /// Number of particles that pins or velocity constraints hold.
+  /// Number of particles that pins, keys or velocity constraints hold.
   std::size_t held() const { return held_.size(); }
   /// Contact forces with friction on all particles at the end of the last step [N]; zeros before the first step.
   std::vector<Vec3> contact_forces() const;
@@ -152,9 +152,9 @@ class StepLoop {
   integrator::Stepper stepper_;
   SystemState next_;                           // end of the current step; its start once the step is accepted
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
-  std::vector<double> reported_overstretch_;   // stretch over its limit that was last reported of each cloth; 0: none
+  std::vector<double> reported_overstretch_;   // last reported ratio of stretch to limit, per cloth; 0: none
   std::vector<integrator::HeldParticle> held_;
-  std::size_t pinned_ = 0;  // how many of them pins and keys hold; velocity constraints hold the others
+  std::size_t pinned_ = 0;  // pins and keys hold the first pinned_ of held_, velocity constraints the others
   std::optional<CollisionStage> collisions_;
   Attachments attachments_;
   environment::Weather weather_;

@@ -226,7 +226,6 @@ bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   return false;
 }
 
-// Assembles the rows of the active parts anew.
 void StepProblem::assemble_rows(const integrator::StagePoint& at, int iteration) {
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;

@@ -24,7 +24,7 @@ struct SolveMemory {
   collision::ContactLag contacts;
   ClothSystem::LockLinearisations locks;  ///< empty before the first step
 
-  // Internal forces of cloths, kept to save time: most cloths of a scene stop moving in a solve before the last one.
+  // Internal forces of cloths, kept to save time: in a solve, most cloths stop moving before the last cloth does.
   using PaddedVec3s = std::vector<solver::PaddedVec3<double>>;
   PaddedVec3s x, v;   ///< where each cloth's forces were last evaluated; NaN: nowhere
   PaddedVec3s force;  ///< the forces there [N]
@@ -54,9 +54,9 @@ class StepProblem final : public integrator::System {
   void use_attachments(const Attachments& attachments) { attachments_ = &attachments; }
 
   /// Begins a step that ends at time t [s since the start of the run], before its first solve. `pinned`: particles that
-  /// pins hold until then. Updates rest shapes and enclosed air; starts friction from the normal forces, and thread
-  /// locks from the tensions, at the start x [m]. The next linearisation assembles the matrix anew. `pulls` must
-  /// outlive the step.
+  /// pins or keys hold in the step. Updates rest shapes and enclosed air; starts friction from the normal forces, and
+  /// thread locks from the tensions, at the particles' start positions x [m]. The next linearisation assembles the
+  /// matrix anew. `pulls` must outlive the step.
   void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
                   std::span<const PinSpring> pulls = {});
 
@@ -64,7 +64,7 @@ class StepProblem final : public integrator::System {
   void set_air_velocity(SolveMemory::PaddedVec3s air);
 
   /// Called within a step whose contacts have changed: friction follows the normal forces for numerics.newton.patience
-  /// / 2 more updates, or longer if there were fewer updates so far.
+  /// / 2 more updates, or for those that are left of numerics.newton.patience if they are more.
   void limit_friction_updates() {
     memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.patience / 2)};
   }

@@ -29,12 +29,12 @@ SystemState start_of(const scene::Scene& scene, const environment::Environment& 
 void hold_frames(const environment::Environment& environment, const ClothSystem& cloth, double t,
                  std::vector<integrator::HeldParticle>& held);
 
-/// Sets the velocities of frames that are released in the step from t to t + h [s] to those of their keys plus the
-/// body's own. Returns whether there are any.
+/// Sets the velocities of frames that are released in the step from t to t + h [s] to those of their keys at t plus the
+/// body's own velocity and spin. Returns whether there are any.
 bool release_frames(const environment::Environment& environment, const ClothSystem& cloth, double t, double h,
                     std::span<Vec3> v);
 
-/// Whether no body is released or moved by its keys between t0 and t1 [s], of those not yet released at t0.
+/// Whether, of the bodies not yet released at t0, none is released or moved by its keys between t0 and t1 [s].
 bool frames_are_constant(const environment::Environment& environment, double t0, double t1);
 
 }  // namespace weft::simulation

@@ -45,7 +45,8 @@ bool may_be_untangled(const scene::Scene& scene) {
 
 void CollisionStage::untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
                               std::span<const std::size_t> dressed, SystemState& start) {
-  // Dressed cloths stand still, like obstacles. They come last, so that cloth that leaves a body then leaves them too.
+  // Dressed cloths stand still, like obstacles. They come last, so that cloth is moved out of bodies first, then out of
+  // dressed cloths.
   std::vector<std::size_t> order;  // numbers of the engine's bodies
   const std::size_t cloths = environment_.cloths.size();
   for (std::size_t c = 0; c < cloths; ++c)

@@ -49,7 +49,7 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   const bool any_lagged = std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; });
   if (any_lagged) pins_.held_at(t, environment_, at_start_);
   std::ranges::fill(lags_, std::uint8_t{0});
-  // Particles that have arrived are held again. Those that their pin releases by then are not in `targets_`.
+  // Particles that have arrived are held again. Those that their pin releases before t + h are not in `targets_`.
   if (any_lagged)
     for (const integrator::HeldParticle& start : at_start_) {
       const auto i = static_cast<std::size_t>(start.constraint.particle);
@@ -84,7 +84,7 @@ bool YieldingPins::are_constant_between(double t0, double t1) {
 }
 
 // A pin with a strength is a damped spring. The force on a lagging particle falls linearly with its speed, from the
-// maximum at rest to zero at the target speed: a load slows the particle but cannot stop it.
+// maximum at rest to zero at the target speed: a load below the maximum slows the particle but does not stop it.
 void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x) {
   const Index particle = target.constraint.particle;
   const auto i = static_cast<std::size_t>(particle);

@@ -14,15 +14,16 @@
 namespace weft::simulation {
 
 /// A pin with a `strength` is always a damped spring. Any other pin holds its particles exactly at their targets, until
-/// one of them cannot get there. That particle then lags: a force that obstacles and cloth can withstand pulls it,
-/// until it arrives and is held again.
+/// one of them cannot get there. That particle then lags: a force of bounded size pulls it, until it arrives and is
+/// held again.
 class YieldingPins {
  public:
   /// `first_particle`: of each cloth; `masses`: of all particles [kg]. The environment and `masses` must outlive it.
   YieldingPins(const scene::Scene& scene, const environment::Environment& environment,
                const std::vector<Index>& first_particle, std::span<const double> masses);
 
-  /// Begins a step from t to t + h [s] with particles at x [m]: finds which are held at its end, and which are pulled.
+  /// Begins a step from t to t + h [s] with particles at x [m]: finds which ones are held at t + h, and which are
+  /// pulled.
   void begin_step(double t, double h, std::span<const Vec3> x);
   const std::vector<integrator::HeldParticle>& held() const { return held_; }
   const std::vector<PinSpring>& pulls() const { return pulls_; }
@@ -46,8 +47,8 @@ class YieldingPins {
   };
   Lags take_lags();
 
-  /// Between two frames: copies which particles lag from another simulation of a cloth with `count` particles. Its
-  /// first particle is `first_there` there and `first` here. Pins that were reported there are not reported again.
+  /// Between two frames: takes over from `there` which particles of a cloth lag. The cloth has `count` particles; the
+  /// first is `first_there` there and `first` here. Pins that were reported there are not reported again.
   void copy_state_from(const YieldingPins& there, Index first_there, Index first, Index count);
 
   /// Which particles lag, and which pins were reported.
@@ -60,13 +61,13 @@ class YieldingPins {
   Pins pins_;
   const environment::Environment& environment_;
   std::span<const double> masses_;
-  std::vector<double> pull_force_;  // total force on the lagging particles, per pin [N]
+  std::vector<double> pull_force_;  // largest total force on the lagging particles, per pin [N]
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;
   std::vector<PinSpring> pulls_;
-  std::vector<std::uint8_t> lagged_, lags_;          // per particle: in the previous step, and in this one
-  std::vector<std::uint8_t> forced_;                 // per particle: let go in this step
-  std::vector<std::size_t> lagging_particles_;       // number of particles in this step, per pin
-  std::map<std::size_t, std::string> obstructions_;  // in this step, of pins that let go
+  std::vector<std::uint8_t> lagged_, lags_;     // per particle: in the previous step, and in this one
+  std::vector<std::uint8_t> forced_;            // per particle: whether release_particle() was called for this step
+  std::vector<std::size_t> lagging_particles_;  // number of particles that lag in this step, per pin
+  std::map<std::size_t, std::string> obstructions_;  // in this step, of the pins of those particles
   double forced_t_ = 0, forced_h_ = 0;               // the step to which forced_ belongs [s]
   bool any_lags_ = false;
   std::set<std::size_t> lagging_, lagging_before_;  // pins, in this frame and in the previous one

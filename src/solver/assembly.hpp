@@ -12,8 +12,8 @@ namespace weft::solver {
 
 /// A symmetric matrix of forces that do not change if all particles translate together. It stores block (i, j) for each
 /// pair of particles i < j, and the own block of each particle (its mass, drag of air). Block (j, i) is the transpose.
-/// The diagonal block follows from the condition that the row sums to the particle's own block, so forces add nothing
-/// there. That takes a third of the additions of a full matrix.
+/// The diagonal block follows from the condition that each row sums to its particle's own block, so forces between
+/// particles add nothing there. Thus forces add a third of the blocks that a full matrix needs.
 ///
 /// Bending adds scalar multiples of the identity; each pair stores that scalar, part of which is constant.
 class Assembly {
@@ -22,7 +22,7 @@ class Assembly {
   /// For matrices with the pattern of `matrix`.
   explicit Assembly(const BlockMatrix& matrix);
 
-  /// Index of the block of rows i and columns j of a pair, i < j. The pattern must hold it as a full block.
+  /// Index of block (i, j), i < j. The pattern must hold it as a full block.
   Index block(Index i, Index j) const;
   /// Index of a pair's scalar, in either order.
   Index scalar(Index i, Index j) const;
@@ -31,8 +31,8 @@ class Assembly {
   void clear();
   /// Makes the scalars added so far the constant part.
   void keep_constant();
-  /// Resets the rows [begin, end), and the pairs whose smaller index is there: scalars to the constant part, all else
-  /// to zero.
+  /// Resets the own blocks of the rows [begin, end) except for their constant part, and the pairs whose smaller index
+  /// is there: scalars to the constant part, blocks to zero.
   void start(Index begin, Index end);
 
   void add_constant_to_own(Index row, double value) { constant_own_[static_cast<std::size_t>(row)] += value; }
@@ -69,8 +69,8 @@ class Assembly {
 };
 
 /// The rows [begin, end) of an assembly, and the pairs whose smaller index is there; what is added elsewhere is
-/// ignored. If several threads each add all elements, in their order, to a range of their own, the sums have the bits
-/// of one thread. A default-constructed object holds no rows.
+/// ignored. Each of several threads may own a range of rows and add all elements, in their order: the sums then have
+/// the bits of one thread. A default-constructed object holds no rows.
 class AssemblyRows {
  public:
   AssemblyRows() = default;

@@ -46,9 +46,9 @@ inline PackedBlock packed_scalar(double value) {
   return {Lanes{value, 0, 0, 0}, Lanes{value, 0, 0, 0}, Lanes{value, 0, 0, 0}};
 }
 
-/// Stores both triangles, so that the product is one gather per row without write conflicts and has the same bits on
-/// any number of threads. A block that can only be a multiple of the identity is stored as one number: 30 of the 37
-/// blocks in a garment's row come from bending alone, and a product reads a third of the memory.
+/// Stores both triangles, so that each row of a product is computed on its own, with the same bits on any number of
+/// threads. A block that can only be a multiple of the identity is stored as one number: 30 of the 37 blocks in a
+/// garment's row come from bending alone, and a product reads a third of the memory.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
@@ -62,7 +62,7 @@ class BlockMatrix {
   Index rows() const { return static_cast<Index>(diagonal_.size()); }
   std::size_t blocks() const { return blocks_.columns.size() + isotropic_.columns.size(); }
 
-  /// Slot of block (row, column). The pattern must hold it.
+  /// Slot of block (row, column), which the pattern must hold.
   Slot slot(Index row, Index column) const;
   Slot diagonal(Index row) const { return diagonal_[row]; }
 
@@ -70,7 +70,7 @@ class BlockMatrix {
 
   void add(Slot slot, const Mat3& block) { add(slot, 1, block); }
   void subtract(Slot slot, const Mat3& block) { add(slot, -1, block); }
-  /// Adds `factor` times the block.
+  /// Adds `factor` times the block. The slot must not be negative.
   void add(Slot slot, double factor, const Mat3& block) {
     double* value = values_.data() + 9 * static_cast<std::size_t>(slot);
     for (int k = 0; k < 8; k += 4)

@@ -10,12 +10,12 @@
 namespace weft::solver {
 namespace {
 
-// Largest stiffness of a particle, relative to its entry of the mass-weighted norm (rate² m), for single precision,
+// Largest stiffness of a particle (trace of its 3×3 block), relative to its norm weight rate² m, for single precision,
 // which rounds stiffness by 6e-8 (measured: sheets that swing on threads of 1e6, 1e7 and 1e8 N/m, ratios 8e5, 8e6 and
 // 8e7, take 361, 1,018 and 2,345 Newton iterations; in double 355, 1,126 and 2,932).
 constexpr double kMaxSingleStiffness = 1e7;
 
-// Whether all particles are below kMaxSingleStiffness. False without a mass-weighted norm.
+// Whether no particle exceeds kMaxSingleStiffness. False without a mass-weighted norm.
 bool allows_single_precision(const LinearSystem& system) {
   if (system.norm_weights.empty()) return false;
   const auto fits = [&](Index particle, double stiffness) {
@@ -106,7 +106,7 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
     copy_as_vec3(double_.recurrence.residual(), residual_);
   }
   LinearReport report{progress.iterations, {}, end == End::converged, end != End::indefinite};
-  // If the residual is zero there is no error to estimate.
+  // Without an iteration, or with a residual of zero, there is no error to estimate.
   for (const Progress::OfPart& part : progress.parts)
     report.errors.push_back(
         part.gains.empty() || progress.is_exact ? 0 : std::sqrt(part.error_energy() * part.error_norm_ratio()));

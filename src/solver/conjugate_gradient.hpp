@@ -11,37 +11,37 @@ namespace weft::solver {
 
 struct LinearReport {
   int iterations = 0;
-  std::vector<double> errors = {};  ///< estimate of ‖e‖ in the mass-weighted norm, per diagonal block
+  std::vector<double> errors = {};  ///< per diagonal block: estimated error, in the mass-weighted norm if there is one
   bool converged = false;
   bool definite = true;  ///< false: the iteration ended at a direction without positive curvature
 };
 
-/// Solves A x = b on the free directions. The preconditioner P of particles and multigrid levels is cheap, and
-/// sufficient if a tenth of the residual may stay. For tighter goals, or if the iteration would take long, an
-/// incomplete factor L joins it: P⁻¹ + 16 (L Lᵀ)⁻¹.
+/// Solves A x = b on the free directions. The preconditioner P of particles and multigrid levels is cheap. For
+/// `relative` goals below kTightGoal without absolute goals, or if many more iterations are expected, an incomplete
+/// factor L joins it: P⁻¹ + 16 (L Lᵀ)⁻¹.
 ///
-/// Single precision is used as far as the mass-weighted norm allows it. It is safe because Newton's method evaluates
-/// its residual in double, which contains whatever a solve in single precision leaves.
+/// Single precision is used if `relative` is at least kTightGoal, and no particle exceeds kMaxSingleStiffness. It is
+/// safe because Newton's method evaluates its residual in double, so that the next solve corrects errors of rounding.
 class ConjugateGradient {
  public:
   /// Prepares the preconditioner for `system`, which must outlive the following calls. With AggregateSums::reuse, sums
   /// over aggregates are reused if they have been made since the last call with AggregateSums::recompute.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
-  /// P⁻¹ b, a rough solution that obeys the constraints. Valid until the next call.
+  /// Returns P⁻¹ b, a rough solution that obeys the constraints. Valid until the next call.
   std::span<const Vec3> precondition(std::span<const Vec3> b);
 
-  /// Iterates x until its error meets `goal`, or for `max_iterations`.
+  /// Iterates from x = 0, whatever x contains, until the error meets `goal`, or for `max_iterations`.
   ///
-  /// The iteration itself gives the error: each step reduces ‖e‖²_A by α rᵀz, so the gains of the last steps estimate
-  /// the square of the error before them (Hestenes & Stiefel 1952; Strakoš & Tichý, "Error Estimation in Preconditioned
-  /// Conjugate Gradients", BIT 45, 2005). Each diagonal block has its own summand of rᵀz. The error in the
-  /// mass-weighted norm is that estimate times the largest ratio of mass-weighted norm to energy among the last steps.
-  /// √(rᵀ P⁻¹ r) does not replace the estimate: if the motion is smooth it is far below ‖e‖_A, and flat sheets fold in
-  /// free fall.
+  /// The iteration itself gives the error e: a step of length α along a search direction reduces ‖e‖²_A by α rᵀz with z
+  /// = P⁻¹ r, so the gains of the last steps estimate ‖e‖²_A before them (Hestenes & Stiefel 1952; Strakoš & Tichý,
+  /// "Error Estimation in Preconditioned Conjugate Gradients", BIT 45, 2005). Each diagonal block has its own summand
+  /// of rᵀz. The squared error in the mass-weighted norm is that estimate times the largest ratio of a last step's
+  /// squared norm to its gain. √(rᵀz) does not replace the estimate: for smooth motion this root is far below ‖e‖_A,
+  /// and flat sheets fold in free fall.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                      const Directions& directions = {});
-  /// Solves for these diagonal blocks only: all other particles count as held, so x and residuals are zero there.
+  /// Solves for these diagonal blocks only: all other particles count as held, so x is zero there.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                      const Directions& directions, std::span<const std::size_t> parts);
   /// b − A x of the last solve, on the rows that it solved for.
@@ -53,7 +53,7 @@ class ConjugateGradient {
  private:
   const LinearSystem* system_ = nullptr;
   bool allows_single_ = false;  // for the prepared system
-  /// Recurrence in one precision, and what it is prepared for.
+  /// Recurrence in one precision, and whether it is prepared.
   template <class Real>
   struct PrecisionState {
     Recurrence<Real> recurrence;

@@ -55,7 +55,7 @@ bool IncompleteCholesky::factorise(const LinearSystem& system) {
   return false;
 }
 
-// In place, row by row: L_ij = (A_ij − Σ_k L_ik L_jkᵀ) L_jj⁻ᵀ over the columns k that both rows have.
+// In place, row by row: L_ij = (A_ij − Σ_k L_ik L_jkᵀ) L_jj⁻ᵀ over the columns k < j that both rows have.
 bool IncompleteCholesky::try_factorise(double shift) {
   for (std::size_t i = 0; i + 1 < row_start_.size(); ++i) {
     const std::size_t begin = row_start_[i], last = row_start_[i + 1] - 1;

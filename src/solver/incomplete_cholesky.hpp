@@ -9,17 +9,17 @@
 
 namespace weft::solver {
 
-/// L Lᵀ ≈ S A S + (I − S) in 3×3 blocks, where L has the pattern of the lower triangle (Meijerink & van der Vorst, "An
-/// Iterative Solution Method for Linear Systems of Which the Coefficient Matrix is a Symmetric M-Matrix", 1977). It is
-/// nearly exact along a thread, so it gains over multigrid levels the stiffer the threads are. Terms enter with their
-/// 3×3 diagonal blocks.
+/// L Lᵀ ≈ S A S + (I − S) in 3×3 blocks, where S projects on the free directions and L has the pattern of the lower
+/// triangle (Meijerink & van der Vorst, "An Iterative Solution Method for Linear Systems of Which the Coefficient
+/// Matrix is a Symmetric M-Matrix", 1977). L Lᵀ is nearly exact along a thread: the stiffer the threads, the more
+/// iterations it saves. Terms enter with their 3×3 diagonal blocks; outer products do not.
 class IncompleteCholesky {
  public:
   /// Returns false if no factor exists even with the largest shift, for example because values are not finite.
   bool factorise(const LinearSystem& system);
 
-  /// z += factor (L Lᵀ)⁻¹ r on the rows of `parts`; returns the increase of r·z. r must obey the constraints; z then
-  /// does up to rounding.
+  /// z += factor (L Lᵀ)⁻¹ r on the rows of `parts`; returns the increase of r·z. If r obeys the constraints, as it
+  /// must, z still does, up to rounding.
   double add(double factor, std::span<const PaddedVec3<double>> r, std::span<PaddedVec3<double>> z,
              std::span<const DiagonalBlock> parts);
 

@@ -19,8 +19,8 @@ struct ParticleConstraint {
   Mat3 free = Mat3::Zero();  ///< a projection: symmetric, free² = free
 };
 
-/// Contribution of a contact to the matrix: a spring between weighted sums of particles, w wᵀ ⊗ stiffness. Contacts
-/// change with every step, so they are not part of the fixed pattern.
+/// Contribution of a contact to the matrix, w wᵀ ⊗ stiffness: a spring that resists displacements by their weighted
+/// sum. Contacts change with every step, so they are not part of the fixed pattern.
 struct StencilTerm {
   std::array<Index, 4> particles{0, 0, 0, 0};
   std::array<double, 4> weights{0, 0, 0, 0};  ///< zero for unused entries
@@ -40,9 +40,9 @@ struct DiagonalTerm {
   Mat3 stiffness = Mat3::Zero();  ///< symmetric, positive semidefinite [N/m]
 };
 
-/// stiffness · d dᵀ over the rows of one diagonal block: the contribution of a quantity that depends on all of its
-/// particles, such as the enclosed volume (d is its derivative). Such terms are few and dense, so they are kept out of
-/// the matrix.
+/// stiffness · d dᵀ over the rows of one diagonal block: the contribution of a quantity that depends on all of the
+/// block's particles, such as the enclosed volume (d is its derivative). Such terms are few and dense, so they are kept
+/// out of the matrix.
 struct RankOneTerm {
   Index begin = 0;              ///< first row
   std::vector<Vec3> direction;  ///< d, one entry per row from `begin` on
@@ -55,12 +55,13 @@ struct Aggregates {
   Index count = 0;
 };
 
-/// A diagonal block: rows [begin, end) that the matrix does not couple with others. Terms may couple them.
+/// A diagonal block: rows [begin, end) that the matrix does not couple with other rows. Terms may couple different
+/// blocks.
 struct DiagonalBlock {
   Index begin = 0, end = 0;
   std::uint64_t version = 1;  ///< changes whenever the values of these rows change
-  /// Few rows that are stiff against each other, such as those of a rigid body. On every level of the preconditioner
-  /// each of these particles is an aggregate of its own, so that the coarsest level solves them exactly.
+  /// Few rows with stiff forces between them, such as those of a rigid body. On every level of the preconditioner each
+  /// of these particles is an aggregate of its own, so that the coarsest level solves the block exactly.
   bool is_small = false;
 };
 
@@ -72,8 +73,8 @@ struct LinearSystem {
   std::vector<DiagonalTerm> diagonal_terms;
   std::vector<RankOneTerm> rank_one_terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
-  /// Weights of the mass-weighted norm in which errors are measured, one per row. Must not exceed the matrix, as rate²
-  /// M does not exceed rate² M + K. Empty: the energy norm is used instead.
+  /// Weights of the mass-weighted norm in which errors are measured, rate² m, one per row. As a diagonal matrix they
+  /// must not exceed the system's matrix, rate² M + K. Empty: the energy norm is used instead.
   std::vector<double> norm_weights;
   /// Multigrid levels of the preconditioner, finest first: aggregates of particles, aggregates of those, and so on. The
   /// coarsest level must be small enough for a dense factorisation. No aggregate spans two diagonal blocks, and the
@@ -92,7 +93,7 @@ inline std::vector<DiagonalBlock> parts_of(const LinearSystem& system) {
   return system.parts.empty() ? std::vector<DiagonalBlock>{{0, system.matrix.rows()}} : system.parts;
 }
 
-/// The rows of the diagonal blocks with these numbers.
+/// The rows of the diagonal blocks with these indices.
 inline std::vector<RowRange> ranges_of(std::span<const DiagonalBlock> parts, std::span<const std::size_t> numbers) {
   std::vector<RowRange> ranges;
   for (std::size_t p : numbers)

@@ -1,4 +1,4 @@
-// Vectors of the inner loops: four numbers per particle in one register, the last one zero.
+// Vectors of the inner loops: four numbers per particle in one register, of which the last one is zero.
 #pragma once
 
 #include <cstring>
@@ -34,7 +34,7 @@ void store_padded(Real* p, const Padded& value) {
   static_assert(sizeof value == 4 * sizeof(Real));
   std::memcpy(p, &value, sizeof value);
 }
-/// The same with zero as last number.
+/// Returns q with zero as its last number.
 inline PaddedVec3<float> clear_last_lane(PaddedVec3<float> q) {
   return __builtin_shufflevector(q, PaddedVec3<float>{}, 0, 1, 2, 4);
 }

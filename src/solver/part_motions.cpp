@@ -7,15 +7,17 @@
 namespace weft::solver {
 namespace {
 
-// A motion is independent of the directions before it if more than this fraction of its energy is left without them.
+// A motion counts if its part that is independent of the directions before it has more than this fraction of its
+// energy.
 constexpr double kMinIndependentEnergy = 1e-4;
 
 using Block = Eigen::Matrix<double, kDirections, kDirections>;
 
-// Forces along the directions of a diagonal block are this times the term's stiffness times a displacement.
+// Product with a term's stiffness and a displacement: the term's forces along the directions of a diagonal block.
 using TermForces = Eigen::Matrix<double, kDirections, 3>;
 
-// Blocks of terms in the projected system (lower triangle), and their products with the motions, per diagonal block.
+// Contributions of terms to the projected system (lower triangle), and to its products with the motions, per diagonal
+// block.
 class TermBlocks {
  public:
   explicit TermBlocks(std::size_t parts) : products(parts, PartMotions::Products::Zero()) {}
@@ -36,7 +38,7 @@ class TermBlocks {
   std::vector<PartMotions::Products> products;
 };
 
-// Position of a particle's diagonal block among the selected ones; -1 if it is not selected.
+// Position of a particle's diagonal block among the selected ones; −1 if it is not selected.
 class SelectionIndex {
  public:
   SelectionIndex(std::vector<DiagonalBlock> parts, std::span<const std::size_t> selected)

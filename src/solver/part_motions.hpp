@@ -1,4 +1,4 @@
-// Galerkin correction along a few directions of each diagonal block: its translations, and given motions.
+// Galerkin correction along a few directions of each diagonal block: its translations, and the given motions.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -15,11 +15,12 @@ namespace weft::solver {
 inline constexpr int kMaxMotions = 2;
 /// Directions of one diagonal block: three translations, then the motions.
 inline constexpr int kDirections = 3 + kMaxMotions;
-/// Coordinates of one diagonal block along these directions, or forces along them.
+/// Coefficients of these directions in a displacement of one diagonal block, or the work of forces along them.
 using AlongMotions = Eigen::Matrix<double, kDirections, 1>;
 
 /// The linear system, projected on these directions. A diagonal block has translations if no constraint acts on any of
-/// its particles. A motion is skipped if it is a combination of the directions before it, up to rounding.
+/// its particles. A motion is skipped if it is nearly a combination of the directions before it
+/// (kMinIndependentEnergy).
 class PartMotions {
  public:
   /// Column m: the product of the whole system with motion m, along the directions of one diagonal block.
@@ -33,7 +34,7 @@ class PartMotions {
                const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,
                std::span<const Mat3> row_sums, std::span<const Products> products);
 
-  /// Returns the coordinates that balance `forces`, both per selected block.
+  /// Returns the coefficients whose displacement balances `forces`, both per selected block.
   std::vector<AlongMotions> solve(std::span<const AlongMotions> forces) const;
 
  private:

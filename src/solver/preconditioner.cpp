@@ -14,9 +14,9 @@ namespace {
 
 // Largest number of levels, the coarsest included.
 constexpr std::size_t kMaxLevels = 16;
-// If constraints leave an aggregate no motion, its block is singular and its residual zero. A shift by this fraction of
-// the block's own trace makes it definite. It must be below the ratio of masses to stiff threads (measured: with 1e-9
-// of the mean trace, cells of 0.1 m by 1e-5 m took twenty times the iterations).
+// If constraints hold all particles of an aggregate, its block is singular and its residual zero. A shift by this
+// fraction of the block's own trace makes the block definite. The fraction must be below the ratio of masses to stiff
+// threads (measured: with 1e-9 of the mean trace, cells of 0.1 m by 1e-5 m took twenty times the iterations).
 constexpr double kMinRelativeShift = 1e-13;
 
 Mat3 singular_shift(const Mat3& block) {
@@ -26,7 +26,7 @@ Mat3 singular_shift(const Mat3& block) {
 
 }  // namespace
 
-// S_i A_ij S_j
+// S_i block S_j, where S projects on the free directions.
 template <class Real>
 Mat3 Preconditioner<Real>::filtered(Index i, const Mat3& block, Index j) const {
   const Index ci = constraint_of_[at(i)], cj = constraint_of_[at(j)];
@@ -87,7 +87,8 @@ void Preconditioner<Real>::select(std::span<const std::size_t> parts) {
   for (Level& level : levels_) {
     std::vector<RowRange> ranges;
     for (std::size_t p : selected_) ranges.push_back(level.of_part[p]);
-    // An aggregate has, or interpolates, about twelve members, so chunks have fewer rows than those of particles.
+    // A chunk of aggregates has fewer rows than one of particles, as an aggregate costs more: it has about twelve
+    // members.
     level.chunks = RowChunks(ranges, kGrainSize / 4);
   }
 }
@@ -153,13 +154,13 @@ void Preconditioner<Real>::allocate_levels() {
   find_common_levels();
 }
 
-// Neighbours are particles that share a full block, and aggregates that neighbours are in.
+// Neighbours are particles that share a full block, and aggregates with neighbouring members.
 template <class Real>
 void Preconditioner<Real>::compute_weights() {
   const double smoothing = interpolates_ ? numerics.linear.interpolation : 0;
   const BlockMatrix::Pattern& full = system_->matrix.full();
   std::vector<std::vector<Index>> neighbours(inverse_.size());
-  // Each particle of a small diagonal block is an aggregate of its own, and follows no other.
+  // Each particle of a small diagonal block is an aggregate of its own, and interpolates from no other.
   std::vector<char> is_small(neighbours.size(), 0);
   for (const DiagonalBlock& part : parts_)
     if (part.is_small) std::fill(is_small.begin() + part.begin, is_small.begin() + part.end, 1);
@@ -231,8 +232,8 @@ void Preconditioner<Real>::invert_particles() {
     });
 }
 
-// Sums the stiffness of one diagonal block of the matrix (the matrix without its mass part): each 3×3 block into the
-// finest aggregate that contains both its row and its column, from there into coarser ones.
+// Sums the stiffness of one diagonal block (its matrix without the mass part): each 3×3 block into the finest aggregate
+// that contains both its row and its column, and from there into coarser ones.
 template <class Real>
 void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
   const std::size_t depth = levels_.size();
@@ -295,8 +296,8 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
   scale_sums(part);
 }
 
-// Scales the sums of a diagonal block by the stiffness that is left on their level, and adds what is the same on all
-// levels: the mass-weighted norm, and the stiffness along held directions.
+// Scales the sums of a diagonal block by the stiffness fraction of their level, and adds the parts that are the same on
+// all levels: the mass part, and the stiffness along held directions.
 template <class Real>
 void Preconditioner<Real>::scale_sums(std::size_t part) {
   const auto unscaled_block_of = [&](Index i) -> Mat3 {
@@ -328,7 +329,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
         coarsest.of_matrix[g];
 }
 
-// Zero blocks. Only few particles of a large cloth are touched by terms.
+// Returns zero blocks. Terms act on only few particles of a large cloth.
 template <class Real>
 typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::make_touched_blocks() const {
   TouchedBlocks all{std::vector<Index>(touched_.size(), -1), {}};
@@ -340,7 +341,7 @@ typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::make_touched_
   return all;
 }
 
-// Stiffness with which terms hold each particle if all particles on its side of the term move with it.
+// Stiffness of terms for each particle if all particles on its side of a term move with it.
 template <class Real>
 typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lump_terms() const {
   TouchedBlocks lumped = make_touched_blocks();
@@ -357,15 +358,15 @@ typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lump_terms() 
   return lumped;
 }
 
-// An aggregate takes the terms of its particles, and of others as far as they follow it. Without the latter, cloth with
-// scattered contacts would count as free beside them.
+// An aggregate gets the terms of all particles that interpolate from it, by their weights. With the terms of its own
+// particles alone, aggregates between scattered contacts would count as free.
 template <class Real>
 void Preconditioner<Real>::invert_aggregates() {
   const TouchedBlocks of_particles = lump_terms();
   std::vector<Mat3> of_members;  // per member, if members are aggregates
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     Level& level = levels_[l];
-    // Aggregates of changed blocks, and those that terms act on or have acted on.
+    // Aggregates of changed diagonal blocks, and those with terms now or at the last call.
     std::vector<char> needs_inverse = level.touched;
     std::ranges::fill(level.touched, 0);
     std::vector<Mat3> of_groups(needs_inverse.size(), Mat3::Zero());
@@ -398,7 +399,7 @@ void Preconditioner<Real>::invert_aggregates() {
 template <class Real>
 void Preconditioner<Real>::factorise_coarsest() {
   coarse_matrix_ = coarse_matrix_without_terms_;
-  // Coarsest aggregates that an end of a term follows, with weights.
+  // Coarsest aggregates from which an end of a term interpolates, with weights.
   using CoarseWeights = std::vector<std::pair<Index, double>>;
   const auto add_coarse_weights = [&](Index i, double weight, CoarseWeights& weights_of_end) {
     for (Index s = coarse_weights_.start[i]; weight != 0 && s < coarse_weights_.start[i + 1]; ++s) {
@@ -420,7 +421,7 @@ void Preconditioner<Real>::factorise_coarsest() {
     add(of[0], filtered(term.particle, term.stiffness, term.particle), of[0]);
   }
   for_each_term(*system_, [&](const auto& term) {
-    // Free particles of a term move together; if one is constrained, each is filtered by itself.
+    // If all particles are free, their weights are added up first; if one is constrained, each is filtered by itself.
     const std::size_t count = term.particles.size();
     const bool free = std::ranges::all_of(term.particles, [&](Index i) { return is_free(i); });
     for (CoarseWeights& weights_of_end : of) weights_of_end.clear();
@@ -435,7 +436,7 @@ void Preconditioner<Real>::factorise_coarsest() {
   coarse_factor_ = coarse_matrix_.template cast<Real>();
 }
 
-// From particles to finer, then to coarser aggregates.
+// From particles to the finest aggregates, then to coarser ones.
 template <class Real>
 void Preconditioner<Real>::restrict_residual(std::span<const PaddedVec3<Real>> r) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
@@ -448,7 +449,7 @@ void Preconditioner<Real>::restrict_residual(std::span<const PaddedVec3<Real>> r
   }
 }
 
-// From the coarsest aggregates down: each adds what it interpolates from coarser ones.
+// From the coarsest to the finest aggregates: each adds to its own correction what it interpolates from coarser ones.
 template <class Real>
 void Preconditioner<Real>::correct_aggregates() {
   Level& coarsest = levels_.back();

@@ -13,28 +13,30 @@
 namespace weft::solver {
 
 /// Whether sums over aggregates are made from the current matrix, or kept from an earlier matrix with the same
-/// constraints. Particle blocks and contact terms (StencilTerm, WideTerm, DiagonalTerm) are always current.
+/// constraints. Particle blocks and contact terms (StencilTerm, WideTerm, DiagonalTerm) are current in either case.
 enum class AggregateSums { recompute, reuse };
 
-/// M⁻¹ = S Σ_l P_l A_l⁻¹ P_lᵀ S, where P_l interpolates from level l and S is the projection on the free directions.
-/// P_0 is the identity, and A_0 the diagonal of 3×3 blocks of S A S + (I − S) (prefiltered, Tamstorf, Jones &
-/// McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation", 2015). Each further level reduces errors whose
+/// P⁻¹ = S Σ_l T_l A_l⁻¹ T_lᵀ S, where T_l interpolates from level l to particles and S is the projection on the free
+/// directions. T_0 is the identity, and A_0 the diagonal of 3×3 blocks of S A S + (I − S) (prefiltered, Tamstorf, Jones
+/// & McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation", 2015). Each further level reduces errors whose
 /// wavelength is about the width of its aggregates (Bramble, Pasciak & Xu, "Parallel Multilevel Preconditioners",
-/// 1990). P_l = Q_1 Q_2 … Q_l interpolates from aggregates: Q_k averages, for each member, its own aggregate and those
-/// of its neighbours. That is a step of damped Jacobi on the graph of the matrix, applied to constants (smoothed
-/// aggregation: Vaněk, Mandel & Brezina, 1996).
+/// 1990). T_l = Q_1 Q_2 … Q_l, where Q_k gives each member a weighted mean of the values of its own aggregate and those
+/// of its neighbours: a step of damped Jacobi on the graph of the matrix, applied to constants (smoothed aggregation:
+/// Vaněk, Mandel & Brezina, 1996).
 ///
-/// Ideally A_l is the diagonal of P_lᵀ A P_l, or all of it on the last level. Both are expensive, so A_l is built from
-/// R_l A R_lᵀ, where R_l sums over each aggregate. Aggregates that move as wholes put all strain at their boundaries;
-/// the same motion, spread over the width of an aggregate, meets half the stiffness for each doubling of that width.
-/// Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters with the factor `level_stiffness`
-/// per level, the mass part with factor 1. Contact terms are not part of the matrix: the stiffness that each of their
-/// particles feels enters the aggregates that it interpolates from, times `contact_weight`, which bounds the diagonal
-/// of P_lᵀ A P_l from above. The last level has P_lᵀ A P_l of the contact terms exactly.
+/// Ideally A_l is the diagonal of 3×3 blocks of T_lᵀ A T_l, or all of it on the last level. Both are expensive, so A_l
+/// is built from R_l A R_lᵀ, where R_l sums over each aggregate. If aggregates move as wholes, all strain is at their
+/// boundaries; the same motion, spread over the width of an aggregate, has half the stiffness for each doubling of
+/// that width. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters with the factor
+/// `level_stiffness` per level, the mass part with factor 1. Contact terms are not part of the matrix. For each
+/// particle of a contact term, the particle's stiffness, times `contact_weight`, enters the aggregates from which it
+/// interpolates. The sum bounds the contact part of the diagonal of T_lᵀ A T_l from above. The last level has T_lᵀ A
+/// T_l of the contact terms exactly.
 ///
-/// If threads are so stiff that the block of a particle exceeds `stiff_particle` times the mass part, levels do not
-/// interpolate: P_l = R_lᵀ with the full sums. Interpolated motion would stretch threads across folds, and sums over
-/// boundaries of aggregates contain nothing of the threads inside of them.
+/// If threads are so stiff that the trace of a particle's block exceeds `stiff_particle` times the sum of
+/// `norm_weights` over its diagonal block, levels do not interpolate: T_l = R_lᵀ, and `level_stiffness` counts as 1.
+/// Interpolated motion would stretch threads across folds, and sums over boundaries of aggregates contain nothing of
+/// the threads inside of them.
 ///
 /// Set up in double, applied in `Real`.
 template <class Real>
@@ -43,7 +45,7 @@ class Preconditioner {
   /// Reads `system`, which must outlive the following calls. Keeps what has not changed since the last call.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
-  /// z = M⁻¹ r on the rows of these diagonal blocks of the system, as if r were zero on all others. r must obey the
+  /// z = P⁻¹ r on the rows of these diagonal blocks of the system, as if r were zero on all others. r must obey the
   /// constraints; z then does too.
   void apply(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z, std::span<const std::size_t> parts);
 
@@ -56,8 +58,8 @@ class Preconditioner {
     Weights<Real> restriction;              // per aggregate
     std::vector<RowRange> of_part;          // aggregates of each diagonal block
     RowChunks chunks;                       // of aggregates, in the selected blocks
-    std::vector<Mat3> of_matrix;            // per aggregate: sum of stiffness, without contact terms
-    std::vector<char> touched;              // per aggregate: terms acted on it when `inverse` was made
+    std::vector<Mat3> of_matrix;            // per aggregate: scaled stiffness and mass part, no terms
+    std::vector<char> touched;              // per aggregate: its `inverse` contains terms
     std::vector<PaddedMat3<Real>> inverse;  // per aggregate, with contact terms
     std::vector<PaddedVec3<Real>> residual, correction;
   };
@@ -91,7 +93,7 @@ class Preconditioner {
   bool interpolates_ = true;                       // false if threads are very stiff
   std::vector<DiagonalBlock> parts_;               // at the last call of prepare()
   std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
-  std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: its rows, its sums over aggregates
+  std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: the matrix, its sums over aggregates
   std::vector<ParticleConstraint> constraints_;    // when the sums were made
   std::vector<Index> constraint_of_;               // per particle, −1 for none
   struct Filter {

@@ -29,7 +29,7 @@ Octet to_octet(const PaddedVec3<double>& low, const PaddedVec3<double>& high) {
                                  __builtin_convertvector(high, PaddedVec3<float>), 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-// Factors of the first eight entries of a block, column by column.
+// The factor of each of the first eight entries of a block in its product with v.
 Octet repeat_per_column(const PaddedVec3<float>& v) {
   return __builtin_shufflevector(v, v, 0, 0, 0, 1, 1, 1, 2, 2);
 }
@@ -77,7 +77,7 @@ void DifferenceMatrix::multiply(std::span<const PaddedVec3<float>> x, std::span<
                                 std::size_t end) const {
   for (std::size_t row = begin; row < end; ++row) {
     const PaddedVec3<float> own = x[row];
-    // Products with all columns side by side; in `ninth` only lane 2 counts.
+    // Products with the three columns, side by side; in `ninth` only lane 2 counts.
     Octet sum = octets_of_sum_[row] * repeat_per_column(own);
     PaddedVec3<float> ninth = ninths_of_sum_[row] * own, isotropic{};
     for (Index s = full_.start[row]; s < full_.start[row + 1]; ++s) {

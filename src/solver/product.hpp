@@ -9,9 +9,9 @@
 
 namespace weft::solver {
 
-/// A block matrix in single precision, half the memory to read: y_i = D_i x_i + Σ_j A_ij (x_j − x_i). The sum D_i of a
-/// row's blocks is made in double. Rounding thus affects only the stiffness of relative motion, while common motion
-/// keeps its mass, which is small beside the stiffness.
+/// A block matrix A in single precision, half the memory to read: y_i = D_i x_i + Σ_j A_ij (x_j − x_i). The sum D_i of
+/// a row's blocks is made in double. Thus rounding affects only the stiffness of relative motion. Common motion keeps
+/// its mass, although mass is small beside stiffness.
 class DifferenceMatrix {
  public:
   void copy_pattern(const BlockMatrix& matrix);
@@ -19,7 +19,7 @@ class DifferenceMatrix {
   void copy_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end);
   void multiply(std::span<const PaddedVec3<float>> x, std::span<PaddedVec3<float>> y, std::size_t begin,
                 std::size_t end) const;
-  /// D_i
+  /// D_i for i = `row`
   Mat3 sum_of_row(std::size_t row) const;
 
  private:
@@ -33,7 +33,7 @@ class DifferenceMatrix {
   std::vector<float> scalars_;
 };
 
-/// q = S A p, where A is the matrix with all terms and S the projection on the free directions.
+/// q = S A p, where A is the matrix with all terms but outer products, and S the projection on the free directions.
 template <class Real>
 class Product {
  public:
@@ -43,14 +43,14 @@ class Product {
   /// Restricts the following products to vectors that are zero outside of these diagonal blocks.
   void select(std::span<const std::size_t> parts);
 
-  /// q = S A p on the rows of the selected blocks; returns p·q, and writes Σ norm_weights ‖p‖² of each selected block,
-  /// in their order, into `norms_sq`. p must obey the constraints.
+  /// q = S A p on the rows of the selected blocks; returns p·q. Writes Σ norm_weights ‖p‖² of each selected block, in
+  /// their order, into `norms_sq`. p must obey the constraints.
   double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q, std::span<double> norms_sq) const;
 
   /// Sum of all 3×3 blocks of the matrix, without terms and constraints, per selected block.
   std::vector<Mat3> row_sums() const;
 
-  /// S b in place, on the rows of the selected blocks.
+  /// b = S b, on the rows of the selected blocks.
   void filter(std::span<PaddedVec3<Real>> b) const;
 
  private:

@@ -76,7 +76,7 @@ void RankOneTerms<Real>::correct(std::span<PaddedVec3<Real>> z) const {
   correct(z, terms_.size());
 }
 
-// Corrects by the first `terms` terms only.
+// Corrects for the first `terms` terms only.
 template <class Real>
 void RankOneTerms<Real>::correct(std::span<PaddedVec3<Real>> z, std::size_t terms) const {
   for (std::size_t t = 0; t < terms; ++t) {

@@ -1,4 +1,4 @@
-// Outer products in a system's matrix: their contribution to products and to the preconditioner.
+// Outer products beside a system's matrix: their contribution to products and to the preconditioner.
 #pragma once
 
 #include <functional>
@@ -10,9 +10,9 @@
 
 namespace weft::solver {
 
-/// Extends a preconditioner P of the other terms to the whole matrix by the formula of Sherman and Morrison, term by
-/// term: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P bounds the rest of the matrix, the sum bounds
-/// the whole matrix with the same constants, however large k is.
+/// Extends a preconditioner P of the matrix without outer products to all of it by the formula of Sherman and Morrison,
+/// for one outer product k d dᵀ after the other: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P
+/// bounds the rest of the matrix, P + k d dᵀ bounds the whole matrix with the same constants, however large k is.
 template <class Real>
 class RankOneTerms {
  public:
@@ -26,7 +26,7 @@ class RankOneTerms {
   /// Computes w with `apply`, the preconditioner of the rest of the matrix on the selected blocks.
   void use(const Apply& apply);
 
-  /// Adds k d dᵀ p of each selected term to q, filtered; returns their part of p·q.
+  /// Adds k d dᵀ p of each selected term to q, where d is filtered; returns the increase of p·q.
   double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q) const;
 
   /// Corrects z = P⁻¹ r to the preconditioner of the whole matrix.

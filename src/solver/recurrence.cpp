@@ -13,8 +13,8 @@ namespace weft::solver {
 namespace {
 
 // Whether the incomplete factor repays its cost. `before` and `now` are errors relative to the goal, before and after
-// as many iterations as the factor costs. It pays off if, at this rate, more than 2.5 times as many are still
-// necessary.
+// as many iterations as the factor costs. It pays off if, at this rate of convergence, at least 2.5 times as many
+// iterations are still necessary.
 bool factor_pays_off(double before, double now) {
   return !(std::log(now) < 2.5 * std::log(before / now));
 }
@@ -32,7 +32,8 @@ void convert_to_quads(std::span<const Vec3> from, std::span<PaddedVec3<Real>> to
 
 }  // namespace
 
-// Gains are summed as absolute values: the coarsest level couples diagonal blocks, so one may lose what another gains.
+// Gains are summed as absolute values: terms and the coarsest level couple diagonal blocks, so the gain of one may be
+// negative.
 double Progress::OfPart::error_energy() const {
   return std::accumulate(gains.end() - count_recent(), gains.end(), 0.0,
                          [](double sum, double gain) { return sum + std::abs(gain); });
@@ -66,8 +67,8 @@ double Progress::largest_error_ratio(const LinearGoal& goal, std::span<const std
   return largest_ratio;
 }
 
-// If the step along `start` is the solution, single precision leaves at most this fraction of its energy. Iterating on
-// that rounding would add uneven motion, of micrometres in a fall of 5 m.
+// If the step along `start` is the solution, the residual of rounding in single precision has at most this fraction of
+// the step's energy. Iterating on it would add uneven motion, of micrometres in a fall of 5 m.
 constexpr double kRoundedEnergy = 1e-11;
 
 template <class Real>
@@ -98,7 +99,7 @@ std::span<const PaddedVec3<Real>> Recurrence<Real>::precondition(std::span<const
   return z_;
 }
 
-// Makes the factor if necessary; returns whether one exists for the prepared system.
+// Makes the factor if that has not been tried; returns whether one exists for the prepared system.
 template <class Real>
 bool Recurrence<Real>::make_factor() {
   if (factor_state_ == Factor::not_made) factor_state_ = factor_.factorise(*system_) ? Factor::made : Factor::none;
@@ -150,7 +151,7 @@ double Recurrence<Real>::apply_preconditioner(std::span<PaddedVec3<Real>> z, boo
   return std::accumulate(rz_.begin(), rz_.end(), 0.0);
 }
 
-// Sets r = b − A x; there is no search direction yet.
+// Sets r = b − A x, and x_, the sum of the following steps, to zero; there is no search direction yet.
 template <class Real>
 void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start,
                              Progress& progress) {
@@ -173,7 +174,7 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
   }
 }
 
-// Takes a step along `start`, which is kept apart from x_, in double: start_multiple_ times start_.
+// Takes a step along `start`. It is kept apart from x_, in double, as start_multiple_ times start_.
 template <class Real>
 void Recurrence<Real>::step_along_start(std::span<const Vec3> start) {
   start_.assign(start.begin(), start.end());
@@ -194,7 +195,7 @@ void Recurrence<Real>::step_along_start(std::span<const Vec3> start) {
   });
 }
 
-// Takes a step of length alpha along p, and records its gains.
+// Takes a step of length alpha along p_, and records the gain of each diagonal block.
 template <class Real>
 void Recurrence<Real>::advance(double alpha, Progress& progress) {
   const Real step = static_cast<Real>(alpha);
@@ -255,7 +256,8 @@ End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progre
   return End::out_of_iterations;
 }
 
-// Forces v along the directions of each selected block. The motions are p_ and, if there is a second one, z_.
+// The work of forces v along the directions of each selected block. The motions are p_ and, if there is a second one,
+// z_.
 template <class Real>
 std::vector<AlongMotions> Recurrence<Real>::along_motions(std::span<const PaddedVec3<Real>> v, bool has_second) const {
   const std::vector<double> first = dots(p_, v),
@@ -271,8 +273,8 @@ std::vector<AlongMotions> Recurrence<Real>::along_motions(std::span<const Padded
 }
 
 // Galerkin's condition: makes the residual orthogonal to the translations and motions of each diagonal block. Without
-// it, forces left in stiff directions do work: a viscosity of 1e3 N·s/m gains energy, and cloth that begins to slide is
-// held back.
+// this correction, residual forces in stiff directions do work: a viscosity of 1e3 N·s/m gains energy, and cloth that
+// begins to slide is held back.
 template <class Real>
 void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) {
   const bool has_second = !directions.drift.empty();
@@ -326,7 +328,7 @@ End Recurrence<Real>::solve(std::span<const Vec3> b, const LinearGoal& goal, int
   rows_ = RowChunks(ranges_of(parts_, selected_), kGrainSize);
   begin(b, x, directions.start, progress);
   const End end = iterate(goal, max_iterations, progress);
-  if (end == End::needs_double && progress.iterations == 0) return end;  // starts anew in double
+  if (end == End::needs_double && progress.iterations == 0) return end;  // the solve starts anew in double
   rows_.for_each([&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) x[i] += vec3_of(x_[i]);
     if (start_multiple_ == 0) return;

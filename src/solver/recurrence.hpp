@@ -15,11 +15,12 @@
 namespace weft::solver {
 
 /// Relative residual that single precision can still tell from rounding: in the energy norm 6e-8 times the root of the
-/// largest stiffness that it is used for, times a safety factor of five. Tighter goals repay an incomplete factor.
+/// largest stiffness for which single precision is used (kMaxSingleStiffness), times a safety factor of five. For
+/// tighter goals an incomplete factor pays off.
 inline constexpr double kTightGoal = 1e-3;
 
-/// Allowed error e of the solution x, per diagonal block: the larger of `relative` times the energy norm of what the
-/// iteration adds to its start, and of an absolute bound in the mass-weighted norm.
+/// Allowed error of the solution, per diagonal block. One of two bounds must be met: in the energy norm `relative`
+/// times the norm of what the iteration adds to its start, or an absolute bound in the mass-weighted norm.
 struct LinearGoal {
   double relative = 0;
   std::span<const double> absolute = {};  ///< per diagonal block; empty: none
@@ -27,13 +28,14 @@ struct LinearGoal {
 
 /// Known directions of the solution; each may be empty.
 struct Directions {
-  /// The solve starts along this direction, with the multiple that is best in the energy norm. Costs one product.
+  /// The first step of a solve is along this direction, of the length that is best in the energy norm. Costs one
+  /// product.
   std::span<const Vec3> start = {};
-  /// Motion to which the solution is added. At the end, the residual does no work along their sum, and sums to zero
-  /// over each diagonal block that no constraint holds (Galerkin's condition for these directions of each diagonal
-  /// block).
+  /// Motion to which the solution is added. At the end, the residual does no work along the sum of both, and the
+  /// residual sums to zero over each diagonal block that no constraint holds (Galerkin's condition for these directions
+  /// of each diagonal block).
   std::span<const Vec3> motion = {};
-  /// Second motion along which the residual does no work; needs the first.
+  /// Second motion along which the residual does no work at the end; ignored without `motion`.
   std::span<const Vec3> drift = {};
 };
 
@@ -41,9 +43,9 @@ struct Directions {
 struct Progress {
   /// Error data of one diagonal block.
   struct OfPart {
-    double energy = 0;  ///< ‖x‖²_A
+    double energy = 0;  ///< ‖x‖²_A of what the iteration has added to its start, x
     std::vector<double> gains,
-        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A, and ratio of the mass-weighted norm to it, both squared
+        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step, relative to it
     double error_energy() const;  ///< estimate of ‖e‖²_A
     double error_norm_ratio() const;
 
@@ -54,10 +56,10 @@ struct Progress {
   int iterations = 0;
   bool uses_factor = false;
   bool is_exact = false;
-  double last_error_ratio = 0;  ///< error relative to the goal, when the factor was last considered
+  double last_error_ratio = 0;  ///< largest_error_ratio() when the factor was last considered
 
   bool meets(const LinearGoal& goal, std::span<const std::size_t> selected) const;
-  /// Largest error of these diagonal blocks relative to the goal, in the energy norm.
+  /// Largest error of these diagonal blocks in the energy norm, relative to the larger bound of the goal.
   double largest_error_ratio(const LinearGoal& goal, std::span<const std::size_t> selected) const;
 };
 
@@ -74,10 +76,11 @@ class Recurrence {
   /// Reads `system`, which must outlive the following calls.
   void prepare(const LinearSystem& system, AggregateSums sums);
 
-  /// P⁻¹ b. Valid until the next call.
+  /// Returns P⁻¹ b. Valid until the next call.
   std::span<const PaddedVec3<Real>> precondition(std::span<const Vec3> b);
 
-  /// Adds the solution of A x = b on these diagonal blocks to x; all others are held.
+  /// Solves A x = b on these diagonal blocks; all others are held. x is zero at first, or if `progress` has iterations,
+  /// their result.
   End solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
             const Directions& directions, std::span<const std::size_t> parts, Progress& progress);
 
@@ -114,8 +117,8 @@ class Recurrence {
   std::vector<DiagonalBlock> factor_parts_;                                     // scratch
   std::vector<PaddedVec3<Real>> x_, r_, z_, p_, q_;
   std::vector<Vec3> start_;            // filtered by the constraints
-  double start_multiple_ = 0;          // multiple of start_ in the solution, beside x_
-  double start_gain_ = 0;              // decrease of ‖e‖²_A by it
+  double start_multiple_ = 0;          // the solution is x_ plus this multiple of start_
+  double start_gain_ = 0;              // decrease of ‖e‖²_A by that multiple
   std::vector<double> norms_sq_, rz_;  // per selected block: Σ norm_weights ‖p‖², r·z
 };
 

@@ -15,12 +15,12 @@ struct RowRange {
   std::size_t begin = 0, end = 0;
 };
 
-/// Divides row ranges into chunks of fixed size that never cross a range, so that sums have the same bits on any number
-/// of threads. Small chunks, of many small cloths, are handed to threads several at a time.
+/// Divides row ranges into chunks that do not depend on the number of threads and never cross a range, so that sums
+/// always have the same bits. Threads get small chunks, those of many small cloths, several at a time.
 class RowChunks {
  public:
   RowChunks() = default;
-  /// `max_rows`: maximum number of rows per chunk; a task for a thread joins chunks until it has as many.
+  /// `max_rows`: maximum number of rows per chunk; a task for a thread collects chunks until it has at least as many.
   RowChunks(std::span<const RowRange> ranges, std::size_t max_rows) : ranges_(ranges.size()) {
     std::size_t rows = 0;  // of the last task
     for (std::size_t r = 0; r < ranges.size(); ++r)
@@ -38,7 +38,7 @@ class RowChunks {
     for_each_chunk([&](std::size_t c) { body(chunks_[c].begin, chunks_[c].end); });
   }
 
-  /// Σ body(begin, end) of each range, in the order of its chunks.
+  /// Returns Σ body(begin, end) over the chunks of each range, in their order.
   template <class Body>
   std::vector<PaddedVec3<double>> sums(const Body& body) const {
     std::vector<PaddedVec3<double>> of_chunks(chunks_.size()), of_ranges(ranges_);

@@ -22,12 +22,11 @@ struct Weights {
     for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
     return result;
   }
-  /// Interpolation from aggregates to their members. A member takes the fraction `smoothing` from the aggregates of its
-  /// neighbours, and the rest from its own. `neighbours`: neighbours of each member; replaced by those of the
-  /// aggregates.
+  /// Interpolation from aggregates to their members. The aggregates of a member's neighbours together have the weight
+  /// `smoothing`, its own has the rest. `neighbours`: neighbours of each member; replaced by those of the aggregates.
   static Weights make_interpolation(const Aggregates& grouping, double smoothing,
                                     std::vector<std::vector<Index>>& neighbours);
-  /// The transpose, with `rows` rows.
+  /// The transpose, with `rows` rows: the number of columns of this matrix.
   Weights transposed(std::size_t rows) const;
   /// The product of this interpolation with `next`, the interpolation between this level and the next coarser one.
   Weights times(const Weights& next) const;

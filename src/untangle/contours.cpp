@@ -49,7 +49,7 @@ struct Island {
   std::vector<Index> particles;
   std::set<Index> beside;  // particles of other islands across the line
   std::vector<CutPoint> line;
-  std::set<Index> through;           // vertices of the surfaces that it crosses
+  std::set<Index> through;           // corners of the triangles that cut it off
   std::optional<std::size_t> other;  // the body of `through`, if there is only one and not its own
 };
 
@@ -85,7 +85,8 @@ void extend_cut(const Fabric& fabric, std::span<const Crossing> crossings, std::
   }
 }
 
-// Straight to the other side: beyond the planes along the line, then beyond the nearest surface.
+// Moves particles along `up` to `height` above the plane at the nearest point of the line, then above the other
+// surface.
 std::vector<Move> flatten(const Island& island, const Vec3& up, double height, const collision::BroadPhase& surfaces,
                           std::span<const Vec3> x) {
   std::vector<Move> moves;
@@ -105,7 +106,7 @@ std::vector<Move> flatten(const Island& island, const Vec3& up, double height, c
   return moves;
 }
 
-// Rotates each particle around the line, keeping its distance from it, towards `away`.
+// Rotates each particle around the line towards `away`, keeping its distance from the line, and raises it by `height`.
 std::vector<Move> fold(const Island& island, const Vec3& up, const Vec3& away, double height, std::span<const Vec3> x) {
   std::vector<Move> moves;
   const Vec3 along = up.cross(away);
@@ -141,7 +142,7 @@ std::vector<Move> best_moves(const Fabric& fabric, const Island& island, double 
   double min_cost = stretch_cost(fabric, best, x);
   const Vec3 away = direction_of(island.line).cross(up).stableNormalized();
   if (away.isZero()) return best;
-  // Try the side to which it leans first.
+  // Try first the side on which most of the island lies.
   Vec3 offset_sum = Vec3::Zero();
   for (const Index i : island.particles) offset_sum += x[i] - nearest(island.line, x[i]).place;
   const double side = offset_sum.dot(away) < 0 ? -1 : 1;
@@ -251,7 +252,7 @@ void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings,
       if (r.dot(arm - arm.dot(e) * e) < 0) r = -r;
       gradient += r - 2 * e.dot(r) / across * n;
     }
-    // Nearly a unit vector, except for the flattest contours, whose gradient is uncertain.
+    // Nearly a unit vector; shorter if the gradient is small and therefore uncertain.
     const Vec3 direction = gradient / std::sqrt(gradient.squaredNorm() + 0.01);
     const auto add = [&](Index v, double fraction, double sign) {
       push[v] += sign * fraction * direction;
@@ -292,7 +293,7 @@ void push_out_of_solids(const Fabric& fabric, std::span<const Crossing> crossing
       for (const double fraction : {0.5, 0.25, 0.75, c.fraction})
         raise(*solid, edge, std::array{1 - fraction, fraction}, above[cloth]);
     } else {
-      // At least as far as the nearer end of the edge sticks through.
+      // Raise by the length of the edge on the shorter side, at most half the longest side of the triangle.
       const double out = std::min(c.fraction, 1 - c.fraction) * (x[edge[1]] - x[edge[0]]).norm();
       const double longest =
           std::max({(x[t[1]] - x[t[0]]).norm(), (x[t[2]] - x[t[1]]).norm(), (x[t[0]] - x[t[2]]).norm()});

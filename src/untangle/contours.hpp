@@ -1,4 +1,5 @@
-// Separates cloth from cloth: moves islands that crossings cut off, and shortens lines of crossing.
+// Separates crossed cloth: moves islands that crossings cut off, shortens lines of crossing, pushes cloth out of
+// solids.
 #pragma once
 
 #include <optional>
@@ -17,15 +18,15 @@ struct CrossedPair {
   friend auto operator<=>(const CrossedPair&, const CrossedPair&) = default;
 };
 
-/// The pairs among these crossings, except those with solids.
+/// The pairs of surfaces of these crossings, except those with solids and those whose edge is not of cloth.
 std::vector<CrossedPair> list_crossed_pairs(const Fabric& fabric, std::span<const Crossing> crossings);
 
-/// Crossings cut islands off from the larger rest of their cloth. Returns moves that take each island to the rest's
-/// side of the surface that it crosses, the smallest first (similar to flood filling in Baraff, Witkin & Kass,
-/// "Untangling Cloth", 2003). An island is folded over the line of crossing, or flattened onto the other side,
-/// whichever stretches less. If islands cut each other off, only the smallest moves. `above`: height over the other
-/// surface, per body of cloth [m]. `only`: restricts the search to one pair; if a line then ends inside that cloth, at
-/// a border of the other, the other is extended as a plane. `surfaces`: fitted to x.
+/// Lines of crossing cut islands off from the largest island of a mesh. Returns, for each other island, moves to that
+/// side of the crossed surface where the largest one is, the smallest island first (similar to flood filling in Baraff,
+/// Witkin & Kass, "Untangling Cloth", 2003). An island is flattened onto the other side, or folded over the line of
+/// crossing if that costs a tenth less (see stretch_cost). If islands cut each other off, only the smallest moves.
+/// `above`: height over the other surface, per body of cloth [m]. `only`: restricts the search to one pair; if a line
+/// then ends inside that cloth, at a border of the other, the other is extended as a plane. `surfaces`: fitted to x.
 std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::span<const Crossing> crossings,
                                                     const collision::BroadPhase& surfaces,
                                                     std::span<const double> above,
@@ -36,7 +37,7 @@ std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::s
 /// Minimization", 2006). No particle moves farther than `length` [m].
 void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings, double length, std::span<Vec3> x);
 
-/// Pushes edges and triangles of cloth that cross a solid, although their particles are outside, outward.
+/// Pushes outward the edges and triangles of cloth that cross a solid although their particles are outside.
 void push_out_of_solids(const Fabric& fabric, std::span<const Crossing> crossings, std::span<const Solid> solids,
                         std::span<const double> above, std::span<Vec3> x);
 

@@ -17,7 +17,7 @@ struct Crossing {
   std::array<double, 3> weights;  ///< of the corners of the triangle
 };
 
-/// Whether the edge or the triangle belongs to an obstacle with an inside, or to a layer.
+/// Whether the edge or the triangle belongs to a solid, a floor or a layer.
 bool involves_solid(const Fabric& fabric, const Crossing& crossing);
 
 /// Crossings between surfaces of which at least one is cloth.
@@ -26,7 +26,8 @@ class CrossingFinder {
   /// `self`: cloth with cloth. `obstacles`: cloth with obstacles. The fabric must outlive it.
   CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles);
 
-  /// All crossings at x [m], sorted by edge and triangle, each once. Touching counts.
+  /// All crossings at x [m], sorted by edge and triangle, each once. Touching counts, except if the edge lies in the
+  /// plane of the triangle.
   std::span<const Crossing> find(std::span<const Vec3> x);
   /// Number of crossing pairs of triangles in the last find().
   int pairs() const { return pairs_; }

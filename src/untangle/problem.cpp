@@ -6,7 +6,8 @@
 namespace weft::untangle {
 namespace {
 
-// Threads may be compressed to this fraction of their length; the excess buckles when the run begins.
+// Threads may be compressed to this fraction of the smaller of their lengths at the start and at rest; such threads
+// buckle when the run begins.
 constexpr double kMinLengthRatio = 0.6;
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace weft::untangle {
 
-/// Role of a body for cloth that starts on both sides of it.
+/// On which sides of a body cloth may be.
 enum class Kind : std::uint8_t {
   cloth,
   solid,  ///< has an inside, where cloth may not be
@@ -21,10 +21,10 @@ enum class Kind : std::uint8_t {
   layer,  ///< worn cloth: its inner side belongs to the body below it
 };
 
-/// Connectivity of surfaces and allowed lengths of threads; constant.
+/// Connectivity of surfaces and allowed lengths of threads (links between neighbours); constant.
 struct Fabric {
-  /// `x`: all vertices as given by the scene; `rest`: stress-free particles [m]. `may_move`: per vertex. All must
-  /// outlive it.
+  /// `x`: all vertices as given by the scene; `rest`: stress-free particles [m]. `may_move`: per vertex. `of_bodies`
+  /// and `may_move` must outlive it.
   Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, std::span<const Vec3> x,
          std::span<const Vec3> rest, std::span<const std::uint8_t> may_move);
 
@@ -32,7 +32,7 @@ struct Fabric {
   struct Link {
     Index i, j;
     double min_length, max_length;
-    bool is_bend;  ///< between opposite corners of two triangles; weaker
+    bool is_bend;  ///< between opposite corners of two triangles; corrected less
   };
 
   const collision::Bodies& bodies;
@@ -54,8 +54,8 @@ struct Move {
   Vec3 target;  ///< [m]
 };
 
-/// Strain that these moves cause: mean, over the threads of the moved particles, of the squared relative excess over
-/// the maximum length or shortfall below the minimum length. Present excess or shortfall does not count.
+/// Squared strain that these moves cause: mean, over the threads of the moved particles, of the squared relative excess
+/// over the maximum length or shortfall below the minimum length. Present excess or shortfall does not count.
 double stretch_cost(const Fabric& fabric, std::span<const Move> moves, std::span<const Vec3> x);
 
 }  // namespace weft::untangle

@@ -14,7 +14,7 @@ namespace weft::untangle {
 void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, int sweeps,
            std::span<Vec3> x);
 
-/// Moves particles that are lower than `above` the nearest way out.
+/// Raises particles that are lower than `above` over a solid to that height, the nearest way.
 void raise(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, std::span<Vec3> x);
 
 /// Moves movable particles within `rings` edges of the given ones to the centre of their neighbours, `times` times.

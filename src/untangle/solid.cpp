@@ -124,7 +124,7 @@ Solid::Exit Solid::exit(const Vec3& p) const {
   for (const Index number : numbers) nearest.push_back(surface.triangles[number - surface.first_triangle]);
   collision::SurfacePoint point = collision::nearest_point(p, nearest, x_);
   const Vec3 place = p - point.height * point.normal;
-  // Where shells cross, the sign at the nearest point is wrong.
+  // Where shells cross, the sign at the nearest point may be wrong.
   const double side = inside(p) ? -1 : 1;
   if (side * point.height < 0) point.normal = -point.normal;
   return {place, point.normal, side * std::abs(point.height)};

@@ -15,7 +15,7 @@ namespace weft::untangle {
 /// behind worn cloth (a layer), for points whose nearest point is not on its border. Does not move.
 class Solid {
  public:
-  /// Body `number` of the broad phase, which must outlive it, at x [m].
+  /// Body `number` of the broad phase at x [m]; both must outlive it.
   Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kind, std::span<const Vec3> x);
   /// A layer: cloth that is worn over the bodies `below`, or around its own centre if there are none. Its outer side is
   /// the one that mostly faces away from them. `on_border`: per vertex; must outlive it.
@@ -25,7 +25,7 @@ class Solid {
   std::size_t number() const { return number_; }
   /// Whether p lies in the bounds of the solid or within `distance` [m] of them.
   bool is_near(const Vec3& p, double distance) const;
-  /// By the winding number, so points where shells of the body overlap are inside, whichever face is nearest.
+  /// Whether p is inside. For a body by the winding number, so points where its shells overlap are inside.
   bool inside(const Vec3& p) const;
 
   /// The nearest point of the outer surface. Faces buried in another shell do not count.
@@ -34,7 +34,8 @@ class Solid {
     double height;       ///< signed distance of p [m], negative inside
   };
   Exit exit(const Vec3& p) const;
-  /// Distance along the unit direction d from p, inside, to the end of the body [m]; infinite if it does not end.
+  /// Distance along the unit direction d from p, inside, to the end of the solid [m]; infinite if the ray stays in a
+  /// floor or layer.
   double distance_out(const Vec3& p, const Vec3& d) const;
   /// Whether the segment from p to q crosses the surface; false for a floor.
   bool crosses_surface(const Vec3& p, const Vec3& q) const { return kind_ != Kind::floor && !hits(p, q - p).empty(); }

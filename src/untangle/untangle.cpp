@@ -14,7 +14,7 @@ namespace {
 
 // Height of cloth over an obstacle, and over cloth that it is moved to, in thicknesses.
 constexpr double kHeightInThicknesses = 0.75;
-// Minimum gap between surfaces, in thicknesses: far above the limit of touching.
+// Minimum gap between surfaces, in thicknesses: far above Numerics::Separation::least_gap.
 constexpr double kGapInThicknesses = 0.1;
 // Cloth closer than this to other cloth is on neither side of it [m].
 constexpr double kTouchDistance = 1e-9;
@@ -22,17 +22,18 @@ constexpr int kMaxRounds = 400;
 // After kPatience rounds without fewer crossings, the cloth around the remaining ones is smoothed, each time over a
 // larger area, at most kMaxSmoothings times.
 constexpr int kPatience = 12, kMaxSmoothings = 12;
-// Maximum number of islands tried one by one.
+// Maximum number of islands of a crossed pair that are tried one by one.
 constexpr std::size_t kMaxSingleIslands = 12;
 constexpr int kSweepsAfterMove = 120, kSweeps = 8;
 // Maximum displacement of a region inside a body, relative to its size. Beyond it the region is locked.
 constexpr double kMaxDisplacementRatio = 1.5;
-// Number of passes, because a region that leaves one body may enter another.
+// Maximum number of passes: a region that leaves one body may enter another.
 constexpr int kMaxPasses = 3;
-// Regions no deeper than this are never locked; in heights over the obstacle.
+// A region whose particles move less than this is not locked before the move; in heights over the obstacle.
 constexpr double kShallowDepth = 4;
-// Maximum strain of a thread; beyond it the body goes through the cloth (measured: 0.44 for a tube 4 cm too small, the
-// largest of the valid starts; 4.9 for trousers with a leg through the seat).
+// Maximum strain of a thread after the move; beyond it the body goes through the cloth and the region is locked
+// (measured: 0.44 for a tube 4 cm too small, the largest of the valid starts; 4.9 for trousers with a leg through the
+// seat).
 constexpr double kMaxStrain = 1.5;
 // Maximum fraction of the threads of a region that the body may still block: those at its border recover.
 constexpr double kMaxBlockedFraction = 0.2;

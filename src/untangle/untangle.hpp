@@ -30,8 +30,8 @@ struct Report {
   std::vector<InsideRegion> locked;  ///< regions without a way out; if any, nothing was moved
 };
 
-/// Moves particles in x [m] until no triangle of cloth crosses or touches another one or an obstacle. Triangles touch
-/// if they are closer than a tenth of the cloth's thickness. Bounded rounds; keeps the best state. Deterministic.
+/// Moves particles in x [m] until no triangle of cloth crosses another one or an obstacle, or is closer to it than a
+/// tenth of the cloth's thickness. The number of rounds is bounded; the best state is kept. Deterministic.
 Report untangle(const Fabric& fabric, const Options& options, std::span<Vec3> x);
 
 }  // namespace weft::untangle

@@ -10,18 +10,19 @@ namespace {
 
 // Cost of a thread that would still go through the body, in units of squared strain.
 constexpr double kBlockedCost = 25;
-// Depth of a thread's midpoint in the body, relative to its length: from kBlockedDepth on it goes through the body and
+// Depth of a thread's midpoint in the body, relative to its length: above kBlockedDepth it goes through the body and
 // does not just cut a corner; below kFreeDepth it certainly does not go through.
 constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
-// Cost of a way as long as the region. Prefers the shorter of ways that stretch cloth alike.
+// Cost of a way as long as the region, so that the shorter of two ways with equal stretch is chosen.
 constexpr double kDisplacementCost = 0.05;
 // Cost of moving a whole cloth, so that it stays if the region can leave alone; and the longest such move, in sizes of
 // the region.
 constexpr double kWholeMeshCost = 0.3, kMaxWholeMeshRatio = 1.1;
-// Maximum fraction of the particles that may go through the body on that way: more would take off cloth worn around it.
+// Maximum fraction of the particles that may pass through the body in such a move: more would pull cloth off a body
+// that wears it.
 constexpr double kMaxThroughFraction = 0.1;
 
-// Directions to the 26 neighbours on a cube, the nearest first, so that the order is the same in each run.
+// The 26 directions to the neighbours in a cubic grid, nearest first.
 std::vector<Vec3> directions() {
   std::vector<Vec3> all;
   for (const int steps : {1, 2, 3})

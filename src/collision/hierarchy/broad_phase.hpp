@@ -1,4 +1,4 @@
-// Broad phase of a run: one hierarchy per surface. Run-time options say how to refit and traverse.
+// Broad phase of a run: one hierarchy per surface. Run-time options select how to refit and traverse.
 //
 //   BroadPhase broad_phase(surfaces, x, options);      // once; surfaces are then named by their place in the span
 //   broad_phase.refit(s, x_t0, x_t1, margin);          // each step, each surface that moved
@@ -6,8 +6,9 @@
 //   broad_phase.pairs(a, b, candidates);
 //
 // With any options, the pairs include every two triangles that come closer than 2 · margin on the linear trajectory
-// from x_t0 to x_t1, with two exceptions: triangles that share two corners or more and, with normal_cones, pairs of one
-// surface in which no two features without a common vertex come closer than 2 · margin.
+// from x_t0 to x_t1, with three exceptions: triangles that share two corners or more; without one_shared, those that
+// share one; and, with normal_cones, pairs of one surface in which no two features without a common vertex come closer
+// than 2 · margin.
 #pragma once
 
 #include <cstddef>
@@ -22,14 +23,14 @@
 
 namespace weft::collision {
 
-/// The defaults are fastest on falling_band and multi_sheet (measured with tests/bench): leaves of 8 instead of 1 gain
-/// a factor of 3, 8 children instead of 2 gain a fifth, separation lists at most a tenth; velocity and normal cones
-/// cost what they save or more. k = 18 takes longer to refit and traverse but lists a quarter fewer candidates: with
-/// the narrow phase it gains 4 to 9 % in all, a fifth where layers lie slanted to the axes. k = 26, the seed's choice,
-/// lists the fewest. k = 14 was worse than 6 or 18 in every measurement.
+/// Measured on falling_band and multi_sheet with tests/bench: leaves of 8 instead of 1 gain a factor of 3, 8 children
+/// instead of 2 gain a fifth, separation lists at most a tenth; velocity and normal cones cost as much as they save or
+/// more. 18 directions take longer to refit and traverse than 6 but list a quarter fewer candidates. With the narrow
+/// phase they gain 4 to 9 % in all, a fifth if layers are slanted to the axes. 26 directions, the seed's choice, list
+/// the fewest; 14 were worse than 6 or 18.
 struct BroadPhaseOptions {
-  /// Directions of the bounds: 6, 18 or 26. More directions cost more and list fewer pairs. Boxes list every pair that
-  /// 26-DOPs list.
+  /// Directions of the bounds: 6, 18 or 26. More directions cost more and list fewer pairs. Boxes (6) list every pair
+  /// that 18 or 26 directions list.
   int directions = 6;
   /// Children per node, 2 to 8. Changes only the order of the pairs.
   int children = 8;
@@ -59,8 +60,9 @@ class BroadPhase {
   /// the broad phase. Throws Error(internal) if an option or index is out of range.
   BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options = {});
 
-  /// As Tree::refit: bounds for this motion, enlarged by margin [m]. The pairs also hold for every motion whose ends
-  /// differ from this one by at most the margin along each axis.
+  /// As Tree::refit: bounds for this motion, enlarged by margin [m]. The pairs also include those of every motion whose
+  /// starts and ends differ from these by vectors of at most that length; with 6 directions, of at most the margin
+  /// along each axis.
   void refit(std::size_t surface, const Motion& motion, double margin);
   void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit(surface, {x_t0, x_t1}, margin);
@@ -80,9 +82,9 @@ class BroadPhase {
   std::size_t size() const { return surfaces_.size(); }
   const Surface& surface(std::size_t number) const { return surfaces_[number]; }
 
-  /// Whether bounds and the order of the pairs depend on earlier steps.
+  /// Whether bounds or the order of the pairs depend on earlier steps.
   static bool remembers(const BroadPhaseOptions& options) { return options.separation_list || options.velocity_cones; }
-  /// Drops this dependence.
+  /// Makes both independent of earlier steps.
   void forget();
 
   /// Interface that hides the number of directions, a template parameter of the trees.

@@ -2,8 +2,8 @@
 //
 // A set is stored as its k support values: row r holds the minimum of direction_r · x over the set. Directions come in
 // opposite pairs, rows 2d and 2d + 1, so the interval along pair d is [row(2d), -row(2d + 1)]. With this sign
-// convention the hull of two sets is the row-wise minimum, and row_a(r) + row_b(opposite of r) is the gap between the
-// sets along that direction. Two k-DOPs overlap if no gap is positive.
+// convention the hull of two sets is the row-wise minimum, and row r of set a plus row r ^ 1 of set b is the gap
+// between them along direction r, times the length of direction r. Two k-DOPs overlap if no gap is positive.
 #pragma once
 
 #include <algorithm>
@@ -83,7 +83,7 @@ template <int K>
 inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
   constexpr const Directions<K>& dir = kDirections<K>;
   // Rounding to float moves a value by at most 2^-24 of itself, and rounding the sums of three products in double by
-  // less than 2^-50 of the coordinates. Subtract both, and 1e-38 for numbers near zero.
+  // less than 2^-50 of the coordinates. Subtract at least both, and 1e-38 for numbers near zero.
   const double cancel = K == 6 ? 1e-38 : 1e-38 + 0x1p-50 * (p.cwiseAbs().sum() + q.cwiseAbs().sum() + margin);
   KDop<K> bound;
   for (int r = 0; r < kRows<K>; ++r) {
@@ -97,7 +97,7 @@ inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
 
 /// Support values of a set that moves linearly: at the start in rows 0 to K − 1, at the end in the next K rows. Along
 /// any direction the gap between two such sets is concave in time, so if it is positive at the start and at the end, it
-/// is positive throughout. So sets that move together do not overlap.
+/// is positive throughout. So two sets with a gap between them that move together do not overlap.
 template <int K>
 struct alignas(32) MovingKDop {
   float row[(2 * K + 7) / 8 * 8];

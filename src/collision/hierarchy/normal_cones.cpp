@@ -196,7 +196,8 @@ typename NormalCones<K>::Cone NormalCones<K>::join(std::span<const Cone* const> 
   all.axis.normalize();
   all.cosine = 1;
   for (const Cone* part : cones) {
-    // cos(α + β), with β the angle between the axes. Both angles are below 90°, so the cosine of the sum decides.
+    // cos(α + β), with α the half-angle of `part` and β the angle between the axes. Both angles are below 90°, so the
+    // cosine of the sum decides.
     const double between = all.axis.dot(part->axis);
     if (!(between > 0)) return {};
     const double across = std::sqrt(std::max(0.0, 1 - between * between));
@@ -237,7 +238,7 @@ bool NormalCones<K>::has_nothing_near(const Tree<K>& tree, Ref ref, std::span<co
   return all.cosine > 0 && all.cosine * all.altitude > needed && is_star_shaped(subtree.contour, all.axis, x_t0, x_t1);
 }
 
-/// Marks flat regions top-down. The traversal never enters a marked subtree, so what is below it stays unmarked.
+/// Marks flat regions top-down. self_pairs() never enters a marked subtree, so the nodes below it stay unmarked.
 template <int K>
 void NormalCones<K>::mark_flat_regions(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0,
                                        std::span<const Vec3> x_t1, double detection_distance) {

@@ -16,10 +16,10 @@ namespace weft::collision {
 /// Let P be the triangles below a node and P⁺ all triangles with at least one corner in P. Features of P without a
 /// common vertex are not near each other if an axis a exists such that, during the linear motion from x_t0 to x_t1,
 ///   1. no corner of P is on the border of the surface, so all triangles around it are in P⁺;
-///   2. the normals of P⁺ lie in a cone around a of less than 90°, so that, seen along a, all of P⁺ faces the viewer;
-///   3. the contour of P⁺, seen along a, runs around its centre once, always forward (it is star-shaped: Schvartzman,
+///   2. the normals of P⁺ lie in a cone around a of less than 90°, so that, seen against a, all of P⁺ faces the viewer;
+///   3. the contour of P⁺, seen against a, runs counter-clockwise around its centre once (star-shaped: Schvartzman,
 ///      Pérez & Otaduy, "Star-Contours for Efficient Hierarchical Self-Collision Detection", 2010);
-///   4. the altitudes of the triangles of P⁺, seen along a, exceed the detection distance.
+///   4. the altitudes of the triangles of P⁺, projected along a, exceed the detection distance.
 /// Proof: the degree of the projection is the winding number of the contour, and every triangle counts +1. By 2 and 3
 /// each point inside the contour is therefore covered once, so P⁺ projects to a planar triangulation. In that plane,
 /// the closest points of two features of P without a common vertex include a vertex v of one of them. The segment from
@@ -27,10 +27,11 @@ namespace weft::collision {
 /// is at least an altitude long. Distances in space are no smaller than their projections.
 ///
 /// The cone test over a step uses the Bernstein coefficients of the normal, which is quadratic in time (Tang, Curtis,
-/// Yoon & Manocha, "ICCD", 2009); so does the contour test. A degenerate triangle fails 2.
+/// Yoon & Manocha, "ICCD", 2009); so does the contour test. A degenerate triangle does not meet condition 2.
 ///
-/// Provot (1997; the seed's choice) requires only 2, for P instead of P⁺. That misses parts that overlap in projection
-/// (a spiral stair) or meet across a border or slit (measured: 0.6 to 25 % of the skipped pairs were near).
+/// Provot (1997; the seed's choice) requires only condition 2, for P instead of P⁺. This skips near pairs of parts that
+/// overlap in projection (a spiral stair) or meet across a border or slit (measured: 0.6 to 25 % of the skipped pairs
+/// were near).
 template <int K>
 class NormalCones {
  public:
@@ -52,7 +53,7 @@ class NormalCones {
   struct Cone {
     Vec3 axis = Vec3::Zero();
     double cosine = -1, sine = 0;
-    double altitude = 0;  ///< lower bound of the altitudes during the step [m], before projection
+    double altitude = 0;  ///< times `cosine`: lower bound of the projected altitudes in the step [m]
   };
 
   /// Connectivity of a subtree, which does not change.

@@ -15,12 +15,13 @@ using DistanceSq = std::function<double(Index)>;
 inline constexpr double kNearestTolerance = 1e-6;
 
 /// Replaces `out` by the nearest triangles to p (within kNearestTolerance), sorted by number; empty if every triangle
-/// is excluded. Branch and bound: subtrees whose bounds are farther than the best triangle so far are skipped.
-/// Triangles must lie inside their bounds; larger bounds only cost time.
+/// is excluded. Branch and bound: subtrees whose bounds are farther than the best triangle so far are skipped. At the
+/// positions that `distance_sq` uses, triangles must lie inside the bounds of the tree; larger bounds only cost time.
 template <int K>
 void nearest_triangles(const Tree<K>& tree, const Vec3& p, const DistanceSq& distance_sq, std::vector<Index>& out);
 
-/// Replaces `out` by the triangles whose bounding boxes meet the box from `low` to `high` [m], sorted by number.
+/// Replaces `out` by the triangles whose bounds (boxes over the whole motion, with the margin of the last refit) meet
+/// the box from `low` to `high` [m], sorted by number.
 template <int K>
 void triangles_in_box(const Tree<K>& tree, const Vec3& low, const Vec3& high, std::vector<Index>& out);
 

@@ -1,5 +1,5 @@
-// Remembers where the last traversal of two hierarchies stopped (Li & Chen, "Incremental 3D collision detection with
-// hierarchical data structures", 1998; seed, "Detection Process").
+// Records where the last traversal of one or two hierarchies stopped (Li & Chen, "Incremental 3D collision detection
+// with hierarchical data structures", 1998; seed, "Detection Process").
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,18 @@
 namespace weft::collision {
 
 /// Pairs of subtrees that together cover all pairs of triangles between two trees, or within one tree. Each entry stays
-/// valid whatever the bounds become, so a traversal may start here instead of at the roots. Entries only move down: if
-/// the bounds of an entry overlap now, the entries below replace it. An entry that could move up again costs one
-/// overlap test per traversal until the list is rebuilt. A rebuild is due
+/// valid whatever the bounds become, so a traversal may start from the entries instead of the roots. Entries only move
+/// down: if the bounds of an entry overlap now, entries for its children replace it. An entry that could move up again
+/// costs one overlap test per traversal until the list is rebuilt. A rebuild is due
 ///   - after kWalks traversals, or
-///   - once the list has grown by half.
-/// Both limits are chosen, not tuned: they bound the useless tests to about half of the useful ones.
+///   - once the list has grown by more than half.
+/// Both limits bound the useless tests to about half of the useful ones.
 class SeparationList {
  public:
-  using Ref = std::int32_t;  ///< node (≥ 0) or leaf ~ref (< 0), as in Tree
+  using Ref = std::int32_t;  ///< node number (≥ 0) or ~leaf number (< 0), as in Tree
 
   /// Subtree `query` of one tree does not overlap the children `lanes` (bits) of inner node `node` of the other.
+  /// `query_in_a`: `query` belongs to tree a.
   struct Missed {
     Ref query, node;
     std::uint16_t lanes;
@@ -51,7 +52,7 @@ class SeparationList {
   std::vector<Missed> missed;
   std::vector<LeafPair> leaf_pairs;
   std::vector<Ref> self_leaves;  ///< leaves tested with themselves
-  std::vector<Ref> closed;       ///< subtrees skipped against themselves because they are flat regions
+  std::vector<Ref> closed;       ///< subtrees not tested with themselves, because they are flat regions
 
  private:
   int walks_ = 0;

@@ -11,8 +11,8 @@
 
 namespace weft::collision {
 
-/// Three vertices of the global vertex array, counter-clockwise from the front. A piece of rope is (a, b, b): its only
-/// features are its edge and its ends.
+/// Three vertices of the global vertex array, counter-clockwise seen from the front. A piece of rope is (a, b, b): its
+/// only features are its edge and its ends.
 using Triangle = std::array<Index, 3>;
 
 /// A cloth or an obstacle: a range of the global vertex array and the triangles over it.
@@ -39,7 +39,7 @@ class PairList {
   const TrianglePair* begin() const { return storage_.data(); }
   const TrianglePair* end() const { return storage_.data() + size_; }
 
-  /// Makes room for `count` more pairs. Write them to the returned place, then call grow().
+  /// Makes room for `count` more pairs. Write them to the returned place, then call grow() with their end.
   TrianglePair* reserve_more(std::size_t count) {
     if (size_ + count > storage_.size()) storage_.resize(size_ + count + (size_ + count) / 2);
     return storage_.data() + size_;

@@ -12,7 +12,7 @@ namespace weft::collision {
 
 namespace {
 
-/// Beyond this depth sets are halved by number, because centre splits may split off one triangle each.
+/// Beyond this depth sets are halved by number, because each centre split may split off only one triangle.
 constexpr int kMaxCentreSplits = 64;
 
 void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
@@ -59,7 +59,7 @@ struct Tree<K>::Builder {
   std::vector<KDop<K>> bounds;  // of each triangle
   std::vector<Index> order;     // triangles; those of a group are contiguous
 
-  /// Splits group in two. It keeps the first half; the second is returned.
+  /// Splits `group` in two: reduces it to the first part and returns the second.
   Group split(Group& group) {
     const std::span<Index> items = std::span(order).subspan(group.begin, group.size());
     const bool deep = ++group.depth > kMaxCentreSplits;
@@ -84,7 +84,7 @@ struct Tree<K>::Builder {
 
   Ref add(const Group& whole) {
     if (whole.size() <= max_triangles) return add_leaf(whole);
-    // Split the largest child until the node is full, so that nodes and leaves come out full.
+    // Split the largest child until the node is full, so that few lanes of nodes and leaves remain empty.
     std::array<Group, kLanes> children{whole};
     std::size_t count = 1;
     while (count < max_children) {
@@ -177,8 +177,8 @@ void Tree<K>::fit_node(std::size_t n) {
   }
 }
 
-/// Updates the bound of vertex v, which moves from p to anywhere between two corners. False if the old bound still
-/// holds.
+/// Updates the bound of vertex v, which moves from p to anywhere in the box from `low` to `high`. Returns false if the
+/// old bound is still valid.
 template <int K>
 bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
   Resting& resting = resting_[v];
@@ -187,7 +187,7 @@ bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low,
   if (resting.slack >= 0 && to_one_place && (p - resting.place).squaredNorm() <= slack_sq &&
       (low - resting.place).squaredNorm() <= slack_sq)
     return false;
-  // The ball must hold both ends of this step. If that needs too much slack, the bound is as tight as after refit.
+  // The ball must contain both ends of this step. If that needs too much slack, the bound is as tight as after refit.
   const double slack = kSlackSteps * (low - p).norm() + kMinSlackFraction * margin;
   if (slack <= kMaxSlackFraction * margin && to_one_place) {
     resting = {low, slack};

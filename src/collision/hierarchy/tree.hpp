@@ -59,15 +59,14 @@ class Tree {
   /// longest side until each group fits into a leaf. Throws Error(internal) if an index or the shape is out of range.
   Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape = {});
 
-  /// Fits all bounds to linear motion, enlarged by `margin` [m] in every direction at both ends. With margin ε/2 on
-  /// both sides, triangles that come closer than ε at any time of the motion have overlapping bounds (seed, "Bounding
-  /// Volume Hierarchy").
+  /// Fits all bounds to linear motion, enlarged by `margin` [m] in every direction at both ends. Triangles that come
+  /// closer than 2 · margin at any time of the motion then have overlapping bounds (seed, "Bounding Volume Hierarchy").
   void refit(const Motion& motion, double margin);
   void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) { refit({x_t0, x_t1}, margin); }
 
-  /// As refit, but only where a vertex left its bound. Slow vertices get bounds with slack that lasts for a few steps
-  /// (see kMaxSlackFraction in tree.cpp). Nodes below which every vertex is still inside its bound are not refitted.
-  /// Bounds are never smaller than after refit.
+  /// As refit, but keeps the bound of each vertex that is still inside its slack. Slow vertices get slack that lasts
+  /// for a few steps (see kMaxSlackFraction in tree.cpp). Nodes without a renewed vertex bound below them are not
+  /// refitted. Bounds are never smaller than after refit.
   void refit_lazily(const Motion& motion, double margin);
   void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit_lazily({x_t0, x_t1}, margin);

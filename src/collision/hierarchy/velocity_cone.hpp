@@ -5,14 +5,14 @@
 
 namespace weft::collision {
 
-/// All motions of a set lie in the ball around `mean`. Seen from the origin, that ball is the seed's cone with its
-/// direction, opening angle and size. A ball is stored because two balls bound a relative motion without trigonometry.
-/// Motions are displacements [m] over one common time.
+/// All motions of a set lie in the ball around `mean` with this radius. Seen from the origin, that ball is the seed's
+/// cone with its direction, opening angle and size. A ball is stored because two balls bound a relative motion without
+/// trigonometry. Motions are displacements [m] over one common time.
 struct VelocityCone {
   Vec3 mean = Vec3::Zero();
   double radius = 0;
 
-  /// Bounds the change of motions that lay in `then` and lie in `now`.
+  /// Bound of the difference of two motions of one point, the earlier one in `then` and the later one in `now`.
   friend VelocityCone operator-(const VelocityCone& now, const VelocityCone& then) {
     return {now.mean - then.mean, now.radius + then.radius};
   }

@@ -9,12 +9,12 @@
 
 namespace weft::collision {
 
-// Minimum number of leaves of both trees for using threads, and minimum number of tasks for them.
+// Minimum number of leaves of both trees together for using threads, and number of tasks wanted for them.
 constexpr std::size_t kMinLeavesForThreads = 512, kMinThreadTasks = 64;
 
 /// One traversal of two trees, which may be the same. kLonger: of two nodes, descend only into the one with the longer
-/// side. kListed: record stops in a separation list. Both are compile-time constants, so that the plain traversal has
-/// no branches for them.
+/// side. kListed: record in a separation list where the traversal stops. Both are compile-time constants, so that the
+/// plain traversal has no branches for them.
 template <int K, bool kLonger, bool kListed>
 class Walk {
  public:
@@ -117,7 +117,7 @@ class Walk {
     append(before.closed, list.closed);
   }
 
-  /// A deferred call.
+  /// A call of open() that is done later: open(a) if `self`, else open(a, b).
   struct DeferredCall {
     Ref a, b;
     bool self;
@@ -148,9 +148,9 @@ class Walk {
     }
   }
 
-  /// Lists all pairs of something below ref_a with something below ref_b, whose bounds are known to overlap. Descends
-  /// into both nodes together, unless kLonger selects the seed's order, because one test against all children costs as
-  /// much as one against a single child.
+  /// Lists all pairs of a triangle below ref_a and one below ref_b; the bounds of ref_a and ref_b are known to overlap.
+  /// Descends into both nodes together, unless kLonger selects the seed's order, because one test against all children
+  /// costs as much as one against a single child.
   void traverse_pair(Ref ref_a, Ref ref_b) {
     if (deferred_ != nullptr) return deferred_->push_back({ref_a, ref_b, false});
     open(ref_a, ref_b);
@@ -173,7 +173,7 @@ class Walk {
     });
   }
 
-  /// Tests something below ref_a, whose bound is at `row`, against all children of a node of tree b.
+  /// Tests ref_a, whose bound is at `row` with this stride, against all children of a node of tree b.
   void open_b(Ref ref_a, const float* row, std::size_t stride, Ref ref_b) {
     const Node& node = b_.nodes()[index(ref_b)];
     const std::uint32_t hits = overlap_mask(node.bounds, row, stride) & first_lanes(node.count);

@@ -9,7 +9,7 @@ namespace weft::collision {
 namespace {
 
 /// Weights below this count as zero, so that a point above a shared edge is on the edge for both faces despite
-/// rounding. Moves the closest point by up to 1e-13 of an edge; rounding is a few times 1e-16.
+/// rounding. This moves the closest point by up to 1e-13 of an edge; rounding moves it by a few times 1e-16.
 constexpr double kSnap = 1e-13;
 
 /// Relative rounding error of a squared distance, and of a distance relative to the edge lengths.

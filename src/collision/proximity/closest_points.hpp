@@ -9,7 +9,7 @@
 namespace weft::collision {
 
 /// If sine² of the angle between two edges is below this, their cross product has lost so many digits that the interior
-/// solution is refined and the boundary is tested as well. At the limit 1e-16 / 1e-2 is lost, relative to the edges.
+/// solution is refined and the boundary is tested as well. At the limit the error is 1e-16 / 1e-2 of the edge length.
 inline constexpr double kNearlyParallelSq = 1e-4;
 
 /// Closest points x_a = Σ (positive weights) x, x_b = -Σ (negative weights) x of two features with four vertices.
@@ -27,12 +27,12 @@ struct ClosestPoints {
   }
 };
 
-/// Point p (side a, weight 0) against triangle t0 t1 t2 (side b, weights 1 to 3), which may be a segment or a point.
-/// The weights always describe a point of the triangle. The distance is accurate to about 2e-14 of the longest edge for
-/// ordinary triangles, and 2e-13 for needles of any aspect ratio, wherever they are in space.
+/// Point p (side a, weights[0]) against triangle t0 t1 t2 (side b, weights[1] to [3]). The triangle may degenerate to a
+/// segment or a point. The weights always describe a point of the triangle. The distance is accurate to about 2e-14 of
+/// the longest edge for ordinary triangles, and 2e-13 for needles of any aspect ratio, at any distance from the origin.
 ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2);
 
-/// Segment p0 p1 (side a, weights 0, 1) against segment q0 q1 (side b, weights 2, 3), either of which may be a point.
+/// Segment p0 p1 (side a, weights[0] and [1]) against segment q0 q1 (side b, weights[2] and [3]); each may be a point.
 /// For parallel segments, returns one of the closest pairs, always the same for the same input.
 ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1);
 

@@ -11,9 +11,9 @@ namespace weft::collision {
 
 namespace {
 
-/// Maximum triangles per group. Smaller groups follow the motion more closely; cost is quadratic in their number.
+/// Maximum triangles per group. Smaller ones follow the motion more closely; cost is quadratic in the number of groups.
 constexpr std::size_t kGroupSize = 128;
-/// After so many updates a new reference is set and all results are dropped, to keep the cones small.
+/// After this many updates a new reference is set and all results are dropped, to keep the cones small.
 constexpr int kReferenceUpdates = 64;
 
 void append(const PairList& from, PairList& to) {
@@ -38,7 +38,7 @@ CoherentDetection::CoherentDetection(std::span<const Surface> surfaces, std::vec
   for (const Surface& surface : surfaces) add_groups(surface, x);
 }
 
-// Halves along the longest side until a group is small enough.
+// Splits along the longest side until each group is small enough.
 void CoherentDetection::add_groups(const Surface& surface, std::span<const Vec3> x) {
   std::vector<Group>& groups = groups_.emplace_back();
   if (surface.triangles.empty()) return;
@@ -129,7 +129,8 @@ bool CoherentDetection::is_still_valid(const SurfacePair& pair, KeptResult& kept
   return kept.valid;
 }
 
-// One search for all pairs of surfaces, because its cost is that of the scene. Then the result is distributed.
+// Searches near features once for all these pairs of surfaces, because each search costs time for the whole scene. Then
+// assigns each near pair to its surfaces.
 void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, BroadPhase& broad_phase,
                                      ProximityFinder& finder, std::span<const Vec3> x_t0) {
   CandidatePairs all;

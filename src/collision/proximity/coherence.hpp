@@ -7,15 +7,14 @@
 // Each surface is divided into groups of triangles. Each group has a velocity cone: its motion since a common
 // reference. For two groups, let R be the bound that the cones give on how far a point of one has moved relative to a
 // point of the other since their pair of surfaces was searched. Distances, and gaps of bounds along any direction,
-// change by at most R. A result is valid while, for each two groups, either R ≤ budget, or they were more than reach +
-// R apart when it was found. So velocities and budget, a fraction of ε_close, set the period of reuse. While a result
-// is valid:
-//   - every two triangles whose bounds with margin reach / 2 overlap now are among the candidates;
+// change by at most R. A result is valid while, for each two groups, either R ≤ budget, or their boxes were more than D
+// + R apart at that search, with D = detection_distance. While a result is valid:
+//   - every two triangles whose bounds with margin D / 2 overlap now are among the candidates;
 //   - the kept closest points of two features, with unchanged weights, are at most 2 R farther apart than the features,
 //     and never closer;
-//   - for every pair of features within reach, a listed pair is at most 2 R farther apart (see ProximityFinder:
-//     they were within reach + R then, and the pair that represented them was no farther).
-// Surfaces are kept or searched as a whole, because a near pair may represent others in neighbouring groups.
+//   - for every pair of features within D, a listed pair is at most 2 R farther apart (see ProximityFinder:
+//     they were within D + R then, and the pair that represented them was no farther).
+// A pair of surfaces is searched as a whole, because a near pair may represent others in neighbouring groups.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +34,7 @@ struct SurfacePair {
 };
 
 struct CoherenceParameters {
-  double detection_distance = 0;  ///< detection distance of near pairs [m]
+  double detection_distance = 0;  ///< [m]
   double budget = 0;              ///< relative motion up to which a result stays valid [m]
   double min_fold = 0;            ///< of edges, as for ProximityFinder::gather
 };
@@ -48,16 +47,15 @@ class CoherentDetection {
                     const CoherenceParameters& parameters);
 
   /// Updates to the step from x_t0 to x_t1 [m]. Fits all bounds, searches the pairs of surfaces whose result is no
-  /// longer valid, and returns how many these are. If none, the candidates are unchanged. Call again if the motion
-  /// changes.
+  /// longer valid, and returns their number. If none, the candidates are unchanged. Call again if the motion changes.
   int update(BroadPhase& broad_phase, ProximityFinder& finder, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Candidate pairs of all wanted pairs of surfaces.
   const CandidatePairs& candidates() const { return candidates_; }
-  /// Near pairs, with the distances and normals that their weights give at x_t0. Kept ones are listed up to reach + 2
-  /// R.
+  /// Near pairs, with the distances and normals that their weights give at x_t0. Pairs of an earlier search are listed
+  /// up to a distance of D + 2 R.
   std::span<const Proximity> proximities() const { return proximities_; }
-  /// Largest R of all groups within the budget [m].
+  /// Largest R of all pairs of groups that are not far apart; at most the budget [m].
   double largest_motion() const { return largest_motion_; }
 
   /// Makes the next update search everything, so that nothing depends on earlier steps.

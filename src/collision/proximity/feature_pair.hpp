@@ -26,7 +26,8 @@ inline FeatureKey feature_key(ProximityKind kind, FeatureKey vertices) {
   return vertices;
 }
 
-/// The points are x_a = Σ (w > 0) w x and x_b = −Σ (w < 0) w x. A vertex without weight may be a mere placeholder.
+/// The points are x_a = Σ w x over the positive weights w, and x_b = −Σ w x over the negative ones. A vertex with
+/// weight 0 may belong to neither feature.
 struct FeaturePair {
   std::array<Index, 4> vertices{};  ///< vertex, then the corners of the face; or the ends of edge a, then of edge b
   std::array<double, 4> weights{};  ///< those of side a sum to 1, those of side b to −1

@@ -27,7 +27,7 @@ class Features {
   /// Bits 0 to 2: the triangle owns corner c. Bits 3 to 5: it owns the edge from corner c to corner c + 1.
   std::uint8_t owned(Index t) const { return owned_[t]; }
 
-  /// Opposite vertices, in all triangles, of the edge from corner c to corner c + 1 that triangle t owns.
+  /// Vertices opposite to the edge from corner c to c + 1 that triangle t owns, one for each triangle at that edge.
   std::span<const Index> apexes(Index t, std::size_t c) const {
     const auto edge = static_cast<std::size_t>(edge_[t][c]);
     return std::span(apexes_).subspan(apexes_begin_[edge], apexes_begin_[edge + 1] - apexes_begin_[edge]);
@@ -43,7 +43,7 @@ class Features {
     return std::span(around_).subspan(around_begin_[v], around_begin_[v + 1] - around_begin_[v]);
   }
 
-  /// Pairs of triangles a < b with a common edge and both numbers in [first, first + count), sorted.
+  /// Pairs of triangles a < b with a common edge and a in [first, first + count), sorted.
   std::span<const TrianglePair> hinges(Index first, Index count) const;
 
  private:

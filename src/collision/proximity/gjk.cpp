@@ -56,8 +56,8 @@ std::size_t furthest(std::span<const Vec3> points, const Vec3& d) {
   return best;
 }
 
-/// Takes the nearest point of the triangle with corners i, j, k if it is nearer than the best one so far. The closed
-/// form of closest_vertex_face also handles needles, segments and points.
+/// Sets the nearest point to that of the triangle with corners i, j, k, if that is nearer than the best one so far. The
+/// closed form of closest_vertex_face also handles needles, segments and points.
 void try_face(Simplex& simplex, double& least_sq, std::size_t i, std::size_t j, std::size_t k) {
   const auto& c = simplex.corner;
   const ClosestPoints points = closest_vertex_face(Vec3::Zero(), c[i].w, c[j].w, c[k].w);
@@ -117,7 +117,7 @@ ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b) {
   int rounds = 0;
   while (rounds < kMaxRounds && distance > kTolerance * size) {
     ++rounds;
-    // The corner of a - b that is lowest along the nearest point gives a lower bound of the distance.
+    // The corner of a - b that is lowest along the direction to the nearest point gives a lower bound of the distance.
     const Vec3 towards = simplex.nearest;
     const std::size_t i = furthest(a, -towards), j = furthest(b, towards);
     const Support next{i, j, a[i] - b[j]};

@@ -14,11 +14,11 @@
 
 namespace weft::collision {
 
-/// Two features closer than the detection distance, with their closest points: Σ w x = distance · normal.
+/// Two features closer than the detection distance, with their closest points: Σ weights x = distance · normal.
 struct Proximity : FeaturePair {
-  /// For an edge pair: sine of the angle by which the normal leaves the wedge of edge a and of edge b. Inside the wedge
-  /// (≤ 0) no face at the edge is closer than the edge itself. Above 0 a neighbouring pair is closer, and the response
-  /// may skip this one. 0 for vertex-face.
+  /// For an edge pair: sine of the angle between the normal and the wedge of edge a and of edge b. The wedge of an edge
+  /// is the set of directions, perpendicular to it, in which no face at the edge is closer than the edge itself (≤ 0).
+  /// Above 0 a neighbouring pair is closer, and the response may skip this one. 0 for vertex-face.
   std::array<double, 2> outside_wedge{};
 };
 
@@ -29,10 +29,10 @@ struct Proximity : FeaturePair {
 ///   - on an edge or at a vertex of the face, if no other face around that edge or vertex is closer. Each is listed
 ///   once.
 /// Every skipped pair is represented by a listed pair that is at least as close. Proof: let S be the edge or vertex of
-/// the face where the closest point lies. Every face around S contains that point, so its distance is no larger.
-/// Likewise, if the closest point of an edge pair is at an end, the faces around the other edge are no farther. Going
-/// from face to face, distances never grow, and ties go to the lower number, so this ends at a listed pair. The
-/// smallest distance of all is therefore always listed.
+/// the face where the closest point lies. Every face around S contains that point, so the vertex is no farther from
+/// each of them. Likewise, if the closest point of an edge pair is at an end, the faces around the other edge are no
+/// farther. Going from face to face, distances never grow, and ties go to the lower number, so this ends at a listed
+/// pair. The smallest distance of all is therefore always listed.
 class ProximityFinder {
  public:
   ProximityFinder() = default;
@@ -40,20 +40,19 @@ class ProximityFinder {
   /// `triangles`: of all surfaces in their global numbering; must outlive this object.
   ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
 
-  /// Keeps the pairs of features closer than `radius` [m] at x [m]. The candidates must include every pair of triangles
-  /// closer than that; pairs with a common edge are added here, for each surface of `deformable`. An edge pair is
-  /// skipped if the sines of half the fold angles along both edges add up to less than `min_fold`: between two smooth
-  /// layers, vertices and faces suffice, and four of five pairs are edge pairs.
+  /// Lists all pairs of features closer than `radius` [m] at x [m], and some others. The candidates must include every
+  /// pair of triangles closer than `radius`; pairs with a common edge are added here, for each surface of `deformable`.
+  /// An edge pair is skipped if the sines of half the fold angles along both edges add up to less than `min_fold`:
+  /// between two smooth layers, vertices and faces suffice, and four of five pairs are edge pairs.
   void gather(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
               double radius, double min_fold = 0);
   /// As above, with candidates without a common vertex only. Pairs that share one or two vertices are added here, for
-  /// each surface of `deformable`. `clear`: not 0 for triangles that are clear by `radius` (see
-  /// Separation::find_clear_triangles).
+  /// each surface of `deformable`. `clear`: result of Separation::find_clear_triangles for `radius`.
   void gather(const PairList& apart, std::span<const Surface> deformable, std::span<const Vec3> x, double radius,
               double min_fold, std::span<const std::uint8_t> clear);
 
   /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m], in their order. Complete as
-  /// long as no vertex is farther than (radius − detection_distance) / 2 from where it was gathered.
+  /// long as no vertex is farther than (radius − detection_distance) / 2 from its position in gather().
   void find(std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out) const;
 
   /// Gathers and finds.

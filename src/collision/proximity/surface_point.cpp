@@ -14,7 +14,7 @@ namespace {
 constexpr double kMinDirectionLength = 1e-10;
 // Minimum cosine between a face normal and a given direction for the face to count as facing that way.
 constexpr double kMinFacingCosine = 0.5;
-// Offset of the start of a ray from its point [m], and length of the ray [m].
+// Scale of the offset of the start of a ray from its point, and length of the ray [m].
 constexpr double kRayOffset = 1e-7;
 constexpr double kRayLength = 1e3;
 
@@ -37,8 +37,8 @@ std::optional<std::array<double, 3>> intersect_segment(const Vec3& p, const Vec3
                                                        std::span<const Vec3> x) {
   const Vec3 &t0 = x[face[0]], &t1 = x[face[1]], &t2 = x[face[2]];
   const Vec3 segment = q - p;
-  // Six times the signed volumes of the tetrahedra of the segment and each edge. All have one sign if the line goes
-  // through.
+  // Six times the signed volumes of the tetrahedra of the segment and each edge. All have the same sign if the line
+  // goes through the face.
   const double v0 = segment.dot((t1 - p).cross(t2 - p)), v1 = segment.dot((t2 - p).cross(t0 - p)),
                v2 = segment.dot((t0 - p).cross(t1 - p));
   const double sum = v0 + v1 + v2;

@@ -28,8 +28,8 @@ SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, s
 
 /// Nearest point of a surface of the broad phase, at x [m] inside the bounds of its last refit. Gives the same bits as
 /// the search over all its triangles (unless a thousand nearly equidistant faces, each within rounding of the next,
-/// span kNearestTolerance). `counts`: if given, only faces for which it is true count. `towards`: if not zero, prefers
-/// faces whose normal is within 60 degrees of it; if there are none, all faces count.
+/// span kNearestTolerance). `counts`: if given, excludes faces for which it is false. `towards`: unit or zero; if not
+/// zero and some of these faces have a normal within 60 degrees of it, excludes the others.
 using CountsFace = std::function<bool(const Triangle& face)>;
 SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
                            const Vec3& towards = Vec3::Zero(), const CountsFace& counts = nullptr);

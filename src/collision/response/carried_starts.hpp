@@ -21,8 +21,8 @@ struct RigidMotion {
 /// An obstacle that turns moves on arcs, but separating planes are found for straight trajectories (see `separates`).
 /// In the obstacle's own frame it stands still. So the starts of cloth are carried along to the obstacle's place at the
 /// end of the step: relative trajectories are then straight, and a plane fixed to the obstacle can separate them for
-/// the whole step. Cloth that is carried along keeps its exact distance to the obstacle, so one obstacle always leaves
-/// it space.
+/// the whole step. Cloth that is carried along keeps its exact distance to the obstacle, so a single obstacle never
+/// meets it.
 class CarriedStarts {
  public:
   CarriedStarts() = default;
@@ -30,15 +30,15 @@ class CarriedStarts {
   CarriedStarts(Index first_obstacle, std::vector<std::size_t> body_of)
       : first_obstacle_(first_obstacle), body_of_(std::move(body_of)) {}
 
-  /// A step from x_t0, with obstacles at their end in x_t1 [m]; both must outlive it. `motions`: one for each body,
-  /// ignored for cloth; empty: nothing is carried.
+  /// A step from x_t0, with obstacles at their end in x_t1 [m]; both must outlive the step. `motions`: one for each
+  /// body; empty: nothing is carried.
   void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const RigidMotion> motions);
 
   /// Whether a body moves rigidly in this step.
   bool carries(std::size_t body) const { return body < motions_.size() && motions_[body].moves(); }
   /// Starts carried along by such a body; its own vertices are at their end [m].
   std::span<const Vec3> by(std::size_t body) const;
-  /// Computes all starts that of() can return, so that threads can call it at the same time.
+  /// Computes all starts that of() can return, so that threads can call of() at the same time.
   void make() const;
 
   /// Start positions for testing a pair: carried by its obstacle if that turns, else `x_t0`.

@@ -31,17 +31,17 @@ bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0
 /// Which planes are tried: only those of constant direction, or also those that turn.
 enum class PlaneKinds { constant, all };
 
-/// Searches for a separating plane, in order of increasing cost: one of constant direction, then one that turns with
-/// the pair, then both in halves of the trajectory, at most Numerics::Separation::halvings times. Face normals separate
-/// layers, the direction between the centres separates neighbours in a plane, and the closest direction what hardly
-/// moves.
+/// Searches for a separating plane, cheap ones first. Directions are face normals (for layers) and the line between the
+/// centres (for neighbours in one plane), first constant, then turning with the pair; then the closest direction,
+/// constant and turning; then all again in each half of the trajectory, at most Numerics::Separation::halvings times.
 ///
-/// A turning plane has n(t) = (1 − t) n₀ + t n₁. Along it, the difference d(t) of two linearly moving corners is
-/// quadratic in time, with Bernstein coefficients n₀·d₀, (n₀·d₁ + n₁·d₀)/2 and n₁·d₁; it is positive if these are. For
-/// two layers of any width at a distance d that turn together by an angle θ, the coefficients are d, d cos θ and d. A
-/// plane of constant direction would cut one of them if their width times sin(θ/2) exceeds d.
+/// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, t from 0 to 1. For two linearly moving corners with the
+/// difference δ(t), n·δ is quadratic in time, with Bernstein coefficients n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and n₁·δ₁; it is
+/// positive if these are. For two layers of any width at a distance g that turn together by an angle θ, the
+/// coefficients are g, g cos θ and g. A plane of constant direction would cut a layer if the width times sin(θ/2)
+/// exceeds g.
 ///
-/// Returns the direction at the end of the step, rounded to single precision for storage.
+/// Returns the direction at the end of the step, rounded to single precision for storage; nullopt if none is found.
 std::optional<Vec3> find_separating_plane(const CornerPair& pair, std::span<const Vec3> x_t0,
                                           std::span<const Vec3> x_t1, PlaneKinds which = PlaneKinds::all);
 

@@ -38,9 +38,9 @@ class ContactResponse {
 
   /// Particles that the walls constrain in the next solve.
   std::span<const PrescribedParticle> prescribed() const;
-  /// After a solve that led to x_end: sets and releases walls. Returns how many particles have changed constraints.
+  /// After a solve that led to x_end: sets and releases walls. Returns how many particles need another solve.
   int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const VelocityConstraints::ForceOn& force_on);
-  /// Accepts the step: its walls are the initial ones of the next step.
+  /// Keeps the state of the walls for the next step.
   void accept();
 
   /// As the functions of ContactSet.
@@ -61,7 +61,7 @@ class ContactResponse {
   /// Whether there is no contact of either form.
   bool empty() const { return springs_.contacts().empty() && (!walls_ || walls_->empty()); }
 
-  /// Saves what accept() has kept. Throws std::runtime_error if it does not fit these particles.
+  /// Saves what accept() has kept. Reading throws std::runtime_error if the data do not fit these particles.
   template <class Archive>
   void serialize(Archive& archive) {
     if (walls_) return walls_->serialize(archive);

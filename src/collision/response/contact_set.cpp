@@ -15,8 +15,8 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
-// Relative tolerance of the force when the depth of a tangent is sought. The error of the depth enters the tangent's
-// force squared, below rounding (measured: 1e-3 made the solver miss newton_tolerance 1e-6).
+// Limits of the search for the depth of a tangent: iterations, and relative tolerance of the force. The error of the
+// depth enters the tangent's force squared, below rounding (measured: 1e-3 made the solver miss newton_tolerance 1e-6).
 constexpr int kDepthIterations = 30;
 constexpr double kDepthTolerance = 1e-8;
 
@@ -34,7 +34,7 @@ NormalForce normal_force_at(const Contact& contact, double depth) {
   return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
 }
 
-// Force at `depth` of the tangent taken at `depth_at` [N].
+// Force at `depth` by the tangent `at` depth `depth_at`, never negative [N].
 double tangent_force(const NormalForce& at, double depth_at, double depth) {
   return std::max(0.0, at.force + at.slope * (depth - depth_at));
 }
@@ -57,15 +57,16 @@ Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
   return weighted_sum(contact, x_end) + contact.obstacle_end;
 }
 
-// Friction coefficient divided by slip, for a slip in units of the stick slip: 2 − s while sticking, 1/s while sliding.
-// If both coefficients are equal, it is continuously differentiable.
+// Friction / (normal force · slip), for a slip in units of the stick slip: with friction coefficient μ, μ (2 − slip)
+// below 1, μ / slip above. If both coefficients are equal, it is continuously differentiable.
 double friction_over_slip(const Contact& contact, double slip) {
   if (slip < 1) return contact.static_friction * (2 - slip);
   const double sliding = std::min(1.0, (slip - 1) / (numerics.contact.slide_velocity - 1));
   return (contact.static_friction + sliding * (contact.friction - contact.static_friction)) / slip;
 }
 
-// Derivative of slip over friction by the slip. Ignores the drop from static to sliding friction.
+// ψ' of friction_tangent(): derivative of 1 / friction_over_slip() by the slip. Ignores the drop from static to sliding
+// friction.
 double slope_of_slip_over_friction(const Contact& contact, double slip) {
   if (slip < 1) return 1 / (contact.static_friction * (2 - slip) * (2 - slip));
   return 1 / (slip * friction_over_slip(contact, slip));

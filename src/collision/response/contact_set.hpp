@@ -12,18 +12,19 @@
 
 namespace weft::collision {
 
-/// Two points, one on each surface, that must not come closer than `range` along `normal`. Constant during its step.
+/// Two points, one on each surface, that a spring pushes apart if they are closer than `range` along `normal`. Constant
+/// between two searches for contacts.
 struct Contact {
   std::array<Index, 4> particles{0, 0, 0, 0};
   std::array<double, 4> weights{0, 0, 0, 0};  ///< of the particles; zero for vertices of obstacles
-  Vec3 obstacle_end = Vec3::Zero();           ///< contribution of the obstacle's vertices at the end of the step [m]
+  Vec3 obstacle_end = Vec3::Zero();           ///< part of the obstacle's vertices in a − b at the end of the step [m]
   Vec3 obstacle_start = Vec3::Zero();         ///< and at its start
   bool against_obstacle = false;              ///< one side belongs to an obstacle
   Vec3 relative_start = Vec3::Zero();         ///< point a minus point b at the start of the step [m]
-  Vec3 normal = Vec3::UnitZ();                ///< unit, from b to a at the start of the step
+  Vec3 normal = Vec3::UnitZ();                ///< unit, from b to a where the pair was found
   double depth = 0;            ///< initial depth, at which the law is first linearised; negative: out of range [m]
-  double range = 0;            ///< r, activation distance: the spring acts below it [m]
-  double full_range = 0;       ///< activation distance of the surfaces [m]; `range` may be smaller
+  double range = 0;            ///< activation distance: the spring acts below it [m]
+  double full_range = 0;       ///< r, activation distance of the surfaces [m]; `range` may be smaller
   double stiffness = 0;        ///< k [N/m]
   double friction = 0;         ///< Coulomb coefficient while the pair slides
   double static_friction = 0;  ///< before it slides; not less than `friction`
@@ -31,11 +32,10 @@ struct Contact {
 
 /// State of the friction of a contact between iterations.
 struct FrictionLag {
-  Vec3 relative_friction =
-      Vec3::Zero();          ///< w: friction divided by normal force, against the slip; an unknown of its own
-  Vec3 slip = Vec3::Zero();  ///< at the last update, divided by the stick slip
-  bool sticks = false;       ///< true: friction is linearised at w; false: at the slip
-  int slide_starts = 0;      ///< how often it began to slide in this step
+  Vec3 relative_friction = Vec3::Zero();  ///< w: −friction / normal force; an unknown of its own
+  Vec3 slip = Vec3::Zero();               ///< at the last update, divided by the stick slip
+  bool sticks = false;                    ///< true: friction is linearised at w; false: at the slip
+  int slide_starts = 0;                   ///< how often it began to slide in this step
 };
 
 /// State of the contacts of a step, one entry for each, between Newton iterations.
@@ -46,17 +46,17 @@ struct ContactLag {
   int updates = 0;                     ///< since the start of the step
 };
 
-/// I − sym(w ûᵀ), restricted to the directions `across` the normal. w is limited to length 1, so that the matrix is
-/// definite. This is the derivative of friction −λ w' of a slip u = ψ(‖u‖) w', over λ/ψ, with w = ψ' w'. See
-/// ContactSet::linearise.
+/// across − sym(w ûᵀ), with û = slip / ‖slip‖ and the projector `across` onto the tangent plane. w is limited to length
+/// 1, so that the matrix is positive semidefinite. Times λ/ψ, this is minus the derivative, by the slip u = ψ(‖u‖) q,
+/// of the friction −λ q, if w = ψ' q. See ContactSet::linearise.
 Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w);
 
-/// The contact normal force is k d (1 + s (d / r)⁴) with s = Numerics::Contact::stiffening, depth d = r − g and gap g =
-/// n·(a − b) < r. Beyond d = r it continues linearly. n is constant during the step, so the law is convex and its
+/// The normal force of a contact is f(d) = k d (1 + Numerics::Contact::stiffening (d / r)⁴) at depth d = `range` − n·(a
+/// − b) > 0. Beyond d = r = `full_range` it continues linearly. n = `normal` is constant, so f is convex and its
 /// Jacobian has rank one. A linear spring is too weak under sharp tips: cotton gives 0.1 N before the gap is closed,
-/// and a sheet on the tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane with μ
-/// times the normal force. It grows smoothly from zero within a slip of `stick_speed` · h (Li et al., "Incremental
-/// Potential Contact", 2020, section 5).
+/// and a sheet on the tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane, at most
+/// with the friction coefficient times the normal force. It grows smoothly from zero within a slip of `stick_speed` · h
+/// (Li et al., "Incremental Potential Contact", 2020, section 5).
 class ContactSet {
  public:
   void clear() { contacts_.clear(); }
@@ -68,16 +68,17 @@ class ContactSet {
   /// Call before each linearisation, with the particles at the last iterate. The normal force λ is an unknown besides
   /// the depth, f⁻¹(λ) = d (a primal–dual method; λ starts from `depth`). The linear system contains the tangent of the
   /// law at f⁻¹(λ), and λ follows that tangent, but never below zero (measured: with the tangent at the depth of the
-  /// iterate, sphere_drape took 576 instead of 462 iterations, and 256² particles failed at an impact). Friction uses λ
-  /// from here on. λ is constant within one iteration, so friction has a potential too.
+  /// iterate, sphere_drape took 576 instead of 462 iterations, and 256² particles failed at an impact). Friction uses
+  /// this λ, which is constant within one iteration and after Numerics::Newton::patience updates, so friction has a
+  /// potential too.
   ///
-  /// Sticking friction on an obstacle follows its tangent likewise. It starts to slide if the tangent exceeds static
-  /// friction, and sticks again if the slip is within the stick slip or has reversed. Between cloths this brings no
-  /// gain.
+  /// Sticking friction on an obstacle follows its tangent likewise. The contact starts to slide if the tangent exceeds
+  /// static friction, and sticks again if the slip is within the stick slip or has reversed (at most
+  /// Numerics::Contact::returns times). Between cloths this brings no gain.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const;
 
   /// force += contact forces [N] with the particles at x_end. Friction uses the normal forces at x_end during the first
-  /// Numerics::Newton::patience updates, so that the residual contains the error of the lagged ones (measured:
+  /// Numerics::Newton::patience updates, so that the residual contains the error of the lagged normal forces (measured:
   /// otherwise a sheet that landed on an incline lost the friction of the impact).
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   /// As add_forces, with the tangents instead of the laws.
@@ -92,17 +93,18 @@ class ContactSet {
   /// by its activation distance or more in the step is a full impact; one that closes by less counts proportionally. Of
   /// three estimates of the closing, the smallest counts: from the velocity at the start of the step; from that
   /// velocity and the last acceleration (for motion along curved obstacles); and from the last displacement (zero at
-  /// rest). The normal force acts as a force. Friction holds the points to the jump that they had, because a slip of
-  /// 1e-7 m already changes the friction force completely.
+  /// rest). The normal force acts as a force. A term in `system` holds the points to the tangential jump that they had,
+  /// because a slip of 1e-7 m already changes the friction force completely.
   bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
                    std::span<Vec3> right_side, solver::LinearSystem& system) const;
 
   /// As add_linear_forces; also adds −∂f/∂x to the system. `end_rate`: change of x_end per change of the unknown.
   /// Friction gets a definite approximation. Friction −λ w of a slip u = ψ(‖u‖) w is linearised with w as an unknown of
   /// its own (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total Variation-Based Image Restoration", 1999).
-  /// If it sticks, this is the tangent at the slip that belongs to w. If it slides, w is that of unchanged velocity, or
-  /// the one with which sliding began: the result is the exact tangent while cloth keeps sliding, and force over slip
-  /// or more where it starts to slide or turns (measured: 1.05 iterations on an incline; 2.3 with force over slip).
+  /// If the contact sticks, the result is the tangent at the slip that belongs to w. If it slides, w is that of
+  /// unchanged velocity, or the one with which sliding began. Then the result is the exact tangent while cloth keeps
+  /// sliding, and force over slip or more where cloth starts to slide or turns (measured: 1.05 iterations on an
+  /// incline; 2.3 with force over slip).
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 

@@ -1,4 +1,4 @@
-// Pinched cloth, squeezed between obstacles: which triangles are exempt against which obstacle, and how they get out.
+// Pinched cloth, squeezed between obstacles: which triangles are exempt against which obstacle, and how they return.
 #pragma once
 
 #include <array>
@@ -17,10 +17,11 @@
 namespace weft::collision {
 
 /// Set of cloth triangles, each exempt against one limb of an obstacle: the triangle may intersect the limb, and no
-/// separating plane is required. It is removed once it is apart from the limb and back on its original side. Triangles
-/// that share a particle with it are exempt too, so that a limb moving along the cloth does not drag the cloth with it;
-/// those that the limb meets are added in the next step. If two limbs overlap, the cloth is exempt against the limb
-/// that reached it and rests on the other. When that limb retreats, the cloth comes out on the side where it went in.
+/// separating plane is required. A triangle is removed once it is apart from the limb and back on its original side.
+/// Triangles that share a particle with an exempted one are exempt too, so that a limb moving along the cloth does not
+/// drag the cloth with it; those that the limb meets are added in the next step. If two limbs overlap, the cloth is
+/// exempt against the limb that reached it and rests on the other. When that limb retreats, the cloth comes out on the
+/// side where it went in.
 class PinchedPairs {
  public:
   struct Key {
@@ -32,11 +33,11 @@ class PinchedPairs {
 
   /// State of the cloth when it was exempted.
   struct Origin {
-    int side = 0;                 ///< of the surface: +1 outside, −1 inside or behind an open one; 0 not known
+    int side = 0;  ///< where it was: +1 outside the limb, −1 inside or behind an open surface; 0 not known
     std::vector<Triangle> faces;  ///< faces of the limb that reached the cloth
   };
 
-  /// How to push out a particle, or a point of a triangle.
+  /// The pair of points that pushes a particle, or a point of a triangle, back to its side.
   struct Push {
     FeaturePair exit_pair;
     bool is_exit_clear = false;  ///< no obstacle lies at the exit
@@ -66,7 +67,7 @@ class PinchedPairs {
     list_particles();
   }
 
-  // Below, `surfaces` are all bodies, by number. Positions must lie inside the bounds of its last refit.
+  // Below, `surfaces` contains all bodies, by number. Positions must lie inside the bounds of its last refit.
 
   /// Records the origin, at x_t0 [m], of triangles that were just exempted.
   void note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0);
@@ -76,10 +77,10 @@ class PinchedPairs {
   void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x);
 
   /// How cloth returns to its side at x [m]. Lists each particle that is less than `max_height` [m] above the limb's
-  /// surface, with the direction to the nearest point of the surface. For a particle inside, faces that point the same
-  /// way as those that reached it take precedence. If all corners of a triangle are on the right side but an edge or
-  /// corner of the limb still sticks through, lists that point, with the normal of the face it crosses. Side a is the
-  /// cloth; the normal points to the side where it belongs.
+  /// surface, with the direction to the nearest point of the surface. For a particle on the wrong side, faces that
+  /// point the same way as those that reached it take precedence. If all corners of a triangle are on the right side
+  /// but it still crosses a face of the limb, lists the middle of that crossing, with the normal of the face. Side a is
+  /// the cloth; the normal points to the side where the cloth belongs.
   std::vector<Push> find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x, double max_height) const;
 
   bool empty() const { return origins_.empty(); }
@@ -113,7 +114,7 @@ class PinchedPairs {
     Index limb;
     friend auto operator<=>(const Corner&, const Corner&) = default;
   };
-  std::map<Corner, Origin> particles_;  // corners of these triangles
+  std::map<Corner, Origin> particles_;  // corners of the exempted triangles
 };
 
 }  // namespace weft::collision

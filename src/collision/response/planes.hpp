@@ -19,7 +19,8 @@ namespace weft::collision {
 /// For each watched pair, a direction and the gap along it at the reference positions. The gap shrinks by at most the
 /// motion of the two triangles. While they have moved less than the gap, the pair is separated without a test, so cloth
 /// resting on cloth costs one comparison per pair and step. A pair whose corners are all where they were at its last
-/// successful test is not tested again either, because pushing apart tests repeatedly after moving a few vertices.
+/// successful test is not tested again either, because pushing apart tests all pairs again after it has moved a few
+/// vertices.
 class Planes {
  public:
   Planes() = default;
@@ -53,7 +54,7 @@ class Planes {
  private:
   struct Plane {
     std::array<float, 3> n;
-    float gap;  // at the reference, less the minimum gap and rounding [m]; may be negative
+    float gap;  // at the reference, less 1.5 minimum gaps and rounding [m]; may be negative
     bool is_known() const { return n[0] != 0 || n[1] != 0 || n[2] != 0; }
     bool operator==(const Plane&) const = default;
   };

@@ -105,7 +105,7 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
                         is_of_a};
   const std::span<Corner> corners(all.data(), count);
   std::ranges::sort(corners, {}, &Corner::limit);
-  const auto momentum_gain = [&](double c) {  // momentum gained along n [kg m]
+  const auto momentum_gain = [&](double c) {  // sum of mass times push along n [kg m]
     double sum = 0;
     for (const Corner& corner : corners)
       if ((c > corner.limit) == corner.is_of_a) sum += corner.mass * (c - corner.limit);
@@ -120,7 +120,7 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
   return below;
 }
 
-// Moves the ends of a pair apart. Returns false if fixed vertices leave no space.
+// Moves the ends of a pair apart. Returns false if the pair touches at the start or fixed vertices leave no space.
 bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const Vec3 direction = closest_features(pair, step.start_of(pair)).points.difference;
   const double start_gap = direction.norm();
@@ -129,7 +129,7 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const double target =
       std::max(2 * numerics.separation.least_gap, std::min(numerics.separation.restored_gap, 0.5 * start_gap));
 
-  // The separating plane n·x = c at the end. It conserves momentum unless fixed vertices restrict it.
+  // `plane` is c of the separating plane n·x = c at the end. The push conserves momentum unless fixed vertices limit c.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const auto is_fixed = [&](Index v) { return step.movable[v] != kFree || group_of(v) != nullptr; };
   double low = -kInfinity, high = kInfinity;  // of c
@@ -154,7 +154,7 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   return true;
 }
 
-// Moves the rigid bodies of a pair apart along n. Returns false if none of them can move.
+// Moves the rigid bodies of a pair apart along n. Returns false if none of them can move or they are far enough apart.
 bool Separation::translate_groups(const CornerPair& pair, const Vec3& n, double target, Step& step) const {
   const auto free_group = [&](Index v) { return step.movable[v] == kFree ? group_of(v) : nullptr; };
   const RigidGroup *a = free_group(pair.a[0]), *b = free_group(pair.b[0]);
@@ -237,8 +237,9 @@ bool Separation::has_carried_vertex(const CornerPair& pair) const {
   return std::ranges::any_of(pair.a, is_carried) || std::ranges::any_of(pair.b, is_carried);
 }
 
-// Backtracks a pair, entirely or half of the way, each vertex once per round. A pair with a carried vertex always goes
-// entirely: half of the way would mean nothing. Returns false if nothing moved and no target changed.
+// Backtracks a pair, entirely or half of the way, each vertex once per round. A pair with a carried vertex is always
+// backtracked entirely, because half of the way keeps no distance. Returns false if every free vertex is at its target
+// and no target changed.
 bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step) {
   bool changed = choose_backtrack_targets(pair, step);
   const double fraction = all_the_way || has_carried_vertex(pair) ? 1 : 0.5;
@@ -299,8 +300,8 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
   if (!is_continued) carriers_.assign(x_t0.size(), kAtStart);
   test_again(step);
   step.report.corrected_pairs = static_cast<int>(failing_.size());
-  // Rounds of pushing, then half as many of backtracking by halves, then as many entirely. After that all vertices go
-  // back.
+  // Rounds of pushing, then half as many of backtracking by halves, then `rounds` of backtracking entirely. After that
+  // all vertices are backtracked.
   const int rounds = numerics.separation.rounds, by_halves = rounds + rounds / 2;
   for (round_ = 1; !failing_.empty(); ++round_) {
     bool changed = round_ >= by_halves + rounds && backtrack_all(step);

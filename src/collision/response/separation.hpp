@@ -46,22 +46,22 @@ struct RigidGroup {
 /// If a pair has no separating plane, enforce() pushes its end positions apart along n, the closest direction at the
 /// start, until a gap remains; obstacles and held particles do not move. It tests again what was moved, until nothing
 /// fails. Particles that keep failing are backtracked, finally all the way to their start or, if they fail with an
-/// obstacle that moves rigidly, to where that would have carried them. Nothing met at the start, so particles that
-/// stay, or that one obstacle carries, are as far apart as they were. The set of backtracked particles grows until
-/// nothing fails. Pairs that remain are forced together by obstacles that move differently or by held particles; cloth
-/// can then be exempted from obstacles.
+/// obstacle that moves rigidly, to where the obstacle would have carried them. Nothing met at the start, so particles
+/// that end at their start, or where one obstacle carries them all, are as far apart as they were. The set of
+/// backtracked particles grows until nothing fails. Pairs that remain are forced together by obstacles that move
+/// differently or by held particles; cloth can then be exempted from obstacles.
 ///
-/// Cloth yields to rigid bodies as to obstacles. Rigid bodies yield to obstacles and to each other by translation, the
-/// lighter one more.
+/// Between cloth and a rigid body, the cloth is pushed as by an obstacle. Rigid bodies are translated away from
+/// obstacles and from each other, the lighter one farther.
 class Separation {
  public:
   Separation() = default;
   /// `triangles`: of all surfaces, by global number. `deformable`: surfaces that can collide with themselves. `masses`:
-  /// of the particles [kg], all equal if empty; must outlive it.
+  /// of the particles [kg], all equal if empty. `triangles` and `masses` must outlive it.
   Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,
              std::span<const double> masses = {});
 
-  /// Sets the groups. `vertices`: number of vertices that can move. Call before the first watch().
+  /// Sets the groups. `vertices`: number of all vertices. Call before the first watch().
   void set_rigid(std::vector<RigidGroup> groups, Index vertices);
 
   /// Watches these pairs without a common vertex, and all vertex stars, with x [m] as the reference for motion. The
@@ -76,8 +76,8 @@ class Separation {
   /// Appends the watched pairs that may be closer than `radius` at x [m].
   void append_closer(double radius, std::span<const Vec3> x, PairList& out) const;
 
-  /// Per triangle, 1 if all triangles of its surface that share a vertex with it are farther from it than `distance` at
-  /// x [m], except where they share the vertex.
+  /// Per triangle, 1 if at x [m] no feature of it is within `distance` [m] of a feature of a triangle that shares a
+  /// vertex with it, except features with a common vertex.
   std::vector<std::uint8_t> find_clear_triangles(double distance, std::span<const Vec3> x) const;
 
   /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1; changes no positions. x_t0 must
@@ -89,7 +89,8 @@ class Separation {
                                            const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
 
   /// Changes x_t1 of movable vertices until every pair has a separating plane. If that fails, adds pairs of cloth and
-  /// obstacle to `pinched`, if given. `is_continued`: keep the carriers that the last call found, for other pairs.
+  /// obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last call; keeps
+  /// which obstacle carries which vertex.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                            PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
                            bool is_continued = false);
@@ -139,7 +140,7 @@ class Separation {
   std::vector<int> backtracked_in_;          // per vertex: round in which it was last backtracked; 0: never
   std::vector<RigidGroup> groups_;
   std::vector<int> group_of_;  // per vertex; −1: none; empty if there are no groups
-  std::vector<int> carriers_;  // per vertex: obstacle that carries it when backtracked, or one of these
+  std::vector<int> carriers_;  // per vertex: obstacle that carries it when backtracked, or a value below
   static constexpr int kAtStart = -1, kAlwaysAtStart = -2;
   int round_ = 0;
   std::vector<CornerPair> failing_;

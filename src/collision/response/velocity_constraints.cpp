@@ -67,9 +67,10 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
   touched.first_wall = static_cast<int>(walls_.size()) - 1;
 }
 
-// The point closest to u that passes no wall of the particle, and the walls needed for that, with their multipliers.
-// Tries the Karush-Kuhn-Tucker conditions for every set of up to three walls. `of_force`: uses only the walls that hold
-// now, all through the origin; then -u is a force and the multipliers are its normal components.
+// The displacement closest to u that passes no wall of the particle; `held`: the walls that limit it, with multipliers.
+// Tries the Karush-Kuhn-Tucker conditions for every set of up to three of the Numerics::Walls::most walls that u passes
+// farthest. `of_force`: uses only the walls that hold now, all through the origin; then -u is the direction of a force,
+// and the multipliers are its normal components.
 Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& u, bool of_force,
                                   ActiveWalls& held) const {
   held = {};
@@ -132,7 +133,7 @@ int VelocityConstraints::main_wall(const TouchingParticle& particle) const {
 }
 
 // Makes these walls hold the particle. `u`: closest displacement that passes none of them. A sticking particle moves
-// with its main wall, at its distance.
+// with its main wall (that of the largest multiplier), at the distance that this wall prescribes.
 void VelocityConstraints::hold(TouchingParticle& particle, const Vec3& u, ActiveWalls held) {
   particle.held = held;
   particle.u_held = u;
@@ -257,8 +258,8 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
 }
 
 void VelocityConstraints::accept() {
-  // If an overloaded particle was released, nothing sticks anew, because it may have held its slow neighbours.
-  // Otherwise the halves of a patch could stick in turn, and hold all of it at any angle.
+  // If an overloaded particle was released, nothing sticks anew, because it may have held its slow neighbours. Without
+  // this rule the halves of a patch could stick in turn, and hold the whole patch on any incline.
   const bool any_overloaded =
       std::ranges::any_of(touched_, [](const TouchingParticle& particle) { return particle.overloaded; });
   for (Index particle : remembered_) memory_[particle] = {};

@@ -25,8 +25,8 @@ struct PrescribedParticle {
 ///
 ///     v_n = (γ d_min − d) / h + n·v_r,   seed Eq. (4),
 ///
-/// with n the closest direction from the obstacle, d the distance along it, and v_r the obstacle's velocity there. γ is
-/// illegible in our copy; reading chosen: γ = 1 if d >= d_min, so that arriving particles stop at d_min and resting
+/// with the arguments of add(): n = `normal`, d = `distance`, v_r = `motion` / h, the velocity of the obstacle there. γ
+/// is illegible in our copy; reading chosen: γ = 1 if d >= d_min, so that arriving particles stop at d_min and resting
 /// ones stay; if d < d_min, a fraction c = Numerics::Walls::correction of the missing distance is restored: γ d_min = d
 /// + c (d_min − d).
 ///
@@ -34,8 +34,8 @@ struct PrescribedParticle {
 /// residual shows that it would pull. Up to three walls hold a particle at once. A held particle also sticks in the
 /// tangent plane, moving with the obstacle, while the force that this takes lies in the friction cone. Otherwise it
 /// slides, with friction μ times the normal force against the slip, smooth below the stick velocity as in ContactSet.
-/// If it ends a step slower than that, it sticks from the next step on. Friction is implicit: an explicit friction
-/// force reversed the motion of neighbours that began to slide together.
+/// If it ends a step slower than the stick velocity, it sticks from the next step on. Friction is implicit: an explicit
+/// friction force reversed the motion of neighbours that began to slide together.
 ///
 /// The state is revised between the solves of a step (revise) and kept for the next step (accept).
 class VelocityConstraints {
@@ -50,7 +50,8 @@ class VelocityConstraints {
   void begin_step(double h);
 
   /// Adds a wall for a particle at `distance` [m] from a point of an obstacle, along `normal`, which points to the
-  /// particle. The point moves by `motion` [m] during the step. `static_friction`: while sticking; at least `friction`.
+  /// particle. The point moves by `motion` [m] during the step. `d_min`: activation distance [m]. `static_friction`:
+  /// while sticking; raised to `friction` if less.
   void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction,
            double static_friction = 0);
 
@@ -65,10 +66,10 @@ class VelocityConstraints {
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// After a solve that led to x_end: adds walls that were passed, releases walls that pull, and lets particles slide
-  /// or stick. Returns how many particles are constrained differently; 0: the solve is final.
+  /// or stick. Returns how many particles need another solve; 0: the solve is final.
   int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const ForceOn& force_on);
 
-  /// Keeps for the next step what holds, sticks and slides at the end of this one.
+  /// Keeps for the next step which particles are held and which of them stick or slide.
   void accept();
 
   std::span<const PrescribedParticle> prescribed() const { return prescribed_; }

@@ -57,7 +57,7 @@ VertexStars::VertexStars(std::span<const Surface> surfaces) {
 
 void VertexStars::add_star(Index vertex, std::span<const Triangle> triangles) {
   // Go from triangle to triangle over shared edges: a closed star returns to its start after all of them. Any other set
-  // is stored without a ring and always tested pair by pair.
+  // is stored without a ring and always tested pair by pair, or not stored if it has no pair to test.
   std::vector<Index> ring{triangles.empty() ? vertex : triangles.front()[1]};
   while (ring.size() <= triangles.size() && !triangles.empty()) {
     const auto next =

@@ -19,11 +19,12 @@ namespace weft::collision {
 /// A vertex with six triangles has nine such pairs of triangles, so a closed star is tested as a whole where possible.
 /// If all its triangles, projected along one axis n, keep their orientation during the step and go around the vertex
 /// once, they cover disjoint sectors, so no two meet outside their common edges. The oriented area n·(e × f) of a
-/// moving triangle is quadratic in time, and positive if its Bernstein coefficients are (the cone test of Volino &
-/// Magnenat-Thalmann, "Efficient Self-Collision Detection on Smoothly Discretized Surface Animations using Geometrical
-/// Shape Regularity", 1994, over a time interval as in Tang et al., "ICCD: Interactive Continuous Collision Detection
-/// between Deformable Models using Connectivity-Based Culling", 2009). A star that goes around once at the start does
-/// so throughout, because the angle cannot jump. Open stars at borders have few pairs and are tested pair by pair.
+/// moving triangle with edges e and f from the vertex is quadratic in time, and positive if its Bernstein coefficients
+/// are (the cone test of Volino & Magnenat-Thalmann, "Efficient Self-Collision Detection on Smoothly Discretized
+/// Surface Animations using Geometrical Shape Regularity", 1994, over a time interval as in Tang et al., "ICCD:
+/// Interactive Continuous Collision Detection between Deformable Models using Connectivity-Based Culling", 2009). A
+/// star that goes around once at the start does so throughout, because the angle cannot jump. Open stars at borders
+/// have few pairs and are tested pair by pair.
 class VertexStars {
  public:
   VertexStars() = default;
@@ -34,10 +35,10 @@ class VertexStars {
   void set_reference(std::span<const Vec3> x);
 
   /// Sets `vertices` to 1 at the centres of stars in which features without a common vertex are farther apart than
-  /// `distance` at x [m]. Sufficient: all altitudes of its triangles, projected along the axis, exceed `distance`.
-  /// Proof: the closest projected points of two such features of two triangles are a vertex and a point of the other
-  /// triangle. The segment between them leads from the centre to an opposite edge; or, from another vertex, it crosses
-  /// a neighbouring edge of the star or passes its end. In each case it is at least an altitude long.
+  /// `distance` at x [m]. Sufficient: all altitudes of the star's triangles, projected along its axis, exceed
+  /// `distance`. Proof: the closest projected points of two such features of two triangles are a vertex and a point of
+  /// the other triangle. The segment between them leads from the centre to an opposite edge; or, from another vertex,
+  /// it crosses a neighbouring edge of the star or passes its end. In each case it is at least an altitude long.
   void mark_clear(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const;
 
   /// Appends the edge-triangle pairs without a separating plane on the trajectory from x_t0 to x_t1. `moved`: per
@@ -52,7 +53,7 @@ class VertexStars {
   /// Measures of a star at the reference [m].
   struct StarMeasures {
     float slack;      // how far its vertices may move; negative: it is not valid as a whole
-    float clearance;  // smallest altitude of its triangles along the axis, if it is valid
+    float clearance;  // smallest altitude of its triangles, projected along the axis, if valid
   };
   void add_star(Index vertex, std::span<const Triangle> triangles);
   StarMeasures measure_star(std::size_t star, std::span<const Vec3> x) const;

@@ -1,4 +1,5 @@
-# Loads what lies beside this file: meshes that move, their colours on both sides, cameras, lights, frame rate and picture size.
+# Loads the meshes, motions and pictures beside this file, and sets the colours, cameras, lights, frame rate and picture
+# size that this file contains.
 #
 #   blender -P FILE.py                      opens it
 #   blender -b -P FILE.py -- FILE.blend     saves it

@@ -9,7 +9,6 @@
 
 namespace weft {
 
-/// One mistake of a scene.
 struct Mistake {
   std::string file;          ///< of the scene, as it was given
   int line = 0, column = 0;  ///< counted from 1; 0: the file as a whole, or a change

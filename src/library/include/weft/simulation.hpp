@@ -37,7 +37,7 @@ struct Object {
   /// empty. Zero at the start of a simulation and after it was restored. Contacts are stiff springs: sums over a patch
   /// are more reliable than values of single particles.
   std::span<const Vector> contact_forces;
-  std::span<const float> strains;       ///< per particle: largest |length / rest length - 1| of the threads there
+  std::span<const float> strains;       ///< per particle: largest |length / rest length - 1|; empty if velocities are
   std::span<const RestPoint> rest;      ///< per particle: rest coordinates [m]; empty if there are none
   std::span<const Triangle> triangles;  ///< the same in all frames
 };
@@ -56,8 +56,8 @@ struct Report {
   int rejected_steps = 0;        ///< time steps that were repeated with shorter ones
   int newton_iterations = 0;
   int linear_iterations = 0;    ///< of conjugate gradients
-  int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, at the end
-  int constraints = 0;          ///< contacts that push, and particles that pins hold, at the end
+  int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, in the last step
+  int constraints = 0;          ///< contacts that push, and held particles, at the end
   double min_distance = 0;      ///< between two surfaces [m]; infinite if none is within the detection distance
   double max_strain = 0;        ///< largest |length / rest length - 1|, in all steps
   double stretch_ratio = 0;     ///< largest ratio of extension to the fabric's `max_stretch`, in all steps
@@ -68,7 +68,7 @@ struct Report {
   double pin_work = 0;          ///< work of pins on the cloth in this frame [J]
   double error_estimate = 0;    ///< estimated sum of the local errors of positions over the steps [m]
   double solver_error = 0;      ///< the same, of errors of the solver [m]
-  int pinched_pairs = 0;        ///< largest number of triangle pairs at once that obstacles leave no space
+  int pinched_pairs = 0;        ///< largest number of cloth triangles, per obstacle limb, without space at once
   int lagging_particles = 0;    ///< largest number of particles at once that something keeps from their pins' targets
   std::vector<EnclosedAir> enclosed_air;  ///< of each cloth with pressure
   std::vector<std::string> warnings;
@@ -80,7 +80,7 @@ class WEFT_API Frame {
   int number() const;            ///< counted from 0
   double time() const;           ///< [s]
   const Report& report() const;  ///< zeros in the frame at which a simulation was restored
-  /// Cloths, obstacles, characters, each in the order of the scene.
+  /// Cloths (with ropes), obstacles, characters, each in the order of the scene.
   std::span<const Object> objects() const;
   /// Throws std::out_of_range with the names of all objects if there is none of this name.
   const Object& object(std::string_view name) const;
@@ -110,10 +110,9 @@ class WEFT_API Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// The current frame.
   const Frame& frame() const;
-  /// Computes the next frame, also beyond the last one of the scene. Throws SimulationError; the current frame then
-  /// stays as it was.
+  /// Computes the next frame, also beyond the last one of the scene. Throws SimulationError, or SceneError if a cloth
+  /// that is put on or closed in this frame does not fit; frame() then stays as it was.
   const Frame& advance();
 
   /// Moves a driven obstacle to `pose` at constant velocity during the next frame; it then stays there. Pins that
