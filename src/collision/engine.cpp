@@ -14,9 +14,10 @@ namespace {
 
 // Distance below which features get contacts [m].
 double detection_distance_of(const Bodies& bodies) {
-  double range = 0;
-  for (const ContactMaterial& verlet_margin : bodies.materials()) range = std::max(range, verlet_margin.thickness);
-  return numerics.contact.detection * range;
+  double max_thickness = 0;
+  for (const ContactMaterial& material : bodies.materials())
+    max_thickness = std::max(max_thickness, material.thickness);
+  return numerics.contact.detection * max_thickness;
 }
 
 // The rigid bodies that are carried by frame particles.

@@ -192,7 +192,7 @@ struct Numerics {
     double diverged_strain = 0.5;
     /// Maximum number of attempts at a step while pins are obstructed. Each further attempt releases their particles;
     /// the last one may also move pinned particles.
-    int tries = 4;
+    int attempts = 4;
   } repair;
 
   /// Pins that an obstacle keeps from their position (src/simulation/yielding_pins.cpp).

@@ -12,7 +12,7 @@ namespace {
 class BlockGroups {
  public:
   explicit BlockGroups(std::span<const solver::DiagonalBlock> parts)
-      : parts_(parts), lowest_(parts.size()), is_free_(parts.size(), 1) {
+      : blocks_(parts), lowest_(parts.size()), is_free_(parts.size(), 1) {
     std::iota(lowest_.begin(), lowest_.end(), std::size_t{0});
   }
   std::size_t of_part(std::size_t part) const {
@@ -20,8 +20,8 @@ class BlockGroups {
     return part;
   }
   std::size_t of_particle(Index particle) const {
-    const auto after = std::ranges::upper_bound(parts_, particle, {}, &solver::DiagonalBlock::begin);
-    return of_part(static_cast<std::size_t>(after - parts_.begin()) - 1);
+    const auto after = std::ranges::upper_bound(blocks_, particle, {}, &solver::DiagonalBlock::begin);
+    return of_part(static_cast<std::size_t>(after - blocks_.begin()) - 1);
   }
   std::size_t join(std::size_t a, std::size_t b) {
     const auto [low, high] = std::minmax(a, b);
@@ -33,7 +33,7 @@ class BlockGroups {
   bool is_free(std::size_t group) const { return is_free_[group] != 0; }
 
  private:
-  std::span<const solver::DiagonalBlock> parts_;
+  std::span<const solver::DiagonalBlock> blocks_;
   std::vector<std::size_t> lowest_;
   std::vector<char> is_free_;  // per group: nothing acts on it from outside
 };

@@ -110,7 +110,7 @@ void Stepper::update_tolerances(double h, int iterations) {
   const double time = numerics.newton.lasting_time;
   double unseen = numerics.newton.unseen_acceleration * h * time;
   if (parameters_.position_tolerance > 0) unseen = std::min(unseen, parameters_.position_tolerance);
-  for (PartState& part : parts_) {
+  for (BlockState& part : blocks_) {
     double error = std::max(part.local_error, unseen) / time;
     if (iterations >= numerics.newton.patience)
       error = std::max(error, numerics.newton.velocity_ratio * part.velocity_error);
@@ -121,7 +121,7 @@ void Stepper::update_tolerances(double h, int iterations) {
 }
 
 // Root mean square over the mass of a block.
-double Stepper::root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of) {
+double Stepper::root_mean_square(const BlockState& part, std::span<const double> masses, std::span<const Vec3> of) {
   const double sum = sum_over_particles(part.rows, [&](std::size_t i) { return masses[i] * of[i].squaredNorm(); });
   return std::sqrt(sum / part.mass);
 }
@@ -130,7 +130,7 @@ double Stepper::root_mean_square(const PartState& part, std::span<const double> 
 void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
                                  std::vector<double>& speeds) const {
   speeds.clear();
-  for (const PartState& part : parts_) speeds.push_back(root_mean_square(part, masses, displacements) / beta_);
+  for (const BlockState& part : blocks_) speeds.push_back(root_mean_square(part, masses, displacements) / beta_);
 }
 
 // Estimates the velocity error of each block after a linear solve and a line search. The linear solver reports its own
@@ -143,15 +143,15 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
   for_each_particle(scratch_.size(), [&](std::size_t i) { scratch_[i] = residual_[i]; });
   if (is_full_step)
     for (std::size_t p : unsolved_)
-      for_each_particle(parts_[p].rows, [&](std::size_t i) { scratch_[i] -= cg_.residual()[i]; });
+      for_each_particle(blocks_[p].rows, [&](std::size_t i) { scratch_[i] -= cg_.residual()[i]; });
   compute_rms_speeds(delta_, masses, solved_speeds_);
   compute_rms_speeds(precondition(scratch_), masses, speeds_);
-  for (std::size_t p = 0; p < parts_.size(); ++p)
-    parts_[p].left =
+  for (std::size_t p = 0; p < blocks_.size(); ++p)
+    blocks_[p].left =
         speeds_[p] * (predicted_speeds_[p] > 0 ? std::max(1.0, solved_speeds_[p] / predicted_speeds_[p]) : 1);
   if (is_full_step)
     for (std::size_t p : unsolved_)
-      parts_[p].left = std::hypot(parts_[p].left, solved.errors[p] / std::sqrt(parts_[p].mass));
+      blocks_[p].left = std::hypot(blocks_[p].left, solved.errors[p] / std::sqrt(blocks_[p].mass));
 }
 
 // Estimates the velocities by which whole blocks slide wrongly; only for blocks that otherwise count as solved.
@@ -159,10 +159,10 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
 // however large the force of a stiff contact is.
 void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) {
   const auto masses = system.masses();
-  const auto needs_check = [](const PartState& part) { return !part.holds_sliding && part.left <= part.allowed; };
-  const bool any = std::ranges::any_of(parts_, needs_check) &&
+  const auto needs_check = [](const BlockState& part) { return !part.holds_sliding && part.left <= part.allowed; };
+  const bool any = std::ranges::any_of(blocks_, needs_check) &&
                    sliding_.evaluate(system, {x_, v_, x_end_, 1 / stage.beta, stage.end_rate});
-  for (PartState& part : parts_) {
+  for (BlockState& part : blocks_) {
     part.sliding_error =
         any && needs_check(part) ? sliding_.friction_error(part.rows, residual_) * stage.beta / part.mass : 0;
     if (part.sliding_error == 0) continue;
@@ -177,7 +177,7 @@ bool Stepper::is_solved(int iterations) const {
       iterations < numerics.newton.patience ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity;
   if (parameters_.position_tolerance > 0)
     unseen_speed = std::min(unseen_speed, parameters_.position_tolerance / numerics.newton.lasting_time);
-  return std::ranges::all_of(parts_, [&](const PartState& part) {
+  return std::ranges::all_of(blocks_, [&](const BlockState& part) {
     return part.left <= std::max(part.allowed, unseen_speed) &&
            part.sliding_error <= (iterations < numerics.newton.patience / 2 ? part.allowed_sliding
                                                                             : std::max(part.allowed, unseen_speed));
@@ -187,8 +187,8 @@ bool Stepper::is_solved(int iterations) const {
 // Selects the blocks of the next linear solve.
 void Stepper::select_unsolved(int iterations) {
   unsolved_.clear();
-  for (std::size_t p = 0; p < parts_.size(); ++p)
-    if (iterations >= numerics.newton.patience / 2 || parts_[p].tolerance_ratio() > numerics.newton.linear_fraction)
+  for (std::size_t p = 0; p < blocks_.size(); ++p)
+    if (iterations >= numerics.newton.patience / 2 || blocks_[p].tolerance_ratio() > numerics.newton.linear_fraction)
       unsolved_.push_back(p);
 }
 
@@ -338,10 +338,10 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
 }
 
 void Stepper::collect_blocks(std::span<const double> masses, const State& now, const solver::LinearSystem& linear) {
-  parts_.clear();
+  blocks_.clear();
   unsolved_.clear();
   for (const solver::DiagonalBlock& rows : solver::parts_of(linear)) {
-    PartState& part = parts_.emplace_back();
+    BlockState& part = blocks_.emplace_back();
     part.rows = rows;
     for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];
     part.rounding = kMinRoundings * std::numeric_limits<double>::epsilon() * largest_coordinate(rows, now.x) / beta_;
@@ -354,9 +354,9 @@ void Stepper::collect_blocks(std::span<const double> masses, const State& now, c
 // Restores the momentum of cloth on which nothing acts from outside.
 void Stepper::balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage) {
   const std::vector<Vec3> missing = missing_accelerations(linear, masses, residual_);
-  for (std::size_t p = 0; p < parts_.size(); ++p) {
+  for (std::size_t p = 0; p < blocks_.size(); ++p) {
     if (missing[p] == Vec3::Zero()) continue;
-    for_each_particle(parts_[p].rows, [&](std::size_t i) {
+    for_each_particle(blocks_[p].rows, [&](std::size_t i) {
       v_[i] += stage.beta * missing[p];
       x_end_[i] += stage.end_rate * stage.beta * stage.beta * missing[p];
     });
@@ -370,7 +370,7 @@ solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::spa
   goals_.clear();
   const double tightening = method_ == Method::implicit_midpoint ? numerics.newton.undamped : 1;
   const double fraction = tightening * numerics.newton.linear_fraction;
-  for (const PartState& part : parts_) goals_.push_back(fraction * part.allowed * std::sqrt(part.mass));
+  for (const BlockState& part : blocks_) goals_.push_back(fraction * part.allowed * std::sqrt(part.mass));
   motion_.resize(x_.size());
   for_each_particle(x_.size(), [&](std::size_t i) { motion_[i] = x_[i] - x_hat_[i]; });
   drift_.resize(past_.size() > 1 ? x_.size() : 0);
@@ -385,7 +385,7 @@ void Stepper::report_worst(StepReport& report) const {
   const double time = numerics.newton.lasting_time;
   report.local_error = report.solver_error = 0;
   double worst = -1;
-  for (const PartState& part : parts_) {
+  for (const BlockState& part : blocks_) {
     report.local_error = std::max(report.local_error, part.local_error);
     report.solver_error = std::max({report.solver_error, part.left * time, part.sliding_error * time});
     if (part.tolerance_ratio() <= worst) continue;
@@ -405,7 +405,7 @@ void Stepper::split_impacts(System& system, const State& now, const Stage& stage
   cg_.filter(right_side);
   cg_.prepare(system.linear_system(), solver::AggregateSums::reuse);
   goals_.clear();
-  for (const PartState& part : parts_)
+  for (const BlockState& part : blocks_)
     goals_.push_back(numerics.newton.linear_fraction * part.allowed * std::sqrt(part.mass) / stage.beta);
   impact_changes_.resize(x_.size());
   cg_.solve(right_side, {parameters_.linear_tolerance, goals_}, parameters_.max_linear_iterations, impact_changes_,
@@ -446,13 +446,13 @@ void Stepper::estimate_local_errors(std::span<const double> masses, const State&
       scratch_[i] = change_factor * (gain / h - (now.v[i] - history_.before.v[i]) / history_.h);
   });
   cg_.filter(scratch_);
-  for (PartState& part : parts_) part.local_error = root_mean_square(part, masses, scratch_);
+  for (BlockState& part : blocks_) part.local_error = root_mean_square(part, masses, scratch_);
   if (method_ != Method::implicit_euler || history_.h == 0) return;
   for_each_particle(masses.size(), [&](std::size_t i) {
     scratch_[i] = 0.5 * (v_[i] - now.v[i] - h / history_.h * (now.v[i] - history_.before.v[i]));
   });
   cg_.filter(scratch_);
-  for (PartState& part : parts_) part.velocity_error = root_mean_square(part, masses, scratch_);
+  for (BlockState& part : blocks_) part.velocity_error = root_mean_square(part, masses, scratch_);
 }
 
 Vec3 Stepper::constraint_force(Index particle, double mass) const {

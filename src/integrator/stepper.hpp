@@ -141,7 +141,7 @@ class Stepper {
     double end_rate;  // dx_end/dx: 1, or 2 for the midpoint rule
   };
   /// State of one diagonal block, usually a cloth.
-  struct PartState {
+  struct BlockState {
     solver::DiagonalBlock rows;
     double mass = 0;             // [kg]
     double local_error = 0;      // of the method, at the current iterate [m]
@@ -173,7 +173,7 @@ class Stepper {
   void gather_residual(std::span<const double> masses, const Stage& stage);
   void estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h);
   void update_tolerances(double h, int iterations);
-  static double root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of);
+  static double root_mean_square(const BlockState& part, std::span<const double> masses, std::span<const Vec3> of);
   void balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage);
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
@@ -198,7 +198,7 @@ class Stepper {
   StageTimes times_;
   solver::ConjugateGradient cg_;
   Sliding sliding_;
-  std::vector<PartState> parts_;
+  std::vector<BlockState> blocks_;
   std::vector<std::size_t> unsolved_;
   // Per block: allowed linear errors in the mass-weighted norm, and velocities [m/s].
   std::vector<double> goals_, predicted_speeds_, solved_speeds_, speeds_;

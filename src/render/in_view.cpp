@@ -48,8 +48,8 @@ void cut(std::vector<Corner> corners, InView& in_view) {
 
 }  // namespace
 
-std::optional<InView> in_view_of(const View& view, std::span<const DrawnMesh> meshes,
-                                 const std::optional<Floor>& floor) {
+std::optional<InView> parts_in_view(const View& view, std::span<const DrawnMesh> meshes,
+                                    const std::optional<Floor>& floor) {
   InView in_view;
   bool all = true;
   std::vector<std::uint8_t> codes;

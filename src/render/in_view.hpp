@@ -18,7 +18,7 @@ struct InView {
 };
 
 /// Absent if all vertices are in view: the picture then excludes only floor, which no map contains anyway.
-std::optional<InView> in_view_of(const View& view, std::span<const DrawnMesh> meshes,
-                                 const std::optional<Floor>& floor);
+std::optional<InView> parts_in_view(const View& view, std::span<const DrawnMesh> meshes,
+                                    const std::optional<Floor>& floor);
 
 }  // namespace weft::render

@@ -48,7 +48,7 @@ int wrapped(int texel, int size, Wrap wrap) {
 
 }  // namespace
 
-MipLevel half_of(const MipLevel& level) {
+MipLevel next_mip_level(const MipLevel& level) {
   MipLevel half{std::max(1, level.width / 2), std::max(1, level.height / 2), {}};
   const std::vector<TexelWeights> columns = texel_weights(level.width, half.width),
                                   rows = texel_weights(level.height, half.height);
@@ -67,7 +67,7 @@ MipLevel half_of(const MipLevel& level) {
   return half;
 }
 
-MipLevel full_size(const frame::Texture& texture, bool opaque) {
+MipLevel base_mip_level(const frame::Texture& texture, bool opaque) {
   static const auto kLinear = [] {
     std::array<float, 256> table{};
     for (int i = 0; i < 256; ++i) table[i] = static_cast<float>(image::linear_from_srgb(i / 255.0));

@@ -16,10 +16,10 @@ struct MipLevel {
 };
 
 /// The next mip level: each texel is the mean of those it covers. A level of 1 x 1 has no next one.
-MipLevel half_of(const MipLevel& level);
+MipLevel next_mip_level(const MipLevel& level);
 
 /// Level 0 of the picture; `opaque` ignores alpha and uses 1.
-MipLevel full_size(const frame::Texture& texture, bool opaque);
+MipLevel base_mip_level(const frame::Texture& texture, bool opaque);
 
 class Opacity {
  public:

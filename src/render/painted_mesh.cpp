@@ -42,7 +42,7 @@ std::vector<Eigen::Vector2f> split_by_place(std::span<const std::array<Vec2, 3>>
 
 }  // namespace
 
-PaintedMesh lay_paint(const frame::Surface& surface, ShadedMesh& mesh) {
+PaintedMesh make_painted_mesh(const frame::Surface& surface, ShadedMesh& mesh) {
   PaintedMesh painted;
   if (surface.paint_uv.size() == mesh.triangles.size()) {
     painted.places = split_by_place(surface.paint_uv, mesh);

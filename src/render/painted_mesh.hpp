@@ -23,7 +23,7 @@ struct PaintedMesh {
 };
 
 /// Splits drawn vertices whose corners have different paint coordinates, as at seams, and sorts the triangles by part.
-PaintedMesh lay_paint(const frame::Surface& surface, ShadedMesh& mesh);
+PaintedMesh make_painted_mesh(const frame::Surface& surface, ShadedMesh& mesh);
 
 /// The holes of a painted mesh.
 class Holes {

@@ -61,8 +61,8 @@ const PaintTexture& Paints::of(const frame::Paint& paint) {
   const Key key{paint.texture.get(), paint.wrap_u, paint.wrap_v, paint.alpha};
   const auto found = known_.find(key);
   if (found != known_.end()) return found->second;
-  std::vector<MipLevel> levels{full_size(*paint.texture, paint.alpha == Alpha::ignored)};
-  while (levels.back().width > 1 || levels.back().height > 1) levels.push_back(half_of(levels.back()));
+  std::vector<MipLevel> levels{base_mip_level(*paint.texture, paint.alpha == Alpha::ignored)};
+  while (levels.back().width > 1 || levels.back().height > 1) levels.push_back(next_mip_level(levels.back()));
 
   PaintTexture made;
   made.source = paint.texture;

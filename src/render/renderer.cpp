@@ -290,7 +290,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
     if (sheer[i] != 0) opaque[i] = {};
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
-  const std::optional<InView> in_view = in_view_of(plan.view, meshes, plan.floor);
+  const std::optional<InView> in_view = parts_in_view(plan.view, meshes, plan.floor);
   passes->shadows.draw(plan.lights, plan.caster_positions, meshes, in_view ? &*in_view : nullptr, plan.up,
                        plan.lighting.exposure.direct);
   const double heat = heat_scale(snapshot, plan.stage);

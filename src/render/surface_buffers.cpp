@@ -90,7 +90,7 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
     faces_outward_ = volume > 0;
   }
   mesh_ = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
-  if (painted_) painted_ = lay_paint(*surface_, mesh_);
+  if (painted_) painted_ = make_painted_mesh(*surface_, mesh_);
   std::vector<Vertex> vertices(mesh_.source.size());
   positions_.resize(vertices.size());
   const bool has_uv = surface_->uv.size() == vertex_count_, has_heat = state.heat.size() == vertex_count_;

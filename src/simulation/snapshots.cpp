@@ -25,7 +25,7 @@ using LightValue = environment::Spline<10>::Value;
 constexpr double kCharacterCrease = 80;
 
 // Largest roll of a camera in a file that is ignored without a warning [degrees].
-constexpr double kMinRoll = 0.1;
+constexpr double kMaxIgnoredRoll = 0.1;
 
 // Default paleness of the back of a cloth: fraction of the way from the front's colour to white.
 constexpr double kBackPaleness = 0.35;
@@ -280,7 +280,7 @@ environment::Spline<7> camera_track(const scene::Scene& scene, const scene::Came
   const std::string where =
       fmt::format("{}:{}:{}: camera.{}", scene.file.string(), camera.line, camera.column, camera.name);
   const assets::LoadedCamera loaded = assets::load_camera(camera.file, camera.object, where);
-  if (loaded.roll > kMinRoll)
+  if (loaded.roll > kMaxIgnoredRoll)
     log::warn(fmt::format("{}: it is tilted to a side by up to {:.2g} degrees, which is left out", where, loaded.roll));
   const auto turned = [&](const Vec3& x) { return scene.up == scene::UpAxis::z ? Vec3(x.x(), -x.z(), x.y()) : x; };
   const double target_distance = camera.focus > 0 ? camera.focus : 1;  // distance of the target [m]

@@ -15,7 +15,7 @@ namespace weft::simulation {
 // Repeats the attempt without the pinned particles that obstacles or other cloth keep from their targets.
 StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool is_last, FrameReport& report) {
   for (int tries = 1;; ++tries) {
-    const Attempt attempt{t, h, rejections, is_last, tries == numerics.repair.tries};
+    const Attempt attempt{t, h, rejections, is_last, tries == numerics.repair.attempts};
     pins_.begin_step(t, h, progress_.now.x);
     const Start start = begin_attempt(attempt, report);
     if (!collisions_) return rejection_of(solve(h, start, false, report));

@@ -26,7 +26,7 @@ YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environ
       masses_(masses),
       lagged_(masses.size(), 0),
       lags_(masses.size(), 0),
-      forced_(masses.size(), 0),
+      released_(masses.size(), 0),
       lagging_particles_(pins_.size(), 0) {
   for (std::size_t pin = 0; pin < pins_.size(); ++pin) {
     const Pins::Info& info = pins_.info(pin);
@@ -40,7 +40,7 @@ YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environ
 
 void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   if (t != forced_t_ || h != forced_h_) {
-    std::ranges::fill(forced_, std::uint8_t{0});
+    std::ranges::fill(released_, std::uint8_t{0});
     obstructions_.clear();
   }
   forced_t_ = t;
@@ -61,7 +61,7 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   std::ranges::fill(lagging_particles_, std::size_t{0});
   for (const integrator::HeldParticle& target : targets_) {
     const auto i = static_cast<std::size_t>(target.constraint.particle);
-    lags_[i] |= forced_[i];
+    lags_[i] |= released_[i];
     lagging_particles_[pins_.pin_of(target.constraint.particle)] += lags_[i];
   }
   any_lags_ = std::ranges::any_of(lagging_particles_, [](std::size_t count) { return count > 0; });
@@ -107,7 +107,7 @@ void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::s
 }
 
 void YieldingPins::release_particle(Index particle, const std::string& obstruction) {
-  forced_[static_cast<std::size_t>(particle)] = 1;
+  released_[static_cast<std::size_t>(particle)] = 1;
   obstructions_.emplace(pins_.pin_of(particle), obstruction);
 }
 
@@ -125,7 +125,7 @@ void YieldingPins::accept() {
   }
   seen_.particles = std::max(seen_.particles, count);
   std::swap(lagged_, lags_);
-  std::ranges::fill(forced_, std::uint8_t{0});
+  std::ranges::fill(released_, std::uint8_t{0});
   obstructions_.clear();
 }
 

@@ -65,10 +65,10 @@ class YieldingPins {
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;
   std::vector<PinSpring> pulls_;
   std::vector<std::uint8_t> lagged_, lags_;     // per particle: in the previous step, and in this one
-  std::vector<std::uint8_t> forced_;            // per particle: whether release_particle() was called for this step
+  std::vector<std::uint8_t> released_;          // per particle: whether release_particle() was called for this step
   std::vector<std::size_t> lagging_particles_;  // number of particles that lag in this step, per pin
   std::map<std::size_t, std::string> obstructions_;  // in this step, of the pins of those particles
-  double forced_t_ = 0, forced_h_ = 0;               // the step to which forced_ belongs [s]
+  double forced_t_ = 0, forced_h_ = 0;               // the step to which released_ belongs [s]
   bool any_lags_ = false;
   std::set<std::size_t> lagging_, lagging_before_;  // pins, in this frame and in the previous one
   Lags seen_;

@@ -112,7 +112,7 @@ void Product<Real>::prepare(const LinearSystem& system) {
 template <class Real>
 void Product<Real>::read_matrix(bool is_new_system) {
   const std::vector<DiagonalBlock> before = std::exchange(parts_, parts_of(*system_));
-  metric_.assign(system_->norm_weights.begin(), system_->norm_weights.end());
+  norm_weights_.assign(system_->norm_weights.begin(), system_->norm_weights.end());
   if constexpr (std::is_same_v<Real, float>) {
     if (is_new_system) matrix_.copy_pattern(system_->matrix);
     for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -167,8 +167,8 @@ double Product<Real>::multiply(std::span<const PaddedVec3<Real>> p, std::span<Pa
       else
         system_->matrix.multiply(p, q, from, to);
       for (std::size_t i = from; i < to; ++i) of_product += products(p[i], q[i]);
-      if (!metric_.empty())
-        for (std::size_t i = from; i < to; ++i) of_metric += products(metric_[i] * p[i], p[i]);
+      if (!norm_weights_.empty())
+        for (std::size_t i = from; i < to; ++i) of_metric += products(norm_weights_[i] * p[i], p[i]);
     }
     return PaddedVec3<double>{sum_of_first_three(of_product), sum_of_first_three(of_metric), 0, 0};
   });

@@ -81,7 +81,7 @@ class Product {
   const LinearSystem* system_ = nullptr;
   std::vector<DiagonalBlock> parts_;  // when the matrix was read
   DifferenceMatrix matrix_;           // used in single precision only
-  std::vector<Real> metric_;
+  std::vector<Real> norm_weights_;
   std::vector<std::size_t> selected_;
   RowChunks rows_;  // of the selected blocks
   std::vector<Stencil<4>> stencils_;

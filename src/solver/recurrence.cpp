@@ -24,7 +24,7 @@ double absolute_goal(const LinearGoal& goal, std::size_t part) {
 }
 
 template <class Real>
-void convert_to_quads(std::span<const Vec3> from, std::span<PaddedVec3<Real>> to) {
+void convert_to_padded(std::span<const Vec3> from, std::span<PaddedVec3<Real>> to) {
   parallel_for(from.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) to[i] = padded<Real>(from[i]);
   });
@@ -88,7 +88,7 @@ void Recurrence<Real>::prepare(const LinearSystem& system, AggregateSums sums) {
 
 template <class Real>
 std::span<const PaddedVec3<Real>> Recurrence<Real>::precondition(std::span<const Vec3> b) {
-  convert_to_quads<Real>(b, q_);
+  convert_to_padded<Real>(b, q_);
   if (!rank_one_.empty()) {
     selected_ = all_parts_;
     rank_one_.select(selected_);
@@ -161,10 +161,10 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
   norms_sq_.resize(selected_.size());
   rz_.resize(selected_.size());
   for (auto* vector : {&x_, &p_, &q_}) std::fill(vector->begin(), vector->end(), PaddedVec3<Real>{});
-  convert_to_quads<Real>(b, r_);
+  convert_to_padded<Real>(b, r_);
   product_.filter(r_);
   if (progress.iterations > 0) {
-    convert_to_quads<Real>(x, p_);
+    convert_to_padded<Real>(x, p_);
     multiply();
     rows_.for_each([&](std::size_t first, std::size_t end) {
       for (std::size_t i = first; i < end; ++i) r_[i] -= q_[i];
@@ -284,7 +284,7 @@ void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) 
     for (std::size_t i = first; i < end; ++i) z_[i] = padded<Real>(directions.drift[i]);
   });
   product_.filter(p_);
-  std::vector<PartMotions::Products> products(selected_.size(), PartMotions::Products::Zero());
+  std::vector<BlockMotions::Products> products(selected_.size(), BlockMotions::Products::Zero());
   const auto store_products = [&](int motion) {
     const std::vector<AlongMotions> along = along_motions(q_, has_second);
     for (std::size_t k = 0; k < selected_.size(); ++k) products[k].col(motion) = along[k];
@@ -298,9 +298,9 @@ void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) 
     std::swap(p_, z_);
     store_products(1);
   }
-  part_motions_.prepare<Real>(*system_, selected_, {p_, has_second ? z_ : std::span<const PaddedVec3<Real>>()},
-                              product_.row_sums(), products);
-  const std::vector<AlongMotions> change = part_motions_.solve(along_motions(r_, has_second));
+  block_motions_.prepare<Real>(*system_, selected_, {p_, has_second ? z_ : std::span<const PaddedVec3<Real>>()},
+                               product_.row_sums(), products);
+  const std::vector<AlongMotions> change = block_motions_.solve(along_motions(r_, has_second));
   for (std::size_t k = 0; k < selected_.size(); ++k) {
     const auto first = static_cast<std::size_t>(parts_[selected_[k]].begin);
     const PaddedVec3<Real> shift = padded<Real>(Vec3(change[k].template head<3>()));

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "solver/block_motions.hpp"
 #include "solver/incomplete_cholesky.hpp"
 #include "solver/linear_system.hpp"
-#include "solver/part_motions.hpp"
 #include "solver/preconditioner.hpp"
 #include "solver/product.hpp"
 #include "solver/rank_one.hpp"
@@ -111,7 +111,7 @@ class Recurrence {
   Product<Real> product_;
   Preconditioner<Real> preconditioner_;
   RankOneTerms<Real> rank_one_;
-  PartMotions part_motions_;
+  BlockMotions block_motions_;
   IncompleteCholesky factor_;                                                   // in double only
   enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // for the prepared system
   std::vector<DiagonalBlock> factor_parts_;                                     // scratch

@@ -150,14 +150,14 @@ TEST(Paint, HalfASizeKeepsTheMeanOfLightAtAnySize) {
     checks.rgba.insert(checks.rgba.end(), {level, level, level, 255});
     mean += image::linear_from_srgb(level / 255.0) / 35;
   }
-  MipLevel level = full_size(checks, false);
-  while (level.width > 1 || level.height > 1) level = half_of(level);
+  MipLevel level = base_mip_level(checks, false);
+  while (level.width > 1 || level.height > 1) level = next_mip_level(level);
   EXPECT_NEAR(level.texels[0].x(), mean, 1e-5);
   EXPECT_NEAR(level.texels[0].w(), 1, 1e-5);
 }
 
 TEST(Paint, WhatIsTransparentGivesNoColorToWhatIsNot) {
-  const MipLevel half = half_of(full_size(*texture(2, 1, {{0, 255, 0, 0}, {255, 0, 0, 255}}, 1), false));
+  const MipLevel half = next_mip_level(base_mip_level(*texture(2, 1, {{0, 255, 0, 0}, {255, 0, 0, 255}}, 1), false));
   EXPECT_NEAR(half.texels[0].w(), 0.5, 1e-6);
   EXPECT_NEAR(half.texels[0].x(), 0.5, 1e-6);
   EXPECT_NEAR(half.texels[0].y(), 0, 1e-6);
@@ -172,7 +172,7 @@ TEST(Paint, VerticesAreSplitWhereCornersLieElsewhereAndTrianglesSortedByPart) {
       {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}, {Vec2(5, 0), Vec2(6, 1), Vec2(5, 1)}, {Vec2(1, 0), Vec2(2, 0), Vec2(1, 1)}};
   const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}};
   ShadedMesh mesh = shade(surface.triangles, CornerMap(surface.triangles, 5), positions, 180);
-  const PaintedMesh painted = lay_paint(surface, mesh);
+  const PaintedMesh painted = make_painted_mesh(surface, mesh);
   ASSERT_EQ(painted.ranges.size(), 2u);
   EXPECT_EQ(painted.ranges[0].look, &surface.parts[0].appearance);
   EXPECT_EQ(painted.ranges[0].count, 1u);

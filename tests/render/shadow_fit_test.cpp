@@ -74,8 +74,8 @@ TEST(ShadowFit, WhatSticksOutOfThePictureIsCutOffAtItsBorder) {
   };
   const std::vector<Vec3> large = upright(5), small = upright(0.9);
   const std::array<DrawnMesh, 1> whole{{{small, triangles}}}, sticks_out{{{large, triangles}}};
-  EXPECT_FALSE(in_view_of(view, whole, std::nullopt));
-  const std::optional<InView> found = in_view_of(view, sticks_out, std::nullopt);
+  EXPECT_FALSE(parts_in_view(view, whole, std::nullopt));
+  const std::optional<InView> found = parts_in_view(view, sticks_out, std::nullopt);
   ASSERT_TRUE(found);
   EXPECT_TRUE(found->places.empty());
   Box3 bounds;

@@ -73,12 +73,12 @@ double slope_of_slip_over_friction(const Contact& contact, double slip) {
 }
 
 // w for a slip in units of the stick slip.
-Vec3 friction_against_load(const Contact& contact, const Vec3& slip) {
+Vec3 friction_over_normal_force(const Contact& contact, const Vec3& slip) {
   if (contact.static_friction == 0) return Vec3::Zero();
   return friction_over_slip(contact, slip.norm()) * slip;
 }
 
-// Inverse of friction_against_load: the slip for a w that does not exceed static friction.
+// Inverse of friction_over_normal_force: the slip for a w that does not exceed static friction.
 Vec3 sticking_slip(const Contact& contact, const Vec3& w) {
   const double slip = 1 - std::sqrt(std::max(0.0, 1 - w.norm() / contact.static_friction));
   return w / friction_over_slip(contact, slip);
@@ -152,7 +152,7 @@ void update_friction(const Contact& contact, const Vec3& slip, FrictionLag& lag)
     lag.sticks = false;
     ++lag.slide_starts;
   } else if (slip.squaredNorm() < 1) {
-    lag.relative_friction = friction_against_load(contact, slip);
+    lag.relative_friction = friction_over_normal_force(contact, slip);
     lag.sticks = true;
   } else if (turned && lag.slide_starts < numerics.contact.returns) {
     lag.relative_friction = Vec3::Zero();
@@ -199,7 +199,7 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
     if (lag.updates > 0) continue;  // contacts found later have no meaningful first iterate
     FrictionLag& friction = lag.frictions.back();
     friction.slip = slip_of(contacts_[c], relative_end(contacts_[c], x_end)) / stick_slip_;
-    friction.relative_friction = friction_against_load(contacts_[c], friction.slip);
+    friction.relative_friction = friction_over_normal_force(contacts_[c], friction.slip);
   }
   ++lag.updates;
 }
@@ -229,7 +229,7 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   const bool sticks = law == Law::tangent && friction.sticks;
   response.slip = sticks ? sticking_slip(contact, friction.relative_friction) : slip;
   response.friction_per_slip = friction_normal_force / stick_slip_;
-  Vec3 w = friction_against_load(contact, response.slip);
+  Vec3 w = friction_over_normal_force(contact, response.slip);
   if (sticks) w += friction_slope(contact, response.slip, friction.relative_friction) * (slip - response.slip);
   response.force -= friction_normal_force * w;
   return response;
@@ -265,12 +265,12 @@ void ContactSet::add_normal_and_friction_forces(std::span<const Vec3> x_end, con
     const Contact& contact = contacts_[c];
     const Response response = respond(c, Law::exact, x_end, lag);
     if (!response.active) continue;
-    const Vec3 across = contact.normal.dot(response.force) * contact.normal;
+    const Vec3 normal_part = contact.normal.dot(response.force) * contact.normal;
     const double max_friction = contact.static_friction * stick_slip_ * response.friction_per_slip;
     for (int k = 0; k < 4; ++k) {
       const Index i = contact.particles[k];
-      push[i] += contact.weights[k] * across;
-      friction[i] += contact.weights[k] * (response.force - across);
+      push[i] += contact.weights[k] * normal_part;
+      friction[i] += contact.weights[k] * (response.force - normal_part);
       limit[i] += std::abs(contact.weights[k]) * max_friction;
     }
   }

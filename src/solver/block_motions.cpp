@@ -1,4 +1,4 @@
-#include "solver/part_motions.hpp"
+#include "solver/block_motions.hpp"
 
 #include <algorithm>
 #include <map>
@@ -20,7 +20,7 @@ using TermForces = Eigen::Matrix<double, kDirections, 3>;
 // block.
 class TermBlocks {
  public:
-  explicit TermBlocks(std::size_t parts) : products(parts, PartMotions::Products::Zero()) {}
+  explicit TermBlocks(std::size_t parts) : products(parts, BlockMotions::Products::Zero()) {}
 
   void add(std::span<const std::pair<int, TermForces>> of_parts, const Mat3& stiffness) {
     TermForces all = TermForces::Zero();
@@ -35,7 +35,7 @@ class TermBlocks {
   Block& block(int row, int column) { return blocks.try_emplace({row, column}, Block::Zero()).first->second; }
 
   std::map<std::pair<int, int>, Block> blocks;
-  std::vector<PartMotions::Products> products;
+  std::vector<BlockMotions::Products> products;
 };
 
 // Position of a particle's diagonal block among the selected ones; −1 if it is not selected.
@@ -58,7 +58,7 @@ class SelectionIndex {
 }  // namespace
 
 // Finds the directions of a diagonal block that are independent of those before them.
-void PartMotions::find_used(std::size_t part, const Block& block) {
+void BlockMotions::find_used(std::size_t part, const Block& block) {
   std::vector<int> used;
   for (int k = 0; k < kDirections; ++k) {
     bool& is_used = is_used_[part][static_cast<std::size_t>(k)];
@@ -75,9 +75,9 @@ void PartMotions::find_used(std::size_t part, const Block& block) {
 }
 
 template <class Real>
-void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_t> selected,
-                          const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,
-                          std::span<const Mat3> row_sums, std::span<const Products> products) {
+void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size_t> selected,
+                           const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,
+                           std::span<const Mat3> row_sums, std::span<const Products> products) {
   const SelectionIndex numbers(parts_of(system), selected);
   std::array<bool, kDirections> all;
   for (int k = 0; k < kDirections; ++k) all[static_cast<std::size_t>(k)] = k < 3 || !motions[k - 3].empty();
@@ -148,7 +148,7 @@ void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_
   factor_.compute(matrix);
 }
 
-std::vector<AlongMotions> PartMotions::solve(std::span<const AlongMotions> forces) const {
+std::vector<AlongMotions> BlockMotions::solve(std::span<const AlongMotions> forces) const {
   Eigen::VectorXd right(kDirections * std::ssize(forces));
   for (std::size_t s = 0; s < forces.size(); ++s)
     for (int k = 0; k < kDirections; ++k)
@@ -161,11 +161,11 @@ std::vector<AlongMotions> PartMotions::solve(std::span<const AlongMotions> force
   return result;
 }
 
-template void PartMotions::prepare<float>(const LinearSystem&, std::span<const std::size_t>,
-                                          const std::array<std::span<const PaddedVec3<float>>, kMaxMotions>&,
-                                          std::span<const Mat3>, std::span<const Products>);
-template void PartMotions::prepare<double>(const LinearSystem&, std::span<const std::size_t>,
-                                           const std::array<std::span<const PaddedVec3<double>>, kMaxMotions>&,
+template void BlockMotions::prepare<float>(const LinearSystem&, std::span<const std::size_t>,
+                                           const std::array<std::span<const PaddedVec3<float>>, kMaxMotions>&,
                                            std::span<const Mat3>, std::span<const Products>);
+template void BlockMotions::prepare<double>(const LinearSystem&, std::span<const std::size_t>,
+                                            const std::array<std::span<const PaddedVec3<double>>, kMaxMotions>&,
+                                            std::span<const Mat3>, std::span<const Products>);
 
 }  // namespace weft::solver

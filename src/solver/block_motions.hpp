@@ -21,7 +21,7 @@ using AlongMotions = Eigen::Matrix<double, kDirections, 1>;
 /// The linear system, projected on these directions. A diagonal block has translations if no constraint acts on any of
 /// its particles. A motion is skipped if it is nearly a combination of the directions before it
 /// (kMinIndependentEnergy).
-class PartMotions {
+class BlockMotions {
  public:
   /// Column m: the product of the whole system with motion m, along the directions of one diagonal block.
   using Products = Eigen::Matrix<double, kDirections, kMaxMotions>;
