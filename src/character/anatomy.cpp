@@ -19,7 +19,8 @@ constexpr double kNegligibleLength = 1e-9;
 /// hinge is the squared sine of its angle, so elbows bent by 13° need no guess.
 constexpr double kMinDeterminedWeight = 0.05;
 
-/// Scale of the lean of a standing trunk (people walk at 2 to 5°, stoop above 15°), and of its single bones.
+/// Width of the weight for the lean of a standing trunk (people lean by 2 to 5° in walking, by more than 15° if they
+/// stoop), and of its single bones [radians].
 constexpr double kStandingLean = 5 * kDegree, kStandingBoneLean = 20 * kDegree;
 
 Vec3 unit(const Vec3& v) {
@@ -31,12 +32,12 @@ double angle(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// 1 for angle 0, falling to 0 beyond `width`.
+/// Gaussian weight: 1 at angle 0, 1/e at `width`.
 double falloff(double angle, double width) {
   return std::exp(-(angle / width) * (angle / width));
 }
 
-/// The first node at or below `node` whose lower-case name contains the word; -1 if there is none.
+/// The first node below `node` whose lower-case name contains the word; -1 if there is none.
 Index find_below(const Character& character, Index node, std::string_view word) {
   std::vector<char> below(character.nodes.size(), 0);
   below[node] = 1;
@@ -57,7 +58,7 @@ class AnatomyFinder {
   AnatomyFinder(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const Flat> flat, const Vec3& up)
       : skeleton_(skeleton), postures_(postures), flat_(flat), up_(up) {
     own_.fill(Quat::Identity());
-    // If left and right cannot be told apart, both skeletons use the same world axis.
+    // If left and right are not known, both skeletons use the same world axis.
     level_ = up.unitOrthogonal();
   }
 
@@ -139,7 +140,7 @@ class AnatomyFinder {
     const auto bone = [&](const Posture& p, std::size_t) {
       const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
       if (joint == Joint::head) return unit(p.places[place_of(joint)] - p.places[place_of(below)]);
-      // Control nodes of rigs may lie above the joint that they move.
+      // Nodes that control a rig may lie above the joint that they move.
       const Vec3 up_the_bone = along(p, joint), up_the_trunk = unit(skeleton_.trunk(p));
       return up_the_bone.dot(up_the_trunk) < 0 ? up_the_trunk : up_the_bone;
     };
@@ -164,8 +165,8 @@ class AnatomyFinder {
   void find_limb_axes(Joint upper, Joint lower, Joint trunk, bool right) {
     if (!skeleton_.has(upper)) return;
     const bool arm = place_of(upper) < place_of(on_side(Joint::left_upper_leg, right));
-    // Guess: arms stretched out sideways bend forward, legs that hang straight down bend backward. From there they
-    // rotate to their direction along the shortest arc.
+    // Guess of the hinge axis: arms stretched out sideways bend forward, legs that hang straight down bend backward.
+    // From there the axis rotates with the bone along the shortest arc.
     const auto guess = [&](const Posture& p, std::size_t) {
       const Vec3 left = axis(p, trunk, Vec3::UnitX()), back = axis(p, trunk, Vec3::UnitY());
       const Vec3 from = arm ? Vec3(right ? -left : left) : Vec3(-axis(p, trunk, Vec3::UnitZ()));
@@ -202,7 +203,7 @@ class AnatomyFinder {
       return skeleton_.has(toes) ? along(p, foot)
                                  : Vec3(axis(p, shin, Vec3::UnitZ()).cross(axis(p, shin, Vec3::UnitX())));
     };
-    // Guess: at a right angle to the shin, with straight toes.
+    // Guess: the foot at a right angle to the shin, with straight toes.
     own_[place_of(foot)] =
         axes_along(sum(foot, flat, upright(), axis_of(shin, -Vec3::UnitZ())), sum(foot, flat, forward, forward));
     if (!skeleton_.has(toes)) return;

@@ -16,11 +16,11 @@ using Affine = Eigen::Affine3d;
 /// One node of the hierarchy. Joints are nodes, as is any other object of a file that has a transform.
 struct Node {
   std::string name;
-  Index parent = -1;                  ///< precedes its children; -1 for a root
+  Index parent = -1;                  ///< -1: a root; parents precede their children
   Affine local = Affine::Identity();  ///< node to parent, at rest
 };
 
-/// Moves vertices: in any pose the bone takes a vertex to global(node) · offset · vertex.
+/// Moves vertices: in any pose it maps a vertex to global transform of the node · offset · vertex.
 struct Bone {
   Index node = 0;
   Affine offset = Affine::Identity();  ///< mesh to node, in the pose in which the skin is bound
@@ -31,7 +31,7 @@ struct Influence {
   double weight = 0;  ///< weights of one vertex sum to 1
 };
 
-/// A displaced copy of the mesh that is blended in with a weight.
+/// Displacements of the mesh that are added with a weight.
 struct MorphTarget {
   std::string name;
   std::vector<Vec3> displacements;  ///< per vertex of the mesh as bound [m]
@@ -67,7 +67,7 @@ struct Clip {
 
 /// Appearance of a material of a file.
 struct Material {
-  enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< once: nothing beyond the edge
+  enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< once: transparent beyond the edge
   std::string name;
   Vec3 color{0.8, 0.8, 0.8};         ///< linear; multiplies the picture
   std::string picture;               ///< content of a PNG, JPEG or TGA file; empty: none
@@ -82,7 +82,7 @@ struct Coloring {
   std::vector<Material> materials;
   std::vector<Index> material_of_triangle;  ///< per triangle; empty if the file has no colours
   std::vector<std::array<Vec2, 3>> uv;      ///< per triangle: (u, v) of its corners, from the lower left of the picture
-  bool covers_look = false;                 ///< pictures cover the colour that the scene gives, where they are opaque
+  bool covers_look = false;                 ///< pictures lie over the colour of the scene, where they are opaque
 };
 
 /// Lengths in metres; up axis as in the scene.

@@ -26,7 +26,7 @@ Vec3 nearest_on(const Segment& segment, const Vec3& x) {
   return segment[0] + std::clamp((x - segment[0]).dot(along) / length_sq, 0.0, 1.0) * along;
 }
 
-/// A point on several bones that moves continuously from one to another.
+/// Mean of the nearest points on several bones, weighted by the inverse fourth power of the distance.
 Vec3 blended_point_on(const std::vector<Segment>& segments, const Vec3& x) {
   Vec3 sum = Vec3::Zero();
   double weights = 0;
@@ -57,7 +57,7 @@ std::vector<Vec3> mean_positions(const Character& character, const std::vector<V
   return middle;
 }
 
-/// Line segments of each bone: to the next bones below it, or else through the mean of its vertices.
+/// Line segments of each bone: to the next bones below it; for a terminal bone, through the mean of its vertices.
 std::vector<std::vector<Segment>> segments_of(const Character& character, const std::vector<Vec3>& places,
                                               const std::vector<Vec3>& skin) {
   std::vector<Index> bone_of_node(character.nodes.size(), -1);
@@ -87,7 +87,8 @@ class BoneChains {
           on_one_chain_[b * count_ + c] = on_one_chain_[c * count_ + b] = 1;
   }
 
-  /// Weight of a vertex on the chain of a bone minus that on other branches (such as the other leg), in 0 to 1.
+  /// Weight of a vertex on the chain of a bone minus its weight on other branches, such as the other leg; clamped to 0
+  /// to 1.
   double branch_weight(std::span<const Influence> influences, Index bone) const {
     double branch_weight = 0;
     for (const Influence& i : influences)

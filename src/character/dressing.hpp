@@ -18,7 +18,7 @@ Pose raise_arms(const Rig& rig, const Pose& pose, double degrees, const Vec3& up
 std::vector<Vec3> growth_start_positions(const Character& character, const Pose& pose);
 
 /// Fraction of the distance from bone to skin that a body has reached at time `t` [s] after the start of growth, which
-/// takes `duration` [s]: rises smoothly from 0.1, which leaves clearance in a sleeve, to 1.
+/// takes `duration` [s]. Rises smoothly from 0.1, at which a sleeve has clearance, to 1.
 double grown(double t, double duration);
 
 }  // namespace weft::character

@@ -13,7 +13,7 @@ namespace {
 
 // All positions below are in cm, for a height of kTableHeight.
 
-/// A colour (sRGB, 0 to 1) that covers the colour below it by the fraction `fraction`.
+/// A colour (sRGB, 0 to 1) that covers the colour below by `fraction`.
 struct Ink {
   Vec3 color = Vec3::Zero();
   double fraction = 0;
@@ -25,13 +25,13 @@ struct Ink {
   }
 };
 
-/// 1 where `depth` [cm] is inside, 0 outside, with a soft edge of width `edge`.
+/// 1 inside (`depth` > 0), 0 outside, with a soft edge of width `edge` [cm].
 double inside(double depth, double edge) {
   const double t = std::clamp(0.5 + depth / edge, 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 
-/// Height of a polyline with ascending first coordinates at `at`; constant beyond its ends.
+/// Second coordinate of a polyline where the first one, which ascends, is `at`; constant beyond the ends.
 double height(std::span<const Vec2> line, double at) {
   if (at <= line.front().x()) return line.front().y();
   for (std::size_t i = 1; i < line.size(); ++i) {
@@ -57,7 +57,7 @@ Ink body_ink(double y, double z) {
   return ink;
 }
 
-/// Hair, seen from the side, with strands that run to the knot and around it; ears slightly redder than the skin.
+/// Hair, seen from the side, with strands that run to the knot and around it. Ears are slightly redder than the skin.
 Ink head_ink(double y, double z) {
   Ink ink;
   ink.add(kBlush, 0.18 * inside(1 - std::hypot((y - 1.4) / 2.6, (z - 162.4) / 3.6), 0.8));

@@ -8,19 +8,20 @@
 namespace weft::character {
 namespace {
 
-// A foot is in contact if its ball is slower and lower than these bounds, in leg lengths (0.85 m in an adult, so 0.3
-// m/s and 4 cm). Toes in swing pass at 3 to 5 m/s; noise moves standing feet in recordings at 0.05 to 0.15 m/s.
+// A foot is in contact if its ball is slower and lower than these bounds [leg lengths/s], [leg lengths] (0.85 m in an
+// adult, so 0.3 m/s and 4 cm). Toes in swing pass at 3 to 5 m/s; noise moves standing feet in recordings at 0.05 to
+// 0.15 m/s.
 constexpr double kMaxContactSpeed = 0.35, kMaxContactHeight = 0.05;
 /// Maximum height of the ankle of a flat foot above the standing height of ankles [leg lengths].
 constexpr double kMaxFlatAnkleHeight = 0.03;
 /// Speeds are means over this time [s], half the key interval at 15 keys per second.
 constexpr double kSpeedWindow = 1.0 / 30;
-/// Contacts shorter than this are accidental [s].
+/// Shorter contacts are ignored [s].
 constexpr double kMinContactTime = 0.08;
-/// Movement of the ball within a contact that ends it and begins the next: a shuffle [leg lengths].
+/// Movement of the ball that ends a contact and begins the next one, as in a shuffle [leg lengths].
 constexpr double kMaxBallMotion = 0.08;
-/// The floor is the lowest height at which feet are slow at least this fraction as often as at the most frequent
-/// height. Initial poses of recordings and outliers lie below it, steps and chairs above.
+/// The floor is the lowest height whose number of slow feet is at least this fraction of that at the most frequent
+/// height. Initial poses of recordings and outliers lie below the floor, steps and chairs above.
 constexpr double kMinFrequencyRatio = 0.5;
 /// Time in which feet blend from a contact into their own motion [s]; a step takes 0.4 s or more.
 constexpr double kFootBlendTime = 0.15;
@@ -105,7 +106,8 @@ double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
   return slow[k];
 }
 
-/// Extends a quantity known only in contacts to other keys: values of the nearest contacts, fading with time.
+/// Extends a quantity that is known only in contacts to other keys, by values of the nearest contacts that fade with
+/// time.
 class ContactBlend {
  public:
   ContactBlend(const std::vector<Contact>& contacts, std::span<const double> times)

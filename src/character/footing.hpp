@@ -10,7 +10,7 @@
 
 namespace weft::character {
 
-/// Key range, `first` to `last`, in which the ball of a foot stays in place.
+/// Keys `first` to `last`, both included, in which the ball of a foot stays in place.
 struct Contact {
   std::size_t first = 0, last = 0;
 };
@@ -34,24 +34,24 @@ struct Leg {
   Vec3 hinge;       ///< unit vector of the axis about which the shin bends backward
 };
 
-/// Legs of the left and the right side.
+/// The left and the right leg.
 using Legs = std::array<Leg, 2>;
 
-/// Corrections that make feet stand, at one key.
+/// Corrections at one key that keep feet in contact in place.
 struct Stance {
   double rise = 0;                                          ///< of the hips [m]
   std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< of the feet, relative to the motion [m]
   std::array<bool, 2> in_contact{};
 };
 
-/// Keeps the ball of each foot at its mean position during a contact, with the sole on the floor, and never below the
-/// floor otherwise. Between contacts feet return to the motion within 0.15 s. Hips move down if a leg would not reach,
-/// and up if a knee would bend too far. `floor`: height of the sole at rest [m].
+/// Keeps the ball of each foot at its mean position during a contact, with the sole on the floor. Outside contacts no
+/// foot goes below the floor, and feet return to the motion within 0.15 s. Hips move down if a leg is too short to
+/// reach its ankle, and up if a knee would bend too far. `floor`: height of the sole at rest [m].
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up);
 
-/// World rotations of upper and lower leg that bring the ankle to a position, or as near as it reaches, with the knee
-/// in its plane.
+/// World rotations, from the present pose, of upper and lower leg that bring the ankle to a position, or as near as the
+/// leg reaches. The knee bends in the plane of the leg.
 struct LegTurns {
   Quat upper, lower;
 };

@@ -1,4 +1,4 @@
-// Detects motions of four-legged animals, whose forelegs are mistaken for arms.
+// Detects motions of four-legged animals, whose forelegs have the names or places of arms.
 #pragma once
 
 #include <optional>

@@ -5,7 +5,8 @@
 
 namespace weft::character {
 
-/// A periodic function of the phase: 0 at a strike of the left heel, 1 at the next one.
+/// mean + Σ_k cosine[k] cos(2π (k + 1) phase) + sine[k] sin(2π (k + 1) phase). Phase: 0 at a strike of the left heel, 1
+/// at the next one.
 struct HarmonicCurve {
   double mean = 0;
   std::array<double, 6> cosine{}, sine{};
@@ -44,9 +45,9 @@ constexpr HarmonicCurve arm_out{1.47, {-3.60, 0, 0.02, 0.12, 0.01, -0.02}, {0.91
 constexpr HarmonicCurve elbow{23.61, {-5.76, 4.14, -0.20, -0.05, 0.08, -0.17}, {2.17, -3.43, 0.02, 0.28, 0.23, 0.02}};
 
 /// Knee flexion: 5° at contact, 18° in loading response, 5.5° in terminal stance, 39° at toe-off and 60° in initial
-/// swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). In between a spline drawn by eye, to
-/// which these harmonics are within 0.6°. Not the recording, whose knees are bent by 20° more in stance and clipped at
-/// 0.
+/// swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). In between, a spline drawn by eye,
+/// which these harmonics approximate within 0.6°. Knees of the recording are not used: they are bent by 20° more in
+/// stance, and clipped at 0.
 constexpr HarmonicCurve knee{22.99, {-3.24, -13.50, -0.53, -0.87, 0.13, -0.21}, {-20.21, 8.12, 3.68, 0.64, 0.49, 0.02}};
 
 }  // namespace walking

@@ -10,8 +10,8 @@
 namespace weft::character {
 namespace {
 
-constexpr double kStandingKnee = 6;        ///< [degrees]; straighter legs look stiff and could not reach
-constexpr double kPitchRatio = 0.79;       ///< factor on the recorded toe lift, which is too large for a mannequin
+constexpr double kStandingKnee = 6;        ///< [degrees]; a straighter leg looks stiff and could not reach its foothold
+constexpr double kPitchRatio = 0.79;       ///< factor on the recorded foot pitch, which is too large for a mannequin
 constexpr double kReleaseFraction = 0.17;  ///< of a stride before a strike; until then the trailing leg sets the height
 constexpr double kTakeoverFraction = 0.13;  ///< of a stride after a strike; from then the leading leg sets it
 constexpr double kLateKneeRatio = 0.75;     ///< factor on the knee curve before toe-off
@@ -34,7 +34,7 @@ auto jet_of(const Function& f, int key) {
   return Jet<Value>{here, Value((after - before) / 2), Value(after - 2 * here + before)};
 }
 
-/// Quintic interpolation between two jets over `span` keys, at the fraction s.
+/// Quintic interpolation between jets a and b, `span` keys apart, at the fraction s of the span.
 template <class Value>
 Value quintic(const Jet<Value>& a, const Jet<Value>& b, double span, double s) {
   const double s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
@@ -103,8 +103,8 @@ Vec3 Feet::hip(int side, int key) const {
   return Vec3(place.x(), place.y(), heights_.empty() ? 0 : pelvis_height(key)) + hips_[track_.index(key)][side];
 }
 
-/// Knee bend of a stance leg [degrees]: the curve after the strike and before toe-off, scaled by the step sizes. Both
-/// weights sum to 1 in even walking.
+/// Knee bend of a stance leg [degrees]: a blend of the curve after the strike and the curve before toe-off, each scaled
+/// by the size of its step. The two weights sum to 1 in even walking.
 double Feet::knee(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double since = plan_.strides_since_strike(here, key), until = plan_.until_off(here, key);
@@ -130,14 +130,14 @@ double Feet::strike_pitch(const Plant& plant, int key) const {
   return plant.size * recorded * (1 - smooth_ramp(since, 0.03, 0.12));
 }
 
-/// Pitch of the toes relative to the floor: flat until the heel is high, then they roll over their tips.
+/// Pitch of the toes relative to the floor: 0 until the heel is high, then the toes roll over their tips.
 double Feet::toe_pitch(double pitch) {
   const double beyond = -pitch - kToesFlat * kDegree, round = kToesRound * kDegree;
   if (beyond <= 0) return 0;
   return -kToePitchRatio * (beyond < round ? beyond * beyond / (2 * round) : beyond - round / 2);
 }
 
-/// Ankle of a foot that rolls over the heel (its contact moves back), or over the toe tips and bends at the ball.
+/// Ankle of a foot that rolls over the heel (the contact point moves back), or over the toe tips and bends at the ball.
 Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
   const auto turned = [](double forward, double up, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -199,7 +199,7 @@ FootState Feet::swinging(int side, std::size_t number, int key) const {
     };
   };
   Jet<Values> strike = jet_of(values_of(number + 1), to.strike);
-  // The heel lands abruptly: the knee cannot reach its bending speed before the strike.
+  // The heel lands abruptly: the knee has no bending speed before the strike.
   strike.rate[0] = strike.bend[0] = 0;
   Jet<Values> off = jet_of(values_of(number), from.off);
   off.bend[3] = 0;
@@ -233,8 +233,8 @@ double Feet::height_above(int side, std::size_t number, int key) const {
   return std::sqrt(d * d - leg.head<2>().squaredNorm()) - leg.z();
 }
 
-/// Computes pelvis heights. In the transition between two legs the height is interpolated, and passes through the
-/// height that the knee of the leading leg requires at its strike.
+/// Computes pelvis heights. In the transition between two legs the height is interpolated. At the strike of the leading
+/// leg, it has the value that the knee of this leg requires.
 void Feet::find_heights() {
   struct Support {
     int side;

@@ -20,11 +20,11 @@ using HipOffsets = std::vector<std::array<Vec3, 2>>;
 
 /// Paths of both feet and height of the pelvis, such that knees bend as those of people.
 ///
-/// From its strike until shortly before the strike of the other foot, the stance leg determines the height of the
-/// pelvis: its knee follows the curve. In between, the height is interpolated. The trailing leg raises its heel as far
-/// as its knee curve requires. In swing, knee bend and leg direction are interpolated from toe-off to the strike, with
-/// matching velocities and accelerations. A foot in stance rolls without sliding: over its round heel, then flat, then
-/// bending about the ball with flat toes.
+/// From shortly after its strike until shortly before the strike of the other foot, the stance leg determines the
+/// height of the pelvis: its knee follows the curve `knee`. In between, the height is interpolated. The trailing leg
+/// raises its heel as far as this curve requires. In swing, knee bend and leg direction are interpolated from toe-off
+/// to the strike, with matching velocities and accelerations. A foot in stance rolls without sliding: over its round
+/// heel, then flat, then bending about the ball with flat toes.
 class Feet {
  public:
   /// All arguments must outlive the object.

@@ -12,10 +12,10 @@ constexpr double kKeysPerSecond = 60;
 constexpr double kHalfTrack = 0.048;     ///< ankle to midline / height; recorded: 0.038, but thighs would touch
 constexpr double kOutwardDetour = 0.07;  ///< outward detour of a foot that turns with the body [m]
 constexpr double kFirstStepRatio = 0.65, kLastStepRatio = 0.75;  ///< first and last step / even step
-constexpr double kWeightShiftFraction = 0.45;  ///< fraction of a stride to shift the weight before the first step
+constexpr double kWeightShiftFraction = 0.45;  ///< time to shift the weight before the first step [strides]
 
-/// Turn of the body per step on the small arc of a turn, toward the side of the foot that begins [degrees]. The inner
-/// foot opens and the outer one follows, so that toes do not collide.
+/// Turn of the body per step on the small arc of a turn, toward the side of the foot that takes the first step of the
+/// turn [degrees]. The inner foot turns by more than the outer one, so that toes do not collide.
 constexpr std::array<double, 4> kTurnAngles{54, 36, 54, 36};
 constexpr double kTurnStep = 0.11;  ///< forward distance per step of a turn [m], for a height of 1.75 m
 
@@ -148,7 +148,7 @@ Physique physique_of(const Character& mannequin) {
   body.thigh = (knee - hip).norm();
   body.shin = (ankle - knee).norm();
   body.stance_forward = 1.3 * cm;
-  // Only the trunk: hands at rest are farther out.
+  // The bounds select the trunk: hands at rest are farther out.
   for (const Vec3& p : mannequin.mesh.positions)
     if (p.z() > 75 * cm && p.z() < 98 * cm && p.x() < 35 * cm)
       body.hips_half_width = std::max(body.hips_half_width, p.x());
@@ -185,7 +185,7 @@ StepPlan plan_walk(const Physique& body, const Walk& walk) {
   if (walk.turn_back) {
     // Half of the sideways offset of the turn is walked before it, half after it.
     const Vec2 arc = turn_displacement(body);
-    // The first step of the turn still leads ahead.
+    // The first step of the turn still goes forward.
     const double ahead = std::cos(kTurnAngles[0] * kDegree) * kTurnStep * body.height / 1.75;
     pace.step_length -= ahead / (steps - shorter);
     const double aside = (1 + steps) % 2 == 0 ? -0.5 * arc.y() : 0.5 * arc.y();

@@ -16,7 +16,7 @@ struct Physique {
   double height = 0;
   double foot_yaw = 0;  ///< of the left foot, outward [rad]
   double ankle_height = 0;
-  double ball_forward = 0, ball_height = 0;  ///< joint of the toes, relative to the point below the ankle
+  double ball_forward = 0, ball_height = 0;  ///< joint of the toes, relative to the point on the floor below the ankle
   double heel_back = 0, heel_radius = 0;     ///< the heel is round, with its centre behind the ankle
   double toe_length = 0, toe_radius = 0;     ///< from the ball to the centre of the round toe tips
   double thigh = 0, shin = 0;
@@ -33,10 +33,10 @@ struct Pace {
   double step_time = 0;    ///< half a stride [s]
 };
 
-/// Pace for a speed [m/s] and a body height [m]. The walk ratio (step length / step rate) is constant for speeds from
-/// 1.03 m/s: 0.0062 m/(steps/min) in the recording, about 0.0065 in people (Sekiya & Nagasaki, "Reproducibility of the
-/// walking patterns of normal young adults", 1998; bound: Murakami & Otaka, "Estimated lower speed boundary at which
-/// the walk ratio constancy is broken", 2017). It determines length and duration.
+/// Pace for a speed [m/s] and a body height [m]. Uses one walk ratio (step length / step rate) at all speeds, scaled by
+/// the height: 0.0062 m/(steps/min), that of the recording. In people it is about 0.0065 and constant for speeds from
+/// 1.03 m/s (Sekiya & Nagasaki, "Reproducibility of the walking patterns of normal young adults", 1998; bound: Murakami
+/// & Otaka, "Estimated lower speed boundary at which the walk ratio constancy is broken", 2017).
 Pace pace_of(double speed, double height);
 
 /// Number of keys of a step; even.
@@ -51,9 +51,9 @@ inline constexpr double kOverlap = 0.10;  ///< double support after a strike, li
 struct Plant {
   Vec2 at = Vec2::Zero();  ///< below the ankle while the sole is flat [m]
   double yaw = 0;          ///< of the body above it, 0 toward -y, + to the left [rad]
-  double foot_yaw = 0;     ///< of the foot itself, whose toes point outward [rad]
-  int strike = -kFarKey;   ///< key of the heel strike; the first foothold always existed
-  int off = kFarKey;       ///< key of toe-off; the last foothold is never left
+  double foot_yaw = 0;     ///< of the foot: the toes point outward [rad]
+  int strike = -kFarKey;   ///< key of the heel strike; default: the first foothold, before all keys
+  int off = kFarKey;       ///< key of toe-off; default: the last foothold, after all keys
   double aside = 0;        ///< outward detour, around the other foot, halfway through the step to this foothold [m]
   double size = 1;         ///< size of that step, relative to an even one of the recording
 };
@@ -72,7 +72,7 @@ struct StepPlan {
   int period() const { return 2 * step_keys; }
   /// The foothold where this foot stands, or stood last.
   std::size_t plant_at(int side, int key) const;
-  /// Fraction of a stride since the heel strike, and until toe-off; large if there is none.
+  /// Strides since the heel strike, and strides until toe-off; large if the foothold has no strike or no toe-off.
   double strides_since_strike(const Plant& plant, double key) const { return (key - plant.strike) / period(); }
   double until_off(const Plant& plant, double key) const { return (plant.off - key) / period(); }
 };

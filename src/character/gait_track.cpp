@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kGravity = 9.81;          // m/s²
 constexpr double kMassHeight = 0.55;       // height of the centre of mass / body height
-constexpr double kForesightStrides = 0.7;  // of a stride: later events have no effect yet
-constexpr double kRollBack = -0.01;        // weight offset at the strike, to below the heel [m]
-constexpr double kRollForward = 0.175;     // weight offset at toe-off, to below the ball [m]
+constexpr double kForesightStrides = 0.7;  // [strides]; later events have no effect yet
+constexpr double kRollBack = -0.01;        // backward offset of the weight at the strike [m]; < 0: forward
+constexpr double kRollForward = 0.175;     // forward offset of the weight at toe-off [m], for a height of 1.75 m
 
-/// Moving average over `width` keys (even). Half weight at both ends keeps it centred.
+/// Centred moving average over `width` keys (even), with half weight at both ends.
 template <class Value>
 std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
   std::vector<Value> means;
@@ -30,7 +30,8 @@ std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
   return means;
 }
 
-/// Mean with weights exp(-ω |τ|) on both sides, 0 from `half_width` keys on: a standing body stands still.
+/// Mean with weights exp(-ω |τ|) in past and future, 0 from `half_width` keys on, so that a standing body does not
+/// move.
 std::vector<Vec2> balance(const std::vector<Vec2>& p, double omega, double key_time, int half_width) {
   std::vector<double> weights;  // at a distance of d keys
   double sum = 0;
@@ -57,7 +58,7 @@ double weight_fraction(const StepPlan& plan, const Plant& plant, int key) {
   return std::min(on, off);
 }
 
-/// Point of the foot that bears the weight: rolls from the heel to the ball.
+/// Point below the foot that bears the weight; moves forward during stance.
 Vec2 bearing_point(const Physique& body, const StepPlan& plan, const Plant& plant, double next_size, int key) {
   const double cm = body.height / 175;
   const double back = kRollBack * (1 - smooth_ramp(plan.strides_since_strike(plant, key), 0, 0.3)) * plant.size;
@@ -90,7 +91,7 @@ Track balance_body(const Physique& body, const StepPlan& plan, int first, int la
     }
     track.place.push_back(point / sum);
     track.yaw.push_back(yaw / sum);
-    // Steps before the first and after the last have the same duration as all others.
+    // Beyond the first and the last strike, the phase continues at the same rate.
     const auto& strikes = plan.strikes;
     std::size_t next = 1;
     while (next + 1 < strikes.size() && key >= strikes[next].key) ++next;

@@ -20,10 +20,11 @@ struct Track {
   double yaw_at(int key) const;  ///< clamped to the ends
 };
 
-/// Treats the body as an inverted pendulum on the feet: x'' = ω² (x - p), where p is the point that bears the weight
-/// (Kajita et al., "The 3D linear inverted pendulum mode", 2001). Its only bounded solution is the mean of p over past
-/// and future with weights ω/2 exp(-ω |τ|). Therefore the weight moves to the stance leg before the other foot lifts
-/// off, and the body leans into the first step and slows down before it stops.
+/// Treats the body as an inverted pendulum on the feet: x'' = ω² (x - p), where x is the middle of the hips, p the
+/// point that bears the weight, and ω = √(g / height of the centre of mass) (Kajita et al., "The 3D linear inverted
+/// pendulum mode", 2001). The only bounded solution is the mean of p over past and future, with weights ω/2 exp(-ω |τ|)
+/// at the time difference τ. Therefore the weight moves to the stance leg before the other foot lifts off, and the body
+/// leans into the first step and slows down before it stops.
 Track balance_body(const Physique& body, const StepPlan& plan, int first, int last);
 
 }  // namespace weft::character

@@ -39,8 +39,8 @@ const std::vector<BodyPart> kSides = {
     {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
 };
 
-/// Whether a word of a node name is neither side nor part: words of Biped, Rigify, Source, VRM, Character Creator,
-/// Meebits, and of Mixamo if a program left out the colon.
+/// Whether a word of a node name names neither a side nor a part: words of Biped, Rigify, Source, VRM, Character
+/// Creator, Meebits, and of Mixamo if a program left out the colon.
 bool is_filler_word(const std::string& word) {
   static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
                                                   "j", "bip", "biped", "valve", "m",    "bone"};
@@ -112,8 +112,8 @@ bool is_above(std::span<const Node> nodes, Index above, Index node) {
   return above >= 0 && above != node && std::ranges::find(line, above) != line.end();
 }
 
-/// Determines the trunk from the tree: the hips are where legs and spine branch, or above; the chest is where the arms
-/// branch; the spine is halfway between, the lower of two candidates.
+/// Determines the trunk from the tree: the hips are the node at which legs and spine branch, or a named one above it;
+/// the chest is the node at which the arms branch; the spine is halfway between, the lower of two candidates.
 void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
   const auto at = [&](Joint joint) -> Index& { return joints[place_of(joint)]; };
   Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
@@ -140,10 +140,10 @@ bool has_all_limbs(const std::vector<Index>& joints) {
       [&](Joint left) { return joints[place_of(left)] >= 0 && joints[place_of(on_side(left, true))] >= 0; });
 }
 
-/// Minimum number of nodes that share an affix for it to be the name of a rig: the size of a minimal skeleton.
+/// Minimum number of nodes that share an affix that counts as the name of a rig: the size of a minimal skeleton.
 constexpr std::size_t kMinRigNodes = 15;
 
-/// Minimum length of a prefix without a separator; shorter ones are coincidence, or the sides of a body.
+/// Minimum length of a prefix without a separator; shorter ones are shared by chance, or name the sides of a body.
 constexpr std::size_t kMinPrefixLength = 3;
 
 /// Prefixes that end with a separator and are shared by at least kMinRigNodes nodes, longest first.
@@ -168,7 +168,7 @@ std::vector<std::string> prefixes_without_separator(const std::vector<std::strin
   std::vector<std::string> prefixes;
   for (const auto& [text, count] : counts) {
     if (text.size() < kMinPrefixLength || count < kMinRigNodes) continue;
-    // Entries that follow in order and begin with this text extend it.
+    // Entries that begin with this text follow it in order.
     bool is_maximal = true;
     for (auto next = counts.upper_bound(text); next != counts.end() && next->first.starts_with(text); ++next)
       is_maximal = is_maximal && next->second < count;
@@ -266,8 +266,8 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes) {
   for (const char* side : {"Left", "Right"}) {
     const std::size_t shoulder = joints.size();
     for (const BodyPart& part : kSides) joints.push_back(find(side, part));
-    // Resolve ambiguous names: a "shoulder" is the upper arm if there is no other, a "foot" is the toes if there is an
-    // ankle, and a leg without a knee below it is the lower one.
+    // Resolve ambiguous names: a "shoulder" is the upper arm if no other node is, a "foot" is the toes if there is an
+    // ankle, and a "leg" is the lower leg if no other node is.
     if (joints[shoulder + 4] == joints[shoulder + 5]) joints[shoulder + 4] = -1;
     if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
     if (joints.back() == joints[joints.size() - 2]) joints.back() = -1;
@@ -279,8 +279,9 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes) {
 
 namespace {
 
-/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l knee_048"). It applies
-/// if at least kMinRigNodes names end so, hardly any two alike, unlike the numbers of spines and fingers.
+/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l knee_048"). Removes
+/// numbers only if at least kMinRigNodes names end so and almost all numbers differ, unlike those of spines and
+/// fingers.
 std::vector<Node> without_numbers(std::vector<Node> nodes) {
   const auto number_of = [](const std::string& name) {
     const std::size_t mark = name.rfind('_');
@@ -302,8 +303,8 @@ std::vector<Node> without_numbers(std::vector<Node> nodes) {
 }
 
 /// Joints by name. If names do not suffice, tries names without the affixes of a rig ("UnityChan_LeftArm",
-/// "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"). Of several rigs, the one with most joints that influence skin or
-/// move wins.
+/// "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"). Of several rigs, selects the one with most joints that influence
+/// skin or move.
 std::vector<Index> find_prefixed_joints(const Character& character) {
   std::vector<Index> best = find_named_joints(character.nodes);
   if (has_all_limbs(best)) return best;

@@ -48,7 +48,7 @@ constexpr Joint on_side(Joint left, bool right) {
 }
 
 std::string_view name(Joint joint);
-/// The parent joint; that of the hips is the hips.
+/// The parent joint; for the hips, the hips.
 Joint parent(Joint joint);
 
 /// Hips, Spine, Chest, Neck, Head, then for Left and Right: Shoulder, UpperArm, LowerArm, Hand, UpperLeg, LowerLeg,
@@ -59,11 +59,12 @@ const std::vector<std::string>& joint_names();
 Index joint_number(const std::string& name);
 
 /// For each of joint_names(), the node with that role, found by the names of common rigs (a table in joints.cpp); -1 if
-/// there is none. Prefixes, case, spaces and underscores are ignored. Hips, spine and chest are found by branching.
+/// there is none. Prefixes, case, spaces and underscores are ignored. The places at which limbs branch off determine
+/// hips, spine and chest.
 std::vector<Index> find_named_joints(std::span<const Node> nodes);
 
-/// The same, but also handles rigs whose node names share a prefix or suffix with the name of the rig. If names leave
-/// out upper or lower arms or legs, the tree determines them (nameless.hpp).
+/// The same, but also handles rigs whose node names share a prefix or suffix with the name of the rig. If upper or
+/// lower arms or legs are not found by name, the tree determines the joints (nameless.hpp).
 std::vector<Index> find_joints(const Character& character);
 
 }  // namespace weft::character

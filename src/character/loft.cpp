@@ -13,7 +13,8 @@ double power(double x, double n) {
 }
 
 /// Slopes at the knots of the cubic spline with zero slope at both ends. For inner knots i, with h and d the lengths
-/// and slopes of the chords: h[i] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i-1] s[i+1] = 3 (h[i] d[i-1] + h[i-1] d[i]).
+/// and slopes of the chords and s the slopes at the knots: h[i] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i-1] s[i+1] = 3
+/// (h[i] d[i-1] + h[i-1] d[i]).
 std::vector<double> spline_slopes(const std::vector<double>& at, const std::vector<double>& value) {
   const std::size_t n = at.size();
   std::vector<double> slope(n, 0.0), upper(n, 0.0);
@@ -91,7 +92,7 @@ double Loft::value(const Vec3& p) const {
   const double n = s[5];
   const double across = power(u / s[2], n) + power(v / (v > 0 ? s[3] : s[4]), n);
   const double rho_sq = (n == 2 ? across : std::pow(across, 2 / n)) + cap * cap;
-  // On the axis the ray has no direction; its length is that of the narrowest half.
+  // On the axis the ray has no direction; the smallest half width or depth is returned.
   const double rho = std::sqrt(rho_sq), length = std::sqrt(u * u + v * v + beyond * beyond);
   return rho < 1e-9 ? -std::min({s[2], s[3], s[4]}) : length * (1 - 1 / rho);
 }
@@ -111,7 +112,7 @@ double BlendedBody::operator()(const Vec3& p) const {
     const auto is_near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < max_distance; };
     double value = nothing;
     if (is_near(p)) value = part.value(p);
-    // Blend with its mirror image first, so that the field is even in x.
+    // Blends a paired part with its mirror image first, so that the field is even in x.
     if (part.paired && part.shape.bounds().exteriorDistance(mirrored) < std::min(max_distance, value + part.blend)) {
       const double image = part.value(mirrored);
       value = value == nothing ? image : smooth_min(value, image, part.blend);

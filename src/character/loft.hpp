@@ -10,15 +10,15 @@
 
 namespace weft::character {
 
-/// A cross-section at a position along the axis of a loft: the superellipse |u / side|^n + |v / depth|^n = 1, with
-/// separate depths to the front (v > 0) and to the back. Lengths in metres.
+/// A cross-section of a loft: the superellipse |u / side|^n + |v / depth|^n = 1 about its centre, with n = `exponent`
+/// and the depth `front` for v > 0, else `back`. Lengths in metres.
 struct Section {
   double at = 0;        ///< position along the axis
   double u = 0, v = 0;  ///< centre
   double side = 0;      ///< half width
   double front = 0;     ///< depth from the centre
   double back = 0;
-  double exponent = 2;  ///< 2: an ellipse; more: toward a rectangle
+  double exponent = 2;  ///< 2: an ellipse; larger: closer to a rectangle
 };
 
 /// Placement of a loft: its axis and the directions of u and v, right-handed or not.
@@ -34,10 +34,9 @@ class Loft {
   /// `sections` in ascending order. Caps: lengths > 0 beyond the first and the last section [m].
   Loft(const LoftFrame& frame, const std::vector<Section>& sections, double first_cap, double last_cap);
 
-  /// Negative inside, 0 on the surface: the distance along the ray from the nearest point of the axis [m].
+  /// Distance to the surface along the ray from the nearest point of the axis [m]; negative inside.
   double value(const Vec3& p) const;
 
-  /// Box that contains the surface.
   const Box3& bounds() const { return bounds_; }
 
  private:
@@ -54,13 +53,13 @@ class Loft {
   Box3 bounds_;
 };
 
-/// Minimum of two fields, rounded where they differ by less than `width` [m].
+/// Minimum of two fields, smoothed where these differ by less than `width` [m].
 double smooth_min(double a, double b, double width);
 
-/// Union of lofts. Each is blended into the preceding ones over its own width [m], so that no crease remains.
+/// Union of lofts. Each loft is blended into the preceding ones over its own width [m], so that no crease remains.
 class BlendedBody {
  public:
-  /// Negative where a part is kept [m].
+  /// A field [m] that is negative where a part is kept.
   using Cut = std::function<double(const Vec3&)>;
 
   /// Adds a part. A paired part exists twice, mirrored at x = 0. A cut part exists only where `cut` keeps it, with an

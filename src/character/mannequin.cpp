@@ -13,7 +13,7 @@
 namespace weft::character {
 namespace {
 
-constexpr int kRemeshRounds = 8;  ///< remeshing rounds; more change the smallest angle by less than a degree
+constexpr int kRemeshRounds = 8;  ///< further rounds change the smallest angle by less than a degree
 
 constexpr std::size_t kFirstLeft = 5, kFirstRight = kFirstLeft + kSideJointCount;
 

@@ -17,8 +17,10 @@ constexpr Finger kRelaxedFingers[] = {
     {67.0, -0.75, 4.6, 4.4, 0.88, 17, 26},
     {66.3, -2.35, 3.8, 3.5, 0.82, 19, 28},
 };
-constexpr double kPlateRoot = 16, kPlateTip = 41;  ///< mean bends of the fingers, for the plates between them [degrees]
-constexpr double kClosing = 0.040;  ///< fingers converge by this [1/cm], so that they touch up to their tips
+constexpr double kPlateRoot = 16,
+                 kPlateTip = 41;  ///< bends of the plates between the fingers, as the fingers' mean bends [degrees]
+constexpr double kClosing =
+    0.040;  ///< convergence of fingers per distance from the middle [1/cm]: they touch up to the tips
 
 /// Adds a rod with round ends.
 void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& along, const Vec3& across, double length,

@@ -7,8 +7,8 @@ namespace weft::character {
 
 /// Converts table values to metres for one build.
 struct Scale {
-  double length = 0.01;  ///< factor along the body
-  double girth = 0.01;   ///< factor across the body
+  double length = 0.01;  ///< metres per table unit along the body
+  double girth = 0.01;   ///< metres per table unit across the body
   double masculinity = 0;
 
   double blend(double woman, double man) const { return woman + masculinity * (man - woman); }
@@ -17,14 +17,14 @@ struct Scale {
 /// Rows of a table: position along the axis, centre, half width, depth to front and back, exponent.
 using Rows = std::vector<Section>;
 
-/// Scales sections; if `grows`, their widths and depths are scaled by the girth.
+/// Scales sections to metres; widths and depths by the girth if `grows`, else by the length.
 Rows scaled(Rows rows, const Scale& scale, bool grows = true);
 
 /// An ellipsoid with its centre and half axes given to the left, forward and up [cm]. It is rotated about its centre:
 /// first by `pitch`, + forward, then by `yaw`, + to the left [degrees].
 Loft ellipsoid(const Scale& scale, const Vec3& middle, const Vec3& half, double pitch = 0, double yaw = 0);
 
-/// Adds the head with face, ears and hair; the neck must exist.
+/// Adds the head with face, ears and hair; call it after the neck is added.
 void add_head(BlendedBody& body, const Scale& scale);
 
 /// Adds the hand of an arm with the frame `arm`, whose origin is the shoulder.

@@ -9,7 +9,7 @@ namespace weft::character {
 /// Body height that the tables refer to [cm].
 inline constexpr double kTableHeight = 175;
 
-/// The body as a field: negative inside [m].
+/// The body as a field [m], negative inside.
 BlendedBody mannequin_body(const MannequinBuild& build);
 
 }  // namespace weft::character

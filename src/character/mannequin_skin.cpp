@@ -74,7 +74,7 @@ class WeightBlender {
     const double behind = smooth_ramp(-forward_, -4, 6);
     const double fold = 86.5 + 0.3 * (x_ - 9) - 2 * behind, half = 7.5 + 2 * behind;
     const double leg = smooth_ramp(fold - up_, -half, half);
-    // Between the legs both legs have a weight.
+    // Vertices between the legs are weighted by both.
     const double bridge = 0.6 + 3.5 * smooth_ramp(up_, 71, 80);
     const double left = smooth_ramp(x_, -bridge, bridge);
     const double share = weight_[z(Joint::hips)] * leg;
@@ -89,7 +89,7 @@ class WeightBlender {
     transfer(Joint::left_lower_leg, Joint::left_foot, smooth_ramp(-foot, -12.5, -4.5));
     const Vec3 axis = (at(Joint::left_toes) - at(Joint::left_foot)).cwiseProduct(Vec3(1, 1, 0));
     const double t = (p_ - at(Joint::left_foot)).dot(axis.normalized()) / cm_, ball = axis.norm() / cm_;
-    // Wider above, where the skin is farther from the joint and would fold.
+    // The bend is wider above, where the skin is farther from the joint and would fold.
     const double half_bend = 1.8 + 0.9 * up_;
     transfer(Joint::left_foot, Joint::left_toes, smooth_ramp(t, ball - half_bend, ball + half_bend));
   }

@@ -14,7 +14,7 @@ namespace {
 /// Maximum difference between the chains of both sides, in their first bones and as a whole, relative to the longer
 /// chain. Left and right legs of recordings differ by 2 %; hands end at different fingers.
 constexpr double kMaxChainDifference = 0.1;
-/// Number of bones that are compared one by one: a helper, the upper and the lower bone.
+/// Number of bones that are compared one by one: an auxiliary bone, the upper and the lower bone.
 constexpr int kComparedBones = 3;
 /// Minimum number of chains that branch at a hand.
 constexpr int kMinFingers = 3;
@@ -153,7 +153,7 @@ class NamelessFinder {
             pairs.push_back({static_cast<Index>(n), a, b, std::min(reach_[a], reach_[b])});
         }
     std::ranges::stable_sort(pairs, std::greater(), &Pair::reach);
-    // The spine may be as long as a leg: a pair that contains it overlaps all others.
+    // The spine may be as long as a leg. A pair that contains the spine overlaps all others.
     for (std::size_t first = 0; first < pairs.size(); ++first)
       for (std::size_t second = first + 1; second < pairs.size(); ++second)
         if (are_disjoint(pairs[first], pairs[second])) return legs_and_arms(pairs[first], pairs[second]);
@@ -172,7 +172,8 @@ class NamelessFinder {
     return p_above || (!q_above && p_longer) ? std::pair{p, q} : std::pair{q, p};
   }
 
-  /// `outer`: an outer pair of bones is preferred if its shorter bone is longer than this fraction of the best so far.
+  /// `outer`: an outer pair of bones is preferred if its shorter bone is longer than this fraction of that of the best
+  /// pair so far.
   Chain chain_of(Index from, double outer) const {
     std::vector<Index> nodes;
     std::size_t last = 0, hand = 0;  // last node that may end the lower bone; node where fingers branch
@@ -205,8 +206,8 @@ class NamelessFinder {
     return sum;
   }
 
-  /// Merges upper and lower bones that are split in two halves, as rigs with twist bones have: four bones, equal in
-  /// pairs, with pairs of similar length.
+  /// Merges upper and lower bones that are split into halves, as in rigs with twist bones: four bones in two pairs of
+  /// equal bones, with pairs of similar length.
   void join_halves(std::vector<Index>& nodes, std::size_t& last) const {
     for (std::size_t i = 0; i + 4 <= last; ++i) {
       const auto bone = [&](std::size_t k) { return length_[nodes[i + k]]; };

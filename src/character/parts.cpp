@@ -10,7 +10,7 @@
 namespace weft::character {
 namespace {
 
-/// A part of several joints; `sides` counts for both sides.
+/// A part of several joints. `sides`: joints that exist left and right, without their side.
 struct PartGroup {
   std::string name;
   std::vector<std::string> middle, sides;
@@ -32,7 +32,7 @@ std::string normalise_word(const std::string& name) {
   return word;
 }
 
-/// The vertices of which at least half the weight belongs to bones whose nodes pass the test.
+/// The vertices with at least half of their weight on bones whose nodes pass the test.
 VertexMask vertices_weighted_by(const Character& character, const std::function<bool(Index node)>& test) {
   const std::size_t vertices = character.mesh.positions.size();
   VertexMask mask(vertices, 0);

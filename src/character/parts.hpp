@@ -1,4 +1,4 @@
-// Parts of a body by common names: its hands, one arm, or all that a bone of its file influences.
+// Parts of a body by common names (hands, one arm), or by the bones or materials of its file.
 #pragma once
 
 #include <cstdint>
@@ -21,25 +21,25 @@ const std::vector<std::string>& part_names();
 /// underscores between words are ignored.
 std::vector<Index> joints_of_part(const std::string& name);
 
-/// The vertices of which at least half the weight belongs to nodes of these joints. The nodes of a joint are its own
-/// node and all below it, up to the next joint. `nodes`: one per entry of joint_names(), −1 if there is none.
+/// The vertices with at least half of their weight on nodes of these joints. The nodes of a joint are its own node and
+/// all below it, up to the next joint. `nodes`: one per entry of joint_names(), −1 if there is none.
 VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints);
 
-/// Limbs. limbs_of() gives, per vertex, the limb with at least half of its weight, else trunk.
+/// limbs_of() returns, per vertex, the limb that has at least half of its weight, else the trunk.
 enum class Limb : Index { trunk, left_arm, right_arm, left_leg, right_leg };
 std::vector<Limb> limbs_of(const Character& character, std::span<const Index> nodes);
 
-/// The vertices of which at least half the weight belongs to a node or the nodes below it.
+/// The vertices with at least half of their weight on a node or the nodes below it.
 VertexMask vertices_below(const Character& character, Index node);
 
 /// The vertices of a material of the file.
 VertexMask vertices_of_material(const Character& character, Index material);
 
-/// Appends vertices without faces at these positions [m], given for the current pose of the character. They follow the
-/// nearby skin of the part by a mean of its weights; the farther a position is from the skin, the wider the mean.
+/// Appends vertices without faces at these positions [m], given for the current pose of the character. They move with a
+/// mean of the weights of the nearby skin of the part; its radius grows with the distance from the skin.
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places);
 
-/// Whether skin belongs to three or more chains of nodes below a hand: thumb and fingers that move separately.
+/// Whether three or more chains of nodes below a hand influence skin: thumb and fingers that move separately.
 bool has_fingers(const Character& character, std::span<const Index> nodes);
 
 }  // namespace weft::character

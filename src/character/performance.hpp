@@ -22,7 +22,7 @@ double clip_time(const Timing& timing, double t);
 struct Playing {
   Timing timing;
   bool loop = false;     ///< each round continues horizontally from the end of the last
-  double crossfade = 0;  ///< end of a round that is blended into the next [s of the clip]; at most half of the clip
+  double crossfade = 0;  ///< end of a round that is blended into the next one [s of the clip]; at most half of the clip
   std::optional<Pose> stance = {};  ///< initial pose of the body, in place of the clip's pose at `start`
 };
 
@@ -34,7 +34,8 @@ class Performance {
   /// The pose at time t [s] of the scene.
   Pose at(double t) const;
 
-  /// Largest jump of a vertex from the end of a round to the start of the next [m]; 0 if there is none.
+  /// Largest jump of a vertex from the end of a round to the start of the next [m]; 0 without a loop or with a
+  /// crossfade.
   double gap() const;
 
  private:
@@ -49,7 +50,7 @@ class Performance {
   Playing playing_;
   Vec3 up_;
   Index root_ = -1;                        // uppermost node that the clip translates; -1: none
-  Mat3 root_to_world_ = Mat3::Identity();  // axes of its parent, in the world
+  Mat3 root_to_world_ = Mat3::Identity();  // axes of the root's parent, in the world
   double period_ = 0;                      // of a round [s]
   Vec3 travel_{0, 0, 0}, shift_{0, 0, 0};  // per round; of all poses of the clip [m]
 };

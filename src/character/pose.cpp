@@ -33,11 +33,11 @@ Value value_at(const Curve<Value>& curve, double t) {
   return between(curve.values[k - 1], curve.values[k], weight);
 }
 
-/// The rotation of a map, by Gram-Schmidt on its columns. Mirroring is left to the stretch.
+/// The rotation of a map, by Gram-Schmidt on its columns. The stretch contains any mirroring.
 Mat3 rotation_of(const Mat3& linear) {
   Vec3 x = linear.col(0), y = linear.col(1);
   const double length = std::max({linear.col(0).norm(), linear.col(1).norm(), linear.col(2).norm()});
-  // A map that collapses an axis does not determine a rotation.
+  // A map that is singular along an axis does not determine a rotation.
   if (!(x.norm() > 1e-9 * length) || !(x.cross(y).norm() > 1e-9 * x.norm() * length)) return Mat3::Identity();
   x.normalize();
   y = (y - y.dot(x) * x).normalized();

@@ -22,9 +22,9 @@ namespace {
 /// adult). They face the same way if the rotations above the hips differ by less than kSameAngle [radians].
 constexpr double kSameLength = 1e-3, kSameAngle = 1e-3;
 
-/// Limits of human joints, with a margin for noise and for limbs pushed by others [degrees]: knees and elbows bend by
-/// 150 and overextend by 10, thighs rise by 130, heads turn by 90 and lean by 45, the spine turns by 45 and bends by 80
-/// (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
+/// Limits of human joints, with a margin for noise and for limbs that are pushed [degrees]. Without the margin, knees
+/// and elbows bend by 150 and overextend by 10, thighs rise by 130, heads turn by 90 and lean by 45, the spine turns by
+/// 45 and bends by 80 (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
 constexpr double kMaxBend = 165, kMaxBackward = 25, kMaxThigh = 160, kMaxHead = 120, kMaxSpine = 120;
 
 /// Maximum knee bend of a body that stands upright [degrees].
@@ -33,10 +33,10 @@ constexpr double kMaxRestBend = 30;
 /// Maximum rotation of toes on the floor from the direction in the motion [radians].
 constexpr double kMaxToeTurn = 150 * kDegree;
 
-/// Soles that miss the floor by more cause a warning [m].
+/// Soles that are farther from the floor in a contact cause a warning [m].
 constexpr double kMaxFloorError = 0.05;
 
-/// Rounds of moving hands to what they touch, which may itself be the other hand or its elbow.
+/// Rounds of moving hands to what they touch: the other hand and its elbow move as well.
 constexpr int kTouchingRounds = 3;
 /// Hands with a smaller error are not moved [m].
 constexpr double kMinPull = 1e-4;
@@ -67,7 +67,7 @@ double lowest_foot(const Skeleton& skeleton, const Posture& posture, const Vec3&
 }
 
 /// Whether two skeletons have the same joints and, up to one ratio, the same joint positions in the axes of their
-/// parents, which poses do not change.
+/// parents. Poses do not change these positions.
 bool same_skeleton(const Rig& a, const Rig& b) {
   const auto place = [](const Rig& rig, std::size_t joint) -> Vec3 {
     return rig.character.nodes[rig.joints[joint]].local.translation();
@@ -190,7 +190,7 @@ class Retargeter {
 
   /// Position of the hips of the body at a key.
   Vec3 hips_at(std::size_t k, const Frame& frame) const {
-    // Based on the midpoint between the hip joints, whose height above the ankles is that of the legs.
+    // Based on the midpoint between the hip joints: its height above the ankles scales with the legs.
     const Vec3 place = theirs_.middle_of_hips(postures_[k]);
     const Vec3 moved = face_ * (place - theirs_.middle_of_hips(postures_.front()));
     const Vec3 middle = ours_.middle_of_hips(rest_), hips = rest_.places[0];
@@ -272,7 +272,7 @@ class Retargeter {
       leg.knee = place(Joint::left_lower_leg);
       leg.ankle = place(Joint::left_foot);
       leg.heel = leg.ankle - above_sole(Joint::left_foot) * normal;
-      // Toes stay flat while the heel rises; their joint stays above them.
+      // Toes stay flat while the heel rises; the toe joint stays above the ball.
       leg.ball = place(toes) - above_sole(toes) * (toes == Joint::left_toes ? up_ : normal);
       leg.hinge = frame.axes[place_of(on_side(Joint::left_lower_leg, right))] * Vec3::UnitX();
     }
@@ -368,7 +368,7 @@ class Retargeter {
     const std::size_t toes = place_of(on_side(Joint::left_toes, right));
     if (!moves_[toes] || toe_length_[right] <= 0) return;
     const Vec3 forward = frame.axes[toes] * Vec3::UnitX(), normal = frame.axes[toes] * Vec3::UnitZ();
-    // Rotated up by an angle, toes reach down by their length times cos(angle) · down + sin(angle) · back.
+    // Toes that are rotated up by an angle reach down by their length · (cos(angle) · down + sin(angle) · back).
     const double down = -up_.dot(forward), back = -up_.dot(normal);
     const double limit = std::max(0.0, (up_.dot(ball) - floor) / toe_length_[right]), size = std::hypot(down, back);
     if (down <= limit || size <= limit) return;

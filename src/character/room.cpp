@@ -34,7 +34,7 @@ constexpr int kSmoothingPasses = 3;
 /// Clearance between body and ground, as a fraction of the clearance between limbs.
 constexpr double kGroundClearanceRatio = 0.5;
 
-/// Each of two limbs gives at most this fraction of the missing clearance.
+/// Each of two limbs moves back by at most this fraction of the missing clearance.
 constexpr double kMaxGivenFraction = 0.5;
 
 /// Minimum fraction of the distance from bone to skin that remains of a limb; a thinner limb looks deflated.
@@ -43,19 +43,19 @@ constexpr double kMinRemainingFraction = 0.5;
 /// Skin without cloth nearby moves by at most this distance along with its neighbours [m]; 5 mm are visible.
 constexpr double kMaxMoveWithoutCloth = 0.004;
 
-/// Skin near cloth moves by at most this distance, or twice the clearance [m]. Limbs that overlap more deeply stay so,
-/// since larger moves would be visible.
+/// Skin near cloth moves by at most this distance, or twice the clearance [m]. Limbs that overlap more deeply still
+/// overlap afterwards, since larger moves would be visible.
 constexpr double kMaxMoveNearCloth = 0.03;
 
 /// Skin without cloth of its own that is deeper in the other limb than this does not count as near cloth [m].
 constexpr double kMaxNearClothDepth = 0.05;
 
-/// Over edges up to this length skin fully follows its neighbours; over longer ones less, so that dents in coarse
-/// bodies stay as narrow [m].
+/// Over edges up to this length [m] skin fully follows its neighbours, over longer ones less, so that dents in coarse
+/// bodies are as narrow as in fine ones.
 constexpr double kFullFollowEdge = 0.02;
 
 /// The limb of each joint, in the order of joints. The trunk includes neck, head and shoulders; hands belong to lower
-/// arms, feet to lower legs. Hands and feet are too thin to give way separately.
+/// arms, feet to lower legs. Hands and feet are too thin to move back separately.
 constexpr std::array<std::uint8_t, kJointCount> kLimbOf = {0, 0, 0, 0, 0, 0, 1, 2, 2, 3, 4,
                                                            4, 4, 0, 5, 6, 6, 7, 8, 8, 8};
 constexpr std::array<const char*, 9> kLimbNames = {"trunk",           "left upper arm",  "left lower arm",
@@ -92,7 +92,7 @@ float difference(const Room::LimbWeights& a, const Room::LimbWeights& b) {
   return 0.5F * sum;
 }
 
-/// The body with these positions, given in its rest pose, as its skin as bound.
+/// The body with a new bound mesh, whose vertices have the positions `places` in the rest pose.
 Character rebind_to_bones(const Character& body, const std::vector<Vec3>& places) {
   Character rebound{body.nodes, body.bones, {}, body.first_influence, body.influences, {}, {}, {}, {}, {}};
   const Pose rest = rest_pose(rebound);
@@ -153,7 +153,7 @@ void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, 
     for (std::size_t v = begin; v < end; ++v) {
       missing[v] = {};
       const double length = (skin[v] - from[v]).norm();
-      // If more than the clearance is missing at rest, limbs cross there by design, as plates of armour do.
+      // If more than the clearance is missing at rest, limbs cross there on purpose, as plates of armour do.
       if (touched_[v] == 0 || !(length > 0) || missing_at_rest_[v] > room_) continue;
       const Vec3 to = x[v] + room_ / length * (skin[v] - from[v]);
       const mesh::Entry entry = grid.find_first_crossing(from[v], to, [&](Index t) {
@@ -169,7 +169,8 @@ void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, 
   });
 }
 
-// Moves each vertex back at least as far as the mean of its neighbours, weighted by edge length.
+// Moves each vertex back at least by the mean fraction of its neighbours, which counts less over edges longer than
+// kFullFollowEdge.
 void Room::smooth(std::span<const double> lengths, std::vector<double>& remaining) const {
   std::vector<double> sums(remaining.size()), counts(remaining.size());
   for (int round = 0; round < kSmoothingPasses; ++round) {
@@ -186,7 +187,8 @@ void Room::smooth(std::span<const double> lengths, std::vector<double>& remainin
   }
 }
 
-// Lifts skin out of the ground. Limbs whose bones are in the ground stay there: this is intended, or cannot be mended.
+// Lifts skin out of the ground. Limbs whose bones are in the ground stay there: the scene intends this, or moving skin
+// does not help.
 void Room::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const {
   for (const Ground& ground : grounds_)
     for (std::size_t v = 0; v < touched_.size(); ++v) {
@@ -217,7 +219,7 @@ Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
   std::vector<double> lengths;
   for (const auto& [a, b] : edges_) lengths.push_back((original[a] - original[b]).norm());
   std::vector<double> remaining(touched_.size(), 1);
-  std::vector<double> max_given(touched_.size(), 0);  // maximum distance that each vertex may give by itself [m]
+  std::vector<double> max_given(touched_.size(), 0);  // maximum move of each vertex, except along with others [m]
   std::vector<float> near = near_;
   std::vector<Index> other(touched_.size(), -1);
   std::vector<Missing> missing(touched_.size());

@@ -1,5 +1,5 @@
-// Clearance for cloth between the limbs of a body: if a motion brings two limbs too close or into each other where
-// there is cloth, the skin of both moves back.
+// Clearance for cloth between the limbs of a body: if two limbs near cloth come too close or overlap, the skin of both
+// moves back.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct Moved {
 /// Moves skin along the lines from its bones. Limbs are upper and lower arms, upper and lower legs, and the trunk with
 /// the head; each of two limbs moves by at most half of the missing clearance, and only if cloth is near one of them.
 /// Skin that is closer at rest, as at the joint of two limbs, keeps its clearance at rest; limbs that cross at rest are
-/// not changed. Skin near cloth that enters the ground is flattened above it, except that of feet.
+/// not changed. Skin near cloth is lifted out of the ground, except that of feet.
 class Room {
  public:
   /// Weight of each limb at a vertex.
@@ -49,7 +49,7 @@ class Room {
   /// Missing clearance of one vertex in one round.
   struct Missing {
     double distance = 0;  // missing clearance [m]
-    float near = 0;       // larger proximity to cloth of both limbs
+    float near = 0;       // proximity to cloth, the larger one of both limbs
     Index triangle = -1;  // of the other limb; -1: none
   };
 
@@ -67,7 +67,7 @@ class Room {
   VertexMask touched_, foot_;
   std::vector<double> missing_at_rest_;  // [m]
   std::vector<std::array<Index, 2>> edges_;
-  Character bones_;  // its mesh holds the start points of the lines of the vertices, as bound
+  Character bones_;  // its mesh holds, as bound, the points on the bones from which the lines of the vertices start
 };
 
 }  // namespace weft::character

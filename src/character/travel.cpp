@@ -62,7 +62,8 @@ class Path {
     return by;
   }
 
-  /// Displacements along the path that keeps feet in place, at a mean speed of `speed`. `feet`: speed that they imply.
+  /// Displacements along the path that keeps feet in place, at a mean speed of `speed`. `feet`: speed that the feet
+  /// imply.
   std::vector<Vec3> displacements_at_speed(double speed, double& feet) const {
     std::vector<Vec3> velocities = implied_velocities();
     Vec3 mean = Vec3::Zero();
@@ -95,7 +96,7 @@ class Path {
     return axes;
   }
 
-  /// Mean over a window around t. Beyond its ends the path continues point-symmetrically about them.
+  /// Mean over a window around t. Beyond its ends, the path is continued by point reflection at the end points.
   Vec3 smoothed(const std::vector<Vec3>& path, double t, double window) const {
     const auto at = [&](double s) -> Vec3 {
       const auto next = std::ranges::upper_bound(times_, s);
@@ -139,7 +140,7 @@ class Path {
         velocities[k] -= weight / (times_[b] - times_[a]) * (heading(k).transpose() * horizontal(to - from));
       }
     }
-    // In flight, interpolate between contacts.
+    // Keys without a contact are interpolated.
     std::size_t known = times_.size();
     for (std::size_t k = 0; k < times_.size(); ++k) {
       if (weights[k] == 0) continue;

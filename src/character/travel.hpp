@@ -6,18 +6,18 @@
 
 namespace weft::character {
 
-/// Removes the travel of a clip: subtracts the horizontal path of the hips, smoothed over a step. Sway about the path
-/// remains. The clip begins and ends in the same place.
+/// Removes the travel of a clip: subtracts the horizontal path of the hips, smoothed over about two steps. Sway about
+/// the path remains. The clip begins and ends in the same place.
 Clip in_place(const Rig& rig, const Clip& clip, const Vec3& up);
 
 struct TravelResult {
   Clip clip;
-  double feet = 0;  ///< mean speed at which feet in stance pass below a body in place [m/s]; 0: they do not
+  double feet = 0;  ///< mean speed of feet in stance relative to a body in place [m/s]; 0: too slow for a walk
 };
 
 /// Gives a clip in place a mean speed of `speed` [m/s of the clip], along the path that its feet in stance imply; feet
-/// do not slide if `speed` is the one they imply. Without such feet it moves straight ahead. Travel of its own is
-/// removed first. `up`: unit vector.
+/// do not slide if `speed` equals TravelResult::feet. If this is 0, the clip moves straight ahead. Travel of the clip
+/// is removed first. `up`: unit vector.
 TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up);
 
 }  // namespace weft::character

@@ -49,7 +49,7 @@ ExitCode accept(const AcceptOptions& options) {
     throw Error(ExitCode::usage, "{} files cannot all become {}: name the folder of references instead",
                 options.tests.size(), options.reference.string());
   }
-  // All are checked before the first reference changes.
+  // All files are checked before the first reference changes.
   std::vector<compare::Acceptance> plans;
   const auto add = [&](const fs::path& test, const std::string& name) {
     plans.push_back(compare::Acceptance::plan(options.reference, test, name));

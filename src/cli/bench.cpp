@@ -52,7 +52,7 @@ bench::Table try_cases(const std::filesystem::path& folder, bench::Tally& count)
   return table;
 }
 
-/// Throws before anything is measured.
+/// Checks the output files before anything is measured.
 void check_outputs(PathLedger& paths, const BenchOptions& options, const std::filesystem::path& folder,
                    const std::vector<std::string>& names) {
   for (const std::string& name : names) paths.writes("-o", folder / name);
@@ -91,7 +91,7 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
 }
 
-/// The scene of the options, or if they name none the built-in `text` under this name, with additional overrides.
+/// The scene of the options, or else the built-in `text` under this name; `more`: additional overrides.
 scene::Scene scene_of(const BenchOptions& options, const char* text, const char* name,
                       const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = options.overrides;
@@ -177,7 +177,7 @@ ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path
   PathLedger paths;
   if (!options.scene.empty()) add_inputs(paths, scene);
   check_outputs(paths, options, folder, {name + ".md", name + ".html", name + ".csv", work, settings});
-  // One thread, so that CPU seconds are comparable between machines.
+  // Uses one thread, so that CPU seconds are comparable between machines.
   set_thread_count(1);
   RunProgress progress("accuracy");
   const auto report = [&](const bench::Run& run, double done) {
@@ -218,7 +218,7 @@ struct PlannedRun {
   scene::Scene scene;
 };
 
-/// Reads all scenes first, so that mistakes show at once.
+/// Reads all scenes first, so that mistakes are reported before any run.
 std::vector<PlannedRun> plan_speed(const BenchOptions& options, const scene::Scene& scene) {
   const std::vector<int> all_cores = thread_count() > 1 ? std::vector{1, thread_count()} : std::vector{1};
   const bool fixed_size = !bench::has_sizes(scene);

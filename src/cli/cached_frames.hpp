@@ -7,10 +7,10 @@
 
 namespace weft::cli {
 
-/// Returns the selected frames, or all frames of the scene if `selection` names none. Reads each of them first, so that
-/// a damaged frame is found before anything is written. If some are missing or broken: throws Error(frames_missing),
-/// which names them; with `partial`, warns and returns the frames before the first of them, and throws only if there
-/// are none. Also throws Error(usage).
+/// Returns the selected frames, or all frames of the scene if `selection` names none. Reads each frame first, so that a
+/// damaged one is found before anything is written. If frames are missing or broken, throws Error(frames_missing) with
+/// their numbers; with `partial`, warns and returns the frames before the first missing one, and throws only if there
+/// are none. Throws Error(usage) for a selection without frames.
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial);
 
 /// Passes all frames of the cache that have the scene's current looks to the camera.

@@ -100,7 +100,7 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
     log::info(mistakes.lines);
     return mistakes.code;
   }
-  // Everything that a run does before its first step, or with --estimate also some steps.
+  // Prepares the simulation as a run does; with --estimate, also simulates some frames.
   std::optional<Estimate> estimate;
   std::vector<std::string> enclosed;
   if (options.estimate)

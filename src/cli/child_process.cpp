@@ -24,7 +24,7 @@ struct Outputs {
 /// Runs in the child: executes the program, or returns with the reason in errno. Calls only async-signal-safe
 /// functions, since another thread of the parent may have held a lock at the fork.
 void become(const std::vector<char*>& arguments, Outputs outputs, pid_t parent) {
-  // If the parent is killed, its runs must end too; otherwise resuming the command would make two processes write one
+  // If the parent is killed, the child must end too; otherwise a resumed command and the child would write the same
   // run. posix_spawn has no such option.
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
   if (::getppid() != parent) ::_exit(127);  // the parent has died before prctl()

@@ -27,7 +27,8 @@ ExitCode sheet(const SheetOptions& options);
 /// Joins the parts of a film to one video.
 ExitCode join(const JoinOptions& options);
 
-/// Runs a scene with many values; returns the exit code of the first run that failed.
+/// Runs a scene with many values; returns the exit code of the first failed run in the order of the sweep, 0 if none
+/// failed.
 ExitCode sweep(const SweepOptions& options);
 
 /// Submits runs and sweeps to a Slurm cluster, reports their progress, cancels them.
@@ -42,17 +43,18 @@ std::vector<std::string> template_names();
 /// Draws a scene again whenever one of its files changes, until it is interrupted.
 ExitCode watch(const WatchOptions& options);
 
-/// Prints what this machine offers and tests it.
+/// Prints processor, libraries and OpenGL of this machine, and tests them.
 ExitCode doctor(const DoctorOptions& options);
 
 /// Measures the program and writes tables and plots. Returns exit code 1 if a stability case is wrong (unbounded energy
 /// or not finite).
 ExitCode bench(const BenchOptions& options);
 
-/// Prints the difference of each pair; exit code 4, 7 or 8 if one cannot be read, differs, or has no reference.
+/// Prints the difference of each pair. Exit code 4 if a file cannot be read, else 7 if a pair differs, else 8 if a
+/// picture has no reference.
 ExitCode diff(const DiffOptions& options);
 
-/// Replaces references by the named files, after logging the reason.
+/// Writes the reason to the log, then replaces references by the named files.
 ExitCode accept(const AcceptOptions& options);
 
 /// Writes the review page.

@@ -59,7 +59,7 @@ struct Pair {
 
 std::vector<Pair> pairs_of_folders(const DiffOptions& options) {
   std::vector<std::string> names = compare::comparable_names(options.test);
-  // The pictures of one folder come from one machine.
+  // Assumes that the pictures of one folder come from one machine.
   const std::string machine = names.empty() ? "" : compare::machine_class_of(options.test / names.front());
   const std::vector<std::string> references = compare::reference_names(options.reference, machine);
   if (names.empty() && references.empty()) {
@@ -114,8 +114,8 @@ bool is_annotated(const DiffOptions& options) {
   return options.annotations || (actions != nullptr && std::string_view(actions) == "true");
 }
 
-// File for the heat map of a pair; empty if none is requested. A video whose name is also that of a picture keeps its
-// extension.
+// File for the heat map of a pair; empty if none is requested. If a picture has the same name as a video, the map of
+// the video keeps the video's extension.
 fs::path heatmap_file(const DiffOptions& options, const std::vector<Pair>& pairs, const std::string& name) {
   if (options.heatmap.empty() || options.heatmap.extension() == ".png") return options.heatmap;
   const std::string picture = fs::path(name).replace_extension(".png").string();
@@ -178,7 +178,7 @@ ExitCode diff(const DiffOptions& options) {
         lines.back() += "; " + origin;
       }
     if (!options.html.empty()) page.add(result, lines.back());
-    // Releases the pictures, so that thousands of pairs fit into memory.
+    // Frees the pictures, so that thousands of pairs fit into memory.
     result.worst.flip = {};
     result.reference_picture = result.test_picture = {};
     results.push_back(std::move(result));

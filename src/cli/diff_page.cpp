@@ -20,7 +20,7 @@ using compare::FileComparison;
 // A browser opens a page of this size in some seconds. Later pairs are shown without pictures.
 constexpr std::size_t kMaxPagePictureBytes = 100'000'000;
 
-// Radio buttons select a view of a pair; arrow keys switch between before and after in the same place.
+// Radio buttons select a view of a pair; arrow keys switch between reference and test in the same place.
 constexpr const char* kStyle = R"(
 :root { color-scheme: light dark; --text: #1b2227; --ground: #f4f6f7; --panel: #fff; --muted: #56626b; --line: #d9dfe3; --accent: #0b6579; }
 @media (prefers-color-scheme: dark) { :root { --text: #e2e8ec; --ground: #12161a; --panel: #1a2025; --muted: #9aa8b2; --line: #2d363d; --accent: #63c3d8; } }
@@ -46,7 +46,7 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-// For pairs that were not compared (one file is missing, or sizes differ); empty if unreadable.
+// The picture of a file in a pair that was not compared (one file is missing, or sizes differ); empty if unreadable.
 image::Image picture_of(const std::filesystem::path& file) {
   try {
     return compare::first_picture(file);

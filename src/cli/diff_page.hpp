@@ -7,8 +7,8 @@
 
 namespace weft::cli {
 
-/// One self-contained HTML file without scripts. It shows each differing pair before, after, and as a map of the
-/// differences (of videos, the worst frame); other pairs are only listed by name.
+/// One self-contained HTML file without scripts. It shows each differing pair (of videos, the worst frame) as
+/// reference, test and map of the differences; other pairs are only listed.
 class DiffPage {
  public:
   /// `description`: text of the result.

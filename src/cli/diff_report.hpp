@@ -12,7 +12,7 @@ namespace weft::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// One line; each figure that exceeds its limit is marked.
+/// One line; marks each figure that exceeds its limit.
 std::string describe(const compare::FileComparison& result, const compare::Limits& limits);
 
 Json describe_json(const compare::Limits& limits);

@@ -24,7 +24,8 @@ double winding_number(const frame::Surface& surface, const std::vector<Vec3>& po
   return sum / (4 * std::numbers::pi);
 }
 
-/// Tests three particles only: cloth that is partly inside crosses the surface, which is detected elsewhere.
+/// Tests three particles only: cloth that is partly inside crosses the surface, and such crossings are detected
+/// elsewhere.
 bool is_inside(const std::vector<Vec3>& cloth, const frame::Surface& surface, const std::vector<Vec3>& positions) {
   constexpr double kSlack = 1e-6;  // rounding error of the sum over a million triangles
   const std::size_t last = cloth.size() - 1;

@@ -1,4 +1,4 @@
-// Detection of cloth that starts wholly inside a body: it touches nothing and never comes out.
+// Detection of cloth that starts wholly inside a body: it touches nothing, and contact keeps it inside.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace weft::cli {
 
-/// Returns a sentence for each cloth that is inside a closed obstacle in this frame.
+/// Returns one sentence per cloth and closed, colliding obstacle that contains the cloth in this frame.
 std::vector<std::string> find_enclosed(const scene::Scene& scene, const frame::FrameSnapshot& snapshot);
 
 }  // namespace weft::cli

@@ -12,7 +12,7 @@
 namespace weft::cli {
 namespace {
 
-// Further frames would hardly improve the estimate, even if they are cheap.
+// More frames would hardly improve the estimate.
 constexpr int kMaxTrialFrames = 10;
 
 std::string duration_text(double seconds) {
@@ -37,7 +37,7 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
   const auto enough = [&] {
     return estimate.tried > 0 && (wall.seconds() > seconds || estimate.tried >= kMaxTrialFrames);
   };
-  // Called before each frame of the preroll, so the first call means that no frame is done.
+  // run_preroll() calls the function before each frame, so no frame is done at the first call.
   int asked = -1;
   const bool shown = simulation.run_preroll([&] {
     estimate.tried = ++asked;

@@ -14,7 +14,7 @@ struct Estimate {
   double setup = 0;       ///< before the first frame [CPU s]
   double simulate = 0;    ///< per frame, mean of those tried [CPU s]
   double draw = 0;        ///< per picture [CPU s]
-  int simulated = 0;      ///< frames of the whole run, including those before frame 0
+  int simulated = 0;      ///< frames that the whole run simulates: those of the preroll, and all after frame 0
   int drawn = 0;          ///< pictures of the whole run
   std::int64_t peak = 0;  ///< peak memory of this process since its start [bytes]
 
@@ -22,8 +22,8 @@ struct Estimate {
   double draw_total() const { return draw * drawn; }
 };
 
-/// Simulates frames for `seconds`, at least one, and draws one. Cloth before its first contact is faster than later:
-/// the true cost may be two to three times the estimate. Throws as a run does.
+/// Simulates frames for `seconds`, 1 to kMaxTrialFrames, and draws one. Cloth before its first contact is faster than
+/// later: the true cost may be two to three times the estimate. Throws as a run does.
 Estimate estimate_run(const scene::Scene& scene, const render::Settings& settings, double seconds = 5);
 
 /// One line, for people.

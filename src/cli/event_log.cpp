@@ -19,7 +19,7 @@ EventLog::EventLog(std::string destination) : destination_(std::move(destination
     return;
   }
   check_writable(destination_);  // creates the folder too
-  // Removed, not truncated: a hard link to it must keep its content.
+  // Removes the file instead of truncating it: a hard link to it must keep its content.
   if (may_replace(destination_)) std::remove(destination_.c_str());
   file_ = std::fopen(destination_.c_str(), "wbxe");
   if (file_ == nullptr) {

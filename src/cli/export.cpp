@@ -33,7 +33,7 @@ bool places_cameras(exporter::Format format) {
          format == exporter::Format::blender;
 }
 
-/// All cameras of a scene, the one of the pictures first. If the scene has none, the camera found for it.
+/// All cameras of a scene, the one of the pictures first. If the scene has none, the computed one.
 class Cameras {
  public:
   Cameras(const cache::Reader& reader, const frame::FrameSnapshot& first) {

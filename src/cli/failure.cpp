@@ -14,7 +14,7 @@
 namespace weft::cli {
 namespace {
 
-// Words longer than any path come from an argument or a file; messages show only their beginning.
+// A word that is longer than any path comes from an argument or a file; messages show only its beginning.
 constexpr std::size_t kMaxWordBytes = 4096, kShownWordBytes = 200;
 
 std::string shorten_words(std::string_view text) {

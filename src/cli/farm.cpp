@@ -1,5 +1,5 @@
-// weft farm: runs and sweeps as jobs of a Slurm cluster. Tasks are weft commands that resume where they were stopped;
-// their whole state is in the folder of the sweep, which the machines share.
+// weft farm: runs and sweeps as jobs of a Slurm cluster. Tasks are weft commands that resume where they were stopped.
+// Their whole state is in the folder of the sweep, which the machines share.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Requested resources over those of a trial. Frames with contact take longer than the first ones. A task that exceeds
-// its time is resumed later; one that exceeds its memory is killed.
+// Requested resources / those of a trial. Frames with contact take longer than the first ones. A task that exceeds its
+// time is resumed later; one that exceeds its memory is killed.
 constexpr double kTimeFactor = 4, kMemoryFactor = 1.5;
 constexpr int kMinTaskMinutes = 10, kExtraMemory = 256;  // [min], [MB]
 
@@ -209,7 +209,8 @@ class Farm {
     return lines;
   }
 
-  // Estimates the resources from the first and the last run, which have the smallest and the largest swept values.
+  // Estimates the resources from the first and the last run, which usually have the smallest and the largest values of
+  // the sweep.
   void find_needs() {
     plan_.needs.simulate_minutes = plan_.needs.draw_minutes = options_.minutes.value_or(0);
     plan_.needs.memory = options_.memory.value_or(0);
@@ -248,7 +249,7 @@ class Farm {
     write_file(folder_ / "farm/jobs", "");
   }
 
-  // Skips the archive if a task has already unpacked it.
+  // Skips an archive that exists or that a task has already unpacked.
   void write_program() {
     plan_.archive = program_->fingerprint();
     const fs::path tar = folder_ / program_tar(plan_.archive);

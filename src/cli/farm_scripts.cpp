@@ -36,7 +36,7 @@ std::string quoted(const std::vector<std::string>& words) {
   return text;
 }
 
-// Those of `passed_on` that are in `names`, with their values.
+// The options in `passed_on` that are in `names`, with their values.
 std::vector<std::string> chosen(const std::vector<std::string>& passed_on, std::initializer_list<const char*> names) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < passed_on.size(); ++i) {

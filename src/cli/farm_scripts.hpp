@@ -1,5 +1,5 @@
-// The scripts of a farm: one that performs any task on any machine, one that submits the tasks to Slurm, and a list of
-// tasks for other schedulers.
+// The scripts of a farm: one that performs each of the tasks on any machine, one that submits the tasks to Slurm, and a
+// list of the tasks for other schedulers.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace weft::cli {
 /// Resources that a task requests from the scheduler.
 struct Needs {
   int memory = 0;                      ///< [MB]
-  int simulate_minutes, draw_minutes;  ///< time limits
+  int simulate_minutes, draw_minutes;  ///< time limits [min]
 };
 
 struct FarmPlan {
@@ -29,7 +29,8 @@ struct FarmPlan {
   int parts(std::size_t job) const { return (frames[job].count() + part - 1) / part; }
 };
 
-/// File name of the program archive in the folder of the runs; without its extension, the folder where it is unpacked.
+/// File name of the program archive in the folder of the runs. Without the extension, it is the folder where tasks
+/// unpack the archive.
 std::string program_tar(const std::string& archive);
 
 /// `farm/task.sh`; its paths are valid on all machines that share the folder.

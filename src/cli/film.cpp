@@ -14,7 +14,7 @@
 namespace weft::cli {
 namespace {
 
-// Lets a stage continue during a slow frame of another; a picture of 1280×720 takes 2.7 MB.
+// Lets a stage continue while another one processes a slow frame; a picture of 1280×720 takes 2.7 MB.
 constexpr std::size_t kQueueLength = 4;
 
 struct MadePair {
@@ -188,7 +188,7 @@ class Film {
     return source;
   }
 
-  // Ends normally if an earlier stage failed, so that its earlier frames are finished.
+  // If an earlier stage failed, stores the failure and ends normally, so that the frames before it are finished.
   std::optional<DrawnFrame> next_picture() {
     try {
       return pictures_.pop();

@@ -30,11 +30,11 @@ struct FilmParts {
   std::function<std::unique_ptr<FrameWriter>(const std::string& painter_description)> open_writer;  ///< empty: nothing
                                                                                                     ///< is written
   Store* store = nullptr;  ///< keeps simulated frames
-  /// The camera path to be found from all frames, if the scene does not place the camera. Frames are then drawn from
+  /// The camera path, to be computed from all frames if the scene does not place the camera. Frames are then drawn from
   /// the store after the last one is made.
   std::optional<render::CameraPath> camera = std::nullopt;
   std::filesystem::path meshes;      ///< folder; empty: none
-  std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn
+  std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn already
   bool keeps_partial_output = true;  ///< if the source or the painter fails, finish and keep the earlier frames
   bool motion = false;               ///< whether the painter also needs the previous frame
   std::function<void(const MadeFrame&)> on_frame = {};  ///< called after each frame is made, in order; may be empty
@@ -46,7 +46,7 @@ struct FilmResult {
   std::vector<FrameRecord> frames;  ///< all frames that were made, in order
   int written = 0;
   double cloth_size = 0;         ///< longest side of the box around the largest cloth, in the first frame [m]
-  bool interrupted = false;      ///< stopped on request before the last wanted frame
+  bool interrupted = false;      ///< stopped by request before the last wanted frame
   std::string painter = "none";  ///< its description
   std::exception_ptr failure;    ///< of the stage nearest to the output, if any failed
   bool finished_output = false;  ///< the output is complete, under its final name

@@ -8,7 +8,7 @@
 
 namespace weft::cli {
 
-/// As typed: half-open, from 0; a missing end is that of the scene.
+/// As typed: half-open. A missing begin is 0, a missing end that of the scene.
 struct FrameSelection {
   std::optional<int> begin, end;
   int step = 1;
@@ -24,7 +24,7 @@ struct FrameRange {
   std::string text() const;
 };
 
-/// Frames in words, consecutive ones as a half-open range: `3, 8:21`. Ascending, at least one.
+/// Text of `frames` (ascending, at least one): consecutive ones as a half-open range, `3, 8:21`.
 std::string frames_text(const std::vector<int>& frames);
 
 /// Parses `A:B`, `A:B:STEP`, `A:`, `:B` or `:`. Throws Error(usage).

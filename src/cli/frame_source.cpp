@@ -64,7 +64,7 @@ void SceneSource::run_preroll() {
   const bool whole = simulation_->run_preroll([&] {
     if (frame > -scene_.preroll_frames()) store_.save_if_cheap(*simulation_, frame);
     progress_.advance(Stage::simulate);
-    // Nothing is drawn, but the state is kept.
+    // Keeps the state, although no frame is shown yet.
     if (stop_) store_.save(*simulation_, frame);
     ++frame;
     return !stop_;

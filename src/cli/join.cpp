@@ -54,7 +54,8 @@ Number number(const fs::path& file, const Metadata& metadata, const std::string&
   return value;
 }
 
-// Frame k is at k / fps. The tolerance covers broadcast rates, which are within 1.1e-6 of their decimals.
+// Checks that frame k is at k / fps. The tolerance covers broadcast rates, which differ from their decimals by up to
+// 1.1e-6.
 void check_time(const fs::path& file, double found, double expected, const char* what) {
   if (std::abs(found - expected) <= 1e-5 * std::max(1.0, expected)) return;
   throw Error(ExitCode::usage, "{}: expected {} {:g}, got {:g}", file.string(), what, expected, found);
@@ -88,7 +89,7 @@ Piece read_video(const fs::path& file) {
 Piece read_piece(const fs::path& file) {
   Piece piece = is_video(file) ? read_video(file) : read_picture(file);
   piece.gl = piece.film["gl"];
-  // Metadata of a single piece or of its file format.
+  // Removes metadata of a single piece or of its file format.
   for (const char* own : {"gl", "frame", "time_s", "frames", "major_brand", "minor_version", "compatible_brands",
                           "encoder", "creation_time"})
     piece.film.erase(own);

@@ -5,8 +5,8 @@
 #if defined(__x86_64__) && defined(__AVX2__)
 
 // Checks the processor before any other initialisation of the program (101 is the first constructor priority for
-// users). Compiled for every x86-64 processor, so that an old one prints a message instead of failing on an
-// instruction.
+// users). Compiled for every x86-64 processor, so that an old processor prints a message instead of failing at an
+// unknown instruction.
 __attribute__((constructor(101), target("arch=x86-64"))) static void check_cpu() {
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return;

@@ -176,7 +176,7 @@ std::string fish_completion(const CLI::App& app) {
   return text;
 }
 
-// Escapes what troff interprets. Quotes, ^ and ~ must stay ASCII, so that a shell can read copied commands.
+// Escapes characters that troff interprets. Quotes, ^ and ~ must stay ASCII, so that a shell can read copied commands.
 std::string roff(const std::string& text) {
   std::string result;
   std::istringstream lines(text);

@@ -38,7 +38,7 @@ void add_value(CLI::App& command, const char* name, const char* value, const std
 /// Adds --set.
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides);
 void add_backend(CLI::App& command, render::Backend& backend);
-/// Adds --size, --camera, --quality, --backend.
+/// Adds --size, --camera, --look, --quality, --backend.
 void add_picture(CLI::App& command, SceneOptions& options);
 /// Adds --threads, --progress, --overwrite.
 void add_process(CLI::App& command, SceneOptions& options);

@@ -60,8 +60,8 @@ void check_unknown(const CLI::App& command, const std::string& prefix) {
   }
 }
 
-// Throws for a parse error. Unknown options and surplus arguments are reported first, as a misspelt option may cause
-// another error of CLI11.
+// Throws for a parse error. Unknown options and surplus arguments are reported first, since a misspelt option may be
+// the cause of another error of CLI11.
 [[noreturn]] void throw_usage(const CLI::App* command, const CLI::ParseError& error) {
   if (command == nullptr) throw Error(ExitCode::usage, "weft: {}; see weft --help", error.what());
   const std::string prefix = "weft " + command->get_name();
@@ -72,7 +72,7 @@ void check_unknown(const CLI::App& command, const std::string& prefix) {
 }
 
 std::string_view name_of(BenchOptions::Kind kind) {
-  return kind == BenchOptions::Kind::speed ? "speed" : "accuracy";  // the kinds that have their own options
+  return kind == BenchOptions::Kind::speed ? "speed" : "accuracy";  // only these kinds have options of their own
 }
 
 BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options) {
@@ -92,7 +92,7 @@ BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options
 }
 
 SweepOptions checked(SweepOptions sweep) {
-  // For a farm, a single scene without changes is also a run to report.
+  // A farm also reports a single scene without changes.
   if (sweep.axes.empty() && sweep.list.empty() && !sweep.gather)
     throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
   return sweep;
@@ -120,7 +120,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     throw Error(ExitCode::usage, "weft {}: expected no empty argument, got one; is a variable of the shell empty?",
                 arguments.front());
   try {
-    // CLI11 expects them in reverse order
+    // CLI11 expects the arguments in reverse order
     parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
     return PrintText{parser.app.help()};

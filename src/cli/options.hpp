@@ -47,7 +47,7 @@ struct RunOptions {
   std::filesystem::path stats;   ///< file; empty: none
   std::string log_json;          ///< file, "-" for standard output; empty: none
   bool resume = false;
-  int depth = 8;  ///< bits a channel of PNG pictures, 8 or 16
+  int depth = 8;  ///< bits per channel of PNG pictures, 8 or 16
   VideoOptions video;
   bool error = false, mesh_error = false;  ///< estimate the error; mesh_error: also that of the mesh
 };
@@ -64,7 +64,7 @@ struct RenderOptions : RunOptions {
 struct CheckOptions {
   std::vector<std::filesystem::path> scenes;
   std::vector<std::string> overrides;
-  std::filesystem::path against;  ///< a scene, an effective scene or a cache; may be empty
+  std::filesystem::path against;  ///< a scene, an effective scene or a cache to compare with; may be empty
   bool plan = false;
   bool estimate = false;  ///< also estimate time and memory
 };
@@ -110,7 +110,7 @@ struct SweepOptions {
 struct FarmOptions {
   enum class Action { submit, status, cancel };
   Action action = Action::status;
-  SweepOptions sweep;  ///< for submit: the scene and the folder; otherwise the folder
+  SweepOptions sweep;  ///< for submit: the scene, and the folder as output; otherwise the folder as both
   FrameSelection frames;
   int part = 50;                           ///< frames per drawing task
   int threads = 1;                         ///< per task
@@ -148,10 +148,10 @@ struct BenchOptions {
   Kind kind = Kind::stability;
   std::filesystem::path scene;         ///< for stability, accuracy and speed; empty: built-in ones
   std::vector<std::string> overrides;  ///< of --set
-  /// For speed: varied values, ascending, and the measured frames.
+  /// For speed: varied values, ascending.
   std::vector<double> sizes{0.5, 1, 2, 4}, steps{0.5, 1, 2};
   std::vector<int> threads;  ///< empty: 1, and all cores
-  FrameSelection frames;     ///< as typed
+  FrameSelection frames;     ///< for speed: the measured frames, as typed
   std::optional<render::Quality> drawing;
   bench::AccuracyPlan plan;      ///< for accuracy
   std::filesystem::path output;  ///< folder; empty: output/bench

@@ -28,14 +28,14 @@ video::Codec codec_of(const std::filesystem::path& file, const VideoOptions& opt
 /// A file name with a place for the frame number: `{frame}`, or `{frame:05}` for five digits.
 class FramePattern {
  public:
-  /// Throws Error(usage) if the text has no such place, more than one, or other braces.
+  /// Throws Error(usage) if the text has no such place or more than one.
   explicit FramePattern(std::string_view text);
   FramePattern(std::string before, int digits, std::string after)
       : before_(std::move(before)), after_(std::move(after)), digits_(digits) {}
 
   std::filesystem::path name(int frame) const;
   std::vector<std::filesystem::path> names(const FrameRange& frames) const;
-  /// Removes files named like a frame that is not in `frames`, if `is_own` identifies them as remains of a longer run.
+  /// Removes files named like a frame that is not in `frames`, if `is_own` accepts them as outputs of an earlier run.
   void remove_others(const FrameRange& frames,
                      const std::function<bool(const std::filesystem::path&, int frame)>& is_own) const;
 

@@ -7,7 +7,7 @@
 namespace weft::cli {
 namespace {
 
-// Returns `text` if it is one of `words`; throws Error(usage) with the most similar word otherwise.
+// Returns `text` if it is one of `words`; otherwise throws Error(usage) with the most similar word.
 std::string chosen(const char* name, const std::string& text, const std::vector<std::string>& words) {
   if (std::ranges::find(words, text) != words.end()) return text;
   throw Error(ExitCode::usage, "{}: expected {}, got {}{}", name, fmt::join(words, ", "), text,

@@ -11,15 +11,15 @@
 
 namespace weft::cli {
 
-/// All paths of one command, registered before any work; inputs first. An output must not be an input, another output,
-/// or inside of either, also through links, hard links and `..`: throws Error(usage).
+/// All paths of one command, registered before any work; inputs first. Throws Error(usage) if an output is an input,
+/// another output, or inside of either, also through links, hard links and `..`.
 class PathLedger {
  public:
   /// Registers an input file; `what` names it in messages: "the scene".
   void reads(const std::filesystem::path& file, const std::string& what);
   /// Registers a folder that is read as a whole, such as a frame cache: no output may be inside.
   void reads_folder(const std::filesystem::path& folder, const std::string& what);
-  /// Registers a folder from which files are taken: outputs may be inside.
+  /// Registers a folder from which single files are read: outputs may be inside.
   void searches(const std::filesystem::path& folder, const std::string& what);
 
   /// Registers output files; `place` names them all in messages: the folder or pattern that the user has given.
@@ -31,9 +31,9 @@ class PathLedger {
   /// Registers a folder that the command uses exclusively. The code that creates the folder checks what it contains.
   void fills(const std::string& option, const std::filesystem::path& folder);
 
-  /// Throws Error(output_failed) if one of the output files, or a folder of its name, exists. From now on, files that
-  /// appear in the meantime are protected too. `own`: outputs() of an interrupted run that is resumed; their existing
-  /// files are replaced if `is_own` accepts them.
+  /// Throws Error(output_failed) if an output file exists, unless `overwrite`, or in any case if a folder has its name.
+  /// Files that appear after this call are protected too. `own`: outputs() of an interrupted run that is resumed; their
+  /// existing files are replaced if `is_own` accepts them.
   void check_absent(bool overwrite, const std::set<std::string>& own = {},
                     const std::function<bool(const std::filesystem::path&)>& is_own = {}) const;
   /// Throws Error(output_failed) if the first file of an output cannot be written.

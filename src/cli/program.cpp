@@ -76,7 +76,7 @@ int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& comm
     // and leaves half a file.
     ::signal(SIGPIPE, SIG_IGN);
     ::signal(SIGXFSZ, SIG_IGN);
-    // A program from an archive is started by its loader, whose name the process would otherwise show.
+    // The loader starts a program from an archive; without this call, the process would have the loader's name.
     if (const Installation own = own_installation(); !own.libraries.empty())
       ::prctl(PR_SET_NAME, own.code.filename().c_str());
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);

@@ -9,10 +9,10 @@ namespace weft::cli {
 /// passed to `run_other`.
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept;
 
-/// Runs such a command in this process. Linked only into the tools program.
+/// Runs a command that makes no film, in this process. Linked only into the tools program.
 ExitCode run_tool(const Command& command, char** argv);
 
-/// Replaces this process by the tools program beside it. Throws Error(usage) if that does not exist.
+/// Replaces this process by the tools program beside it. Throws Error(usage) if the tools program cannot be started.
 ExitCode become_tools(const Command& command, char** argv);
 
 }  // namespace weft::cli

@@ -85,7 +85,7 @@ class TarHeaders {
     header_.clear();
   }
 
-  static constexpr std::size_t kLargestFile = std::size_t{1} << 33;  // limit of 11 octal digits
+  static constexpr std::size_t kLargestFile = std::size_t{1} << 33;  // [bytes]; limit of 11 octal digits
 
   std::string header_;    // bytes of the current header read so far
   std::size_t skip_ = 0;  // remaining bytes of a file before the next header

@@ -1,4 +1,4 @@
-// Commands run, simulate and render, from options to exit code: each composes a film, which film.cpp makes.
+// Commands run, simulate and render, from options to exit code: each describes a film, and film.cpp makes it.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -37,7 +37,7 @@ struct FilmPlan {
   FrameRange wanted;          ///< subset of `made` that is drawn or written as meshes
   int simulated = 0;          ///< number of simulated frames, including those before frame 0; 0 if frames are only read
   bool whole_film = true;     ///< otherwise other commands may write other frames to the same place
-  bool finds_camera = false;  ///< the camera is found from all frames before the first is drawn
+  bool finds_camera = false;  ///< the camera is computed from all frames before the first one is drawn
   OutputTarget target;
   render::Settings settings;
   std::vector<std::string> objects;  ///< names
@@ -47,7 +47,7 @@ struct FilmPlan {
 
   bool draws() const { return target.kind != Kind::none; }
 
-  /// Makes all frames, not only wanted ones, so that the found camera does not depend on the range of frames.
+  /// Makes all frames, not only wanted ones, so that the computed camera does not depend on the range of frames.
   void make_all(const scene::Scene& of) {
     made = {0, of.frame_count(), 1};
     simulated = of.preroll_frames() + made.count();
@@ -164,9 +164,9 @@ class Session {
   /// Call it after all checks that may refuse the command.
   void begin(const FilmPlan& plan);
   void make(const FilmPlan& plan, FilmParts parts);
-  /// Simulates companions of the run, if that is complete.
+  /// Simulates companion runs, which measure the error, if the run is complete.
   void estimate_error(const scene::Scene& scene, bench::Recorder& recorder);
-  /// Writes all reports, and after an early end how to continue. Returns the exit code.
+  /// Writes all reports; after an early end, also prints how to continue. Returns the exit code.
   ExitCode end(const FilmPlan& plan, const Store* store);
 
  private:
@@ -245,7 +245,7 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
   report_.frames = std::move(result.frames);
   report_.written = result.written;
   report_.gl = result.painter;
-  // An unfinished video holds no frames; pictures are complete one by one.
+  // An unfinished video counts as no frames; each written picture is complete.
   if (plan.target.kind == Kind::video && !result.finished_output) {
     report_.written = 0;
     for (FrameRecord& record : report_.frames) record.written = false;
@@ -287,7 +287,7 @@ void Session::end_early(const FilmPlan& plan, const Store* store) {
     report_.message += "; the same command with --resume goes on from there";
 }
 
-// Side files come first, as their failures affect the exit code. The message comes last, where it is visible.
+// Writes side files first, since their failures affect the exit code, and prints the message last, where it is visible.
 ExitCode Session::end(const FilmPlan& plan, const Store* store) {
   if (report_.exit_code != ExitCode::ok) end_early(plan, store);
   if (store != nullptr) {
@@ -331,8 +331,8 @@ void Session::try_side_file(const Write& write) {
   }
 }
 
-// A hidden folder beside the output: `output/.falling_band.weft-cache`. For pictures it is named after the scene, so
-// that a folder of pictures allows one run per scene at a time.
+// A hidden folder beside the output: `output/.falling_band.weft-cache`. For pictures it is named after the scene, so a
+// folder of pictures can be the output of one run per scene at a time.
 fs::path working_cache(const OutputTarget& target, const std::string& scene) {
   const fs::path file = target.file(0);
   const std::string name = target.kind == Kind::video ? file.stem().string() : scene;
@@ -384,7 +384,7 @@ ExitCode run(const RunOptions& options) {
   }
   if (!options.resume) paths.check_absent(overwrite);
   paths.check_writable();
-  // If the camera is found, pictures are drawn from the store, so it must not fail.
+  // If the camera path is computed, pictures are drawn from the store, so the store must not fail.
   Store store(cache, plan.finds_camera ? Store::Need::required : Store::Need::helpful, plan.scene, plan.scene_text);
   if (options.resume) {
     store.find_start();

@@ -21,7 +21,7 @@ struct FrameRecord {
   StageTime render, encode, meshes;
 };
 
-/// Sum over all cloths.
+/// Number of particles of all cloths.
 std::size_t count_particles(const std::vector<simulation::ObjectInfo>& objects);
 
 struct RunReport {
@@ -43,7 +43,7 @@ struct RunReport {
   int written = 0;
   StageTime cache;                 ///< storing frames and states
   std::uintmax_t cache_bytes = 0;  ///< written to the cache
-  StageTime setup;                 ///< reading the scene and building the simulation
+  StageTime setup;                 ///< reading the scene and building the simulation, or opening the cache
   double wall_s = 0, cpu_s = 0;    ///< of the whole process, all threads
   std::int64_t peak_memory = 0;    ///< [bytes]
   std::vector<std::string> warnings;

@@ -32,9 +32,9 @@ void check_camera(const std::vector<std::string>& names, const std::string& came
 
 scene::Scene load_scene(const SceneOptions& options) {
   std::vector<std::string> overrides = options.overrides;
-  // Set as an override, so that scenes with different frame rates get different hashes.
+  // Passes the frame rate as an override, so that scenes with different rates get different hashes.
   if (options.fps) overrides.push_back(fmt::format("time.fps={}", *options.fps));
-  // Unlike the other looks, this one affects the simulation.
+  // Unlike the other looks, strain affects the simulation.
   if (options.look == frame::Stage::Look::strain) overrides.emplace_back("render.look=\"strain\"");
   scene::LoadResult loaded = scene::load(options.scene, overrides);
   if (!loaded.ok()) throw Error(ExitCode::scene_invalid, mistakes_text(loaded));

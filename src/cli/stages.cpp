@@ -89,7 +89,7 @@ class OutputWriter : public FrameWriter {
     video::Settings video;
     video.width = settings_.width;
     video.height = settings_.height;
-    // Every STEP-th frame: a lower frame rate keeps the speed of the motion.
+    // If only every step-th frame is drawn, a lower frame rate keeps the speed of the motion.
     video.fps = settings_.fps / settings_.frames.step;
     video.codec = settings_.codec;
     video.crf = settings_.crf.value_or(video.crf);

@@ -37,7 +37,7 @@ class FramePainter {
   virtual std::string description() const = 0;
 };
 
-/// Writes pictures. Without finish() it must leave no incomplete file.
+/// Writes pictures. If finish() is not called, no incomplete file may remain.
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
@@ -45,7 +45,7 @@ class FrameWriter {
   virtual void finish() = 0;
 };
 
-/// Draws with OpenGL; warns at the first picture that shows a single colour.
+/// Draws with OpenGL; warns once if a picture has a single colour.
 std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings);
 
 using Metadata = std::map<std::string, std::string>;
@@ -61,7 +61,7 @@ struct WriterSettings {
   FrameRange frames;
   int width = 0, height = 0;  ///< [pixels]
   double fps = 0;             ///< of the scene
-  int depth = 8;              ///< bits a channel of PNG pictures
+  int depth = 8;              ///< bits per channel of PNG pictures
   video::Codec codec = video::Codec::automatic;
   std::optional<int> crf;
   Metadata metadata = {};

@@ -7,7 +7,7 @@
 
 namespace weft::cli {
 
-/// Writes the text at once. If the reader has closed its end, as in `weft man | head`, it returns silently. Throws
+/// Writes the text at once. Returns silently if the reader has closed the pipe, as in `weft man | head`. Throws
 /// Error(output_failed) for any other failure.
 void write_standard_output(std::string_view text);
 

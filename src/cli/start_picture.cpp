@@ -32,8 +32,8 @@ Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   return snapshot.stage ? snapshot.stage->up : Vec3::UnitZ();
 }
 
-// Fraction of the picture in which the triangles of a place are visible. They are rendered as the only cloth, first in
-// the list, so that they win against the coinciding original surface.
+// Fraction of the picture in which the triangles of a place are visible. The triangles are rendered as the only cloth,
+// first in the list, so that they hide the coinciding original surface.
 double visible_fraction(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                         const frame::Camera& camera, double aspect) {
   auto marks = std::make_shared<frame::Surface>();
@@ -48,7 +48,7 @@ double visible_fraction(const frame::FrameSnapshot& snapshot, const Intersection
   for (auto& surface : marked.surfaces) {
     auto copy = std::make_shared<frame::Surface>(*surface);
     copy->kind = frame::ObjectKind::obstacle;
-    copy->infinite_floor = false;  // would hide what is below it
+    copy->infinite_floor = false;  // an infinite floor would hide what is below it
     surface = copy;
   }
   marked.surfaces.insert(marked.surfaces.begin(), std::move(marks));
@@ -56,7 +56,8 @@ double visible_fraction(const frame::FrameSnapshot& snapshot, const Intersection
   return render::saliency_of(marked, nullptr, 0, "", aspect).coverage;
 }
 
-// Best of 32 camera directions for a place; ties go to earlier ones, which are from the front and from above.
+// Best of 32 camera directions for a place. Earlier directions, from the front and from above, are preferred by
+// kMinVisibilityGain.
 frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                                    double aspect) {
   const Vec3 up = up_of(snapshot), right = Vec3::UnitX(), front = right.cross(up);
@@ -83,7 +84,7 @@ frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const I
 }
 
 void draw_line(image::Image& image, const Vec2& from, const Vec2& to, int width) {
-  // A longer line leaves the picture far beyond its borders, so it is skipped.
+  // Skips longer lines: they end far outside the picture.
   const double length = (to - from).norm();
   if (!(length < 4.0 * (image.width + image.height))) return;
   const int steps = std::max(1, static_cast<int>(std::ceil(length)));

@@ -11,7 +11,7 @@
 namespace weft::cli {
 
 /// Draws the whole scene (from its camera, or framed automatically) and close-ups of the places with the most pairs.
-/// Touching or crossing triangles are outlined in red, also if hidden. The painter must use the first camera of each
+/// Touching or crossing triangles are outlined in red, also if hidden. `painter` must use the first camera of each
 /// snapshot.
 std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, const render::Settings& settings,
                                             FramePainter& painter);

@@ -28,7 +28,7 @@ class Stills {
   const std::vector<int>& frames() const { return frames_; }
 
   virtual void add_inputs(PathLedger& paths) const = 0;
-  /// Number of frames to simulate before `last` is available.
+  /// Number of frames to simulate until frame `last` is available.
   virtual int cost(int last) const = 0;
   /// Call with ascending frame numbers. Throws Error(interrupted) after SIGINT or a similar signal.
   virtual frame::SnapshotPtr at(int frame, Progress& progress) = 0;

@@ -14,7 +14,7 @@ namespace weft::cli {
 namespace {
 
 // Limit on the time of a save, relative to the simulation time since the last save. A state is several times as large
-// as a frame, and most states are replaced unused.
+// as a frame, and most states are never read.
 constexpr double kMaxSaveTimeRatio = 0.01;
 
 }  // namespace
@@ -98,7 +98,7 @@ void Store::note_outputs(std::set<std::string> outputs) const {
   }
 }
 
-// Keeps stored frames: if the output fails for the same reason, they are all that is left.
+// Keeps stored frames: if the output fails for the same reason, no other result of the run exists.
 void Store::give_up(const std::string& reason) {
   log::warn(reason + "; the run goes on, but from here on it would have to be simulated again if it is interrupted");
   writer_.reset();

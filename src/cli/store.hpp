@@ -20,7 +20,7 @@ namespace weft::cli {
 struct MadeFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  bool fresh = false;                                  ///< not yet in the cache, or there with other looks
+  bool fresh = false;                                  ///< not yet in the cache, or in it with other looks
   const simulation::Simulation* simulation = nullptr;  ///< its state is that of this frame; null if the frame was read
 };
 
@@ -62,7 +62,7 @@ class Store {
   /// The state of the last frame that need not be simulated again; only if resumes().
   const cache::SolverState& start() const { return start_; }
 
-  /// The functions from here on must be called by the simulating thread only.
+  /// Only the simulating thread may call the functions from here on.
   void open(std::vector<frame::ObjectInfo> objects);
   /// Stores the frame if it is fresh, and from time to time the state of the simulation.
   void keep(const MadeFrame& frame);
@@ -70,12 +70,12 @@ class Store {
   frame::SnapshotPtr stored(int frame);
   /// Saves the state of the last frame. If this fails, an earlier state remains.
   void keep_last_state();
-  /// Saves the state if saving has been cheap compared with the simulation time that it protects.
+  /// Saves the state if the last save took at most 1 % of the simulation time since then.
   void save_if_cheap(const simulation::Simulation& simulation, int frame);
   void save(const simulation::Simulation& simulation, int frame);
 
   const std::filesystem::path& folder() const { return lock_.folder(); }
-  /// Not while frames are added.
+  /// Removes the folder. Must not be called while frames are added.
   void remove();
   const std::vector<frame::ObjectInfo>& objects() const { return manifest_.objects; }
   /// Whether a state is stored.

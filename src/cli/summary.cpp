@@ -72,7 +72,7 @@ std::string joule(double energy) {
 }
 
 // One sentence: the error of positions, its main source, and how to reduce it. Errors of single frames may cancel or
-// grow, so without companions only the worst frame is reported.
+// grow, so without --error only the worst frame is reported.
 std::string error_text(const RunReport& report) {
   if (report.error) return error_sentence(*report.error, report.cloth_size);
   const auto of_frame = [](const FrameRecord& record) {

@@ -1,4 +1,4 @@
-// weft sweep: many runs of one scene. Each is `weft run` in its own process, so that a failure does not affect the
+// weft sweep: many runs of one scene. Each run is `weft run` in its own process, so that a failure does not affect the
 // others and each run can be repeated alone.
 #include <signal.h>
 #include <sys/wait.h>
@@ -95,7 +95,7 @@ class Sweep {
     while (next < jobs_.size() || !running.empty()) {
       if (stop_.requested()) {
         next = jobs_.size();
-        // A terminal signals the whole process group; a signal to this process alone must be passed on.
+        // A terminal sends signals to the whole process group; a signal to this process alone must be passed on.
         if (!std::exchange(told, true))
           for (const Job* job : running) ::kill(job->process, SIGTERM);
       }
@@ -114,7 +114,7 @@ class Sweep {
       std::erase_if(running, [&](Job* job) {
         int status = 0;
         if (::waitpid(job->process, &status, WNOHANG) == 0) return false;
-        // Killed from outside or out of memory: Weft itself ends by exit().
+        // A process that did not exit was killed from outside or for lack of memory.
         job->code = WIFEXITED(status) ? static_cast<ExitCode>(WEXITSTATUS(status)) : ExitCode::internal;
         const std::string how = job->code == ExitCode::ok
                                     ? "done"

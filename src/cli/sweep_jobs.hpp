@@ -18,7 +18,7 @@ namespace weft::cli {
 struct SweepJob {
   SweepRun run;
   std::uint64_t scene_hash = 0;
-  std::optional<std::size_t> twin = {};  ///< index of an earlier run of the same scene, which is used instead
+  std::optional<std::size_t> twin = {};  ///< index of an earlier run of the same scene; its results are used
   std::filesystem::path folder = {};
   std::string scene = {};  ///< its name
   int frame_count = 1;     ///< of the scene
@@ -31,8 +31,8 @@ struct SweepJob {
   bool is_done() const;
 };
 
-/// Reads all scenes; a mistake in one of them ends the sweep at once. Throws Error (usage, scene_invalid,
-/// asset_unreadable) with all mistakes of all scenes. Registers the files read in `paths`.
+/// Reads all scenes; a mistake in one of them prevents all runs. Throws Error (usage, scene_invalid, asset_unreadable)
+/// with all mistakes of all scenes. Registers the list and the files of the first scene in `paths`.
 std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths);
 
 /// Throws Error(output_failed) unless the folder is new, empty, or of the same sweep.

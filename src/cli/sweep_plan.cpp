@@ -236,7 +236,7 @@ std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::ve
   std::map<std::string, std::string> short_names;
   for (const std::string& key : differing) short_names[key] = short_name(key, differing);
   std::set<std::string> names;
-  std::map<std::string, int> copies;  // number of runs with the same name, so that numbering many copies stays linear
+  std::map<std::string, int> copies;  // number of runs with the same name, so that numbering takes linear time
   for (SweepRun& run : runs) {
     for (const auto& [key, value] : run.changes)
       if (differing.contains(key)) run.difference.emplace_back(short_names[key], value);

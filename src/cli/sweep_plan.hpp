@@ -13,7 +13,7 @@ namespace weft::cli {
 /// Limit against mistakes; that many runs of ten seconds take a day.
 inline constexpr std::size_t kMaxRuns = 10'000;
 
-/// A key of the scene and its values as text, as --set takes them.
+/// A key of the scene, and its values as the text that --set expects.
 struct Axis {
   std::string key;
   std::vector<std::string> values;
@@ -34,7 +34,7 @@ std::vector<Changes> parse_list(const std::filesystem::path& file, const std::st
 
 struct SweepRun {
   Changes changes;     ///< all changes
-  std::string name;    ///< of its folder; made of the values that differ between runs
+  std::string name;    ///< of the run's folder; made of the values that differ between runs
   Changes difference;  ///< the changes that differ between runs, with the shortest unique suffixes of their keys
 };
 

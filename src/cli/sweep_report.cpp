@@ -47,7 +47,7 @@ std::string largest(const Json& stats, const char* key) {
   return most ? fmt::format("{:.4g}", *most) : "";
 }
 
-/// Whether the error is comparable with that of another run; empty without --error.
+/// Text: whether the error is comparable with that of another run; empty without --error.
 std::string comparable_of(const Json& stats) {
   const Json comparable = at(stats, {"error", "comparable"});
   if (!comparable.is_boolean()) return "";
@@ -91,8 +91,8 @@ std::optional<image::Image> picture_of(const std::filesystem::path& file, std::o
   }
 }
 
-/// Number of columns of the sheet. Runs that share the values of the first keys form a row, if it is not too long; the
-/// last keys then vary along the row.
+/// Number of columns of the sheet. Runs that share the values of the first keys form a row if they are at most
+/// kMaxSheetColumns; the last keys then vary along the row.
 int columns_of(const std::vector<SweepResult>& results) {
   const Changes& first = results.front().run.difference;
   for (std::size_t keys = 1; keys < first.size(); ++keys) {

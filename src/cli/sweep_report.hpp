@@ -20,11 +20,13 @@ struct SweepResult {
   ExitCode code = ExitCode::ok;
 };
 
-/// One row per run: its values, then the columns that scenes/data.md describes. Unreported values are empty.
+/// One row per run: its values, then the columns that scenes/data.md describes. Values that are missing in the
+/// statistics are empty.
 bench::Table sweep_table(const std::vector<SweepResult>& results);
 
-/// Writes one picture per run with its values and the CPU time of simulation and drawing; grey if the run has none.
-/// Shows the last available frame, or the drawn frame with index `frame`. Writes nothing if no run has a picture.
+/// Writes one picture per run with its values and the CPU time of simulation and drawing; grey if the run has no
+/// picture. Shows the last available frame, or the drawn frame with index `frame`. Writes nothing if no run has a
+/// picture.
 void write_sweep_sheet(const std::filesystem::path& file, const std::vector<SweepResult>& results,
                        const std::string& heading, std::optional<int> frame);
 

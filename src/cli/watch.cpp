@@ -53,7 +53,7 @@ class Watch {
 
   ExitCode draw_repeatedly() {
     for (int times = 0; !stop_.requested() && (options_.times == 0 || times < options_.times); ++times) {
-      // The files of an invalid scene are incomplete, but include the scene file.
+      // The list of files of an invalid scene is incomplete, so the scene file is always added.
       const scene::LoadResult loaded = scene::load(options_.scene, options_.overrides);
       files_ = {options_.scene};
       files_.insert(files_.end(), loaded.scene.files.begin(), loaded.scene.files.end());

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether the metadata of an output agree with the expected ones, apart from the OpenGL implementation.
+// Whether an output has the expected metadata, apart from the OpenGL implementation.
 bool agrees(const Metadata& found, Metadata expected) {
   expected.erase("gl");
   return std::ranges::all_of(expected, [&](const auto& entry) {
@@ -65,7 +65,7 @@ State state_of(const OutputTarget& target, const FrameRange& frames, const rende
     if (target.kind == OutputTarget::Kind::video) return state_of_video(file, frames, settings, expected);
     return state_of_picture(file, frames.begin, settings, expected);
   } catch (const Error&) {
-    return State::other;  // an unreadable file is not ours
+    return State::other;  // an unreadable file counts as one of another program
   }
 }
 

@@ -20,7 +20,7 @@ bool is_whole(const OutputTarget& target, const FrameRange& frames, const render
 /// Remains of an earlier drawing of the same film.
 struct Drawn {
   std::set<int> frames;                 ///< complete frames, with their meshes
-  std::set<std::filesystem::path> own;  ///< files that may be replaced without losing anything else
+  std::set<std::filesystem::path> own;  ///< files of this film that may be replaced
 };
 
 /// Checks pictures one by one; an incomplete video counts as no frames.

@@ -13,13 +13,14 @@ struct Acceptance {
   std::string reason, user;
 
   /// Plans the replacement. `reference` is the one named on the command line: a file, or a folder in which
-  /// `find_reference` looks up `name`. Throws Error: usage if both do not fit together, asset_unreadable if the test is
-  /// not a complete picture or video.
+  /// `find_reference` looks up `name`. Throws Error: usage if `reference` and `test` do not fit together,
+  /// asset_unreadable if the test is not a complete picture or video.
   static Acceptance plan(const std::filesystem::path& reference, const std::filesystem::path& test,
                          const std::string& name);
 
-  /// Adds a line to the log, then replaces the reference; each file is replaced atomically, and no reference is ever
-  /// without its line. Returns false without any change if both are equal in every pixel. Throws Error(output_failed).
+  /// Adds a line to the log, then replaces the reference; each of both files is replaced atomically, and every replaced
+  /// reference has its line. Returns false without any change if both are equal in every pixel. Throws
+  /// Error(output_failed).
   bool carry_out() const;
 };
 

@@ -15,11 +15,11 @@ namespace weft::compare {
 /// when alternating the images.
 struct Limits {
   int pixel_tolerance = 4;  ///< largest tolerated difference of a channel [levels of 255]
-  /// Fraction of the pixels that may differ by more. If it is the default, a pixel at an edge
+  /// Fraction of the pixels that may differ by more than pixel_tolerance. If it is the default, a pixel at an edge
   /// (`Figures::pixels_at_edges`) counts as a fortieth, and at least one pixel is allowed.
   double pixel_budget = 2e-5;
-  /// Limit of the mean of the FLIP map, against small differences everywhere; corresponds to one level on 2 % of the
-  /// pixels. The default is wider for small pictures: see `for_size`.
+  /// Limit of the mean of the FLIP map, against small differences everywhere; the default corresponds to one level on 2
+  /// % of the pixels, and is wider for small pictures: see `for_size`.
   double flip = 5e-4;
   /// Limit of the largest value of the FLIP map, against spots too small for the budget. One of four samples of a pixel
   /// on the wrong side of an edge gives up to 0.25; a speck of 2x2 pixels 64 levels off, or of 3x3 pixels 32 levels
@@ -27,12 +27,12 @@ struct Limits {
   double spot = 0.3;
 };
 
-/// Widens default limits for videos that an encoder has changed, as it amplifies small differences where it divides
-/// gradients into blocks. Measured for another CPU type in H.264 at crf 18: up to 1.35 % of the pixels over the
-/// tolerance, FLIP 0.011, spots of 0.28. The limits are twice that, and 0.4 for spots.
+/// Widens default limits for lossy videos: the encoder amplifies small differences where it divides gradients into
+/// coding blocks. Measured for another CPU type in H.264 at crf 18: up to 1.35 % of the pixels over the tolerance, FLIP
+/// 0.011, spots of 0.28. The limits are twice that, and 0.4 for spots.
 Limits with_encoder_noise(Limits limits);
 
-/// Images are compared where it is not 0.
+/// Images are compared at pixels whose value is not 0.
 using Mask = Plane<std::uint8_t>;
 
 struct Figures {
@@ -40,9 +40,9 @@ struct Figures {
   std::int64_t pixels = 0;           ///< pixels that were compared: all, or those of the mask
   std::int64_t pixels_changed = 0;   ///< pixels that differ at all
   std::int64_t pixels_over = 0;      ///< pixels that differ by more than the tolerance
-  std::int64_t pixels_at_edges = 0;  ///< of these, those in small groups at edges: see `count_at_edges`
+  std::int64_t pixels_at_edges = 0;  ///< of pixels_over, those in small groups at edges: see `count_at_edges`
   int largest = 0;                   ///< largest difference of any channel [levels of 255]
-  int largest_x = 0, largest_y = 0;  ///< its first position in reading order [pixels]
+  int largest_x = 0, largest_y = 0;  ///< first position of this difference in reading order [pixels]
   double ssim = 1;                   ///< mean structural similarity, 1 if equal
   double flip = 0;                   ///< mean of the FLIP map over the compared pixels, 0 if equal
   double spot = 0;                   ///< largest value of the FLIP map
@@ -67,21 +67,22 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
                    const Mask* mask = nullptr);
 
 /// Adapts the default limit of the mean of FLIP, which is for 640x360 pixels and more. In smaller pictures, edges cover
-/// a larger fraction of the pixels, by the square root of the ratio of areas, and the limit grows by the same factor.
+/// a larger fraction of the pixels. The limit grows by the square root of the ratio of areas.
 Limits for_size(Limits limits, const Figures& figures);
 
-/// Pixels that count against the budget, and pixels that it allows; not whole numbers.
+/// Pixels that count against the budget, and pixels that the budget allows; not whole numbers.
 double counted_pixels(const Figures& figures, const Limits& limits);
 double allowed_pixels(const Figures& figures, const Limits& limits);
 
 Verdict verdict(const Figures& figures, const Limits& limits);
 
-/// Whether frame k of a lossy video, which differs, does so only because the encoder predicted it from a changed frame
-/// at most 12 frames away: it exceeds only the limits of means (pixels, FLIP), by less than a factor of two, and its
-/// mean FLIP is at most a third of the changed frame's. `frames`: of the whole video, in order.
+/// Whether frame k of a lossy video, whose verdict is `differs`, counts as spill: predicted by the encoder from a
+/// changed frame at most 12 frames away. Its pixels over the tolerance and its mean FLIP are at most twice the limits,
+/// its spot is within the limit, and its mean FLIP is at most a third of that of the changed frame. `frames`: of the
+/// whole video, in order.
 bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits);
 
-/// The FLIP map in the colours of `image::heat_color`, from dark blue for 0. The position on the scale is the square
+/// The FLIP map in the colours of `image::heat_color`, with dark blue for 0. The position on the scale is the square
 /// root of the value, so that small differences are visible: 0.01 is at a tenth of the scale.
 image::Image heat_map(const Plane<float>& flip);
 

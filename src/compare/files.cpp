@@ -37,7 +37,7 @@ Mask read_mask(const std::filesystem::path& file, int width, int height) {
   return mask;
 }
 
-// Compares two pictures or frames and adds them to the result, which keeps the worst.
+// Compares two pictures or frames and adds the figures to the result, which stores the worst pair.
 Figures add_frame(FileComparison& result, image::Image&& reference, image::Image&& test, const Limits& limits,
                   const std::optional<Mask>& mask) {
   Comparison frame = compare(reference, test, limits.pixel_tolerance, mask ? &*mask : nullptr);
@@ -90,7 +90,7 @@ void compare_pictures(FileComparison& result, const Limits& limits, const std::f
   result.outcome = outcome_of(result);
 }
 
-// Number of remaining frames, which are decoded.
+// Decodes and counts the remaining frames.
 int count_rest(video::Decoder& decoder) {
   int frames = 0;
   while (decoder.next()) ++frames;

@@ -28,11 +28,11 @@ struct FileComparison {
   std::string name;
   std::filesystem::path reference, test;
   Outcome outcome = Outcome::same;
-  std::string problem;       ///< description, for the outcomes from `size` on
+  std::string problem;       ///< description, for the outcomes `size` and later ones
   bool video = false;        ///< else a picture, which counts as one frame
   int frames = 0;            ///< number of compared frames
   int frames_differing = 0;  ///< frames that exceed a limit, without spill
-  int frames_of_spill = 0;   ///< frames of a lossy video that were only predicted from a changed one
+  int frames_of_spill = 0;   ///< frames of a lossy video that differ by spill; see is_spill()
   int first_differing = 0;   ///< index of the first differing frame, from 0; undefined if there is none
   int worst_frame = 0;       ///< from 0; frames that exceed a limit come first, then the largest mean of the FLIP map
   Comparison worst;          ///< of the worst frame; empty if none was compared

@@ -12,7 +12,7 @@ namespace {
 
 using Matrix = Eigen::Matrix3f;
 
-// Columns: XYZ of the primaries of IEC 61966-2-1, scaled so that their sum is its white point D65.
+// Columns: XYZ of the primaries of IEC 61966-2-1, scaled so that their sum is the white point D65.
 Matrix xyz_from_linear() {
   const auto xyz = [](double x, double y) { return Vec3(x / y, 1, (1 - x - y) / y); };
   Mat3 primaries;
@@ -43,7 +43,7 @@ float lab_curve(float t) {
 }
 
 // a1 sqrt(pi/b1) exp(-pi² x²/b1) + a2 sqrt(pi/b2) exp(-pi² x²/b2), x in degrees. In one dimension this is the Fourier
-// transform of a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree; like the paper, we use it in two.
+// transform of a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree. As in the paper, it is used in two dimensions.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
@@ -200,7 +200,7 @@ Plane<float> feature_difference(const Plane<float>& reference, const Plane<float
   Plane<float> edges = stronger(kernels.edge);
   const Plane<float> points = stronger(kernels.point);
   for (std::size_t i = 0; i < edges.values.size(); ++i) {
-    // Power 1/2; the factor limits a corner, an edge in both directions, to 1.
+    // The power 1/2 of the paper. The factor 1/√2 limits a corner, which is an edge in both directions, to 1.
     edges.values[i] = std::sqrt(std::max(edges.values[i], points.values[i]) / std::numbers::sqrt2_v<float>);
   }
   return edges;
@@ -217,7 +217,7 @@ Plane<float> flip_map(const image::Image& reference, const image::Image& test) {
     for (int x = 0; x < map.width; ++x) {
       const flip::Color lab_a(a[0].row(y)[x], a[1].row(y)[x], a[2].row(y)[x]);
       const flip::Color lab_b(b[0].row(y)[x], b[1].row(y)[x], b[2].row(y)[x]);
-      // A colour difference weighs more where features differ too (Section 4.3).
+      // A colour difference has more weight where features differ too (Section 4.3).
       to[x] = std::pow(flip::remapped(flip::hyab(lab_a, lab_b)), 1 - std::min(to[x], 1.0f));
     }
   });

@@ -23,20 +23,19 @@ using Color = Eigen::Vector3f;
 /// Achromatic, red-green and blue-yellow.
 using Channels = std::array<Plane<float>, 3>;
 
-/// Linear sRGB to Y C_x C_z, an opponent space linear in the light (Section 4.1.1), and back.
+/// Linear sRGB to Y C_x C_z, an opponent colour space that is linear in the light (Section 4.1.1), and back.
 Color opponent_from_linear(const Color& linear);
 Color linear_from_opponent(const Color& opponent);
 
-/// Linear sRGB to L*a*b* with the white of sRGB; a* and b* are reduced for dark colours after Hunt: a L* / 100 (Section
-/// 4.1.2).
+/// Linear sRGB to L*a*b* with the white of sRGB; a* and b* are reduced for dark colours after Hunt, by the factor L* /
+/// 100 (Section 4.1.2).
 Color hunt_lab(const Color& linear);
 
-/// |dL| + sqrt(da² + db²) (Section 4.1.2; Abasi et al. 2020).
+/// HyAB distance of two results of hunt_lab(): |ΔL*| + √(Δa*² + Δb*²) (Section 4.1.2; Abasi et al. 2020).
 float hyab(const Color& a, const Color& b);
 
-/// Maps a HyAB distance of Hunt-adjusted colours to [0, 1]: after a power of 0.7, small values are stretched to 0.95 of
-/// the scale; larger ones, up to the distance between pure green and blue, are compressed into the rest (Section
-/// 4.1.3).
+/// Maps a HyAB distance to [0, 1]: raises it to the power 0.7, divides it by the value of pure green against pure blue,
+/// and maps [0, 0.4] linearly to [0, 0.95] and the rest to [0.95, 1] (Section 4.1.3).
 float remapped(float distance);
 
 /// Filters one channel (0 to 2) with the contrast sensitivity of the eye (Section 4.1.1, Table 1).

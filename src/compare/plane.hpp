@@ -71,7 +71,7 @@ Plane<T> convolve_columns(const Plane<T>& in, std::span<const T> kernel) {
 
 }  // namespace detail
 
-/// Convolution with `column[j] row[i]`, both of odd length, with the value at (0, 0) in their middle. Beyond the
+/// Convolution with the kernel `column[j] row[i]`. Both have odd lengths, with the origin in the middle. Beyond the
 /// border, the outermost pixels are repeated.
 template <class T>
 Plane<T> convolve(const Plane<T>& in, std::span<const T> row, std::span<const T> column) {

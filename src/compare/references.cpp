@@ -74,7 +74,7 @@ std::vector<std::string> comparable_names(const fs::path& folder) {
   // Linked folders are followed; a cycle of links ends with an error.
   fs::recursive_directory_iterator entry(folder, fs::directory_options::follow_directory_symlink, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    // Hidden files are still being written.
+    // Hidden files are incomplete: Weft is still writing them.
     const bool hidden = entry->path().filename().string().starts_with('.');
     std::error_code ignored;
     if (entry->is_directory(ignored)) {

@@ -1,9 +1,9 @@
 // Folders of reference pictures. Pictures depend slightly on Mesa and on the vector width of the processor, and motion
-// on the processor for which the program is built. If that exceeds the limits, a class of machines has its own
-// references:
+// on the processor for which the program is built. If such differences exceed the limits, a class of machines has its
+// own references:
 //
-//     references/mesa-22.3-256bit/name.png   the references of this class of machines
-//     references/default/name.png            those of all others
+//     references/mesa-22.3-256bit/name.png   references of this class of machines
+//     references/default/name.png            references of all other classes
 //     references/name.png                    used if there are no classes
 //
 // Below these folders, a name may have its own folders: references/default/front/name.png is that of front/name.png.

@@ -16,7 +16,8 @@ constexpr double kHipHeightRatio = 0.52;
 constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kArmpits = 0.75;
 // Distance between measured sections [m].
 constexpr double kSpacing = 0.01;
-// Minimum ratio of the hips to the waist of a garment that stays up (measured: 1.05 slides down, 1.16 holds).
+// Minimum ratio of the wearer's hip girth to the waist girth of a garment that stays up (measured: at 1.05 it slides
+// down, at 1.16 it holds).
 constexpr double kMinHipToWaistRatio = 1.1;
 
 }  // namespace

@@ -57,7 +57,8 @@ class Sewing {
   double length(std::size_t panel, std::size_t edge) const {
     return Arclength(pattern_.panels[panel].edges[edge].curves).length();
   }
-  // Panel edges that are much shorter than those of the mesh become points: slivers beside them would be very stiff.
+  // Panel edges that are much shorter than mesh edges become points, since narrow triangles beside them would be very
+  // stiff.
   int segments_for(double length) const {
     return length < kPointEdgeRatio * spacing_ ? 0 : std::max(1, static_cast<int>(std::lround(length / spacing_)));
   }
@@ -117,8 +118,8 @@ class Sewing {
     return start_position(panel, meshes_[panel].points[at(point - first_point_[panel])]);
   }
 
-  // Joins the points of both sides of each seam. The start positions determine which ends of flat panels meet; for bent
-  // panels it follows from their fronts, which must both face outward.
+  // Joins the points of both sides of each seam. For flat panels, the start positions determine which ends meet. For
+  // bent panels, the ends follow from the condition that both fronts face outward.
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
     for (const Seam& seam : pattern_.seams) {
@@ -141,8 +142,8 @@ class Sewing {
     }
   }
 
-  /// Flips inner edges of a panel whose two joined vertices another edge joins as well: if two panels are sewn around a
-  /// corner, a triangle in the corner of each has such an edge. Changes the last such panel.
+  /// Flips inner edges of a panel that connect the same two joined vertices as another edge. If two panels are sewn
+  /// around a corner, a triangle in the corner of each has such an edge; the panel with the higher index is changed.
   void flip_shared_edges() {
     constexpr int kMaxFlipRounds = 8;  // check_surface() refuses the rare edges that remain
     for (int round = 0; round < kMaxFlipRounds; ++round) {
@@ -226,7 +227,7 @@ class Sewing {
           joined[k] = vertex_of_point_[at(first_point_[p] + t[k])];
           material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
         }
-        // The panel is drawn from the inside; seen from its front, left and right are exchanged.
+        // A panel that is drawn from the inside has left and right exchanged when seen from its front.
         if (inside) {
           std::swap(joined[1], joined[2]);
           std::swap(material[1], material[2]);
@@ -342,7 +343,7 @@ class Sewing {
     }
   }
 
-  // Ties the points of two edges together. Their start positions determine which ends meet.
+  // Ties the points of two edges together. The start positions of the edges determine which ends meet.
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMaxCurves = 10000;
 // Larger coordinates are treated as damaged data.
 constexpr double kMaxCoordinate = 1e6;
-// Number of pieces per curve for measuring its length: a quarter circle is then accurate to 2e-6.
+// Number of pieces per curve for measuring its length. The relative error of a quarter circle is then 2e-6.
 constexpr int kPiecesPerCurve = 256;
 
 Curve quadratic(const Vec2& from, const Vec2& control, const Vec2& to) {
@@ -39,7 +39,8 @@ void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outli
     outline.push_back(straight(from, to));
     return;
   }
-  // In the frame of the ellipse, with its radii as units, the arc lies on a unit circle. Radii that are too small grow.
+  // In the frame of the ellipse, with the radii as units, the arc lies on a unit circle. Radii that are too small are
+  // enlarged.
   const Vec2 half = turn.inverse() * Vec2(0.5 * (from - to));
   const double radius_ratio = half.cwiseQuotient(r).norm();
   if (radius_ratio > 1) r *= radius_ratio;
@@ -160,7 +161,7 @@ class PathReader {
 
   void close() {
     closed_ = true;
-    // If rounded digits leave the end slightly off the start, it is the start.
+    // An end that misses the start by rounded digits only is moved to the start.
     const double slack = 1e-6 * std::max(1e-9, (farthest_ - nearest_).norm());
     if ((pen_ - first_).norm() > slack) return add(straight(pen_, first_));
     if (!result_.outline.empty()) result_.outline.back().control[3] = first_;

@@ -23,7 +23,7 @@ struct Curve {
 
 Curve straight(const Vec2& from, const Vec2& to);
 
-/// Each curve starts at the end of the preceding one, the first at the end of the last.
+/// A closed chain: each curve starts at the end of the preceding one, and the first at the end of the last.
 using Outline = std::vector<Curve>;
 
 struct ParsedPath {
@@ -32,7 +32,7 @@ struct ParsedPath {
 };
 
 /// Reads one closed outline from the path data of SVG 1.1 (section 8.3), in the units of the data. Arcs become cubic
-/// curves of at most a quarter turn each (off by 3e-4 of the radius). Curves of zero length are dropped.
+/// curves of at most a quarter turn each (maximum error: 3e-4 of the radius). Curves of zero length are dropped.
 ParsedPath parse_path(std::string_view data);
 
 /// Arc length along a chain of curves, to place points at equal distances on it.

@@ -28,7 +28,7 @@ using scene::within;
 
 // Sample points per curve for finding self-crossings of an outline.
 constexpr int kPointsPerCurve = 16;
-// Maximum deviation of a straight edge from a line, relative to its length [1]; files round coordinates.
+// Maximum deviation of a fold edge from a line / length of the edge, as files round coordinates.
 constexpr double kMaxFoldDeviation = 1e-3;
 // Maximum size of a panel [m].
 constexpr double kMaxPanelSize = 100;
@@ -119,7 +119,7 @@ std::string name_curves(const std::string& text, const Outline& outline, std::ve
   return {};
 }
 
-// Joins neighbouring curves of the same name into edges. The first edge starts where the name changes.
+// Joins neighbouring curves of the same name into edges. The first edge starts at the first change of name.
 std::vector<PanelEdge> join_named_curves(const Outline& outline, const std::vector<std::string>& names) {
   const std::size_t n = outline.size();
   std::size_t first = 0;
@@ -194,7 +194,7 @@ void copy_from_original(const Panel& from, Panel& panel) {
   if (!panel.position && from.position) panel.position = Vec2(-from.position->x(), from.position->y());
 }
 
-/// The outline of a panel; if it has a mistake, reports it, to the findings or as a mistake in a drawing.
+/// The outline of a panel. Reports a mistake in it to `findings`, or to `in_drawings` if it is in a drawing.
 std::optional<DrawnPanel> read_outline(const Panel& panel, const std::string& path, Findings& findings,
                                        std::vector<std::string>& in_drawings) {
   if (panel.path.empty()) try {
@@ -285,7 +285,7 @@ class EdgeNames {
     }
   }
   void check(const std::string& name, const std::string& key) {
-    // Panels without a valid outline have no edges; their own mistake is enough.
+    // Panels without a valid outline have no edges; the mistake in the outline is reported already.
     if (has_invalid_panel_ || findings_.has_mistake(key) || std::ranges::find(known_, name) != known_.end()) return;
     findings_.report(key, fmt::format("expected an edge such as {}, got {}{}", known_.empty() ? "front.hem" : known_[0],
                                       scene::in_quotes(name), scene::suggestion(name, known_)));

@@ -34,19 +34,19 @@ struct Panel {
   std::string fold;              ///< edge at which the outline is half of the panel; empty: the outline is whole
   double grain = 0;              ///< of the warp, counter-clockwise from the panel's y axis [degrees]
   std::string mirror_of;         ///< panel whose mirrored outline this one has, instead of its own
-  Around around = Around::none;  ///< part of the wearer that it starts bent around; none for all panels: flat
+  Around around = Around::none;  ///< part of the wearer around which the panel starts bent; none for all panels: flat
   std::optional<double> angle;   ///< of the panel's origin around the part, from front to left [degrees]
-  int layer = 0;                 ///< number of layers of its part below it
+  int layer = 0;                 ///< number of cloth layers between the panel and the same part of the wearer
   std::optional<Vec2> position;  ///< start position of the panel's origin: across and up the wearer [m]
   double rotation = 0;           ///< at the start, counter-clockwise seen from in front [degrees]
   Vec2 scale{1, 1};              ///< at the start, across and up, before the rotation
-  bool turned = false;  ///< its right side continues the wrong side of its neighbour in the seam, as that of a lapel
+  bool turned = false;           ///< folded over as a lapel: its right side continues the wrong side of its neighbour
 
   mesh::Reinforcement reinforcement;  ///< fusing, or a heavier fabric
 
   std::vector<PanelEdge> edges;  ///< around the outline, counter-clockwise
 
-  /// Whether it is drawn as seen from the inside of the garment.
+  /// Whether the panel is drawn as seen from the inside of the garment.
   bool from_inside() const { return (side == Side::back) != turned; }
 };
 
@@ -55,10 +55,10 @@ struct Panel {
 /// closed.
 struct Seam {
   std::string a, b;
-  int buttons = 0;                     ///< buttons that hold it; 0: all points do, as in a zip
-  std::optional<double> open, closed;  ///< times at which it opens and closes [s]
+  int buttons = 0;                     ///< number of buttons that hold the seam; 0: all points hold it, as in a zip
+  std::optional<double> open, closed;  ///< times at which the closure opens and closes [s]
   double strength = 2;                 ///< maximum pull of a button, or of a point of a zip [N]
-  double allowance = 0.02;             ///< width of the cloth turned in along it, both sides together [m]
+  double allowance = 0.02;             ///< width of the seam allowances, both sides together [m]
 
   bool closure() const { return buttons > 0 || open || closed; }
 };
@@ -84,7 +84,7 @@ struct Measures {
 
 struct Pattern {
   std::filesystem::path file;
-  Measures measures;    ///< of the body that it is drawn for, as far as stated
+  Measures measures;    ///< of the body that the pattern is drawn for, as far as stated
   double depth = 0.16;  ///< distance of the front panels before, and of the back panels behind, the wearer's coronal
                         ///< plane at the start, far from the seams that join them [m]
   double gap = 0.015;   ///< distance of bent panels from the skin at the start [m]

@@ -25,13 +25,14 @@ using scene::Findings;
 // Larger coordinates are treated as damaged data.
 constexpr double kMaxSpecCoordinate = 1e5;
 constexpr double kDefaultUnitsPerMetre = 100;  // units per metre
-// Height above its floor of the origin of the predecessor's body, between pelvis and chest [m].
+// Height of the origin of the predecessor's body above the floor [m]; the origin lies between pelvis and chest.
 constexpr double kPredecessorOrigin = 1.12;
 // Measures of the body that the dataset's patterns are drawn for [m].
 constexpr double kChest = 0.998, kWaist = 0.843, kHip = 1.035, kHeight = 1.72;
-// Minimum height of the lowest panel in a pattern measured from the floor [m]: flat trousers end below the heel.
+// Patterns whose lowest point is below this height count as measured from that origin, others from the floor [m]. The
+// limit is negative since flat trousers end below the heel.
 constexpr double kMinLowestPanel = -0.2;
-// Minimum height above the floor at which such trousers start [m].
+// Minimum height of the lowest point above the floor at the start [m].
 constexpr double kMinStartHeight = 0.02;
 
 /// Text of a value in messages.
@@ -169,7 +170,8 @@ class Reader {
     edges.push_back(std::move(edge));
   }
 
-  /// A control point: absolute if the file says so, else along an edge and to its left, in units of its length.
+  /// A control point: in coordinates of the panel if the file says so, else along the edge and to its left, in units of
+  /// the edge's length.
   Vec2 control_point(const SpecEdge& edge, const std::vector<double>& p) const {
     if (has_absolute_curvature_) return {unit_ * p[0], unit_ * p[1]};
     const Vec2 along = edge.end - edge.start;
@@ -239,7 +241,7 @@ class Reader {
   bool mentions(const SpecPanel& panel, std::initializer_list<const char*> words) const {
     return std::ranges::any_of(words, [&](const char* w) { return panel.words.find(w) != std::string::npos; });
   }
-  /// Whether a panel belongs to a leg: front and back of a leg are sewn together at its inside.
+  /// Whether a panel belongs to a leg: front and back of a leg are sewn together at the inside of the leg.
   bool has_inseam(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     double inner = std::numeric_limits<double>::infinity(), outer = 0, low = inner, high = -inner;
@@ -277,7 +279,7 @@ class Reader {
       else if (mentions(panel, {"collar", "turtle"}))
         panel.around = Around::neck;
     }
-    // Number of stitches from each limb panel to the trunk.
+    // Number of limb panels between each limb panel and the trunk, along stitches.
     for (int step = 0; step < static_cast<int>(panels_.size()); ++step)
       for (const SpecStitch& stitch : stitches_)
         for (const std::size_t k : {0, 1}) {
@@ -335,7 +337,7 @@ class Reader {
     for (const SpecPanel& panel : panels_)
       for (const auto& points : panel.points)
         for (const Vec2& p : points) lowest = std::min(lowest, panel.in_space(p).y());
-    // Trousers that end below the floor are drawn lower than they are worn.
+    // Trousers that end below the floor are raised: they are drawn lower than they are worn.
     const double floor =
         is_predecessor_ || lowest < kMinLowestPanel ? -kPredecessorOrigin : std::min(0.0, lowest - kMinStartHeight);
     for (std::size_t p = 0; p < panels_.size(); ++p) {
@@ -366,7 +368,7 @@ class Reader {
         map.pretranslate(Vec2(-0.5 * (left + right), 0));
         panel.position->x() = 0;
       }
-      // Along arms and at the neck, bodies differ too much from the pattern to use its positions.
+      // Along arms and at the neck, bodies differ too much from the body of the pattern to use its positions.
       if (arm || of.around == Around::neck) panel.position.reset();
       panel.path = path_of(of, map);
       panel.turned = of.turned;
@@ -386,8 +388,8 @@ class Reader {
     }
   }
 
-  /// Places turned panels folded over the panels that they are sewn to, one layer above, running along the seam in the
-  /// same direction.
+  /// Places turned panels folded over the panels that they are sewn to, one layer above. Both edges of the seam then
+  /// run in the same direction.
   void place_turned_panels(Pattern& pattern) const {
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       Panel& panel = pattern.panels[p];

@@ -12,8 +12,9 @@
 namespace weft::garment {
 
 /// Reads a specification (JSON) as a pattern whose panels are bent around the wearer. Heights, angles and rotations are
-/// those of its panels; labels, names and stitches determine the part that each panel goes around. Edges are named by
-/// their numbers. Reports mistakes to `findings` and then returns false. Outlines and edge names are not checked yet.
+/// those of the specification; labels, names and stitches determine the part that each panel goes around. Edges are
+/// named by their numbers. Reports mistakes to `findings` and then returns false. Does not check outlines and edge
+/// names.
 bool read_specification(const std::string& text, scene::Findings& findings, Pattern& pattern);
 
 }  // namespace weft::garment

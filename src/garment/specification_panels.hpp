@@ -36,11 +36,11 @@ struct SpecPanel {
   std::vector<std::vector<Vec2>> points;  // along each edge
   bool mirrored = false;                  // drawn as seen from the inside
   Vec3 outward{0, 0, 1};
-  Vec3 middle{0, 0, 0};  // in space [m]
+  Vec3 middle{0, 0, 0};  // of the bounding box of the outline, in space [m]
   Around around = Around::torso;
-  int steps = -1;                                      // for a limb: number of stitches to the trunk
-  double area = 0;                                     // [m²]
-  bool turned = false;                                 // worn with its drawn inside outward, as a lapel
+  int steps = -1;       // for a limb: number of limb panels between it and the trunk; -1: unknown
+  double area = 0;      // [m²]
+  bool turned = false;  // folded over as a lapel; see Panel::turned
   Eigen::Affine2d worn = Eigen::Affine2d::Identity();  // drawing to panel as worn, without position
 
   Vec3 in_space(const Vec2& p) const { return rotation * Vec3(p.x(), p.y(), 0) + translation; }
@@ -54,7 +54,8 @@ std::string path_of(const SpecPanel& panel, const Eigen::Affine2d& map);
 void derive_geometry(SpecPanel& panel);
 
 /// Finds the turned panels. The right_wrong stitches split each connected set of panels into two sides; the panels of
-/// the side with the smaller area are turned. Returns a stitch of a ring that would turn a panel over, if any.
+/// the side with the smaller area are turned. Returns the index of a stitch that contradicts the two sides, if any: a
+/// ring of stitches would turn a panel over.
 std::optional<std::size_t> find_turned_panels(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches);
 
 }  // namespace weft::garment

@@ -11,8 +11,8 @@
 namespace weft::garment {
 namespace {
 
-// Weight of pulling each vertex to where its panels put it, relative to the weight of an edge. It determines the
-// position of panels that no seam joins to others, and hardly anything else.
+// Weight of the term that holds each vertex at its position in the panel alone, relative to the weight of an edge. It
+// determines the position of panels that no seam joins to others, and hardly anything else.
 constexpr double kAnchorWeight = 1e-4;
 // Number of smoothing rounds after the depth is computed.
 constexpr int kSmoothingRounds = 10;

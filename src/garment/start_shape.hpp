@@ -14,11 +14,11 @@ namespace weft::garment {
 struct LaidPanel {
   bool back = false;
   std::vector<mesh::Triangle> triangles;     ///< of joined vertices; counter-clockwise seen from in front
-  std::vector<std::array<Vec2, 3>> corners;  ///< position in the panel alone: across and up [m]
+  std::vector<std::array<Vec2, 3>> corners;  ///< positions of the corners in the panel alone: across and up [m]
 };
 
 /// One position in the plane for each joined vertex. The edges keep the vectors that they have in their panels as well
-/// as possible (least squares), so that closing seams and darts spreads smoothly over the panels.
+/// as possible (least squares), so that the distortion by closed seams and darts spreads smoothly over the panels.
 std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices);
 
 /// Separates front and back panels in depth. With d the distance in the plane to the nearest seam between front and

@@ -33,7 +33,8 @@ constexpr double kMinCornerAngle = 25 * std::numbers::pi / 180;
 constexpr std::size_t kMaxNumbers = 20000;
 using Affine = Eigen::Affine2d;
 
-/// Stops the traversal, which pugixml does without recursion, at elements too deep for the recursive functions here.
+/// Stops the traversal at elements that are too deep for the recursive functions of this file. (pugixml itself does not
+/// recurse.)
 struct DepthLimit : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node&) override { return depth() < kMaxDepth; }
 };
@@ -162,7 +163,7 @@ double metres_per_unit(const Drawing& drawing) {
     drawing.refuse(root, "viewBox: expected x, y, width > 0 and height > 0, got something else");
   if (!width) return kMetresPerPixel;
   double unit = *width / (*box)[2];
-  // With both given, the drawing fits into the smaller extent, as in browsers.
+  // If the height is given too, the smaller of both units counts, as in browsers.
   if (const auto height = parse_length(root.attribute("height").value())) unit = std::min(unit, *height / (*box)[3]);
   return unit;
 }

@@ -9,11 +9,11 @@
 namespace weft::garment {
 namespace {
 
-// Minimum distance of lattice points from the outline, in spacings. The strip between them is then 0.6 to 1.6 spacings
-// wide, which bounds its angles from both sides.
+// Minimum distance of lattice points from the outline, in spacings. The strip between lattice and outline is then 0.6
+// to 1.6 spacings wide, so the angles of its triangles are bounded from both sides.
 constexpr double kMinOutlineDistance = 0.62;
-// Shift of each lattice row against the row below, in spacings, which makes the choice of diagonals unique. Large
-// against rounding errors, small against any angle, even summed over all rows.
+// Shift of each lattice row against the row below, in spacings, which makes the choice of diagonals unique. The shift
+// is large against rounding errors, and even its sum over all rows is too small to change angles visibly.
 constexpr double kRowShift = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) {
@@ -55,7 +55,8 @@ class Delaunay {
     const Index t = locate(p);
     const auto vertex = static_cast<Index>(points_.size());
     points_.push_back(p);
-    // Split the triangle into three around the point. For a point on an edge one is flat until that edge is flipped.
+    // Split the triangle into three around the point. If the point is on an edge, one of the three is flat until that
+    // edge is flipped.
     const auto [a, b, c] = triangles_[at(t)];
     const auto [ab, bc, ca] = neighbours_[at(t)];
     const auto u = static_cast<Index>(triangles_.size()), v = u + 1;
@@ -74,8 +75,8 @@ class Delaunay {
  private:
   const Vec2& point(Index i) const { return points_[at(i)]; }
 
-  // Finds the triangle that contains p: walks from the last one found across edges that separate it from p; if that
-  // leaves the region, searches all triangles.
+  // Finds the triangle that contains p: walks from the last one found across edges that separate it from p; if this
+  // walk leaves the region, searches all triangles.
   Index locate(const Vec2& p) const {
     Index t = last_;
     for (std::size_t steps = 0; steps < triangles_.size(); ++steps) {
@@ -130,8 +131,8 @@ class Delaunay {
       for (std::size_t side : {0U, 1U}) stack_.emplace_back(t, side), stack_.emplace_back(s, side);
     }
   }
-  // Whether to flip edge ab of triangle abc, with d on its other side: only inside a convex quadrilateral, and only if
-  // it is better by more than rounding errors.
+  // Whether to flip edge ab between triangles abc and bad: only if the quadrilateral adbc is convex, and if d is inside
+  // the circumcircle of abc by more than rounding errors.
   bool should_flip(Index a, Index b, Index c, Index d) const {
     const Vec2 &pa = point(a), &pb = point(b), &pc = point(c), &pd = point(d);
     if (orientation(pc, pa, pd) <= 0 || orientation(pd, pb, pc) <= 0) return false;
@@ -179,7 +180,7 @@ FlatMesh triangulate(std::span<const Vec2> outline, std::span<const Vec2> inside
 }
 
 FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spacing) {
-  // In coordinates along weft and warp, so that the lattice is axis-aligned.
+  // Converts to coordinates along weft and warp, in which the lattice is axis-aligned.
   const auto to_lattice = [&](const Vec2& p) -> Vec2 { return {cross(p, warp), p.dot(warp)}; };
   std::vector<Vec2> rotated;
   Vec2 low = to_lattice(outline[0]), high = low;
@@ -188,8 +189,8 @@ FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spac
     low = low.cwiseMin(rotated.back());
     high = high.cwiseMax(rotated.back());
   }
-  // Whole rows, centred, so that a symmetric panel gets a symmetric lattice. The added shift keeps rounding errors from
-  // losing a row if the size is a multiple of the spacing.
+  // The lattice has whole rows and is centred, so that a symmetric panel gets a symmetric lattice. The added shift
+  // keeps rounding errors from losing a row if the size is a multiple of the spacing.
   std::array<int, 2> count{};
   for (int axis = 0; axis < 2; ++axis) count[axis] = static_cast<int>((high[axis] - low[axis]) / spacing + kRowShift);
   const Vec2 first = 0.5 * (low + high) - 0.5 * spacing * Vec2(count[0], count[1]);
@@ -220,7 +221,7 @@ std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const
     for (std::size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j + 1 == n) continue;
       const Vec2 &a = outline[i], &b = outline[i + 1], &c = outline[j], &d = outline[(j + 1) % n];
-      // Collinear sides touch only if they overlap.
+      // Skips sides whose bounding boxes are apart: collinear sides touch only if they overlap.
       if ((a.cwiseMax(b) - c.cwiseMin(d)).minCoeff() < 0 || (c.cwiseMax(d) - a.cwiseMin(b)).minCoeff() < 0) continue;
       if (orientation(a, b, c) * orientation(a, b, d) <= 0 && orientation(c, d, a) * orientation(c, d, b) <= 0)
         return std::pair(i, j);

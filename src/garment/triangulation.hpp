@@ -28,10 +28,10 @@ FlatMesh triangulate(std::span<const Vec2> outline, std::span<const Vec2> inside
 /// points too near to the outline are left out; the triangulation fills the strip along it.
 FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spacing);
 
-/// Signed area of a polygon [m²].
+/// Area of a polygon [m²]; positive if it is counter-clockwise.
 double polygon_area(std::span<const Vec2> outline);
 
-/// The first two sides of a closed polygon that cross or touch without being neighbours, by their start points.
+/// Indices of the start points of the first two sides of a closed polygon that cross or touch without being neighbours.
 std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const Vec2> outline);
 
 }  // namespace weft::garment

@@ -14,8 +14,8 @@
 namespace weft::garment {
 namespace {
 
-// Maximum relative difference between the scales along u and v that still counts as one scale: hanging cloth is longer
-// along one of them by some percent.
+// Maximum relative difference between the scales along u and v that still counts as one scale: hanging cloth is some
+// percent longer in one direction.
 constexpr double kMaxScaleDifference = 0.05;
 // UVs are in one of the units below if more than the fraction kMinFractionInUnit of all edges, weighted by their
 // lengths in the UVs, is as long as in the mesh within kUnitTolerance. (Measured: 35 to 67 % within 5 % for garments
@@ -23,10 +23,10 @@ constexpr double kMaxScaleDifference = 0.05;
 constexpr double kUnitTolerance = 0.02, kMinFractionInUnit = 0.2;
 constexpr std::array<std::pair<double, const char*>, 4> kUnits{
     {{1, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}}};
-// Triangles that are more than this factor larger or smaller than in the mesh have no usable shape in the UVs. (Cloth
-// laid around a body before sewing has triangles 36 times as long as in its pattern.)
+// Triangles that are longer or shorter than in the mesh by more than this factor have no usable shape in the UVs.
+// (Cloth laid around a body before sewing has triangles 36 times as long as in its pattern.)
 constexpr double kMaxSizeRatio = 100;
-// Rounds of iterative reweighting to find the scale; edges that fitted badly get less weight.
+// Rounds of iteratively reweighted least squares for the scale.
 constexpr int kScaleRounds = 30;
 // Tolerance for `alike`: half of all edges of cloth keep their lengths even if seams are pulled together.
 constexpr double kAlikeTolerance = 0.05;
@@ -65,8 +65,8 @@ std::vector<UvEdge> edges_of(const mesh::Mesh& mesh, std::span<const UvCorners> 
   return edges;
 }
 
-/// Median over all edges of the length of one UV unit, weighted by lengths in the UVs; weights by lengths in the mesh
-/// would prefer stretched edges.
+/// Median over all edges of the length of one UV unit [m], weighted by length in the UVs, since weights by length in
+/// the mesh would prefer stretched edges.
 double median_scale(const std::vector<UvEdge>& edges) {
   std::vector<std::pair<double, double>> ratios;
   double total = 0;
@@ -83,7 +83,8 @@ double median_scale(const std::vector<UvEdge>& edges) {
 }
 
 /// Lengths (su, sv) of a UV unit along u and v for which (su du)² + (sv dv)² is the squared length of most edges:
-/// minimises the sum of relative errors by iteratively reweighted least squares.
+/// minimises the sum of relative errors by iteratively reweighted least squares. `even`: scale at which the iteration
+/// starts.
 std::optional<Vec2> fit_anisotropic_scale(const std::vector<UvEdge>& edges, double even) {
   Vec2 squares = Vec2::Constant(even * even);
   for (int round = 0; round < kScaleRounds; ++round) {
@@ -151,8 +152,8 @@ std::size_t count_islands(const mesh::Mesh& mesh, std::span<const UvCorners> uv)
   return islands;
 }
 
-/// Replaces triangles whose height is less than `flattest` times the longest edge by their shape in the mesh, if that
-/// is higher. Returns the number of triangles changed.
+/// Replaces triangles whose height is less than `flattest` times the longest edge of all triangles by their shape in
+/// the mesh, if its height is larger. Returns the number of triangles changed.
 std::size_t replace_flat_triangles(const mesh::Mesh& mesh, double flattest, std::vector<UvCorners>& material) {
   const auto longest_edge = [](const UvCorners& c) {
     return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
@@ -217,7 +218,7 @@ UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const
     UvCorners& panel = rest.material.emplace_back(uv[t]);
     for (Vec2& c : panel) c = c.cwiseProduct(rest.scale);
     if (twice_area(panel) < 0) {
-      // Seen from behind: exchange left and right.
+      // The triangle is mirrored: exchange left and right.
       for (Vec2& c : panel) c.x() = -c.x();
       ++rest.mirrored;
     }

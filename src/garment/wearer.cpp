@@ -11,8 +11,8 @@
 namespace weft::garment {
 namespace {
 
-// Fraction of the upper arm near the shoulder whose sections are replaced by the nearest one farther out, since the
-// shoulder cuts them obliquely.
+// Fraction of the upper arm, from the shoulder, whose sections are replaced by the nearest one farther out, since they
+// cut the shoulder obliquely.
 constexpr double kShoulderFraction = 0.25;
 // Length by which the tube of an arm extends beyond the wrist, as a fraction of the forearm.
 constexpr double kWristExtension = 0.3;
@@ -174,7 +174,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
     *found = section;
     widest = first_ + static_cast<double>(found - cuts.begin()) * kSpacing;
   }
-  // Without a section of its own, a position uses the nearest section, moved along the axis.
+  // A position without a section of its own uses the nearest section, moved along the axis.
   std::vector<std::size_t> known;
   for (std::size_t i = 0; i < cuts.size(); ++i)
     if (cuts[i]) known.push_back(i);
@@ -232,7 +232,7 @@ Tube::Section Tube::section(double s) const {
   return mixed;
 }
 
-// Boundary curve of a support function h: h n + h' t.
+// Boundary curve of a support function h: h n + h' t, with the unit vectors n of the direction and t, 90° further.
 Tube::Ring Tube::ring(const Section& section, double outward) {
   Ring points;
   const double step = 2 * std::numbers::pi / kDirections;

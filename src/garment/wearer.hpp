@@ -28,8 +28,8 @@ struct Wearer {
 };
 
 /// Part that panels are bent around. torso and neck share one upright tube around all but the arms; head is the widest
-/// section of that tube above the neck, used along its whole length. body also goes around the arms and never narrows
-/// downward. A leg continues up to the neck around half of the trunk.
+/// section of the head, used along its whole tube and narrowed to a dome above. body also goes around the arms and
+/// never narrows downward. A leg continues up to the neck around half of the trunk.
 enum class Around { none, torso, body, neck, head, left_arm, right_arm, left_leg, right_leg };
 inline const std::vector<std::string> kAroundNames = {"",         "torso",     "body",     "neck",     "head",
                                                       "left_arm", "right_arm", "left_leg", "right_leg"};
@@ -37,17 +37,18 @@ inline const std::vector<std::string> kAroundNames = {"",         "torso",     "
 /// The same part on the other side.
 Around mirrored(Around part);
 
-/// A tube around a part: convex sections of the skin across an axis. Coordinates on it: s along the axis [m],
-/// increasing toward the trunk (height above the floor for upright parts, measured from the shoulder for arms); and a
-/// length along the section, counter-clockwise seen from the trunk or from above.
+/// A tube around a part: convex sections of the skin across an axis. Coordinates on the tube: s along the axis [m],
+/// increasing toward the trunk (height above the floor for upright parts; for arms 0 at the shoulder, negative below);
+/// and a length along the section, counter-clockwise seen from the trunk or from above.
 class Tube {
  public:
-  /// Throws Error(scene_invalid) if the wearer lacks the joints or the skin for it.
+  /// Throws Error(scene_invalid) if the wearer lacks the joints or the skin for the part.
   Tube(const Wearer& wearer, Around part);
 
-  /// Girth at s, with sections moved outward by a distance [m]. Beyond its ends the end sections continue.
+  /// Girth at s, with sections moved outward by a distance [m]. The end sections continue beyond the ends of the tube.
   double girth(double s, double outward) const;
-  /// The point at a length from where the section faces an angle [rad]: 0 to the front, π/2 to the wearer's left.
+  /// The point at a length along the section from the point that faces an angle [rad]: 0 to the front, π/2 to the
+  /// wearer's left.
   Vec3 at(double s, double angle, double length, double outward) const;
   /// Direction of increasing s.
   Vec3 along(double s) const;
@@ -55,13 +56,13 @@ class Tube {
   double high() const { return first_ + kSpacing * static_cast<double>(sections_.size() - 1); }
 
  private:
-  static constexpr double kSpacing = 0.01;  // between sections [m]; the skin bends little over this distance
-  static constexpr int kDirections = 96;    // directions of a section, 4 mm apart on a chest
+  static constexpr double kSpacing = 0.01;  // distance of sections [m]; the skin bends little over it
+  static constexpr int kDirections = 96;    // directions of a section, 10 mm apart on a chest
   /// A convex section by its support function: the extent from the centre in each direction.
   struct Section {
     Vec3 centre, front, left, along;
     std::array<double, kDirections> support;
-    double scale = 1;  // of lengths along the section and outward, where the tube closes
+    double scale = 1;  // factor on lengths along the section and outward; below 1 in the dome of a hood
   };
   using Ring = std::array<Vec3, kDirections>;
 

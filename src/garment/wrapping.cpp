@@ -18,22 +18,22 @@ namespace {
 
 // Distance between layers at the start [m]: more than any fabric's contact thickness.
 constexpr double kLayerDistance = 0.01;
-// Slack in a ring whose panels are buttoned, not sewn, so that they do not start in the same place [m].
+// Slack in a ring with a closure [m], so that the two edges of the closure do not start in the same place.
 constexpr double kClosureSlack = 0.03;
 // Minimum distance between a narrow sleeve and the skin at the start [m]; decrease in width at the start of its cap
 // [m].
 constexpr double kMinSleeveGap = 0.006, kCapNarrowing = 0.01;
 // Number of sample points along a seam, and of rounds, for moving a panel to its neighbour.
 constexpr int kSeamPoints = 16, kSeamRounds = 6;
-// Distance over which closing a seam bends panels [m]. Smaller: sleeves crease at the cap; larger: they leave the arm's
-// axis.
+// Distance over which closing a seam bends panels [m]. If it is smaller, sleeves crease at the cap; if it is larger,
+// sleeves move off the arm's axis.
 constexpr double kBendingDistance = 0.1;
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// Length across and height of a panel's point where it is bent, as seen from outside.
+/// Length across and height [m] of a point of a panel on the tube that the panel is bent around, as seen from outside.
 Vec2 unrolled_position(const Panel& panel, const Vec2& position, const Vec2& p) {
   const Vec2 turned = Eigen::Rotation2Dd(radians(panel.rotation)) * Vec2(panel.scale.cwiseProduct(p));
   const Vec2 q = position + turned;
@@ -53,7 +53,7 @@ class PanelPlacer {
     for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
     update_eases();
     for (bool found = true; found;) {
-      // Find all that can be found in one round from the same positions, so that mirror images are treated alike.
+      // All positions of one round are found from those of the previous round, so that mirror images are treated alike.
       std::vector<std::optional<Vec2>> next = positions_;
       for (std::size_t p = 0; p < positions_.size(); ++p)
         if (!positions_[p]) next[p] = position_from_seams(p);
@@ -129,8 +129,8 @@ class PanelPlacer {
     });
   }
 
-  // Computes the ease of each ring: how far outward its panels must move to close it. Narrower sleeves move toward the
-  // skin, since closing them across an arm would pull them through it.
+  // Computes the ease of each ring: how far outward the panels must move to close the ring. Narrow sleeves move toward
+  // the skin, since closing them across an arm would pull them through the arm.
   void update_eases() {
     eases_.clear();
     for (const auto& [part, of_level] : widths()) {
@@ -144,11 +144,11 @@ class PanelPlacer {
       for (const auto& [level, width] : of_level) {
         const double girth = tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap);
         const double ease = std::max(min_ease, (width + slack - girth) / (2 * std::numbers::pi));
-        // The cap of a sleeve narrows and does not close: keep the ease below it.
+        // The cap of a sleeve narrows and does not close: it keeps the ease of the level below.
         raw.push_back(arm && width < widest - kCapNarrowing ? raw.back() : ease);
         widest = std::max(widest, width);
       }
-      // Smooth over height: a panel that begins or ends beside others changes the width abruptly.
+      // Smooth over height: where a panel begins or ends, the width changes abruptly.
       constexpr long kSmooth = 4;
       const auto count = static_cast<long>(raw.size());
       for (long i = 0; i < count; ++i) {

@@ -17,7 +17,7 @@ Vec3 srgb_from_linear(const Vec3& linear);
 inline constexpr int kHeatColors = 256;
 
 /// Linear RGB at position t of the heat scale, clamped to [0,1]: dark blue through magenta and orange to pale yellow.
-/// Lightness (CIE L*) rises linearly from 15 to 90, so that equal differences look equal, in grey as well.
+/// Lightness (CIE L*) rises linearly from 15 to 90, so that equal differences look equal, also in grey.
 Vec3 heat_color(double t);
 
 /// heat_color at i / (kHeatColors - 1).

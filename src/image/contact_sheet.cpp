@@ -27,7 +27,7 @@ void paste(Image& onto, const Image& image, int x, int y) {
     std::copy_n(image.pixel(0, row), 3 * static_cast<std::size_t>(image.width), onto.pixel(x, y + row));
 }
 
-// Length in bytes of the longest prefix of `text` that fits; at least one character.
+// Length of the longest prefix of `text` that is at most `max_width` pixels wide [bytes]; at least one character.
 std::size_t fitting(const Font& font, std::string_view text, int max_width) {
   std::size_t length =
       std::min(text.size(), 4 * static_cast<std::size_t>(std::max(1, max_width)));  // at most 4 bytes per pixel
@@ -40,7 +40,7 @@ std::size_t fitting(const Font& font, std::string_view text, int max_width) {
 // Limits the height of a sheet with very long captions.
 constexpr std::size_t kMaxCaptionLines = 60;
 
-// Wraps a text to lines no wider than `room`, at blanks; a word longer than a line is split.
+// Wraps a text at blanks to lines no wider than `max_width` [pixels]; splits a word that is longer than a line.
 std::vector<std::string> wrapped(const Font& font, std::string_view text, int max_width) {
   std::vector<std::string> lines;
   while (!text.empty()) {
@@ -59,7 +59,7 @@ std::vector<std::string> wrapped(const Font& font, std::string_view text, int ma
   return lines;
 }
 
-// The lines below a picture; `right` shares the last one if it fits, else gets its own.
+// The lines below a picture; `right` is on the last line if it fits, else on an additional line.
 std::vector<std::string> caption_lines(const Font& font, const SheetPicture& picture, int width, int gap) {
   std::vector<std::string> lines = wrapped(font, picture.left, width);
   if (lines.empty() || font.width(lines.back()) + gap + font.width(picture.right) > width) lines.emplace_back();

@@ -44,8 +44,8 @@ Picture decode_png(std::string_view bytes) {
   if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) fail(png.message);
   try {
     check_size(png.width, png.height);
-    // Deflate expands a byte to at most 1032, so a file that claims more is damaged; it is refused before its memory is
-    // allocated. A pixel takes at least one bit.
+    // Deflate expands a byte to at most 1032, and a pixel takes at least one bit, so a file that claims more pixels is
+    // damaged. It is refused before memory for the pixels is allocated.
     if (std::uint64_t{png.width} * png.height / 8 > 1032 * bytes.size())
       fail(fmt::format("{} bytes cannot hold {}x{} pixels", bytes.size(), png.width, png.height));
     picture.width = static_cast<int>(png.width);
@@ -60,7 +60,7 @@ Picture decode_png(std::string_view bytes) {
   return picture;
 }
 
-/// JPEG uses the full range of values. libav expresses that by separate formats, swscale expects it as a parameter.
+/// JPEG uses the full range of values. libav expresses this by separate formats, swscale by a parameter.
 AVPixelFormat plain_format(int format) {
   switch (format) {
     case AV_PIX_FMT_YUVJ420P:
@@ -83,7 +83,7 @@ Owned<AVFrame> decode_frame(std::string_view bytes, AVCodecID kind) {
   Owned<AVFrame> frame(av_frame_alloc());
   const Owned<AVPacket> packet(av_packet_alloc());
   if (!context || !frame || !packet) fail(fmt::format("libavcodec has no decoder of {}", avcodec_get_name(kind)));
-  context->log_level_offset = AV_LOG_TRACE;  // libav's message goes into the error only
+  context->log_level_offset = AV_LOG_TRACE;  // libav prints nothing; the error contains its message
   context->err_recognition = AV_EF_EXPLODE | AV_EF_CRCCHECK | AV_EF_BITSTREAM;
   context->thread_count = 1;
   if (av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) fail("there is no memory for it");
@@ -119,7 +119,7 @@ Picture to_picture(const AVFrame& frame) {
 }
 
 Picture decode_jpeg(std::string_view bytes) {
-  // libav fills the missing part of a truncated file with grey, so truncation is detected by the end marker.
+  // libav fills the missing part of a truncated file with grey, so the end marker is checked.
   if (bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 1024)).rfind("\xff\xd9") ==
       std::string_view::npos)
     fail("the file ends too early");

@@ -14,7 +14,7 @@ struct Picture {
   std::vector<std::uint8_t> rgba;
 };
 
-/// Limit on a side of a picture [pixels], which every OpenGL implementation supports.
+/// Limit on a side of a picture [pixels]; current OpenGL implementations support it.
 inline constexpr int kMaxPictureSide = 16384;
 
 /// Limit on the file of a picture [bytes].

@@ -30,7 +30,7 @@ namespace {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-// Limit on a side [pixels], that of the software renderer's frame buffer and of x264.
+// Limit on a side [pixels]: also that of the software renderer's frame buffer and of x264.
 constexpr int kMaxSide = 16384;
 
 // zlib level and row filter. Measured on rendered 1280×720 frames: 19 CPU ms and 62 KB; libpng's default filters at the
@@ -39,7 +39,7 @@ constexpr int kLevel = 6;
 constexpr int kFilter = PNG_FILTER_SUB;
 
 // Deflate expands a byte to at most 1032 (RFC 1951: 258 bytes from two bits), so a file that claims more pixels is
-// damaged, and is refused before its memory is allocated.
+// damaged. It is refused before memory for the pixels is allocated.
 constexpr std::uintmax_t kMaxDeflateRatio = 1032;
 
 // An error message of libpng or the system, stored outside the frames that a longjmp skips.
@@ -160,7 +160,8 @@ bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
 }
 
-// PNG's rule for keys: 1 to 79 printable characters without spaces at the ends. libpng would silently change others.
+// PNG's rule for keys: 1 to 79 printable characters without spaces at the ends. libpng would silently change other
+// keys.
 bool is_key(std::string_view key) {
   const bool printable = std::all_of(key.begin(), key.end(), [](unsigned char c) { return c >= 32 && c < 127; });
   return printable && !key.empty() && key.size() < 80 && key.front() != ' ' && key.back() != ' ';

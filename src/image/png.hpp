@@ -10,7 +10,7 @@
 
 namespace weft::image {
 
-/// Key and text pairs stored as tEXt chunks.
+/// Pairs of key and text, stored as tEXt chunks, or as iTXt chunks if the text is not ASCII.
 using Metadata = std::map<std::string, std::string>;
 
 /// Writes an sRGB PNG under a temporary name, then renames the file. Throws Error(output_failed).
@@ -25,10 +25,11 @@ std::string png_bytes(const Image& image);
 /// The same with alpha.
 std::string png_bytes(const Picture& picture);
 
-/// Reads an 8-bit PNG (gray, palette and alpha are converted to RGB over white). Throws Error(asset_unreadable).
+/// Reads a PNG as 8-bit RGB: converts 16 bits, grey and palettes, and blends transparent pixels over white. Throws
+/// Error(asset_unreadable).
 Image read_png(const std::filesystem::path& file, Metadata* metadata = nullptr);
 
-/// Reads the metadata before the pixels, without decoding these. Throws Error(asset_unreadable).
+/// Reads the metadata that precede the pixels, without decoding the pixels. Throws Error(asset_unreadable).
 Metadata read_png_metadata(const std::filesystem::path& file);
 
 }  // namespace weft::image

@@ -5,8 +5,8 @@
 //      "date": "2026-11-23T19:40:00.000Z", "notes": [{"frame": 12, "text": "a fold stands up", "by": "Ann",
 //      "date": "...", "of": "...", "marks": [[[0.41, 0.3], [0.47, 0.36]]]}]}}}
 //
-// Names are paths below the folder of the file. `of`: the fingerprint of the reviewed pictures. Marks are polylines;
-// their points are fractions of the picture's width and height, from the left and the top.
+// The names of runs are paths below the folder of the file. `of`: the fingerprint of the reviewed pictures. Marks are
+// polylines; their points are fractions of the picture's width and height, from the left and the top.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +19,8 @@ namespace weft::review {
 
 class Decisions {
  public:
-  /// The entry of a run in the nearest file that has one; null if there is none. Unusable files and entries are added
-  /// to `run.problems`.
+  /// The entry of a run, from the nearest file with such an entry; null if there is none. Adds unusable files and
+  /// entries to `run.problems`.
   Json of(RunFiles& run);
 
  private:

@@ -145,7 +145,7 @@ class Search {
   }
 
  private:
-  /// A run of a sweep. Its place defines the order, as names made of values do not sort numerically (10, 2).
+  /// A run of a sweep. `place` defines the order, since names with numbers do not sort by value (10 before 2).
   struct Swept {
     std::string sweep;      // folder of the sweep
     std::size_t place = 0;  // index among its runs
@@ -179,7 +179,7 @@ class Search {
     try {
       run.stats_json = parse_json(read_file(file, kMaxTextBytes));
     } catch (const std::exception& error) {
-      // Any program may write JSON here; it is reported only if a video of this name exists.
+      // Other programs may write JSON here, so the defect is reported only if a video of this name exists.
       unusable_[run.name] = fmt::format("{}: not readable as JSON: {}", file.filename().string(), error.what());
       return;
     }
@@ -193,8 +193,8 @@ class Search {
     runs_.push_back(std::move(run));
   }
 
-  // Finds the pictures that the statistics name as output. They are searched beside the statistics, since folders may
-  // have been moved or copied from other machines. Otherwise takes the video with the name of the statistics.
+  // Finds the pictures that the statistics name as output. Searches them beside the statistics, since folders may have
+  // been moved or copied from other machines. If none is found, uses the video with the name of the statistics.
   void take_pictures(RunFiles& run) {
     const fs::path beside = run.stats.parent_path();
     const auto named_output = run.stats_json.find("output");
@@ -225,7 +225,7 @@ class Search {
     return true;
   }
 
-  // Whether a farm has joined these pictures to the video of their run; they are in a subfolder of that run.
+  // Whether a farm has joined these pictures, which are in a subfolder of a run, to the video of that run.
   bool are_in_a_video(const fs::path& prefix) const {
     const fs::path run = prefix.parent_path().parent_path();
     return swept_.contains(run.lexically_relative(folder_)) && std::ranges::any_of(runs_, [&](const RunFiles& other) {

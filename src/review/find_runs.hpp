@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 /// The files of one run. A member is empty if the file was not found.
 struct RunFiles {
   std::filesystem::path folder;                 ///< folder that was searched
-  std::string key;                              ///< path below it without extension, such as "stiff/falling_band"
+  std::string key;                              ///< path below `folder` without extension, such as "stiff/falling_band"
   std::string name;                             ///< the key, with a prefix if several folders are searched
   std::filesystem::path video;                  ///< MP4
   std::vector<std::filesystem::path> pictures;  ///< numbered PNG files in order, if there is no video
@@ -28,12 +28,12 @@ struct RunFiles {
 /// Index that weft sweep writes beside its runs: `runs`, each with its `folder` and the values that were `set`.
 inline constexpr const char* kSweepName = "sweep.json";
 
-/// All runs below `folder`, ordered by name, or within a sweep by its own order. Skips hidden files and review pages.
-/// Throws Error(asset_unreadable) if `folder` is not a folder or cannot be listed.
+/// All runs below `folder`, ordered by name; runs of a sweep in the order of the sweep. Skips hidden files and review
+/// pages. Throws Error(asset_unreadable) if `folder` is not a folder or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
 
-/// Returns whether `run.stats_json` is the statistics of a run. Removes values that the page cannot show, and names
-/// them in the problems of the run.
+/// Returns whether `run.stats_json` is the statistics of a run. Removes values that the page cannot show, and adds
+/// their names to `run.problems`.
 bool take_statistics(RunFiles& run);
 
 /// The file with decisions about runs; see decisions.hpp.

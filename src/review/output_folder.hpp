@@ -11,11 +11,11 @@ namespace weft::review {
 /// List of the files of a page, one per line, which a later page may remove.
 inline constexpr const char* kFileList = "files.txt";
 
-/// Throws Error(output_failed) if a page that replaces `folder` would lose something: an existing page, unless
-/// `overwrite` is set, or in any case a file that does not belong to a page.
+/// Throws Error(output_failed) if `folder` holds a page and `overwrite` is not set, or in any case if it holds a file
+/// that does not belong to a page.
 void check_replaceable(const std::filesystem::path& folder, bool overwrite);
 
-/// A hidden temporary folder beside the final one. The destructor removes it unless it was committed.
+/// A hidden temporary folder beside the final one. The destructor removes it unless commit() has succeeded.
 class OutputFolder {
  public:
   /// Throws as check_replaceable() does.
@@ -23,8 +23,8 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return temporary_->path(); }
 
-  /// Flushes everything to disk and gives the folder its final name. A former page is exchanged for it atomically, then
-  /// removed. Throws Error(output_failed).
+  /// Flushes everything to disk and gives the folder its final name. An existing page is exchanged with it atomically,
+  /// then removed. Throws Error(output_failed).
   void commit();
 
  private:

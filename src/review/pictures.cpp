@@ -67,7 +67,8 @@ Survey survey(const RunFiles& run) {
   Survey found;
   Reader reader(run);
   found.fps = reader.fps();
-  // Keeps every stride-th picture; doubles the stride if they become too many, as their number is not known in advance.
+  // Keeps every stride-th picture. Doubles the stride at kMaxTiles tiles, since the number of pictures is not known in
+  // advance.
   long long stride = 1;
   while (const std::optional<image::Image> image = reader.next()) {
     if (found.count == 0) {

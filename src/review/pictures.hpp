@@ -36,8 +36,8 @@ struct PairComparison {
   image::Image heat;  ///< FLIP map; empty if the pictures are equal
 };
 
-/// Compares the pictures with the ascending indices `at`; skips those that the reference does not reach. Throws
-/// Error(asset_unreadable) if pictures cannot be read or differ in size.
+/// Compares the pictures with the ascending indices `at`; skips indices for which the reference has no picture at the
+/// same time. Throws Error(asset_unreadable) if pictures cannot be read or differ in size.
 std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,
                                                    const RunFiles& reference, const PictureTimes& reference_times,
                                                    const std::vector<long long>& at);

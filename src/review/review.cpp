@@ -173,7 +173,7 @@ class Page {
     entry.json["id"] = id;
     entry.json["date"] = date_of(run);
     if (run.values.is_object()) entry.json["values"] = run.values;
-    // Data that only the run's own page needs are loaded when it is opened.
+    // Data that only the run's own page needs go into a file that is loaded when that page is opened.
     Json detail = Json::object();
     for (const char* part : {"columns", "effective"}) {
       detail[part] = std::move(entry.json[part]);
@@ -213,7 +213,7 @@ class Page {
     entry.json["pictures"]["files"] = std::move(files);
   }
 
-  // Adds contact sheet and poster; takes number and rate of the pictures from the files themselves.
+  // Adds contact sheet and poster; reads number and rate of the pictures from the files.
   void add_tiles(Entry& entry) const {
     if (entry.json["pictures"]["kind"] == "none") return;
     const Survey found = survey(*entry.run);
@@ -235,7 +235,7 @@ class Page {
     if (!sheet.empty()) entry.json["poster"] = sheet[sheet.size() / 2]["file"];
   }
 
-  // Adds the decision, the place for the page's own decisions file, and the arguments that make the run the reference.
+  // Adds the decision, the folder for the decisions file of the page, and the arguments of weft accept.
   void add_decision(Entry& entry, const Json& decision, const RunFiles* reference) {
     const RunFiles& run = *entry.run;
     entry.json["key"] = run.key;
@@ -253,7 +253,6 @@ class Page {
       outcome_.approved += now && decision["state"] == "approved" ? 1 : 0;
       outcome_.needing_work += now && decision["state"] == "needs work" ? 1 : 0;
     }
-    // The files of the run, and the reference or folder of references, as arguments of weft accept.
     Json accept = Json::object();
     if (!run.video.empty()) {
       accept["file"] = run.video.string();

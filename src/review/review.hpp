@@ -22,7 +22,7 @@ struct Outcome {
   std::filesystem::path page;
   int runs = 0;
   int incomplete = 0;                  ///< number of runs with something missing
-  int approved = 0, needing_work = 0;  ///< number of runs whose decision matches their current pictures
+  int approved = 0, needing_work = 0;  ///< number of runs with this decision about their current pictures
   int differing = 0;                   ///< number of runs that exceed the default limits of weft diff
 };
 
@@ -30,7 +30,7 @@ struct Outcome {
 /// a folder with runs, output_failed, interrupted.
 Outcome write_review(const Request& request);
 
-/// JSON that is safe inside a script element: it contains no tags.
+/// JSON that is safe inside a script element, since it contains no `<`.
 std::string script_json(const Json& data);
 
 /// Returns index.html with `data` inserted as JSON into a script element.

@@ -29,8 +29,8 @@ PictureTimes picture_times(const RunFiles& run);
 /// Error(asset_unreadable) if the text is not TOML.
 Json scene_values(const std::string& toml, const std::string& file);
 
-/// All data of a run except its pictures. Missing files are named in "problems". "columns" and "effective" are large,
-/// and needed only on the run's own page.
+/// All data of a run except its pictures. Missing files are named in "problems". "columns" and "effective" are large;
+/// only the run's own page needs them.
 Json run_data(const RunFiles& run);
 
 }  // namespace weft::review

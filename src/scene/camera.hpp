@@ -24,29 +24,29 @@ inline bool is_computed(CameraKind kind) {
   return kind != CameraKind::placed && kind != CameraKind::file;
 }
 
-/// Field of view of computed cameras: a portrait lens, with little distortion.
+/// Vertical field of view of computed cameras: that of a portrait lens, with little distortion.
 inline constexpr double kComputedFieldOfView = 30;  // [degrees]
 
 struct Camera {
   std::string name;
   CameraKind kind = CameraKind::placed;
-  std::vector<CameraKey> keys;  ///< at least one; one: still. Computed cameras have one, for position and field of view
+  std::vector<CameraKey> keys;  ///< at least one; one: still. Computed cameras have one, for their field of view
   Interpolation interpolation = Interpolation::cubic;
   std::vector<std::string> subjects =
-      {};                           ///< objects that it shows; empty: the characters, else the cloths; whole: all
-  double azimuth = 33;              ///< of the camera position, from the front to the right [degrees]
-  double elevation = 17;            ///< above the subject [degrees]
-  double orbit = 0;                 ///< rate at which the azimuth grows [degrees/s]
-  double margin = 0.14;             ///< free fraction of each half of the picture, around the subject
-  double smoothing = 0.5;           ///< smoothing time of the paths of subject and camera [s]
-  double aperture = 0;              ///< f-number for 24 mm film; 0: everything is sharp
-  double focus = 0;                 ///< focus distance [m]; 0: that of the target
+      {};                  ///< names; empty: for `whole` all but infinite floors, else characters or else cloths
+  double azimuth = 33;     ///< of the camera position, from the front to the right [degrees]
+  double elevation = 17;   ///< of the camera position above the subject [degrees]
+  double orbit = 0;        ///< rate at which the azimuth grows [degrees/s]
+  double margin = 0.14;    ///< free margin around the subject / half of the picture's size
+  double smoothing = 0.5;  ///< smoothing time of the paths of subject and camera [s]
+  double aperture = 0;     ///< f-number for 24 mm film; 0: everything is sharp
+  double focus = 0;        ///< focus distance [m]; 0: that of the target
   std::filesystem::path file = {};  ///< file with its path and lens
-  std::string object = {};          ///< name of its node in the file; empty: the only camera
+  std::string object = {};          ///< name of its node in the file; empty: the only camera in it
   double start = 0;                 ///< scene time at which the time of the file begins [s]
   double scale = 1;                 ///< factor on lengths of the file
   int line = 0, column = 0;         ///< where the scene names it, for errors in its file
-  double sensor_width = 36;         ///< width of the longer side of the picture, for a focal length [mm]
+  double sensor_width = 36;         ///< sensor size along the longer side of the picture [mm]; used with a focal length
   std::string follow = {};      ///< placed cameras: obstacle or "<character>.<part>" that it moves with; empty: none
   bool follow_rotation = true;  ///< false: it follows the translation only
 };

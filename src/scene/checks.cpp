@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kMaxFrames = 100000;
 constexpr double kMinKeyGap = 1e-7;        // minimum time between keys [s], that of the shortest time step
-constexpr long kMaxParticles = 4'000'000;  // total of all cloths; their solver state fits a large workstation
+constexpr long kMaxParticles = 4'000'000;  // of all cloths together; their solver state fits a large workstation
 
 template <class Entries>
 std::vector<std::string> names_of(const Entries& entries) {
@@ -63,7 +63,7 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
   }
 }
 
-/// Reports changes of several angles by more than half a turn, which define no axis.
+/// Reports changes of several angles at once by more than half a turn: these do not define an axis of rotation.
 template <class Key>
 void check_rotation_changes(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
@@ -114,7 +114,7 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                       "expected none of a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
   if (rectangle_particles(cloth) == 0) return;  // the number of particles is known only after the file is read
-  // A part between two rows of particles would be empty without any sign. Returns the nearest row for the message, or
+  // A part between two rows of particles would hold no particle without any message. Returns the nearest row, or
   // nothing if a row is inside.
   const auto nearest_missed_row = [](double low, double high, int count, double grading) {
     std::optional<double> nearest;

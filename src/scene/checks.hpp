@@ -6,7 +6,7 @@
 
 namespace weft::scene {
 
-/// Key path of a cloth, or of the rope that the cloth stands for.
+/// Key path of a cloth, or of the rope that the cloth represents.
 const std::string& entry_of_cloth(const Scene& scene, std::size_t cloth, const Findings& findings);
 
 /// Reports references to names that do not exist, key times out of order, and combinations that cannot be simulated.

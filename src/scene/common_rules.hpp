@@ -66,7 +66,7 @@ void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_o
 const Table& obstacle_look_rules();
 const Table& character_look_rules();
 
-/// Text about the value that a key does not give.
+/// Documented default of a value that a key frame omits.
 inline const std::string kDefaultOfKey = "that of the key before; of the first key, that of the thing itself";
 
 }  // namespace weft::scene

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 /// Larger files are skipped: no reader accepts them.
 constexpr std::uintmax_t kMaxDependencyBytes = std::uintmax_t{256} << 20;
 
-/// Longer texts are no file names: a name has at most 255 bytes, plus some folders.
+/// Longer texts count as no file names. A name has at most 255 bytes; its folders come in addition.
 constexpr std::size_t kMaxFileNameBytes = 1024;
 
 bool is_alphanumeric(char c) {
@@ -96,7 +96,7 @@ class DependencyWalk {
     try {
       content = read_bytes(file, kMaxDependencyBytes);
     } catch (const std::runtime_error&) {
-      return;  // its own reader reports the reason
+      return;  // the reader of the file's format reports the reason
     }
     each_(file, content);
     for (const std::string& name : find_possible_names(content)) visit(file.parent_path() / name);

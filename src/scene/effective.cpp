@@ -28,7 +28,7 @@ std::string toml_string(const std::string& text) {
   return out + "\"";
 }
 
-/// fmt writes the shortest digits that read back as the same double.
+/// A value as TOML. fmt writes the shortest digits that read back as the same double.
 std::string toml_value(const Value& value, const Rule& rule) {
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* text = std::get_if<std::string>(&value)) return toml_string(*text);
@@ -148,7 +148,7 @@ void identify(Scene& scene) {
     files.add(fmt::format("{} ", content.size()));  // so that the boundary between files counts
     files.add(content);
   });
-  // The content of files counts, but not their folder.
+  // The content and the name of these files count, but not their folder.
   Scene copy = scene;
   const auto keep_file_name = [](std::filesystem::path& path) { path = path.filename(); };
   for (Obstacle& obstacle : copy.obstacles)

@@ -4,16 +4,17 @@
 #include <cmath>
 
 // Units. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
-//   bending     1 gf·cm²/cm    = 98.07 µN·m; 2HB in gf·cm/cm = 9.807 mN
+//   bending     1 gf·cm²/cm    = 98.07 µN·m; of 2HB, 1 gf·cm/cm = 9.807 mN
 //   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; our mu is twice the shear modulus
-//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; linearity LT is 2 / (n + 1) if force is proportional to eⁿ
+//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; linearity LT is 2 / (n + 1) if force ~ strainⁿ
 // FAST (Minazio, "FAST – Fabric Assurance by Simple Testing", Int. J. Clothing Sci. Tech. 7(2/3), 1995):
 //   shear       G = 123 / EB5 N/m, EB5 the bias extension in percent
 //   extension   E5, E20 and E100 are the strains at 4.9, 19.6 and 98.07 N/m
 //
 // Conversion of measurements to a Material, for all fabrics:
-//   stretch      secant up to 19.6 N/m, the load of worn and hanging cloth. Force is proportional to e²: LT is then
-//                2/3 (measured: 0.50 to 0.60 for suitings, 0.66 to 0.78 for denims), and the secant 98.07 N/m / EMT.
+//   stretch      secant up to 19.6 N/m, the load of worn and hanging cloth. With threads, force ~ strain²: LT is 2/3
+//                (measured: 0.50 to 0.60 for suitings, 0.66 to 0.78 for denims), and the secant 98.0 N/m / EMT. Without
+//                threads, force ~ strain, and the secant is 490.3 N/m / EMT.
 //   max_stretch  such that the force at the mean EMT of weft and warp is the measured 490 N/m, by `stretch` and the law
 //                of forces/stretch_limit.hpp, whose threads carry 4 kN/m at the limit.
 //   shear        2 G
@@ -79,7 +80,7 @@ constexpr const char* kMatsudaira =
     "Matsudaira et al., J. Textile Eng. 61(6), 2015, tables 1 and 2, as transcribed in 3fold-motion-engine";
 constexpr const char* kNone = "none found: all estimated";
 
-// Order as in the documents: cotton and its kin, wool, filaments, others.
+// Order as in the documents: cotton and similar fibres, wool, filaments, others.
 constexpr Row kRows[] = {
     {.name = "cotton",
      .what = "light plain weave",
@@ -256,7 +257,7 @@ Finish finish_of(const Row& row) {
 
 double two_digits(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  // Division is exact here, so that the result is the double that "0.015" in a scene denotes.
+  // A quotient of two integers is correctly rounded: the result is the double that "0.015" in a scene denotes.
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
 }
 
@@ -311,7 +312,8 @@ Measurements measurements(const Row& row) {
   return m;
 }
 
-// Value of max_stretch for which the force at `extension` is that of KES: locking threads carry the rest.
+// Value of max_stretch for which the force at strain `extension` is kExtensionLoad: threads that lock carry what
+// exceeds the force of the secant.
 double max_stretch_for(Weave weave, double extension) {
   constexpr double kOnset = 0.7, kTension = 4e3;  // constants of forces::Lock
   const double rest = kExtensionLoad - secant_stiffness(weave, extension) * extension;

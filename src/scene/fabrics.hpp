@@ -18,12 +18,12 @@ struct Figure {
 
 /// Quantities that textile laboratories measure of a fabric.
 struct Measurements {
-  Figure density;                                  ///< [kg/m²]
-  Figure thickness;                                ///< of the cloth itself [m]
-  Figure extension_weft, extension_warp;           ///< at 490 N/m, the maximum load of KES (its EMT) [1]
-  Figure shear;                                    ///< G, shear force per width over shear angle [N/m]
-  Figure bend_weft, bend_warp;                     ///< B [N·m]
-  Figure hysteresis;                               ///< HB / B, residual curvature after unloading [1/m]
+  Figure density;                         ///< [kg/m²]
+  Figure thickness;                       ///< of the cloth itself [m]
+  Figure extension_weft, extension_warp;  ///< EMT: strain at 490 N/m, the maximum load of KES [1]
+  Figure shear;                           ///< G, shear force per width over shear angle [N/m]
+  Figure bend_weft, bend_warp;            ///< B [N·m]
+  Figure hysteresis;  ///< HB / B, residual curvature after unloading [1/m]; HB: moment per width [N]
   std::optional<std::pair<double, double>> drape;  ///< Cusick's coefficient: minimum and maximum published values [1]
 };
 
@@ -36,7 +36,8 @@ struct Fabric {
   std::string source;  ///< of its figures
 };
 
-/// Load of a KES extension test, 500 gf/cm, and maximum load for which `stretch` is the secant, FAST's 20 gf/cm [N/m].
+/// Load of the KES extension test (500 gf/cm), and load up to which `stretch` is the secant (20 gf/cm, as in FAST)
+/// [N/m].
 inline constexpr double kExtensionLoad = 490.3, kWornLoad = 19.6;
 
 /// All named fabrics; the first is the default and equals Material{}.

@@ -1,4 +1,4 @@
-// By-products of reading a scene: mistakes, and the place of each key.
+// Mistakes found while a scene is read, and the place of each key.
 #pragma once
 
 #include <toml++/toml.h>
@@ -26,7 +26,7 @@ class Findings {
   /// Stores where `key` (a whole path such as cloth.band.size) was written.
   void set_place(const std::string& key, Place place) { places_.insert_or_assign(key, std::move(place)); }
   bool has(const std::string& key) const { return places_.contains(key); }
-  /// The place of the key, or of the nearest stored table around it.
+  /// The place of the key, or of the nearest stored table around it; 1:1 if none is stored.
   Place place(std::string key) const;
 
   void report(const std::string& key, Place place, std::string text);
@@ -34,12 +34,12 @@ class Findings {
   void report(const std::string& key, std::string text);
   bool has_mistake(const std::string& key) const { return has_mistake_.contains(key); }
 
-  /// Stores the key path of entry i of a list ("cloth.band"), for checks after reading.
+  /// Stores the key path of the next entry of a list ("cloth.band"), for checks after reading.
   void add_entry(const std::string& list, std::string path) { entries_[list].push_back(std::move(path)); }
   const std::string& entry(const std::string& list, std::size_t i) const { return entries_.at(list).at(i); }
 
-  /// Returns the first kMaxMistakes mistakes in file order, then those of overrides, and a final one that counts the
-  /// rest. Clears the mistakes.
+  /// Returns at most kMaxMistakes mistakes, those of the file in its order and then those of overrides; if there are
+  /// more, a final one counts the rest. Clears the mistakes.
   std::vector<Mistake> take_mistakes();
 
  private:

@@ -21,8 +21,8 @@ struct Layer {
   std::vector<std::size_t> dressed;  ///< indices of the cloths of this and all lower layers, ascending
 };
 
-/// All layers from the skin outward, at least one. They share, evenly and in whole frames, the initial part of the
-/// preroll during which all characters that stand still at its start still do so.
+/// All layers from the skin outward, at least one. The layers share, evenly and in whole frames, the start of the
+/// preroll: until the first of the characters with `dressing` moves.
 std::vector<Layer> list_layers(const Scene& scene);
 
 }  // namespace weft::scene

@@ -26,8 +26,7 @@ std::vector<std::string> split(std::string_view path) {
   return parts;
 }
 
-/// Whether the text is a word that can be used unquoted. No TOML value starts like this except true, false, inf and
-/// nan, which TOML has already parsed.
+/// Whether the text may be used without quotes. Called only for texts that are no TOML values.
 bool is_plain_word(std::string_view text) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c >= 0x80 || std::strchr("_-./# ", c); };
   return !text.empty() && std::all_of(text.begin(), text.end(), plain);
@@ -49,7 +48,8 @@ std::optional<toml::table> parse_value(std::string_view text, const std::string&
   return is_plain_word(text) ? parse(fmt::format("\"{}\"", text)) : std::nullopt;
 }
 
-/// The entry of a list with this name or index; null if there is none. Collects the names that it passes.
+/// The entry of a list with this name or index; null if there is none. Appends the names of the other entries to
+/// `names`.
 toml::node* find_entry(toml::array& list, const std::string& part, std::vector<std::string>& names) {
   for (toml::node& entry : list) {
     const auto* table = entry.as_table();

@@ -39,7 +39,7 @@ std::string in_quotes(std::string_view text) {
   std::string shown = "\"";
   const bool cut = text.size() > kMaxShownCharacters;
   if (cut) {
-    // Do not cut a UTF-8 character: step back over its continuation bytes.
+    // Keeps UTF-8 characters whole: moves the end back over continuation bytes.
     std::size_t end = kMaxShownCharacters;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
     text = text.substr(0, end);
@@ -138,7 +138,7 @@ void Reader::read_entries(const toml::node& node, const Rule& rule, void* target
     const std::string by_index = join_path(path, std::to_string(i));
     if (table == nullptr) {
       refuse(element, by_index, "expected a table, got " + describe_node(element));
-      // The entry keeps its place, so that indices and structs stay in step.
+      // A default entry takes its place, so that indices match the list.
       findings_.add_entry(path, by_index);
       rule.append(target, i);
       continue;

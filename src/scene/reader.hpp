@@ -14,7 +14,7 @@ namespace weft::scene {
 
 /// A node as messages show it: "-0.001", "the text \"heavy\"", "an array of 4 values".
 std::string describe_node(const toml::node& node);
-/// The text in quotes, shortened to about 40 characters, without control characters.
+/// The text in quotes, shortened to about 40 bytes, with control characters escaped.
 std::string in_quotes(std::string_view text);
 /// Whether the text is valid as the name of a list entry.
 bool is_name(std::string_view text);

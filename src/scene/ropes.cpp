@@ -26,13 +26,13 @@ std::vector<Vec3> path_through(const Rope& rope) {
   return path;
 }
 
-// A rope of this length that hangs from both ends.
+// A catenary of this length [m] that hangs from both ends.
 std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, const Vec3& up) {
   const Vec3 chord = to - from;
   const double rise = up.dot(chord);
   const Vec3 along = chord - rise * up;
   const double span = along.norm();
-  // Solves sinh(u) / u = ratio; a = span / 2u is the ratio of tension to weight at the lowest point.
+  // Solves sinh(u) / u = ratio by bisection. a = span / (2 u) is tension / weight per length at the lowest point [m].
   const double ratio = std::sqrt(length * length - rise * rise) / span;
   double low = 0, high = 1;
   while (std::sinh(high) / high < ratio) high *= 2;
@@ -73,8 +73,9 @@ std::vector<Vec3> resample(const std::vector<Vec3>& path, int pieces) {
 }  // namespace
 
 // Mass and stiffness of nylon, polyester, polypropylene and steel (wire with a fibre core): formulas for mooring ropes,
-// as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py). Data sheets of Robline give 680 for polyester and
-// 430 for polypropylene at 10 mm. Cotton and all bending lengths are estimates: a limp line of 6 mm stands out by 9 cm.
+// as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py). Data sheets of Robline give masses of 680 for
+// polyester and 430 for polypropylene at 10 mm. Cotton and all bending lengths are estimates: 9 cm for a limp line of 6
+// mm.
 const std::vector<RopeMaterial>& rope_materials() {
   static const std::vector<RopeMaterial> kMaterials = {
       {"cotton", 650, 2.5e8, 15},         {"nylon", 676, 1.18e8, 15},   {"polyester", 798, 1.09e9, 15},

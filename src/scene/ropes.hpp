@@ -9,12 +9,12 @@
 
 namespace weft::scene {
 
-/// Figures of a kind of rope, per square of its nominal diameter d [m].
+/// Figures of a kind of rope; mass and stretch are divided by the square of the nominal diameter [m].
 struct RopeMaterial {
   std::string name;
   double mass;            ///< [kg/m per m²]
   double stretch;         ///< force per strain [N per m²]
-  double bending_length;  ///< cube root of bending stiffness over weight, in diameters
+  double bending_length;  ///< cube root of (bending stiffness / weight per length), in diameters
 };
 const std::vector<RopeMaterial>& rope_materials();
 
@@ -26,8 +26,8 @@ struct RopeNumbers {
 };
 RopeNumbers numbers_of(const Rope& rope);
 
-/// Start positions of the particles of a rope [m], and rest lengths of its pieces [m]: one less than particles unless
-/// closed.
+/// Start positions of the particles of a rope [m], and rest lengths of its pieces [m]: one piece less than particles,
+/// or as many if the rope is closed.
 struct RopeShape {
   std::vector<Vec3> places;
   std::vector<double> lengths;
@@ -49,7 +49,7 @@ std::optional<double> start_length(const Rope& rope);
 Cloth as_cloth(const Rope& rope);
 /// Appends the cloths of all ropes to those of the scene.
 void add_rope_cloths(Scene& scene);
-/// Removes them again.
+/// Removes the cloths of ropes.
 void remove_rope_cloths(Scene& scene);
 
 }  // namespace weft::scene

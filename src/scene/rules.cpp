@@ -1,5 +1,5 @@
 // The rule table of the scene format: every key with its unit, range and documentation. Defaults are the initialisers
-// in scene.hpp. Upper bounds are sanity bounds: no scene within them can exhaust the machine.
+// in scene.hpp. Upper bounds keep a single value from exhausting the machine.
 #include <array>
 #include <cmath>
 

@@ -46,7 +46,7 @@ struct Time {
 struct Solver {
   double newton_tolerance = 0.3;  ///< residual relative to the weight and inertia of the cloth
   int newton_iterations = 60;     ///< maximum per step, before the step is halved
-  double linear_tolerance = 0.1;  ///< of the conjugate gradients, relative to the first residual
+  double linear_tolerance = 0.1;  ///< residual of the conjugate gradients / first residual
   int linear_iterations = 1000;
   int halvings = 8;  ///< maximum of a rejected step, before the run gives up
 };
@@ -54,13 +54,13 @@ struct Solver {
 enum class Bounds { box, dop18, dop26 };
 enum class TreeKind { binary, quad, oct };
 
-/// Methods that find near surfaces (seed, "Collision Detection"). They change only the speed, not the result.
+/// Methods that find surfaces close to each other (seed, "Collision Detection"). They change the speed, not the result.
 struct Search {
   Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
   TreeKind tree = TreeKind::oct;  ///< two, four or eight children per node
   int leaf = 8;                   ///< maximum number of triangles per leaf
   bool open_longer_side = false;  ///< of two nodes, open only the longer one
-  bool separation_lists = false;  ///< continue a traversal where the last one stopped
+  bool separation_lists = false;  ///< start each traversal where the previous one stopped
   bool velocity_cones = false;    ///< keep the bounds of slow nodes
   bool normal_cones = false;      ///< skip regions that are provably flat enough
   bool coherence = false;         ///< keep closest points of surfaces with little relative motion
@@ -130,11 +130,11 @@ struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< of a pattern
   bool as_file = true;             ///< characters: use colours and pictures of the file, if any
   double roughness = 0.6;
-  std::optional<double> gloss;        ///< of threads, default from the fabric; obstacles: of the coat
+  std::optional<double> gloss;        ///< of threads, absent: that of the fabric; obstacles: of the clear coat
   std::optional<double> fuzz, sheer;  ///< cloth only; absent: those of the fabric
   double metal = 0;                   ///< obstacles only: 1 for reflections in the object's colour
   std::optional<double> tile_width;   ///< obstacles only: of its picture [m]; absent: once over the shape
-  double warp_fraction = 0.5;         ///< part of the gloss along warp; of the fabric
+  double warp_fraction = 0.5;         ///< fraction of the gloss along warp; from the fabric
   Threads threads = Threads::plain;   ///< of the fabric
   double cloth_thickness = 0;         ///< of the fabric itself, or of a rope [m]
   double thread_spacing = 0.0006;     ///< of the drawn weave [m]; cloth only; 0: not drawn
@@ -164,7 +164,7 @@ struct PoseTrack {
   std::vector<PoseKey> keys;  ///< empty: keeps the object's own pose
 };
 
-/// Position at which a pin holds its particles at one time. It rotates them about their centroid.
+/// Pose in which a pin holds its particles at one time. The rotation is about their centroid.
 struct PinKey {
   double time = 0;  ///< [s], strictly increasing
   Pose pose;        ///< position: of the centroid, relative to its start or in the world
@@ -189,8 +189,8 @@ struct ClothPart {
   VertexColor vertex_color = VertexColor::none;  ///< of a mesh file: colour channel that gives weights
   std::string vertex_group;  ///< of a mesh file: vertex group or bone that gives weights; empty: all
 
-  /// Whether the particle at fractions (u, v) of the rest size is inside. The slack keeps i / (n - 1) inside a bound
-  /// that was written with fewer digits.
+  /// Whether the particle at fractions (u, v) of the rest size is inside. kSlack admits a particle at a bound that is
+  /// written with nine digits, such as 0.333333333.
   bool holds(double u, double v) const {
     constexpr double kSlack = 1e-9;
     return u >= low.x() - kSlack && u <= high.x() + kSlack && v >= low.y() - kSlack && v <= high.y() + kSlack;
@@ -199,11 +199,11 @@ struct ClothPart {
 
 /// Particles that are held in place, or moved.
 struct Pin : ClothPart {
-  std::string follow;              ///< body whose motion they share, or "<character>.<part>"; empty: none
-  PinTrack motion;                 ///< their own motion, if they follow nothing
+  std::string follow;              ///< body or "<character>.<part>" whose motion the particles share; empty: none
+  PinTrack motion;                 ///< motion of the particles, if they follow nothing
   double release = -1;             ///< time of release [s]; negative: never
-  std::optional<double> strength;  ///< stiffness of the springs that pull them [N/m]; absent: held rigidly
-  double fade = 0;  ///< distance along the cloth over which the pull on others fades [m]; needs a strength
+  std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: held rigidly
+  double fade = 0;  ///< distance along the cloth over which the pull on other particles fades [m]; needs a strength
 };
 
 /// The body that a `follow` names and, for a character, the part (else empty).
@@ -223,7 +223,7 @@ struct Weight : ClothPart {
 /// Springs from particles of a cloth to the nearest points of another cloth or body: buttons, pegs, tacks.
 struct Attachment : ClothPart {
   std::string name, cloth, to;
-  double stiffness = 10000;             ///< of the spring of each particle, times its weight [N/m]
+  double stiffness = 10000;             ///< of the spring of a particle with weight 1 [N/m]
   std::optional<double> length;         ///< slack length [m]; absent: the distance at `begin`
   double begin = -1e5, release = -1;    ///< [s]; negative release: never
   std::optional<double> breaking_load;  ///< total force of its springs above which it breaks [N]; absent: never
@@ -250,12 +250,12 @@ struct Cloth {
   double edge_length = 0.02;                     ///< of the mesh of a pattern [m]
   std::string wearer;                            ///< character that wears a pattern; empty: the only one
   bool fit = false;                              ///< scale a pattern to the wearer's measures
-  double sewing = 1;                             ///< time in which cloth from flat panels takes their measures [s]
-  int line = 0, column = 0;                      ///< where the scene names it, for errors in its file
-  Pose pose;               ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
-  Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
-  Vec3 spin{0, 0, 0};      ///< at the start, about the centre of mass: along the axis [degrees/s]
-  Vec2 start_scale{1, 1};  ///< start lengths along weft and warp / rest lengths
+  double sewing = 1;         ///< time in which the rest shape changes from the sewn start to flat panels [s]
+  int line = 0, column = 0;  ///< where the scene names it, for errors in its file
+  Pose pose;                 ///< of the middle of a sheet (weft along x, warp along y), or of a file's origin
+  Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
+  Vec3 spin{0, 0, 0};        ///< at the start, about the centre of mass: vector along the axis [degrees/s]
+  Vec2 start_scale{1, 1};    ///< start lengths along weft and warp / rest lengths
   ClothStart start = ClothStart::as_given;  ///< if it touches or crosses something at the start
   std::vector<std::string> over;            ///< cloths that are put on before it and stay inside it
   double start_noise = 0;                   ///< maximum random offset of a particle at the start, along each axis [m]
@@ -267,20 +267,20 @@ struct Cloth {
   std::shared_ptr<const Rope> rope;  ///< the rope that it represents; null: a sheet
 };
 
-/// Number of particles of a rectangle of cloth; 0 for other shapes, whose file determines it.
+/// Number of particles of a rectangle of cloth; 0 for other shapes, whose files determine the number.
 inline long rectangle_particles(const Cloth& cloth) {
   const long u = cloth.particles_weft, v = cloth.particles_warp;
   if (cloth.shape > ClothShape::crossed_triangles) return 0;
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
 
-/// Length of a rope at a time, as if it were evenly reeled in or paid out.
+/// Length of a rope at a time. A change of length is distributed evenly over the rope.
 struct RopeKey {
   double time = 0;    ///< [s], strictly increasing
   double length = 1;  ///< at rest [m]
 };
 
-/// A thin chain of particles, simulated as the one-dimensional cloth that as_cloth() makes of it.
+/// A thin chain of particles. It is simulated as a one-dimensional cloth; see as_cloth().
 struct Rope {
   std::string name;
   std::vector<Vec3> points;                            ///< points of its start course [m]
@@ -322,14 +322,14 @@ struct Obstacle {
   int line = 0, column = 0;  ///< where the scene names it, for errors in its file
 };
 
-/// Whether forces move it.
+/// Whether forces move the obstacle.
 inline bool is_dynamic(const Obstacle& obstacle) {
   return obstacle.mass > 0 || obstacle.density > 0;
 }
 
 enum class Stance { first, rest };
 
-/// Names of a joint that the common names do not cover, in the body and in the motion.
+/// Names of a joint in the body and in the motion, for files that do not use the common names.
 struct JointNames {
   std::string name;                   ///< one of character::joint_names()
   std::optional<std::string> body;    ///< in the character's file
@@ -386,7 +386,7 @@ using CharacterSource = std::variant<CharacterFile, Mannequin, MeshSequence>;
 /// A part of a character with its own contact settings: a bone, a material, or a part by its name.
 struct BodyPart {
   std::string name;
-  std::optional<std::string> bone;      ///< node of the character's file, with all below it
+  std::optional<std::string> bone;      ///< node of the character's file, with all nodes below it
   std::optional<std::string> material;  ///< of the character's file
   bool collide = true;
   std::optional<double> friction;  ///< absent: that of the character
@@ -460,7 +460,7 @@ struct Scene {
   std::string title;
   std::uint64_t hash = 0;                    ///< of the checked values, independent of comments and order
   std::uint64_t simulation_hash = 0;         ///< of the values that affect the simulation
-  std::vector<std::filesystem::path> files;  ///< all files that it depends on
+  std::vector<std::filesystem::path> files;  ///< files that for_each_dependency() visits
   UpAxis up = UpAxis::z;
   Time time;
   Physics physics;

@@ -117,7 +117,7 @@ bool allow_same_values(Json one, Json other) {
 /// The condition on the selector that selects a variant.
 Json condition(const Table& table, const Variant& variant) {
   Json when = {{"properties", {{table.selector, {{"enum", {variant.name}}}}}}};
-  // Without the selector, its default variant applies.
+  // Without the selector, the default variant applies.
   const auto defaults = table.make();
   if (table.find(table.selector)->need == Need::required || table.variant_of(defaults.get()) != &variant)
     when["required"].push_back(table.selector);

@@ -10,7 +10,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Precedes each number by its count of digits without leading zeros, so that text order is number order.
+/// Inserts before each number its count of digits without leading zeros, so that text order is the order of numbers.
 std::string sort_key(const std::string& name) {
   std::string key;
   for (std::size_t i = 0; i < name.size();) {

@@ -28,7 +28,7 @@ struct Cylinder {
 };
 struct HalfPipe {
   double radius = 1, length = 2, thickness = 0.05;
-};  ///< open upward, length along x
+};  ///< open upward; length: along x
 struct Plane {
   Vec2 size{20, 20};
   bool infinite = true;

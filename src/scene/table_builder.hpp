@@ -73,7 +73,7 @@ class RowBuilder {
   void add_table(std::string_view key, Type type, const Table& inner);
   void set_components(const Words& components);
   void bind(std::function<Value(void*)> get, std::function<void(void*, const Value&)> set);
-  /// One array of two numbers for two members. The functions read and write one of them.
+  /// One array of two numbers for two members. The functions read and write one of them, as `second` selects.
   void bind_pair(std::function<Value(void*, bool second)> get,
                  std::function<void(void*, bool second, const Value&)> set);
   /// The functions read and write the index of the choice.
@@ -255,7 +255,7 @@ class TableBuilder : public RowBuilder {
     return *this;
   }
 
-  /// The struct with the defaults, if S{} is not it.
+  /// The struct with the defaults, if it differs from S{}.
   TableBuilder& starting_from(S start) {
     table_.make = [start] { return std::make_shared<S>(start); };
     return *this;

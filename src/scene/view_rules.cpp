@@ -6,8 +6,8 @@
 namespace weft::scene {
 namespace {
 
-// A camera or light that stands still has one key, which stores its own values. With `keys`, the first key starts from
-// these values and each later key from the preceding one.
+// A camera or light that stands still has one key, which stores its own values. If `keys` are given, the first one
+// starts with these values, and each later one with those of its predecessor.
 template <class S>
 void copy_key_before(S& owner, std::size_t i) {
   if (i == 0) return;

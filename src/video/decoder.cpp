@@ -27,7 +27,8 @@ int check_read(int code, const std::filesystem::path& file) {
   fail_to_read(file, reason.data());
 }
 
-// Uses the colour matrix that the file names, as a wrong one changes colours by tens of levels; without a name, BT.709.
+// Uses the colour matrix that the file names, since a wrong one changes colours by tens of levels; BT.709 if the file
+// names none.
 ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   ScalerPtr scaler(sws_getContext(
       frame.width, frame.height, static_cast<AVPixelFormat>(frame.format), frame.width, frame.height, AV_PIX_FMT_RGB24,
@@ -72,7 +73,7 @@ struct Decoder::Impl {
     // Playlists, which libav detects by content, could open other files.
     AVDictionary* options = nullptr;
     av_dict_set(&options, "format_whitelist", "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi", 0);
-    // Absolute, as libav takes the text before a colon for a protocol.
+    // The path is absolute, since libav reads the text before a colon as a protocol.
     const int code = avformat_open_input(&opened, std::filesystem::absolute(file).c_str(), nullptr, &options);
     av_dict_free(&options);
     check_read(code, file);

@@ -47,8 +47,8 @@ constexpr int kMaxSide = 16384;  // [pixels]; limit of x264
 constexpr std::array<std::string_view, 10> kPresets = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
                                                        "medium",    "slow",      "slower",   "veryslow", "placebo"};
 
-// A key frame every two seconds, since players seek only to key frames. Limited for very low and very high rates; 250
-// is the default of x264.
+// A key frame every two seconds, since players seek only to key frames. The distance is limited for very low and very
+// high rates; 250 is the default of x264.
 int key_frame_distance(double fps) {
   return std::clamp(static_cast<int>(std::lround(2 * fps)), 12, 250);
 }
@@ -60,9 +60,9 @@ void check_settings(const std::filesystem::path& file, const Settings& settings)
   const std::string sides = fmt::format("1 to {} pixels", kMaxSide);
   require(settings.width >= 1 && settings.width <= kMaxSide, "width", sides, settings.width);
   require(settings.height >= 1 && settings.height <= kMaxSide, "height", sides, settings.height);
-  // 0 is lossless, in a profile that browsers do not play.
+  // A crf of 0 is lossless, in a profile that browsers do not play.
   require(settings.crf >= 1 && settings.crf <= 51, "crf", "1 to 51", settings.crf);
-  // 0 would use all cores, and the output would depend on the machine.
+  // 0 threads would mean all cores, and the output would depend on the machine.
   require(settings.threads >= 1 && settings.threads <= 128, "encoder threads", "1 to 128", settings.threads);
   if (std::find(kPresets.begin(), kPresets.end(), settings.preset) == kPresets.end()) {
     throw Error(ExitCode::output_failed, "{}: preset: expected one of {}, got {}", file.string(),
@@ -97,7 +97,7 @@ CodecPtr open_codec(const std::filesystem::path& file, const Settings& settings,
   switch (settings.codec) {
     case Codec::h264:
       check(av_opt_set_double(context->priv_data, "crf", settings.crf, 0), file, "choose the quality");
-      // The macroblock tree of x264 (build 164) reads uninitialised memory at most sizes, so that equal pictures gave
+      // The macroblock tree of x264 (build 164) reads uninitialised memory at most sizes, so that equal pictures give
       // different bits. (Measured without it: at the same crf, a film of 1280x720 is 38 % larger and 0.5 dB closer to
       // its pictures.)
       check(av_opt_set_int(context->priv_data, "mbtree", 0, 0), file, "choose the rate control");

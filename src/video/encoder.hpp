@@ -16,12 +16,12 @@ namespace weft::video {
 enum class Codec { automatic, h264, h264_lossless, ffv1, prores };
 
 struct Settings {
-  int width = 1280, height = 720;  ///< [pixels]; for yuv420p, odd sizes are padded by repeating one column or row
+  int width = 1280, height = 720;  ///< [pixels]; unless the codec keeps RGB, odd sizes are padded by one column or row
   double fps = 25;                 ///< frames per second; frame k is shown at exactly k / fps (23.976: 24000/1001)
   Codec codec = Codec::automatic;
   int crf = 18;                     ///< for h264: x264 constant quality, 1 to 51; smaller is better
   std::string preset = "veryfast";  ///< x264 preset
-  int threads = 1;                  ///< of the encoder; fixed, as the output of x264 depends on it
+  int threads = 1;  ///< of the encoder; does not follow the machine, as the output of x264 depends on the number
   std::map<std::string, std::string> metadata;
 };
 
@@ -42,7 +42,7 @@ class Encoder {
 
   /// Flushes the encoder, moves the index to the front, verifies by reading that each frame has its time, and renames
   /// the file to its final name. At least one frame must have been added. Throws Error(output_failed); if all frames
-  /// are encoded but the finished file cannot be made, they are kept as `<name>.partial.mp4`, as the error states.
+  /// are encoded but the finished file cannot be made, they are kept as partial_name(file), which the error names.
   void finish();
 
   int frames() const;
@@ -58,7 +58,7 @@ bool is_written(const std::string& ending);
 /// The codec for a file of this name. Throws Error(usage) if such files cannot contain `codec`.
 Codec codec_of(const std::filesystem::path& file, Codec codec);
 
-/// `<name>.partial.mp4`: where frames are kept if no finished file can be made; until then under a temporary name.
+/// `<name>.partial` with the extension of `file`: the file of all frames if the finished file cannot be made.
 std::filesystem::path partial_name(const std::filesystem::path& file);
 
 /// Name and version of the encoder that would be used, for `weft doctor`.

@@ -13,7 +13,8 @@ extern "C" {
 namespace weft::video {
 namespace {
 
-// Positions of the chroma samples in swscale's unit, 1/256 of a luma sample: on the left column, between two rows.
+// Positions of the chroma samples in swscale's unit, 1/256 of a luma sample: on the left of two columns, between two
+// rows.
 constexpr int kChromaLeft = 0;
 constexpr int kChromaBetweenRows = 128;
 

@@ -89,12 +89,12 @@ Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path re
 
   // Writes each packet to the system at once, so that a kill loses only the encoder's look-ahead.
   output_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
-  // Otherwise Matroska files contain random numbers, and equal runs would not give equal bytes.
+  // Without this flag, Matroska files contain random numbers, and equal runs would not give equal bytes.
   if (is_matroska(reported_file_)) output_->flags |= AVFMT_FLAG_BITEXACT;
   check(avio_open(&output_->pb, output_->url, AVIO_FLAG_WRITE), reported_file_, "create the file");
   Dictionary options;
   const char* flags = layout == Mp4Layout::fragmented ? kFragmentedFlags : kFastStartFlags;
-  // Incomplete Matroska files are playable without flags.
+  // Matroska needs no flags: incomplete files are playable.
   if (!is_matroska(reported_file_))
     check(av_dict_set(&options.entries, "movflags", flags, 0), reported_file_, "choose the layout of the file");
   check(avformat_write_header(output_.get(), &options.entries), reported_file_, "write the header");
@@ -123,7 +123,7 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
   Mp4Writer writer(to, reported_file, Mp4Layout::fast_start, codec, rate, metadata);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
 
-  // Frame k is decoded at k minus the delay of the B-frames, which a file with one frame does not have.
+  // Frame k is decoded at time k minus the delay of the B-frames. Files differ in this delay: with one frame it is 0.
   std::int64_t delay = 0;
   for (const std::filesystem::path& file : from) delay = std::max(delay, delay_of(file, reported_file, rate));
 

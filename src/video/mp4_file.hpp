@@ -1,5 +1,5 @@
 // MP4, MOV and Matroska files with one video stream: written in fragments while frames arrive, then copied to a file
-// that can be played while it loads. Matroska needs no such layouts.
+// that can be played while it loads. Matroska has the same layout in both cases.
 #pragma once
 
 #include <filesystem>
@@ -19,9 +19,9 @@ enum class Mp4Layout {
 /// A video file that is being written.
 class Mp4Writer {
  public:
-  /// Opens `file` and writes its header. The path must be absolute, as libav takes the text before a colon for a
-  /// protocol. Packet times are in units of one frame, 1 / `rate` seconds. Errors name `reported_file`, which the user
-  /// knows. Throws Error(output_failed).
+  /// Opens `file` and writes its header. The path must be absolute, since libav reads the text before a colon as a
+  /// protocol. Packet times are in units of one frame, 1 / `rate` seconds. Errors name `reported_file`, the name that
+  /// the user has given. Throws Error(output_failed).
   Mp4Writer(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
             const AVCodecParameters& codec, AVRational rate, const std::map<std::string, std::string>& metadata);
 

@@ -1,7 +1,7 @@
-# The rest is the same for all: task.sh unpack | simulate RUN | draw RUN PART | join RUN | report
+# The rest is the same for all farms. Usage: task.sh unpack | simulate RUN | draw RUN PART | join RUN | report
 #
-# A task that is whole already ends at once, one that was stopped goes on, and two at once do no harm: what is written
-# gets its name when it is whole. Numbers that are left out are those of the task in an array of Slurm.
+# A complete task ends at once, a stopped one resumes, and a task may run twice at the same time: a file gets its name
+# when it is complete. Missing numbers are those of the task in an array of Slurm.
 pause=${WEFT_PAUSE:-10} # before the next try, times the number of the try [s]
 stopped= child=
 
@@ -9,12 +9,12 @@ echo "== $(date -u '+%F %T') $label on $(uname -n)"
 code_file=farm/log/$label.code
 echo '    ' >"$code_file" # room for the exit code, also where the disk is full by then
 
-# A time limit comes near: the frame in hand is finished, and the task goes on in a new place in the queue. Schedulers
-# that end a task tell all its processes themselves.
+# Before a time limit, the current frame is finished, and the task is queued again. Schedulers that end a task signal
+# all of its processes.
 trap 'stopped=again; [ -z "$child" ] || kill -TERM "$child"' USR1
 trap 'stopped=yes' TERM INT
 
-# Again where another try may help: a process that was killed, or a disk that was full.
+# Tries again if that may help: after a killed process or a full disk.
 attempt() {
   tries=0
   while :; do
@@ -34,8 +34,8 @@ attempt() {
   done
 }
 
-# The archive that submit was given, once for all tasks: what it holds gets its name when it is whole. Of two that unpack at
-# once, the second removes its own.
+# Unpacks the program archive once for all tasks. The folder gets its name when it is complete. If two tasks unpack at
+# the same time, the second one removes its own folder.
 unpack() {
   if [ -z "$unpacked" ] || [ -d "$unpacked" ]; then return 0; fi
   new=$unpacked.new.$(uname -n).$$

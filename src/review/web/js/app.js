@@ -1,4 +1,4 @@
-// Puts the page together: which one the address asks for, the bar at the top, the keys that work everywhere.
+// Selects the page that the address names, and makes the bar at the top and the keys that work on all pages.
 //
 // Addresses: #run=ID (&with=ID&view=slider&frame=12), #compare=ID&compare=ID (&left=ID&right=ID&view=side&frame=12),
 // else the overview (#chosen=ID&sort=strain).
@@ -10,7 +10,7 @@
   let page = null;
   let written = null; // the address that the page itself wrote last
 
-  // Notes the state of the page in its address without opening it again.
+  // Writes the state of the page to its address without opening the page again.
   review.replaceAddress = (address) => {
     written = `#${address}`;
     if (location.hash.replace(/^#?$/, "#") === written) return;
@@ -34,7 +34,7 @@
     const asked = location.hash;
     const address = new URLSearchParams(asked.slice(1));
     await Promise.all(shown(address).map((run) => run.load()));
-    if (location.hash !== asked) return; // somewhere else by now, which is opened by itself
+    if (location.hash !== asked) return; // the address has changed meanwhile; its own event opens that page
     page?.close();
     const firstTime = page === null;
     page = makePage(address);

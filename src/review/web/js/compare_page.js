@@ -1,4 +1,4 @@
-// Several runs against each other: pictures of two, plots of all, what differs in figures and in the effective scenes.
+// Compares several runs: pictures of two, plots of all, differences of figures and of effective scenes.
 "use strict";
 {
   const { h } = review;
@@ -78,7 +78,7 @@
       return h("thead", {}, h("tr", {}, h("th", { scope: "col" }, first),
         this.runs.map((run, i) => h("th", { scope: "col" }, swatch(run, i), " ", review.breakable(run.label)))));
     }
-    // Figures of all runs; behind those that differ from the first run's, by how much.
+    // Figures of all runs, each followed by its difference from the first run if it is not 0.
     buildFigures() {
       const rows = review.figures.map(({ label, of, format, note }) => {
         const values = this.runs.map((run) => of(run).value);

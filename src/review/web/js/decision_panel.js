@@ -1,12 +1,12 @@
-// On the page of a run: what is decided about it, notes with marks on the picture, and the line that accepts it.
+// On the page of a run: its decision, notes with marks on the picture, and the command line that accepts it.
 "use strict";
 {
   const { h, svg } = review;
   const { date, plural } = review.format;
   const WORDS = { open: "Open", "needs work": "Needs work", approved: "Approved" };
-  const LEAST_MOVE = 0.004; // between two points of a mark, in shares of the picture
+  const LEAST_MOVE = 0.004; // between two points of a mark, as a fraction of the picture
 
-  /** The lines that are drawn on the picture of a viewer: those of the notes at its frame, and those being drawn. */
+  /** The marks on the picture of a viewer: those of the notes at its frame, and those that are being drawn. */
   review.Marks = class {
     constructor(viewer) {
       this.viewer = viewer;
@@ -55,7 +55,7 @@
   };
 
   review.DecisionPanel = class {
-    /** `viewer` may be null: then notes have no frame to go to. */
+    /** `viewer` may be null: then notes do not lead to a frame. */
     constructor(run, viewer) {
       this.run = run;
       this.viewer = viewer;
@@ -139,7 +139,7 @@
         await navigator.clipboard.writeText(this.line.textContent);
         this.copied.textContent = "copied";
       } catch {
-        getSelection().selectAllChildren(this.line); // for a copy by hand
+        getSelection().selectAllChildren(this.line); // selects the line, to be copied by hand
         this.copied.textContent = "selected: copy it with the keys of your system";
       }
     }

@@ -1,5 +1,5 @@
-// What is decided about runs: as review.json had it when the page was written, and what was changed on the page since,
-// which the browser keeps until the file is downloaded, put in its place, and the page written anew.
+// Decisions about runs: those of review.json when the page was written, and changes made on the page since then. The
+// browser stores these changes until the downloaded file is in its folder and the page is written again.
 "use strict";
 {
   const FORMAT = "weft review 1";
@@ -7,7 +7,7 @@
   const place = `weft-review-decisions:${location.pathname}`;
   const changed = new EventTarget();
 
-  // A browser may refuse storage to a page opened from a file; what is decided then lasts until it is closed.
+  // A browser may refuse storage to a page that is opened from a file. Decisions are then lost when the page is closed.
   const stored = (key, otherwise) => {
     try {
       return JSON.parse(localStorage.getItem(key)) ?? otherwise;
@@ -23,11 +23,11 @@
     }
   };
 
-  let own = stored(place, {}); // by home and key
+  let own = stored(place, {}); // changes by home (folder) and key of the run
   let author = stored("weft-review-author", "");
 
   const ownOf = (run) => own[run.home]?.[run.key];
-  // The later one; dates are ISO 8601 in UTC and sort as text.
+  // The later of two entries; dates are ISO 8601 in UTC and sort as text.
   const isPending = (run) => ownOf(run) !== undefined && (ownOf(run).date ?? "") > (run.filed?.date ?? "");
   const entryOf = (run) => (isPending(run) ? ownOf(run) : run.filed) ?? { state: "open", notes: [] };
 
@@ -48,12 +48,12 @@
     },
     notes: (run) => entryOf(run).notes ?? [],
     entry: entryOf,
-    /** One of STATES, or "changed": decided when it had other pictures. */
+    /** One of STATES, or "changed" if the decision is about other pictures. */
     state(run) {
       const { state, of } = entryOf(run);
       return state !== "open" && of !== run.of ? "changed" : state;
     },
-    /** {level, text, note} for a chip; null for what is open. */
+    /** {level, text, note} for a chip; null without a decision. */
     chip(run) {
       const { state, by, date } = entryOf(run);
       const note = [by && `by ${by}`, date && review.format.date(new Date(date))].filter(Boolean).join(", ");
@@ -63,18 +63,18 @@
       return { level: shown === "approved" ? "good" : "bad", text: shown, note };
     },
     decide: (run, state) => change(run, { state }),
-    /** `marks`: lines of points in shares of the picture. */
+    /** `marks`: polylines; points are fractions of the picture's width and height. */
     add: (run, frame, text, marks) => change(run, { of: entryOf(run).of ?? run.of, notes: [...review.decisions.notes(run),
       { frame, text, by: author, date: new Date().toISOString(), of: run.of, marks }] }),
     remove: (run, at) => change(run, { of: entryOf(run).of ?? run.of, notes: review.decisions.notes(run).filter((_, i) => i !== at) }),
 
-    /** Folders in which review.json is behind, each with how many runs. */
+    /** Folders whose review.json lacks changes, each with the number of changed runs. */
     get pending() {
       const homes = new Map();
       for (const run of review.model.runs) if (isPending(run)) homes.set(run.home, (homes.get(run.home) ?? 0) + 1);
       return homes;
     },
-    /** The text of the file in a folder: all that is decided about its runs. */
+    /** The text of review.json for a folder: all decisions about its runs. */
     file(home) {
       const runs = review.model.runs.filter((run) => run.home === home && (isPending(run) || run.filed));
       return `${JSON.stringify({ format: FORMAT, runs: Object.fromEntries(runs.map((run) => [run.key, entryOf(run)])) }, null, 1)}\n`;
@@ -95,7 +95,7 @@
     return `weft accept ${quoted(reference)} ${file ? quoted(file) : `${quoted(prefix)}[0-9]*.png`} --reason ${quoted(reason || "WHY")}`;
   };
 
-  /** For each folder whose review.json is behind a button that downloads it. */
+  /** A button for each folder whose review.json lacks changes, which downloads the new file. */
   review.downloads = () => {
     const element = review.h("span.downloads", { role: "status" });
     const show = () => element.replaceChildren(...[...review.decisions.pending].map(([home, count]) =>

@@ -24,7 +24,7 @@
     return make(element, properties, children);
   };
 
-  // Names may break after the marks that they are put together with.
+  // Allows line breaks in names after separators.
   review.breakable = (name) => name.split(/(?<=[/_.-])/).flatMap((part) => [part, document.createElement("wbr")]);
 
   review.svg = (tag, attributes, ...children) =>

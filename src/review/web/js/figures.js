@@ -1,4 +1,4 @@
-// The figures of a run that fit into one line each. Pages and tables all take them from here.
+// The figures of a run that fit into one line each. All pages and tables use these.
 "use strict";
 {
   const { known, count, milliseconds, seconds, millimetres, percent, joule, bytes } = review.format;
@@ -20,7 +20,7 @@
     return { value: pair[name], frame: pair.verdict === "same" ? undefined : run.frameOf(pair.picture) };
   };
   const last = (name) => (run) => ({ value: run.digest[name]?.last });
-  // Of a run without a frame all of this is 0, and says nothing.
+  // Without simulated frames, all totals are 0; the value is then undefined.
   const total = (name) => (run) => ({ value: run.digest.frame ? run.totals[name] : undefined });
   const perFrame = (name) => (run) => {
     const frames = (run.digest.frame?.count ?? 0) - 1; // frame 0 is given, not computed
@@ -59,7 +59,7 @@
   ];
   review.figure = Object.fromEntries(review.figures.map((entry) => [entry.key, entry]));
 
-  /** What machine and program a run came from: [label, text] each. */
+  /** Machine and program of a run, as pairs [label, text]. */
   review.environment = (run) => {
     const { stats } = run;
     const size = known(stats.width) ? `${stats.width} × ${stats.height} at ${review.format.number(stats.fps)} fps` : undefined;

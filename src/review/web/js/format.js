@@ -1,4 +1,4 @@
-// Numbers as text, with units. What is not known is a dash.
+// Numbers as text, with units. Unknown values are a dash.
 "use strict";
 {
   const DASH = "–";
@@ -29,7 +29,7 @@
       const power = Math.min(units.length - 1, Math.floor(Math.log10(Math.max(1, value)) / 3));
       return `${significant(value / 1e3 ** power, power === 0 ? 4 : 3)} ${units[power]}`;
     },
-    // "+12 %" of what it is compared with.
+    // Difference relative to the value that it is compared with, such as "+12 %".
     change(value, base) {
       if (!known(value) || !known(base) || value === base) return "";
       if (base === 0) return "new";

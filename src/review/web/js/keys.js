@@ -1,10 +1,10 @@
-// Keyboard: what a page binds is also what `?` explains.
+// Keyboard: `?` lists the keys that a page binds.
 "use strict";
 {
   const { h } = review;
   let bindings = [];
 
-  // Where letters are typed, and where arrows move something else.
+  // Elements in which letters are typed or arrow keys have another meaning.
   const takesKey = (target, key) => {
     if (target.matches("textarea, select, input[type=search], input[type=text], input[type=number]")) return key !== "Escape";
     if (target.matches("input[type=range]")) return /^(Arrow|Page|Home|End)/.test(key) && !target.matches(".scrubber");

@@ -1,12 +1,12 @@
 // The runs of this page, as index.html carries them.
 //
 // A *frame* is a state of the simulation, at frame / fps. A *picture* is what the video or the stills show of it: the
-// k-th picture shows frame first + k * step. Everything on the page is tied together by the frame's time.
+// k-th picture shows frame first + k * step. All parts of the page refer to the time of the frame.
 "use strict";
 {
   const { known, plural } = review.format;
   const EXIT_CODES = { 1: "own fault", 2: "command line", 3: "scene", 4: "asset", 5: "simulation", 6: "output", 75: "interrupted" };
-  const ASSUMED_FPS = 25; // of a video that nothing is known of
+  const ASSUMED_FPS = 25; // of a video without a known rate [pictures per second]
 
   class Run {
     constructor(data) {
@@ -15,14 +15,14 @@
       this.problems = data.problems;
       this.stats = data.stats;
       this.totals = data.stats.totals ?? {};
-      this.digest = data.digest; // of the columns: what figures need
-      this.columns = {}; // this and the scene are there once the run is loaded
+      this.digest = data.digest; // summary of the columns, for the figures
+      this.columns = {}; // empty, like the scene, until the run is loaded
       this.effective = null;
       this.pictures = data.pictures;
       this.sheet = data.sheet ?? [];
       this.poster = data.poster ?? null;
       this.referenceId = data.reference ?? null;
-      this.comparison = data.comparison ?? []; // with the reference, at the pictures of the contact sheet
+      this.comparison = data.comparison ?? []; // of the pictures of the contact sheet with the reference
       this.isReference = data.id.startsWith("references/");
       this.date = data.date ? new Date(data.date) : null;
       this.of = data.of ?? ""; // fingerprint of its pictures
@@ -33,7 +33,7 @@
       this.values = data.values ?? {}; // of a sweep: what it changed, by key
     }
 
-    /** Reads what only its own page shows, once. A page from a file may load scripts, but read nothing else. */
+    /** Loads, once, the data of the run's own page. A page that is opened from a file may load only scripts. */
     load() {
       this.loading ??= new Promise((resolve) => {
         const script = document.createElement("script");
@@ -56,7 +56,7 @@
     get scene() {
       return this.stats.scene ?? this.name;
     }
-    /** Runs of a sweep are told by their values, all being of one scene. */
+    /** Label of a run of a sweep: its values, since all runs have the same scene. */
     get title() {
       return Object.keys(this.values).length > 0 ? this.name.replace(/\/[^/]*$/, "") : this.name;
     }
@@ -71,7 +71,7 @@
       return known(width) && known(height) ? width / height : 16 / 9;
     }
 
-    // Pictures a second as shown.
+    // Pictures per second.
     get fps() {
       return this.pictures.fps > 0 ? this.pictures.fps : ASSUMED_FPS;
     }
@@ -92,7 +92,7 @@
       return this.pictureAt(frame / (this.fps * this.pictures.step));
     }
 
-    /** One value for each simulated frame, or undefined where the statistics have none. */
+    /** One value per simulated frame, or undefined if the statistics do not have the column. */
     column(name) {
       const column = this.columns[name];
       return column?.some(known) ? column : undefined;
@@ -101,7 +101,7 @@
       return this.columns[name]?.[this.rows?.get(frame)];
     }
 
-    /** Of all compared pictures: {level, text, note}, or null where none was. */
+    /** Verdict over all compared pictures: {level, text, note}, or null if none was compared. */
     get likeness() {
       if (this.comparison.length === 0) return null;
       const differing = this.comparison.filter(({ verdict }) => verdict === "differs").length;
@@ -117,7 +117,7 @@
     get warnings() {
       return this.stats.warnings ?? [];
     }
-    /** Why it ended early, and what it warned of. */
+    /** Why the run ended early, and its warnings. */
     get reasons() {
       return this.stats.message ? [this.stats.message, ...this.warnings] : this.warnings;
     }
@@ -139,7 +139,7 @@
 
   runs.forEach((run, place) => (run.place = place));
 
-  // Keys of which runs of a sweep have several values. Texts stand as the sweep has them, numbers by their size.
+  // Keys with several values among the runs of a sweep. Texts keep the order of the sweep, numbers are sorted by value.
   const keys = [...new Set(runs.flatMap(({ values }) => Object.keys(values)))];
   const swept = keys.filter((key) => new Set(runs.map(({ values }) => values[key])).size > 1).map((key) => {
     const texts = [...new Set(runs.map(({ values }) => values[key]))];
@@ -150,7 +150,7 @@
   });
 
   const age = (run) => run.date?.getTime() ?? 0;
-  // Runs of a sweep are versions only of those that have its values.
+  // A run of a sweep is a version of another run only if both have the same values.
   const shot = (run) => JSON.stringify([run.scene, run.values]);
   /** Runs of the same scene, the newest first. */
   const versions = (run) => runs.filter((other) => shot(other) === shot(run)).sort((a, b) => age(b) - age(a));

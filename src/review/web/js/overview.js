@@ -4,7 +4,7 @@
   const { h } = review;
   const { date, plural } = review.format;
   const ALL_COLUMNS = ["frames", "particles", "strain", "distance", "error", "newton", "cpu_frame"].map((key) => review.figure[key]);
-  // A sweep has columns of its own: those in which its runs are all alike make room.
+  // For a sweep, its keys get columns, and columns with the same value in all runs are hidden.
   const tells = ({ of }) => new Set(review.model.runs.map((run) => of(run).value).filter((value) => value !== undefined)).size > 1;
   const SWEPT = review.model.swept.length > 0;
   const COLUMNS = SWEPT ? ALL_COLUMNS.filter(tells) : ALL_COLUMNS;
@@ -39,7 +39,7 @@
       this.rows = review.model.runs.map((run) => {
         try {
           return this.buildRow(run);
-        } catch (error) { // of one run: the others are shown all the same
+        } catch (error) { // in one run; the other runs are still shown
           return this.buildBrokenRow(run, error);
         }
       });
@@ -157,7 +157,7 @@
       this.remember();
     }
 
-    // Again on the same column: the other way round. What is not known comes last.
+    // A second click on the same column reverses the order. Unknown values come last.
     sort(key) {
       const down = this.sorters.get(key)?.ariaSort === "ascending";
       const value = ({ run }) => {

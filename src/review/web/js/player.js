@@ -3,17 +3,17 @@
 {
   const { h } = review;
 
-  // What a browser says of a video that it does not play may be nothing, or words for its makers.
+  // Browsers give no reason, or only a technical one, for a video that they do not play.
   const REASONS = { 1: "it was interrupted", 2: "the file cannot be read", 3: "the file is damaged", 4: "the file is not there, or this browser does not know how its pictures are coded" };
   const reasonOf = (error) => [REASONS[error?.code] ?? "unknown reason", error?.message].filter(Boolean).join("; ");
 
-  // A video of constant frame rate. Picture k lasts from k / fps to (k + 1) / fps: its middle is sought, so that no
-  // rounding can hit a neighbour. data-picture tells which one is on screen.
+  // A video of constant frame rate. Picture k lasts from k / fps to (k + 1) / fps: the player seeks the middle, so that
+  // rounding cannot lead to a neighbour. data-picture is the index of the picture on screen.
   class VideoTrack {
     constructor(run, { onCount, onError }) {
       this.run = run;
       this.wanted = 0;
-      this.sought = null; // picture that the browser is looking for
+      this.sought = null; // picture that the browser seeks
       this.element = h("video", { preload: "auto", playsinline: true, disablepictureinpicture: true, tabindex: -1, "aria-label": `Video of ${run.label}` });
       this.element.muted = true;
       this.element.addEventListener("loadedmetadata", () => {
@@ -32,7 +32,7 @@
       this.wanted = picture;
       if (this.sought === null && this.element.readyState > 0) this.seek();
     }
-    // One search at a time: a scrubber moves faster than a browser seeks.
+    // One seek at a time: a scrubber moves faster than a browser seeks.
     seek() {
       this.sought = this.wanted;
       this.element.currentTime = (this.sought + 0.5) / this.run.fps;
@@ -61,7 +61,7 @@
         : () => requestAnimationFrame(() => report(Math.floor(element.currentTime * this.run.fps)));
       await_next();
     }
-    // While playing: leave it alone unless it is more than a picture off.
+    // While playing, corrects the time only if it is off by more than one picture.
     stayNear(picture) {
       const behind = picture + 0.5 - this.element.currentTime * this.run.fps;
       if (Math.abs(behind) > 1.5 && this.sought === null) this.show(picture);
@@ -190,7 +190,7 @@
       this.tell("state");
     }
     pause() {
-      this.go(this.picture); // every track to just this picture
+      this.go(this.picture); // moves every track to exactly this picture
     }
     toggle() {
       this.playing ? this.pause() : this.play();

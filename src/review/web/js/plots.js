@@ -1,4 +1,5 @@
-// Plots over time, with a line at the picture that is shown. Click: go there. Drag: zoom in all plots; double click: out.
+// Plots over time, with a line at the picture that is shown. A click shows the picture at that time, a drag zooms all
+// plots, a double click resets the zoom.
 "use strict";
 {
   const { h } = review;
@@ -9,7 +10,7 @@
   const minus = (a, b) => a.map((value, i) => (known(value) ? Math.max(0, value - (b?.[i] ?? 0)) : null));
   const series = (name, label, scale = 1) => ({ label, of: (run) => run.column(name)?.map((value) => (known(value) ? value * scale : null)) });
 
-  /** What can be plotted. `stacked`: each series on top of those before it. `log`: offered a logarithmic axis. */
+  /** What can be plotted. `stacked`: each series on top of those before it. `log`: a logarithmic axis can be chosen. */
   review.PLOTS = [
     { id: "energy", title: "Energy", unit: "J", log: true, series: [
       series("kinetic_energy_j", "kinetic"), series("elastic_energy_j", "elastic") ] },
@@ -70,7 +71,7 @@
         this.canvas);
     }
 
-    // A logarithm needs something above zero.
+    // A logarithmic axis needs a value above zero.
     get hasLog() {
       return this.definition.log && this.curves.some(({ values }) => values.some((value) => value > 0));
     }
@@ -87,7 +88,7 @@
       this.draw();
     }
 
-    // What uPlot gets: sums where curves are stacked, gaps where a logarithm has no value.
+    // Data for uPlot: sums for stacked curves, gaps for values without a logarithm.
     get drawn() {
       const [times, ...columns] = this.values;
       if (this.stacked) return [times, ...columns.map((_, i) => sums(columns.slice(0, i + 1)))];
@@ -114,7 +115,7 @@
         hooks: { setScale: [() => this.place()], setSize: [() => this.place()], ready: [(plot) => this.ready(plot)] },
       };
     }
-    // From zero, since these are amounts; with a little air above.
+    // The range starts at zero, since these are amounts, and has a margin above.
     range(low, high) {
       if (!known(low) || !known(high)) return [0, 1];
       return [Math.min(0, low), high > 0 ? 1.05 * high : 1];
@@ -131,7 +132,7 @@
 
     ready(plot) {
       plot.over.append(this.playhead);
-      queueMicrotask(() => this.showTime(this.time)); // uPlot itself shows no values until the mouse comes
+      queueMicrotask(() => this.showTime(this.time)); // otherwise uPlot shows no values until the mouse enters
       plot.over.addEventListener("click", () => {
         if (plot.select.width < 3 && known(plot.cursor.left)) this.onSeek(plot.posToVal(plot.cursor.left, "x"));
       });

@@ -1,4 +1,4 @@
-// Dark or light: the system's choice unless the reader made another. Runs before anything is drawn.
+// Dark or light: as in the system unless the reader has chosen. Runs before anything is drawn.
 "use strict";
 
 const review = {}; // the one name that the scripts of this page share
@@ -8,7 +8,7 @@ const review = {}; // the one name that the scripts of this page share
   const CHOICES = ["auto", "light", "dark"];
   const changed = new EventTarget();
 
-  // A browser may refuse storage to a page opened from a file; the choice then lasts until it is closed.
+  // A browser may refuse storage to a page that is opened from a file. The choice is then lost when the page is closed.
   const stored = () => {
     try {
       return localStorage.getItem(KEY);

@@ -37,7 +37,8 @@
   };
   const icon = (name) => svg("svg", { viewBox: "0 0 16 16", "aria-hidden": "true", class: "icon" }, svg("path", { d: ICONS[name] }));
 
-  // Pictures of the lead in which cloth is pinched, as [first, last] ranges.
+  // Pictures of the leading run in which cloth is in a pinched region (no space between bodies), as ranges [first,
+  // last].
   const pinchedRanges = (run) => {
     const ranges = [];
     for (let picture = 0; picture < run.pictures.count; ++picture) {
@@ -141,7 +142,7 @@
       return this.tiles.length > 0 && h("div.sheet", { role: "group", "aria-label": "Contact sheet" }, this.tiles);
     }
 
-    // Below a tile, whether its picture is like the reference.
+    // Below a tile: whether its picture matches the reference.
     likenessMark(picture) {
       const [lead, other] = this.runs;
       const pair = other && other === lead.reference && lead.comparison.find((entry) => entry.picture === picture);
@@ -151,7 +152,7 @@
     followPointer() {
       const move = (event) => {
         if (this.mode !== "slider" || event.target === this.split || event.buttons === 0) return;
-        if (event.type === "pointerdown") this.stage.setPointerCapture(event.pointerId); // also past the edges
+        if (event.type === "pointerdown") this.stage.setPointerCapture(event.pointerId); // also outside of the element
         const box = this.blend.getBoundingClientRect();
         this.setSplit((100 * (event.clientX - box.left)) / box.width);
       };
