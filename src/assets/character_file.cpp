@@ -14,7 +14,7 @@
 namespace weft::assets {
 namespace {
 
-/// Up axis (y) to which assimp's readers rotate their formats.
+/// Up axis if neither the scene nor the file states one: y.
 constexpr int kUsualUp = 1;
 
 ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh, const MeshChoice& choice) {

@@ -21,13 +21,13 @@ struct FileAxes {
 
 struct LoadedCharacter {
   character::Character character;     ///< in metres and the axes of the scene
-  std::vector<std::string> warnings;  ///< each with `where`, file and part
+  std::vector<std::string> warnings;  ///< each names scene entry, file, and mesh, bone or clip
   double scale = 1;                   ///< metres per unit of the file that was applied
 };
 
 /// Reads hierarchy, skin, morph targets and clips of glTF, FBX, Collada, X, B3D, BVH and other formats of assimp, in a
 /// child process. A skeleton without a mesh gets a mesh of sticks. `where` names the scene entry. Throws
-/// Error(asset_unreadable) with `where`, file and part.
+/// Error(asset_unreadable) with `where`, the file, and the mesh, bone or clip.
 LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
                                const MeshChoice& choice = {});
 

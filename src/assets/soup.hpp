@@ -39,8 +39,8 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object = {}
 /// Appends a polygon; one with more than four corners is triangulated.
 void append_face(Soup& soup, std::span<const Index> corners);
 
-/// The surface of a soup as quads if the soup contains only quads and none of them is flat, else as triangles.
-/// Triangles without area (a repeated corner, or all corners on a line) are left out and counted.
+/// The surface of a soup as quads if the soup contains only quads and both halves of each have an area, else as
+/// triangles. Triangles without area (a repeated corner, or all corners on a line) are left out and counted.
 mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles);
 
 /// Serialises a soup for transfer between two processes of the same program, and back.

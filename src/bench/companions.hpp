@@ -23,8 +23,8 @@ struct ErrorPart {
 };
 
 struct ErrorEstimate {
-  /// A start moved by a micrometre changes the run by more than 0.3 of the step and solver errors (this limit is at
-  /// least 10 µm and at most a millimetre), or this companion fails.
+  /// Random offsets of the particles at the start, of up to a micrometre, change the run by more than 0.3 of the step
+  /// and solver errors (this limit is at least 10 µm and at most a millimetre), or this companion fails.
   bool start_matters = false;
   /// Doubling the step fails, or changes the run too little compared with halving it: the error does not follow the
   /// order of the method.
@@ -45,12 +45,12 @@ struct CompanionOptions {
 };
 
 /// Estimates the distance of a run from the limit of infinitely short, exactly solved steps, and with options.mesh of
-/// infinitely small cells. Companions: a start moved by a micrometre; a tenth of solver.newton_tolerance; and, with
-/// that tolerance, half and twice the step (time.tolerance accordingly), and half and a quarter of the cells.
-/// Differences between steps and between meshes are extrapolated by Richardson's method with the observed order,
-/// limited to half to all of the expected order. Only the frames in `run` are compared. If a companion other than that
-/// with twice the step fails, its part is marked as missing. Throws Error(interrupted) if options.proceed returns
-/// false.
+/// infinitely small cells. Companions: particles moved at random by up to a micrometre at the start; a tenth of
+/// solver.newton_tolerance; and, with that tolerance, half and twice the step (time.tolerance accordingly), and half
+/// and a quarter of the cells along each side. Differences between steps and between meshes are extrapolated by
+/// Richardson's method with the observed order, clamped to between 0.5 and 1 times the expected order. Only the frames
+/// in `run` are compared. If a companion other than that with twice the step fails, its part is marked as missing.
+/// Throws Error(interrupted) if options.proceed returns false.
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options = {});
 
 }  // namespace weft::bench

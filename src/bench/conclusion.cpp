@@ -23,7 +23,8 @@ constexpr double kTargets[] = {1e-2, 1e-3, 1e-4};
 constexpr double kMaxUncertaintyRatio = 0.3;
 // Errors below this count as no motion [m].
 constexpr double kNegligibleMotion = 1e-12;
-// The cost of a digit is fitted to this many of the finest runs of a series.
+// The factor of CPU time for a tenfold smaller error (cost_of_a_digit()) is fitted to this many of the finest runs of a
+// series.
 constexpr std::size_t kMaxFittedRuns = 4;
 
 bool is_candidate(const Run& run) {

@@ -25,13 +25,15 @@ std::string_view name_of(VariedParameter axis);
 
 using Factors = std::array<double, kVariedValues>;
 
+/// A trial breaks if surfaces pass through each other, cloth exceeds `max_stretch` or is caught in an obstacle, a pin
+/// is held back, energy appears, or the solver leaves forces.
 enum class TrialVerdict {
-  holds,       ///< ran to the end, and nothing broke
+  holds,       ///< ran to the end, and nothing broke that does not break in the unchanged scene
   warned,      ///< ran to the end, but something broke on the way
   refused,     ///< the simulation ended with an error
   not_finite,  ///< a position is not finite
   too_slow,    ///< aborted: it takes many times as long as the unchanged scene
-  impossible,  ///< such a scene cannot be built; not counted
+  impossible,  ///< such a scene cannot be built; margins ignore it
 };
 std::string_view describe(TrialVerdict verdict);
 
@@ -42,7 +44,7 @@ struct Trial {
   /// What broke here but not in the unchanged scene; for the unchanged scene: everything that broke.
   std::vector<std::string> broken = {};
   bool mends = false;       ///< nothing breaks, not even what breaks in the unchanged scene
-  std::string reason = {};  ///< error message of a refusal
+  std::string reason = {};  ///< error message if refused or impossible
   double step = 0;          ///< time step [s]; 0 if time.tolerance chooses it
   int frames = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
   double max_strain = 0;  ///< largest over all frames

@@ -8,7 +8,8 @@
 
 namespace weft::bench {
 
-/// The smallest margins of the scene in one sentence.
+/// One sentence: the limit nearest to the scene's values; if the scene itself breaks, the smallest change that mends
+/// it.
 std::string margin_sentence(const SceneStability& stability);
 /// For each parameter, the first factors below and above 1 at which the scene breaks, and what breaks.
 Table margin_table(const SceneStability& stability);

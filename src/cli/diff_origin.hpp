@@ -6,8 +6,8 @@
 
 namespace weft::cli {
 
-/// Lists the differences of scene and program, from the metadata of the pictures or videos and from the effective
-/// scenes beside them. Empty if a scene is not known.
+/// Describes how scene, program version and drawing settings of two runs differ, from the metadata of their pictures or
+/// videos and the effective scenes beside them. Empty if the metadata of either names no scene.
 std::string describe_origin_changes(const std::filesystem::path& reference, const std::filesystem::path& test);
 
 }  // namespace weft::cli

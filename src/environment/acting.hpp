@@ -45,15 +45,16 @@ struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
   KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the particles of all following pins
   std::vector<Part> parts;   ///< those of the scene, and those that pins follow
-  std::vector<Index> limbs;  ///< limb of each vertex of the mesh, from 0
+  std::vector<Index> limbs;  ///< per vertex: number of its character::Limb; of a sequence: its connected component
   std::vector<std::string> warnings;
   std::vector<std::string> notes;                                 ///< for the summary: changes made to the body
   std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if that has none
 };
 
-/// Reads the files of a character and computes its key frames, from the time at which it begins to grow or move to the
-/// end of the scene. Moves its skin to leave space for the `cloths` on it. Throws Error(asset_unreadable,
-/// scene_invalid) with scene line, file and part.
+/// Reads the files of a character and computes its key frames, from the time at which it begins to grow or move until
+/// it stops growing or, if it moves, to the end of the scene; one key if it does neither. Moves its skin to leave space
+/// for the `cloths` on it. Throws Error(asset_unreadable, scene_invalid) that names scene line, file and the mesh, bone
+/// or clip.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowingPin> following = {}, std::span<const ClothAtStart> cloths = {});
 
@@ -68,12 +69,13 @@ struct StandingBody {
 /// make_actor() does, and Error(scene_invalid) that begins with `where` for a sequence of meshes.
 StandingBody make_standing_body(const scene::Scene& scene, const scene::Character& character, const std::string& where);
 
-/// Size of what make_actor() would store, for the plan; does not make it.
+/// Size of the key frames of a character, which `weft check --plan` prints.
 struct KeyFrameCount {
   std::size_t keys = 0, vertices = 0, bytes = 0;
   /// parts that do not collide, with their numbers of vertices
   std::vector<std::pair<std::string, std::size_t>> left_out = {};
 };
+/// Computes it without sampling the motion.
 KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character);
 
 }  // namespace weft::environment

@@ -135,7 +135,7 @@ void write_material(std::ostream& out, const std::string& prim, const std::strin
   out << "        }\n";
 }
 
-// Unique names of the materials of the parts.
+// Names of the materials of the parts, unique within the object.
 std::vector<std::string> part_prims(const frame::Surface& surface, const std::string& prim) {
   std::vector<std::string> names;
   for (std::size_t p = 0; p < surface.parts.size(); ++p)
@@ -154,7 +154,7 @@ bool UsdFile::Samples::add(int frame, std::string value) {
   const bool changed = value != last_;
   if (changed && text_.empty()) {
     text_ = fmt::format("            {}: {},\n", first_frame_, first_);
-    // The value was constant until now: repeats it at the last frame, as samples are interpolated linearly.
+    // The value was constant until now. Samples are interpolated linearly, so it is repeated at the previous frame.
     if (last_frame_ != first_frame_) text_ += fmt::format("            {}: {},\n", last_frame_, first_);
   }
   if (!text_.empty()) text_ += fmt::format("            {}: {},\n", frame, value);
@@ -235,7 +235,7 @@ void UsdFile::write_materials(std::ostream& out) const {
   out << "    }\n";
 }
 
-// `st` maps pictures; without a mapping of its own it is weft and warp.
+// Writes texture coordinates of pictures as `st`; a surface without them gets weft and warp as `st`.
 void UsdFile::write_places(std::ostream& out, const frame::Surface& surface, const Object& object) {
   const CutSurface cut = cut_at_seams(surface, object.materials, object.vertices);
   if (cut.uv.empty()) return;

@@ -39,7 +39,8 @@ Vec3 RigidFrame::corner(std::size_t k) {
 RigidFrame::RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
   if (triangles.empty() || !is_closed(triangles)) throw std::invalid_argument("a closed surface");
   Moments moments;
-  const Vec3 origin = vertices[static_cast<std::size_t>(triangles.front()[0])];  // near, for small rounding errors
+  const Vec3 origin =
+      vertices[static_cast<std::size_t>(triangles.front()[0])];  // a point of the body keeps rounding errors small
   for (const Triangle& t : triangles)
     add_tetrahedron(vertices[static_cast<std::size_t>(t[0])] - origin,
                     vertices[static_cast<std::size_t>(t[1])] - origin,

@@ -20,8 +20,8 @@ struct Before {
   const std::vector<Vec3>* positions(const frame::Surface& surface, std::size_t count) const;
 };
 
-/// Works on the CPU in double precision: rasterises the triangle in front, then intersects the ray of the pixel with
-/// its plane exactly. Lace counts as solid.
+/// Rasterises on the CPU in single precision to find the front triangle of each pixel, then intersects the ray of the
+/// pixel with its plane in double precision. Holes of pictures with an alpha channel (lace) count as cloth.
 class DataPasses {
  public:
   DataPasses(int width, int height) : width_(width), height_(height) {}
@@ -31,8 +31,9 @@ class DataPasses {
   /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, towards the viewer
   /// - id.object: 0 nothing, 1 the floor, 2 + i surface i of the picture; id.part: 1 + i part i of that surface, else 0
   /// - uv.U, .V: rest coordinates (weft, warp) [m]
-  /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up]; 0 if it did not exist then
-  /// - heat.V: strain or speed, if the stage shows either
+  /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], motion of the camera included; a
+  ///   surface that did not exist then counts as still
+  /// - heat.V: strain or speed, if Stage::heat selects one; otherwise there is no such layer
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
             const std::optional<Before>& before, image::Layers& layers);
 

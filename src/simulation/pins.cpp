@@ -66,10 +66,10 @@ Vec3 middle_of(std::span<const environment::Chosen> particles, std::span<const V
 // Takes time linear in the particles of all pins.
 std::vector<Pins::Owner> Pins::owners(const environment::Environment& environment,
                                       const std::vector<Index>& first_particle) {
-  std::size_t particles = 0;
+  std::size_t count = 0;
   for (std::size_t c = 0; c < environment.cloths.size(); ++c)
-    particles = static_cast<std::size_t>(first_particle[c]) + environment.cloths[c].start.size();
-  std::vector<Owner> owner_of(particles);
+    count = static_cast<std::size_t>(first_particle[c]) + environment.cloths[c].start.size();
+  std::vector<Owner> owner_of(count);
   for (const bool faded : {false, true}) {
     std::size_t pin = 0;
     for (std::size_t c = 0; c < environment.cloths.size(); ++c)

@@ -17,8 +17,8 @@ const char* text(const Gl& gl, GLenum name) {
   return found ? found : "unknown";
 }
 
-/// Uses the Mesa behind EGL that an archive may include; otherwise libEGL and Mesa search system folders for each
-/// other's files.
+/// If the program runs from its unpacked archive (`ninja bundle`), EGL uses the Mesa driver in it. Otherwise libEGL and
+/// Mesa search system folders for each other's files.
 void use_own_mesa() {
   const std::filesystem::path libraries = own_installation().libraries, vendor = libraries / "egl_vendor.json";
   std::error_code none;
@@ -30,8 +30,8 @@ void use_own_mesa() {
 /// Mesa reads these variables once, when the process makes its first context.
 void set_rasteriser_environment(int threads) {
   use_own_mesa();
-  setenv("LIBGL_ALWAYS_SOFTWARE", "1",
-         0);  // else EGL could use a graphics card: other pictures, and no llvmpipe threads
+  // Otherwise EGL may use a graphics card, which draws slightly other pictures and has no llvmpipe threads.
+  setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
   // Mesa 22.3: 512-bit vectors with 4x multisampling crash llvmpipe; its default width always works.
   const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH");
   if (width && std::string_view(width) == "512") unsetenv("LP_NATIVE_VECTOR_WIDTH");
