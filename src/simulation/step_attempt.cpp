@@ -33,7 +33,7 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
 
 // Sets up pins, bodies, forces and contacts. Returns where the solve starts.
 StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& report) {
-  const auto [t, h] = std::pair(attempt.t, attempt.h);
+  const double t = attempt.t, h = attempt.h;
   held_ = pins_.held();
   hold_frames(environment_, cloth_, t + h, held_);
   // Whatever is released changes its acceleration at once, so that the history does not predict what follows.
