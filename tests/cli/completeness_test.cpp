@@ -38,7 +38,8 @@ class Completeness : public CachedRun {
 TEST_F(Completeness, RenderOfAPartTakesTheFramesBeforeItsEndIfTold) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
   expect_not_whole({"render", "c", "-o", "all.mp4"}, "c: of frames 0:21 frames 8:21 are missing; weft simulate");
-  expect_not_whole({"render", "c", "-o", "all.mp4", "--frames", "5:12:2"}, "c: of frames 5:12:2 frames 9, 11 are missing");
+  expect_not_whole({"render", "c", "-o", "all.mp4", "--frames", "5:12:2"},
+                   "c: of frames 5:12:2 frames 9, 11 are missing");
   expect_not_whole({"render", "c", "-o", "all.mp4", "--frames", "8:12", "--partial"}, "frames 8:12 are missing");
   expect_not_whole({"thumbnail", "c", "-o", "t.png", "--frame", "8"}, "frame 8 is missing");
   EXPECT_FALSE(fs::exists(folder_ / "all.mp4"));
