@@ -17,7 +17,7 @@ struct PoseSample {
   Vec3 acceleration{0, 0, 0};          ///< [m/s²]
   Vec3 angular_acceleration{0, 0, 0};  ///< [rad/s²]
 
-  /// World velocity [m/s] of the body point at `arm` from the body's origin (world directions) [m].
+  /// World velocity [m/s] of the body's point at position + `arm`; `arm` along the axes of the world [m].
   Vec3 velocity_at(const Vec3& arm) const { return velocity + angular_velocity.cross(arm); }
 
   /// World acceleration [m/s²] of the same point.
@@ -26,13 +26,13 @@ struct PoseSample {
   }
 };
 
-/// Interpolates rotations through keys. If at most one angle changes between two keys, the rotation turns by that
-/// change, including whole turns. Otherwise it turns by the smallest angle; a half turn continues the direction of the
-/// turn before it. Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of
-/// unit quaternions with derivatives in closed form (Kim, Kim & Shin, "A general construction scheme for unit
-/// quaternion curves with simple high order derivatives", SIGGRAPH 1995); angular velocity is continuous. Angular
-/// velocities at the keys are the slopes_between_keys() (spline.hpp) of the turns, so rotation about one axis is the
-/// Spline of the angle.
+/// Interpolates rotations through keys. If both keys give Euler angles and at most one of the three differs, the
+/// rotation turns by that difference, including whole turns. Otherwise it turns by the smallest angle; a half turn
+/// continues the direction of the turn before it. Linear: constant angular velocity between keys (slerp). Cubic: a
+/// chain of cubic Bézier curves of unit quaternions with derivatives in closed form (Kim, Kim & Shin, "A general
+/// construction scheme for unit quaternion curves with simple high order derivatives", SIGGRAPH 1995); angular velocity
+/// is continuous. Angular velocities at the keys are slopes_between_keys() (spline.hpp) of the rotation vectors between
+/// keys, so rotation about one axis is the Spline of the angle.
 class RotationSpline {
  public:
   struct Sample {
@@ -61,8 +61,8 @@ class RotationSpline {
   std::vector<Segment> segments_;
 };
 
-/// The pose of a track at any time. Before the first key and after the last one the body rests; at the first key it has
-/// its velocity, at the last key it rests.
+/// The pose of a track at any time. Before the first key and from the last one on the body rests; at the first key
+/// it has the velocity of the first segment.
 class Track {
  public:
   /// `rest`: the pose of a track without keys.
