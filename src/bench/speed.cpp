@@ -8,7 +8,6 @@
 
 #include "core/archive.hpp"
 #include "core/memory.hpp"
-#include "core/parallel.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::bench {
@@ -76,6 +75,15 @@ double SpeedRun::bytes_a_particle() const {
   return static_cast<double>(peak_memory - memory_before) / static_cast<double>(std::max<std::int64_t>(1, particles));
 }
 
+double SpeedRun::serial_fraction() const {
+  return 1 - loops.seconds / all().wall_s;
+}
+
+double SpeedRun::largest_gain(std::size_t number) const {
+  const double wall = all().wall_s;
+  return wall / (wall - loops.seconds + loops.seconds_on[number]);
+}
+
 SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, const SpeedFrames& frames,
                        const std::function<Drawing()>& open_drawing) {
   set_thread_count(setting.threads);
@@ -89,7 +97,9 @@ SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, c
   if (draw) draw(*simulation.snapshot());
   for (int k = 1; k < frames.end; ++k) {
     simulation::FrameReport report;
+    if (setting.threads == 1 && k >= frames.begin) counted_loops = &run.loops;
     const StageTime whole = timed([&] { report = simulation.advance(); });
+    counted_loops = nullptr;
     if (k < frames.begin) continue;
     count(report, whole, run);
     if (draw) run.at(SpeedStage::drawing) += timed([&] { draw(*simulation.snapshot()); });
@@ -108,7 +118,9 @@ template <class Archive>
 void serialize(Archive& archive, SpeedRun& run) {
   serialize_values(archive, run.setting.size, run.setting.threads, run.setting.step, run.particles, run.full_blocks,
                    run.isotropic_blocks, run.frames, run.steps, run.rejected_steps, run.newton_iterations,
-                   run.linear_iterations, run.memory_before, run.peak_memory, run.bandwidth, run.positions);
+                   run.linear_iterations, run.memory_before, run.peak_memory, run.bandwidth, run.positions, run.loops.loops,
+                   run.loops.chunks, run.loops.seconds);
+  for (double& seconds : run.loops.seconds_on) serialize_values(archive, seconds);
   for (StageTime& stage : run.stages) serialize_values(archive, stage.wall_s, stage.cpu_s);
   serialize_plain(archive, run.failure);
 }

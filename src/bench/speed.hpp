@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "core/timer.hpp"
 #include "frame/frame_snapshot.hpp"
 #include "scene/scene.hpp"
@@ -39,6 +40,7 @@ struct SpeedRun {
   int frames = 0;  ///< number of measured frames; the counts and times below are sums over them
   int steps = 0, rejected_steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::array<StageTime, kSpeedStages> stages{};
+  LoopCounts loops = {};  ///< if the run had one thread, else zero
   std::int64_t memory_before = 0, peak_memory = 0;  ///< of the process, before building the scene and at its peak
                                                     ///< [bytes]
   double bandwidth = 0;                             ///< see read_bandwidth() [bytes/s]
@@ -50,6 +52,10 @@ struct SpeedRun {
   /// Sum over all stages.
   StageTime all() const;
   double bytes_a_particle() const;
+  /// Fraction of the wall time in which further threads would have nothing to do. Only of runs with one thread.
+  double serial_fraction() const;
+  /// How many times as fast the run would be on each number of LoopCounts::kThreads, if threads cost nothing.
+  double largest_gain(std::size_t number) const;
 };
 
 /// Measured frames, half-open interval; earlier frames are simulated too. Frame 0 takes no time.

@@ -181,6 +181,20 @@ Table threads_table(const std::vector<SpeedRun>& runs) {
   return table;
 }
 
+Table loops_table(const std::vector<SpeedRun>& runs) {
+  Table table{{"particles", "serial", "loops a step", "chunks a step"}};
+  for (std::size_t threads : LoopCounts::kThreads) table[0].push_back(fmt::format("{} threads", threads));
+  for (const SpeedRun* run : over_sizes(runs)) {
+    if (run->loops.loops == 0) continue;
+    const auto a_step = [&](std::int64_t number) { return grouped(number / std::max(1, run->steps)); };
+    table.push_back({grouped(run->particles), fmt::format("{:.1f} %", 100 * run->serial_fraction()),
+                     a_step(run->loops.loops), a_step(run->loops.chunks)});
+    for (std::size_t t = 0; t < LoopCounts::kThreads.size(); ++t)
+      table.back().push_back(fmt::format("{:.1f}", run->largest_gain(t)));
+  }
+  return table;
+}
+
 Table steps_table(const std::vector<const SpeedRun*>& runs) {
   const auto stages = stages_of(runs);
   Table table{{"step of the scene, times", "steps", "rejected", "Newton a step", "linear a Newton"}};
@@ -382,6 +396,11 @@ std::string speed_markdown(const SpeedReport& report, const std::string& plot) {
   if (threads.size() > sizes.size() + 1)
     section("Threads", "Wall ms by stage, CPU ms of all threads, and a hash of the positions of the last frame.",
             threads);
+  section("What threads can gain",
+          "Counted with one thread: the fraction of the time outside of loops that threads divide, these loops and "
+          "their chunks, and at most how many times as fast so many threads are, if waiting for each other costs "
+          "nothing and all chunks of a loop take equal times.",
+          loops_table(report.runs));
   if (steps.size() > 1)
     section("Steps",
             fmt::format("CPU ms by stage, {} particles, threads: {}.", grouped(steps.front()->particles),

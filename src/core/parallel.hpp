@@ -6,14 +6,60 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
+
+#include "core/timer.hpp"
 
 namespace weft {
 
 /// Sets the maximum number of threads of the loops below; 0: all cores. Call before any loop runs.
 void set_thread_count(int threads);
 int thread_count();
+
+/// What the loops below would gain from threads. Counted with one thread, on which a loop takes the time of all its
+/// chunks.
+struct LoopCounts {
+  static constexpr std::array<std::size_t, 4> kThreads{2, 4, 8, 16};
+
+  std::int64_t loops = 0, chunks = 0;  ///< loops of several chunks, outside of others, and their chunks
+  double seconds = 0;                  ///< wall time of these loops
+  /// Wall time of these loops on each number of kThreads, if chunks take equal times and threads start at once.
+  std::array<double, kThreads.size()> seconds_on{};
+};
+/// Where loops count themselves; null: nowhere. Set it only while thread_count() is 1.
+inline LoopCounts* counted_loops = nullptr;
+
+/// Counts a loop during its lifetime if it has several chunks.
+class CountedLoop {
+ public:
+  explicit CountedLoop(std::size_t chunks) : chunks_(chunks), counts_(chunks > 1 ? counted_loops : nullptr) {
+    if (counts_ == nullptr) return;
+    counted_loops = nullptr;  // for loops inside of this one
+    timer_.restart();
+  }
+  ~CountedLoop() {
+    if (counts_ == nullptr) return;
+    const double seconds = timer_.seconds();
+    ++counts_->loops;
+    counts_->chunks += static_cast<std::int64_t>(chunks_);
+    counts_->seconds += seconds;
+    for (std::size_t t = 0; t < LoopCounts::kThreads.size(); ++t) {
+      const std::size_t threads = LoopCounts::kThreads[t], rounds = (chunks_ + threads - 1) / threads;
+      counts_->seconds_on[t] += seconds * static_cast<double>(rounds) / static_cast<double>(chunks_);
+    }
+    counted_loops = counts_;
+  }
+  CountedLoop(const CountedLoop&) = delete;
+  CountedLoop& operator=(const CountedLoop&) = delete;
+
+ private:
+  std::size_t chunks_;
+  LoopCounts* counts_;
+  WallTimer timer_;
+};
 
 /// Items per chunk, so that a chunk takes 10 to 50 µs: the first for vectors and lists of pairs, the second for more
 /// expensive items (contacts, leaves). Changing them changes the bits of sums.
@@ -25,7 +71,10 @@ template <class Body>
 void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
   const auto run = [&](std::size_t c) { body(c * chunk, std::min(count, (c + 1) * chunk)); };
-  if (chunks <= 1 || thread_count() == 1) {
+  if (chunks <= 1) {
+    if (chunks == 1) run(0);
+  } else if (thread_count() == 1) {
+    const CountedLoop counted(chunks);
     for (std::size_t c = 0; c < chunks; ++c) run(c);
   } else {
     tbb::parallel_for(std::size_t{0}, chunks, run);

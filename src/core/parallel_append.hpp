@@ -20,7 +20,10 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
 template <class List, class Body>
 void parallel_append(std::size_t count, std::size_t chunk, List& out, const Body& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
-  if (chunks <= 1 || thread_count() == 1) return body(std::size_t{0}, count, out);
+  if (chunks <= 1 || thread_count() == 1) {
+    const CountedLoop counted(chunks);
+    return body(std::size_t{0}, count, out);
+  }
   std::vector<List> found(chunks);
   parallel_for(count, chunk, [&](std::size_t begin, std::size_t end) { body(begin, end, found[begin / chunk]); });
   for (const List& list : found) append(out, list);

@@ -47,7 +47,11 @@ class Walk {
 
   /// Lists the same pairs as from_roots() in the same order. Descends until there are enough deferred calls.
   void from_roots_in_threads() {
-    if (thread_count() == 1 || a_.leaves().size() + b_.leaves().size() < kMinLeavesForThreads) return from_roots();
+    const bool is_large = a_.leaves().size() + b_.leaves().size() >= kMinLeavesForThreads;
+    if (thread_count() == 1 || !is_large) {
+      const CountedLoop counted(is_large ? kMinThreadTasks : 1);
+      return from_roots();
+    }
     std::vector<DeferredCall> stops, opened;
     deferred_ = &stops;
     from_roots();
