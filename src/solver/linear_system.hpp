@@ -82,6 +82,17 @@ struct LinearSystem {
   std::vector<Aggregates> aggregate_levels;
 };
 
+/// S_i block S_j, where S projects on the free directions. `constraint_of`: number of each particle's constraint, −1
+/// for none.
+inline Mat3 filtered(std::span<const ParticleConstraint> constraints, std::span<const Index> constraint_of, Index i,
+                     const Mat3& block, Index j) {
+  const Index of_i = constraint_of[static_cast<std::size_t>(i)], of_j = constraint_of[static_cast<std::size_t>(j)];
+  Mat3 result = block;
+  if (of_i >= 0) result = constraints[static_cast<std::size_t>(of_i)].free * result;
+  if (of_j >= 0) result = result * constraints[static_cast<std::size_t>(of_j)].free;
+  return result;
+}
+
 /// Calls visit(term) for each StencilTerm, then for each WideTerm.
 template <class Visit>
 void for_each_term(const LinearSystem& system, const Visit& visit) {
