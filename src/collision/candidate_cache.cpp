@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/numerics.hpp"
+#include "core/parallel_append.hpp"
 
 namespace weft::collision {
 namespace {
@@ -40,11 +41,13 @@ CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<co
 
 CandidatePairs& CandidateCache::collect_more(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, bool all) {
   std::vector<Vec3> low = low_, high = high_.empty() ? low_ : high_;
-  for (std::size_t v = 0; v < x_t1.size(); ++v) {
-    if (!all && is_at_end(v, x_t1[v], margin_)) continue;
-    low[v] = low[v].cwiseMin(x_t0[v]).cwiseMin(x_t1[v]);
-    high[v] = high[v].cwiseMax(x_t0[v]).cwiseMax(x_t1[v]);
-  }
+  parallel_for(x_t1.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      if (!all && is_at_end(v, x_t1[v], margin_)) continue;
+      low[v] = low[v].cwiseMin(x_t0[v]).cwiseMin(x_t1[v]);
+      high[v] = high[v].cwiseMax(x_t0[v]).cwiseMax(x_t1[v]);
+    }
+  });
   return collect(x_t0, low, high);
 }
 
@@ -52,10 +55,13 @@ CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<co
                                         std::span<const Vec3> high_t1) {
   const Motion motion(x_t0, low_t1, high_t1);
   find_clear_bodies(motion);
-  double largest_motion = 0;
-  for (std::size_t i = 0; i < x_t0.size(); ++i)
-    if (!is_clear(bodies_.body_of(static_cast<Index>(i))))
-      largest_motion = std::max(largest_motion, (high_t1[i] - x_t0[i]).cwiseMax(x_t0[i] - low_t1[i]).maxCoeff());
+  const double largest_motion = parallel_max(x_t0.size(), kGrainSize, 0.0, [&](std::size_t begin, std::size_t end) {
+    double largest = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      if (!is_clear(bodies_.body_of(static_cast<Index>(i))))
+        largest = std::max(largest, (high_t1[i] - x_t0[i]).cwiseMax(x_t0[i] - low_t1[i]).maxCoeff());
+    return largest;
+  });
   // In a slow step, add the Verlet margin so that the pairs last for several steps.
   const double verlet_margin = 2 * numerics.contact.margin * detection_distance_;
   const double margin =
@@ -112,9 +118,9 @@ void CandidateCache::refit(const Motion& motion, double margin) {
 bool CandidateCache::covers_start(std::span<const Vec3> x) const {
   if (margin_ < 0) return false;
   const double verlet_margin = margin_ - 0.5 * detection_distance_;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    if (!((x[i] - from_[i]).squaredNorm() <= verlet_margin * verlet_margin) && !is_kept_clear(i, x[i])) return false;
-  return true;
+  return parallel_all_of(x.size(), [&](std::size_t i) {
+    return (x[i] - from_[i]).squaredNorm() <= verlet_margin * verlet_margin || is_kept_clear(i, x[i]);
+  });
 }
 
 bool CandidateCache::is_kept_clear(std::size_t vertex, const Vec3& x) const {
@@ -132,16 +138,13 @@ bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin)
 
 bool CandidateCache::covers_end(std::span<const Vec3> x) const {
   if (margin_ < 0) return false;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    if (!is_at_end(i, x[i], margin_)) return false;
-  return true;
+  return parallel_all_of(x.size(), [&](std::size_t i) { return is_at_end(i, x[i], margin_); });
 }
 
 bool CandidateCache::lists_near(std::span<const Vec3> x) const {
   if (margin_ < 0) return false;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    if (!is_at_end(i, x[i], margin_ - 0.5 * detection_distance_)) return false;
-  return true;
+  const double margin = margin_ - 0.5 * detection_distance_;
+  return parallel_all_of(x.size(), [&](std::size_t i) { return is_at_end(i, x[i], margin); });
 }
 
 void CandidateCache::forget() {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/numerics.hpp"
+#include "core/parallel_append.hpp"
 
 namespace weft::collision {
 namespace {
@@ -61,12 +63,23 @@ ContactBuilder::ContactBuilder(const Bodies& bodies, const ContactParameters& pa
 
 void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
                          ContactResponse& response) {
-  for (const Proximity& proximity : proximities) {
-    const bool with_cloth = std::ranges::any_of(proximity.vertices, [&](Index v) { return is_cloth(v); });
-    const double fraction = stiffness_fraction(proximity, with_cloth);
-    if (fraction == 0 || pinched.are_pinched(proximity.vertices)) continue;
-    if (const auto contact = build(proximity, fraction, kNoLimit, motion)) response.add(*contact, motion.x_t0);
-    if (fraction == 1) in_contact_.insert(feature_key(proximity.kind, proximity.vertices));
+  struct Built {
+    const Proximity* proximity;
+    double fraction;
+    std::optional<Contact> contact;
+  };
+  std::vector<Built> all;
+  parallel_append(proximities.size(), kFineGrainSize, all, [&](std::size_t begin, std::size_t end, auto& list) {
+    for (const Proximity& proximity : proximities.subspan(begin, end - begin)) {
+      const bool with_cloth = std::ranges::any_of(proximity.vertices, [&](Index v) { return is_cloth(v); });
+      const double fraction = stiffness_fraction(proximity, with_cloth);
+      if (fraction > 0 && !pinched.are_pinched(proximity.vertices))
+        list.push_back({&proximity, fraction, build(proximity, fraction, kNoLimit, motion)});
+    }
+  });
+  for (const auto& [proximity, fraction, contact] : all) {
+    if (contact) response.add(*contact, motion.x_t0);
+    if (fraction == 1) in_contact_.insert(feature_key(proximity->kind, proximity->vertices));
   }
 }
 

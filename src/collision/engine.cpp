@@ -96,11 +96,10 @@ void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
 void Engine::gather(std::span<const Vec3> x) {
   const double verlet_margin = numerics.contact.margin * candidates_.detection_distance();
   const auto is_near = [&] {
-    for (std::size_t v = 0; v < x.size(); ++v)
-      if (!((x[v] - gathered_at_[v]).squaredNorm() <= verlet_margin * verlet_margin) &&
-          !candidates_.is_kept_clear(v, x[v]))
-        return false;
-    return true;
+    return parallel_all_of(x.size(), [&](std::size_t v) {
+      return (x[v] - gathered_at_[v]).squaredNorm() <= verlet_margin * verlet_margin ||
+             candidates_.is_kept_clear(v, x[v]);
+    });
   };
   if (!gathered_at_.empty() && is_near()) return;
   const double radius = candidates_.detection_distance() + 2 * verlet_margin;

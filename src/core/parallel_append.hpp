@@ -38,4 +38,13 @@ Number parallel_max(std::size_t count, std::size_t chunk, Number lower_bound, co
   return lower_bound;
 }
 
+/// Whether holds(i) for all i in [0, count).
+template <class Holds>
+bool parallel_all_of(std::size_t count, const Holds& holds) {
+  return parallel_sum(count, kGrainSize, [&](std::size_t begin, std::size_t end) {
+           while (begin < end && holds(begin)) ++begin;
+           return begin < end ? 1 : 0;
+         }) == 0;
+}
+
 }  // namespace weft

@@ -4,12 +4,18 @@
 #include <map>
 #include <utility>
 
+#include "core/parallel.hpp"
+#include "solver/term_rows.hpp"
+
 namespace weft::solver {
 namespace {
 
 // A motion counts if its part that is independent of the directions before it has more than this fraction of its
 // energy.
 constexpr double kMinIndependentEnergy = 1e-4;
+
+// Terms whose sums one thread makes.
+constexpr std::size_t kTermsAtOnce = 256;
 
 using Block = Eigen::Matrix<double, kDirections, kDirections>;
 
@@ -31,6 +37,10 @@ class TermBlocks {
       for (const auto& [column, of_column] : of_parts)
         if (column <= row) block(row, column) += forces * of_column.transpose();
     }
+  }
+  void add(const TermBlocks& more) {
+    for (const auto& [place, block_of_more] : more.blocks) block(place.first, place.second) += block_of_more;
+    for (std::size_t p = 0; p < products.size(); ++p) products[p] += more.products[p];
   }
   Block& block(int row, int column) { return blocks.try_emplace({row, column}, Block::Zero()).first->second; }
 
@@ -93,24 +103,26 @@ void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size
       if (!motions[m].empty()) result.row(3 + m) = vec3_of(motions[m][static_cast<std::size_t>(particle)]);
     return result;
   };
-  TermBlocks terms(selected.size());
-  std::vector<std::pair<int, TermForces>> of_parts;
-  for (const DiagonalTerm& term : system.diagonal_terms)
-    if (const int part = numbers.of(term.particle); part >= 0) {
-      of_parts.assign(1, {part, directions_at(term.particle)});
-      terms.add(of_parts, term.stiffness);
+  // Sums over chunks, so that threads share them.
+  const std::size_t count = term_count(system);
+  std::vector<TermBlocks> of_chunks((count + kTermsAtOnce - 1) / kTermsAtOnce, TermBlocks(selected.size()));
+  parallel_for(count, kTermsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::pair<int, TermForces>> of_parts;
+    for (std::size_t t = begin; t < end; ++t) {
+      const AnyTerm term = term_at(system, t);
+      of_parts.clear();
+      for (std::size_t k = 0; k < term.particles.size(); ++k) {
+        const int part = term.weights[k] == 0 ? -1 : numbers.of(term.particles[k]);
+        if (part < 0) continue;
+        auto entry = std::ranges::find(of_parts, part, &std::pair<int, TermForces>::first);
+        if (entry == of_parts.end()) entry = of_parts.insert(entry, {part, TermForces::Zero()});
+        entry->second += term.weights[k] * directions_at(term.particles[k]);
+      }
+      of_chunks[begin / kTermsAtOnce].add(of_parts, term.stiffness);
     }
-  for_each_term(system, [&](const auto& term) {
-    of_parts.clear();
-    for (std::size_t k = 0; k < term.particles.size(); ++k) {
-      const int part = term.weights[k] == 0 ? -1 : numbers.of(term.particles[k]);
-      if (part < 0) continue;
-      auto entry = std::ranges::find(of_parts, part, &std::pair<int, TermForces>::first);
-      if (entry == of_parts.end()) entry = of_parts.insert(entry, {part, TermForces::Zero()});
-      entry->second += term.weights[k] * directions_at(term.particles[k]);
-    }
-    terms.add(of_parts, term.stiffness);
   });
+  TermBlocks terms(selected.size());
+  for (const TermBlocks& of_chunk : of_chunks) terms.add(of_chunk);
   for (const RankOneTerm& term : system.rank_one_terms) {
     const int part = numbers.of(term.begin);
     if (part < 0) continue;
