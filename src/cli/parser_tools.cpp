@@ -121,8 +121,8 @@ void Parser::add_bench() {
     bench.frames = parse_frames(text);
     if (bench.frames.step != 1 || bench.frames.begin == 0)
       throw Error(ExitCode::usage,
-                  "--frames: expected A:B with A from 1, for frame 0 takes no time and each needs the one "
-                  "before, got {}",
+                  "--frames: expected A:B with A >= 1 and without a STEP, since frame 0 takes no time and each frame "
+                  "needs the one before, got {}",
                   text);
   });
   of_speed("--draw", "draft|preview|final", "For speed: also draw each frame, in this quality",
