@@ -292,7 +292,7 @@ const Table& render_rules() {
           .by_default("as `look` defines it")
           .not_simulated()
           .color("ground_color", &Render::ground_color, "color of the light from below")
-          .by_default("the color of the floor, or as `look` defines it")
+          .by_default("the color of the floor; without a floor, grey")
           .not_simulated()
           .number("sky_intensity", &Render::sky_intensity, within(0, 100), "",
                   "fraction of all light that comes from the surroundings, not from lights; above 1 counts as 1")
