@@ -240,7 +240,7 @@ TEST_F(Joining, RefusesWhatIsNoPartOfTheFilm) {
   expect_refused({"c", "-o", "joined.mp4"}, 4, "c: holds no pictures");
   expect_refused({"p", "-o", "p.avi"}, 2, "-o: expected a name ending in .mp4, .mov or .mkv");
   expect_refused({"p", "-o", "p.mov", "--codec", "ffv1"}, 2, "--codec: ffv1 is kept in files ending in .mkv");
-  expect_refused({"p", "-o", "p.mov", "--crf", "20"}, 2, "--crf: expected h264");
+  expect_refused({"p", "-o", "p.mov", "--crf", "20"}, 2, "--crf: expected --codec h264");
   expect_refused({"b.mp4", "-o", "b.mov"}, 2, "b.mov: videos are joined as they are, into .mp4");
   expect_refused({"b.mp4", "-o", "joined.mp4", "--crf", "20"}, 2, "videos are joined as they are");
 }
