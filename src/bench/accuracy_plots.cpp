@@ -94,7 +94,7 @@ std::string settings_svg(const std::string& title, const Accuracy& accuracy) {
   add_curves(steps, q, "scene's", Marker::square, true, with_solver_of_scene(accuracy), milliseconds);
   Panel solver{title + ": solver", "newton_tolerance", fmt::format("left by the solver [{}]", unit_of(q)), {}, {}};
   for (Integrator integrator : kIntegrators) add_tolerances(solver, accuracy, integrator);
-  Panel meshes{title + ": difference to half the spacing", "CPU time [s]", "difference [m, or share]", {}, {}};
+  Panel meshes{title + ": difference to half the spacing", "CPU time [s]", "difference [m, or relative]", {}, {}};
   std::size_t color = 0;
   for (Quantity of : {q, Quantity::energy, Quantity::drift}) {
     Curve curve{std::string(name_of(of)), style_of(kIntegrators[color++]).color, Marker::circle, false, {}};

@@ -249,12 +249,10 @@ std::string accuracy_markdown(const std::string& title, const Accuracy& accuracy
   const Quantity decides = deciding_quantity(accuracy);
   std::string text = fmt::format(
       "# Error against run time: {}\n\n**{}**\n\n{}\n![Errors against CPU time]({})\n\n![Steps, solver and "
-      "mesh]({})\n\n"
-      "{:.3g} s in {} frames. {}Energies are in shares of the {:.3g} J in play. In parentheses the exponent observed "
-      "since the row above.\n\n## The reference\n\n{}\n## Steps and newton_tolerance\n\nError of the {} and CPU time. "
-      "* "
-      "marks where newton_tolerance a tenth as large changes less than a tenth of the error, or less than is known of "
-      "it: the step decides.\n\n",
+      "mesh]({})\n\n{:.3g} s in {} frames. {}Energies are relative to the {:.3g} J in play. In parentheses the "
+      "exponent observed since the row above.\n\n## The reference\n\n{}\n## Steps and newton_tolerance\n\nError of the "
+      "{} and CPU time. * marks where newton_tolerance a tenth as large changes less than a tenth of the error, or "
+      "less than is known of it: the step decides.\n\n",
       title, recommendation(accuracy), conclusion(accuracy), work_plot, settings_plot, accuracy.duration,
       accuracy.frames,
       accuracy.contact

@@ -255,10 +255,10 @@ std::string recommendation(const Accuracy& accuracy) {
   if (stands != nullptr && stands->work.cpu_s <= kEqualRatio * best->work.cpu_s &&
       certainly_reaches(accuracy, *stands, quantity, target))
     return fmt::format(
-        "Keep the settings of the scene, {}: {}, where {} are wanted. No other takes less than {:.2g} CPU s.",
+        "Keep the settings of the scene, {}: {}, for an accuracy of {}. No other takes less than {:.2g} CPU s.",
         keys_text(stands->setting), off_text(accuracy, *stands, quantity), wanted,
         std::min(stands->work.cpu_s, best->work.cpu_s));
-  return fmt::format("Use {}: {}, where {} are wanted; {}.", keys_text(best->setting),
+  return fmt::format("Use {}: {}, for an accuracy of {}; {}.", keys_text(best->setting),
                      off_text(accuracy, *best, quantity), wanted, stands_text(accuracy, stands, quantity));
 }
 

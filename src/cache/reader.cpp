@@ -60,7 +60,8 @@ void Reader::check_scene(std::uint64_t hash) const {
     throw std::runtime_error(
         fmt::format("expected a file of scene {:016x}, got one of {:016x}", manifest_.scene_hash, hash));
   if (looks_ == Looks::of_scene)
-    throw std::runtime_error("it has the looks from before the scene was changed; weft simulate --resume goes on");
+    throw std::runtime_error(
+        "it has the look from before the scene was changed; weft simulate --resume continues the cache");
 }
 
 std::string Reader::read_part(const char* name, Kind kind, std::optional<int> frame, Label* label) const {

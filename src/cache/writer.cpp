@@ -101,7 +101,8 @@ Lock::Lock(fs::path folder) : folder_(std::move(folder)) {
       ::close(descriptor_);
       if (error == EWOULDBLOCK)
         throw Error(ExitCode::output_failed,
-                    "{}: another process is at work on it; wait for its end, or give another name", folder_.string());
+                    "{}: another process writes it; wait until that process ends, or give another name",
+                    folder_.string());
       throw Error(ExitCode::output_failed, "{}: cannot be locked: {}", file.string(), std::strerror(error));
     }
     // The previous owner may have removed the folder in the meantime.

@@ -42,7 +42,7 @@ void report_unmatched_references(const fs::path& references, const fs::path& tes
 
 ExitCode accept(const AcceptOptions& options) {
   if (is_blank(options.reason)) {
-    throw Error(ExitCode::usage, "--reason: expected words that tell others why the picture changed");
+    throw Error(ExitCode::usage, "--reason: expected a text that says why the picture changed");
   }
   const bool is_file = compare::is_comparable(options.reference) && !std::filesystem::is_directory(options.reference);
   if (is_file && options.tests.size() > 1) {

@@ -80,13 +80,11 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   write_file(folder / "stability_map.csv", bench::csv(map));
   write_file(folder / "stability_map.svg", bench::map_svg(cells));
   write_file(folder / "stability_cases.csv", bench::csv(cases));
-  write_file(
-      folder / "stability.md",
-      fmt::format("# Stability\n\nA sheet of 11 × 11 particles held at two corners, two swings or 25,000 steps: {}; "
-                  "{:.0f} CPU s.\n\n"
-                  "![map](stability_map.svg)\n\n## Extreme cases\n\n{}. The scenes are in `scenes/`; energy gain "
-                  "is in shares of what is allowed.\n\n{}\n## The map\n\n{}",
-                  map_count.text(), map_cpu_s, case_count.text(), bench::markdown(cases), bench::markdown(map)));
+  write_file(folder / "stability.md",
+             fmt::format("# Stability\n\nA sheet of 11 × 11 particles held at two corners, two swings or 25,000 steps: "
+                         "{}; {:.0f} CPU s.\n\n![map](stability_map.svg)\n\n## Extreme cases\n\n{}. The scenes are in "
+                         "`scenes/`; energy gain is relative to the allowed gain.\n\n{}\n## The map\n\n{}",
+                         map_count.text(), map_cpu_s, case_count.text(), bench::markdown(cases), bench::markdown(map)));
   print("map: {}\ncases: {}\nwritten to {}\n", map_count.text(), case_count.text(), (folder / "stability.md").string());
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
 }
@@ -104,9 +102,10 @@ scene::Scene scene_of(const BenchOptions& options, const char* text, const char*
 
 void check_moves(const scene::Scene& scene) {
   if (scene.frame_count() < 2)
-    throw Error(ExitCode::scene_invalid,
-                "{}: time.duration: expected a frame after the start to measure at, got {:g} s", scene.file.string(),
-                scene.time.duration);
+    throw Error(
+        ExitCode::scene_invalid,
+        "{}: time.duration: expected at least one frame after frame 0, at which errors are measured, got {:g} s",
+        scene.file.string(), scene.time.duration);
 }
 
 std::string title_of(const scene::Scene& scene) {
@@ -150,7 +149,7 @@ ExitCode bench_scene_stability(const BenchOptions& options, const std::filesyste
   PathLedger paths;
   add_inputs(paths, scene);
   check_outputs(paths, options, folder, {name + ".md", name + ".html", name + ".csv", picture});
-  const StopSignals signals("what was measured is written");
+  const StopSignals signals("the finished measurements are written");
   RunProgress progress("stability");
   const bench::SceneStability stability = bench::measure_scene_stability(
       scene,
@@ -278,7 +277,7 @@ ExitCode bench_speed(const BenchOptions& options, const std::filesystem::path& f
   PathLedger paths;
   if (!options.scene.empty()) add_inputs(paths, scene);
   check_outputs(paths, options, folder, {name + ".md", name + ".csv", plot});
-  const StopSignals signals("what was measured is written");
+  const StopSignals signals("the finished measurements are written");
   RunProgress progress("speed");
   double all_work = 0, done = 0;
   for (const PlannedRun& run : planned) all_work += bench::expected_work(run.setting);

@@ -51,9 +51,10 @@ FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& sele
   if (missing.none()) return wanted;
   if (!partial || before.end == wanted.begin)
     throw Error(ExitCode::frames_missing,
-                "{}: of frames {} {}; weft simulate --resume makes what is missing, --partial takes what is before it",
+                "{}: of frames {} {}; weft simulate --resume simulates the missing frames, --partial uses those before "
+                "the first missing one",
                 reader.folder().string(), wanted.text(), missing.text());
-  log::warn(fmt::format("{}: of frames {} {}; only {} are taken", reader.folder().string(), wanted.text(),
+  log::warn(fmt::format("{}: of frames {} {}; only {} are used", reader.folder().string(), wanted.text(),
                         missing.text(), before.text()));
   return before;
 }

@@ -64,7 +64,7 @@ nlohmann::ordered_json errors_json(const bench::Errors& errors) {
 }  // namespace
 
 std::string error_summary(const ErrorEstimate& estimate) {
-  std::vector<std::vector<std::string>> rows{{"error, by companions"}};
+  std::vector<std::vector<std::string>> rows{{"error, by comparison runs"}};
   for (const Figure& figure : kFigures) rows[0].emplace_back(figure.column);
   for (const ErrorPart& part : estimate.parts) {
     rows.push_back(row(std::string(name_of(part.source)), part.errors));
@@ -75,7 +75,7 @@ std::string error_summary(const ErrorEstimate& estimate) {
   std::string text = format_table(rows, "l" + std::string(rows[0].size() - 1, 'r'), 2);
   for (const ErrorPart& part : estimate.parts)
     if (!part.missing.empty()) text += fmt::format("  {} not known: {}\n", name_of(part.source), part.missing);
-  return text + fmt::format("  ({:.2g} CPU s for the companions)", estimate.cpu_s);
+  return text + fmt::format("  ({:.2g} CPU s for the comparison runs)", estimate.cpu_s);
 }
 
 std::string relative_length(double length, double cloth_size) {
@@ -91,9 +91,9 @@ std::string error_sentence(const ErrorEstimate& estimate, double cloth_size) {
   if (estimate.start_matters)
     return fmt::format(
         "the motion is chaotic: a start moved by 1 µm alone moves positions by {} mm; in all they are off by {} or "
-        "more, and no setting lessens that{}",
+        "more, and no setting reduces that{}",
         start_text(estimate), length, remark);
-  return fmt::format("positions {} {}, most of it by the {}; {} lessens it{}",
+  return fmt::format("positions {} {}, most of it due to the {}; {} reduces it{}",
                      estimate.steps_irregular ? "are off by at least" : "may be off by", length,
                      name_of(largest.source), remedy(largest.source), remark);
 }

@@ -61,9 +61,8 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
 
 std::string describe(const Estimate& estimate) {
   return fmt::format(
-      "about {} of CPU time to simulate, {} to draw, {:.0f} MB of memory, by {} frame{}; contacts that are not there "
-      "yet "
-      "may make it two or three times of that",
+      "about {} of CPU time to simulate, {} to draw, {:.0f} MB of memory, estimated from {} frame{}; contacts that "
+      "begin later can double or triple this",
       duration_text(estimate.simulate_total()), duration_text(estimate.draw_total()),
       1e-6 * static_cast<double>(estimate.peak), estimate.tried, estimate.tried == 1 ? "" : "s");
 }

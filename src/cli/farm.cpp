@@ -33,11 +33,10 @@ constexpr int kMinTaskMinutes = 10, kExtraMemory = 256;  // [min], [MB]
 
 void check_slurm_found(const char* program, const ProcessResult& result) {
   if (result.exit_code == 127)
-    throw Error(
-        ExitCode::output_failed,
-        "{} is not found: expected a machine that hands jobs to Slurm; weft farm submit --dry-run writes scripts "
-        "for others",
-        program);
+    throw Error(ExitCode::output_failed,
+                "{} is not found: expected a machine that can submit jobs to Slurm; weft farm submit --dry-run writes "
+                "scripts for other schedulers",
+                program);
 }
 
 /// Numbers and names of submitted jobs, oldest first.
@@ -125,9 +124,9 @@ class Farm {
     const ProcessResult submission = run_process({"sh", (folder_ / "farm/submit.sh").string()});
     check_slurm_found("sbatch", submission);
     if (submission.exit_code != 0)
-      throw Error(ExitCode::output_failed, "{}: ended with {}; weft farm cancel {} takes back what was handed in",
+      throw Error(ExitCode::output_failed, "{}: ended with {}; weft farm cancel {} cancels the submitted jobs",
                   (folder_ / "farm/submit.sh").string(), submission.exit_code, folder_.string());
-    log::info(fmt::format("{}: {} of {} runs handed in; weft farm status {} tells how far they are", folder_.string(),
+    log::info(fmt::format("{}: {} of {} runs submitted; weft farm status {} reports their progress", folder_.string(),
                           plan_.submitted.size(), plan_.jobs.size(), folder_.string()));
     return ExitCode::ok;
   }
@@ -163,9 +162,8 @@ class Farm {
       if (result.exit_code != 0)
         throw Error(ExitCode::output_failed, "scancel ended with {}; its output is above", result.exit_code);
     }
-    log::info(
-        fmt::format("{}: {} jobs taken back; what they have made is kept, and weft farm submit goes on from there",
-                    folder_.string(), words.size() - 1));
+    log::info(fmt::format("{}: {} jobs cancelled; finished results are kept, and weft farm submit continues from there",
+                          folder_.string(), words.size() - 1));
     return ExitCode::ok;
   }
 

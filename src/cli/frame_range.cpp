@@ -8,7 +8,7 @@ namespace weft::cli {
 namespace {
 
 constexpr std::string_view kExpected =
-    "expected A:B or A:B:STEP, frames A up to but without B, counted from 0, such as 0:50 or 10:100:2";
+    "expected A:B or A:B:STEP for frames A to B - 1, counted from 0, such as 0:50 or 10:100:2";
 
 std::vector<std::string_view> split(std::string_view text) {
   std::vector<std::string_view> parts;

@@ -54,7 +54,7 @@ void SceneSource::prepare_simulation() {
   try {
     simulation_->restore(store_.start().bytes);
   } catch (const std::runtime_error& error) {
-    throw Error(ExitCode::asset_unreadable, "{}: the state of the solver is broken: {}; leave --resume away",
+    throw Error(ExitCode::asset_unreadable, "{}: the state of the solver is broken: {}; omit --resume to start again",
                 store_.folder().string(), error.what());
   }
 }

@@ -40,7 +40,8 @@ bool is_video(const fs::path& file) {
 const std::string& entry(const fs::path& file, const Metadata& metadata, const std::string& key) {
   const auto found = metadata.find(key);
   if (found == metadata.end())
-    throw Error(ExitCode::usage, "{}: expected what Weft has drawn, which tells its {}", file.string(), key);
+    throw Error(ExitCode::usage, "{}: expected a file drawn by Weft, which stores its {}; this one does not",
+                file.string(), key);
   return found->second;
 }
 
@@ -50,7 +51,7 @@ Number number(const fs::path& file, const Metadata& metadata, const std::string&
   Number value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !(value >= 0))
-    throw Error(ExitCode::usage, "{}: expected what Weft has drawn, its {} is '{}'", file.string(), key, text);
+    throw Error(ExitCode::usage, "{}: expected a file drawn by Weft; its {} is '{}'", file.string(), key, text);
   return value;
 }
 
@@ -140,7 +141,7 @@ class Film {
 
   void check_fits(const Piece& piece) {
     const auto refuse = [&](const std::string& what, const std::string& here, const std::string& there) {
-      throw Error(ExitCode::usage, "{}: expected parts of one film, its {} is '{}', that of {} is '{}'",
+      throw Error(ExitCode::usage, "{}: expected parts of one video; its {} is '{}', that of {} is '{}'",
                   piece.file.string(), what, here, first().file.string(), there);
     };
     if (is_video(piece.file) != of_videos())
@@ -181,8 +182,8 @@ FrameRange Film::frames(const JoinOptions& options) const {
                         frames_text(missing) + (missing.size() == 1 ? " is" : " are"));
   if (!problem_.empty()) text += fmt::format("{} {}", missing.empty() ? " all are there, but" : ";", problem_);
   if (!options.partial || before.end == before.begin)
-    throw Error(ExitCode::frames_missing, "{}; --partial takes what is before the first that is missing", text);
-  log::warn(fmt::format("{}; only {} are taken", text, before.text()));
+    throw Error(ExitCode::frames_missing, "{}; --partial uses the frames before the first missing one", text);
+  log::warn(fmt::format("{}; only {} are used", text, before.text()));
   return missing.empty() ? wanted : before;
 }
 
@@ -194,7 +195,7 @@ std::vector<fs::path> files_of(const Film& film, const FrameRange& frames) {
     if (inside == static_cast<std::ptrdiff_t>(piece.frames.size())) {
       files.push_back(piece.file);
     } else if (inside > 0) {
-      throw Error(ExitCode::usage, "{}: only some of its frames are in {}; a video is joined whole",
+      throw Error(ExitCode::usage, "{}: only some of its frames are in {}; a video can only be joined whole",
                   piece.file.string(), frames.text());
     }
   }

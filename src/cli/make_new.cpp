@@ -99,15 +99,15 @@ ExitCode make_new(const NewOptions& options) {
     paths.check_writable();
     for (const auto& [file, text] : added.files) write_file(file, text);
     for (const std::string& kept : added.kept) log::info(fmt::format("{}: kept as it is", kept));
-    log::info(
-        fmt::format("{}: {} files written; {} says how to go on", name, added.files.size(), added.readme.string()));
+    log::info(fmt::format("{}: {} files written; {} explains the next steps", name, added.files.size(),
+                          added.readme.string()));
     return ExitCode::ok;
   }
   paths.check_absent(options.overwrite);
   paths.check_writable();
   for (const auto& [file, text] : files) write_file(file, text);
   log::info(is_folder
-                ? fmt::format("{}: written; {} says how to go on", name, (scene / "README.md").string())
+                ? fmt::format("{}: written; {} explains the next steps", name, (scene / "README.md").string())
                 : fmt::format("{}: written; weft run {} makes a video of it, weft watch {} draws it as it changes",
                               name, name, name));
   return ExitCode::ok;

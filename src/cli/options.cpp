@@ -47,7 +47,7 @@ std::string as_file(const std::string& argument) {
   const std::filesystem::path file = argument;
   std::error_code none;
   if (!file.has_extension() && !std::filesystem::exists(file, none)) return "";
-  return fmt::format("; a file of this name is written ./{}, or behind --", argument);
+  return fmt::format("; for a file of this name, write ./{}, or put it after --", argument);
 }
 
 // Throws if the command was given an unknown option.
@@ -78,10 +78,10 @@ std::string_view name_of(BenchOptions::Kind kind) {
 BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options) {
   using Kind = BenchOptions::Kind;
   if (bench.kind == Kind::fabrics && (!bench.scene.empty() || !bench.overrides.empty()))
-    throw Error(ExitCode::usage, "weft bench fabrics: expected no SCENE and no --set, its scenes are its own");
+    throw Error(ExitCode::usage, "weft bench fabrics: expected no SCENE and no --set, since its scenes are built in");
   if (bench.kind == Kind::stability && bench.scene.empty() && !bench.overrides.empty())
     throw Error(ExitCode::usage,
-                "weft bench stability: expected a SCENE for --set, the built-in scenes are as they are");
+                "weft bench stability: expected a SCENE for --set, since the built-in scenes cannot be changed");
   for (const BenchOption& option : options) {
     if (std::ranges::find(option.kinds, bench.kind) != option.kinds.end()) continue;
     std::vector<std::string_view> names;

@@ -73,7 +73,7 @@ void FramePattern::remove_others(const FrameRange& frames,
 video::Codec codec_of(const fs::path& file, const VideoOptions& options) {
   const video::Codec codec = video::codec_of(file, options.codec);
   if (codec != video::Codec::h264 && options.crf)
-    throw Error(ExitCode::usage, "--crf: expected h264, the other codecs are not for small files");
+    throw Error(ExitCode::usage, "--crf: expected --codec h264, since the other codecs have no such setting");
   return codec;
 }
 

@@ -17,21 +17,23 @@ std::string chosen(const char* name, const std::string& text, const std::vector<
 }  // namespace
 
 void Parser::add_new() {
-  CLI::App& command = *app.add_subcommand("new", "Write a first scene to go on from");
+  CLI::App& command = *app.add_subcommand("new", "Write a first scene to start from");
   command
-      .add_option("NAME", fresh.name, "Of the scene: NAME.toml is written, and its schema beside it; of ci the folder")
+      .add_option(
+          "NAME", fresh.name,
+          "Name of the scene: writes NAME.toml, and the schema beside it; with --template ci, name of the folder")
       ->required()
       ->type_name("");
   add_value(command, "--template", fmt::format("{}", fmt::join(template_names(), "|")).c_str(),
-            fmt::format("What it shows [{}]", fresh.kind),
+            fmt::format("Kind of scene [{}]", fresh.kind),
             [this](const std::string& text) { fresh.kind = chosen("--template", text, template_names()); });
   command.add_flag("--overwrite", fresh.overwrite, "Replace a scene that exists already");
   command.footer(
-      "\nExample:\n  weft new dress --template cape && weft watch dress.toml\n"
-      "\nThe first line of the scene names the schema, by which editors complete keys and mark mistakes. ci is a "
-      "folder\n"
-      "to be a repository: scenes, a script that draws them and compares with references, and the workflow that runs "
-      "it.");
+      "\nExample:\n"
+      "  weft new dress --template cape && weft watch dress.toml\n"
+      "\nThe first line of the scene names the schema, with which editors complete keys and mark mistakes. The\n"
+      "template ci is a folder for a repository: scenes, a script that draws them and compares with references,\n"
+      "and a workflow that runs it.");
 }
 
 void Parser::add_watch() {
@@ -47,36 +49,40 @@ void Parser::add_watch() {
     });
   };
   const auto anything = [](const std::string&) {};
-  passed_on("--output,-o", "FILE.png|FILE.mp4", "What is drawn [output/<scene>.png, with --film .mp4]", anything);
+  passed_on("--output,-o", "FILE.png|FILE.mp4", "Picture or video [output/<scene>.png, with --film .mp4]", anything);
   passed_on("--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]", parse_size);
-  passed_on("--camera", "NAME", "A camera of the scene [its choice, or automatic framing]", anything);
-  passed_on("--frame", "N", "Which frame the still shows, counted from 0 [the most informative one]",
+  passed_on("--camera", "NAME", "Camera of the scene that draws [render.camera, the first one, or automatic framing]",
+            anything);
+  passed_on("--frame", "N", "Frame that the still shows, counted from 0 [the most informative one]",
             [](const std::string& text) { parse_integer("--frame", text, 0, 1'000'000'000); });
-  passed_on("--frames", "A:B[:STEP]", "Of --film: frames A up to but without B, counted from 0 [all]", parse_frames);
-  passed_on("--quality", "draft|preview|final", "Care taken in drawing [final]",
+  passed_on("--frames", "A:B[:STEP]", "With --film: draw frames A to B - 1, counted from 0 [all]", parse_frames);
+  passed_on("--quality", "draft|preview|final", "Quality of the pictures [final]",
             [](const std::string& text) { parse_choice("--quality", text, kQualities); });
-  command.add_flag("--film", watch.film, "The whole video instead of a still");
+  command.add_flag("--film", watch.film, "Make the whole video instead of a still");
   command.add_flag(
       "--start", [this](std::int64_t) { watch.passed_on.emplace_back("--start"); },
-      "Of a still: how the scene is given, with all that touches or crosses marked in red");
+      "For a still: draw the start as given, with surfaces that touch or cross in red");
   add_overrides(command, watch.overrides);
-  add_value(command, "--times", "N", "End after so many drawings [when interrupted]",
+  add_value(command, "--times", "N", "Number of drawings, after which it ends [until interrupted]",
             [this](const std::string& text) { watch.times = parse_integer("--times", text, 1, 1'000'000'000); });
   command.footer(
-      "\nExamples:\n  weft watch dress.toml --frame 20 --quality draft -o dress.png\n"
+      "\nExamples:\n"
+      "  weft watch dress.toml --frame 20 --quality draft -o dress.png\n"
       "  weft watch dress.toml --film --quality draft --size 320x180\n"
-      "\nA drawing that is not done when a file changes is given up. Viewers that follow the file show the last one.");
+      "\nIf a file changes during a drawing, that drawing is stopped and a new one begins. Viewers that follow the\n"
+      "output file show the last complete one.");
 }
 
 void Parser::add_completion() {
-  CLI::App& command = *app.add_subcommand("completion", "Print what lets a shell complete commands and options");
+  CLI::App& command =
+      *app.add_subcommand("completion", "Print a script by which a shell completes commands and options");
   command
       .add_option_function<std::string>(
           "SHELL",
           [this](const std::string& text) {
             shell = chosen("SHELL", text, {"bash", "zsh", "fish"});
           },
-          "Of which the words are")
+          "Shell for which the script is")
       ->required()
       ->type_name("bash|zsh|fish");
   command.footer(

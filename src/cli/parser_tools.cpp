@@ -33,9 +33,10 @@ std::vector<double> parse_values(const char* option, const std::string& text,
 void Parser::add_check() {
   CLI::App& command = *app.add_subcommand("check", "Print every mistake of one or more scenes");
   command.add_option("SCENE", check.scenes, "Scenes, TOML files")->required()->type_name("");
-  command.add_flag("--plan", check.plan, "Also print which parts the scene needs and which are left out");
+  command.add_flag("--plan", check.plan,
+                   "Also print which parts of the program the scene needs, and which it does not");
   command.add_flag("--estimate", check.estimate,
-                   "Also simulate some seconds, and tell what a run takes of time and memory");
+                   "Also simulate for some seconds, and predict time and memory of a run");
   add_value(command, "--against", "SCENE|CACHE",
             "Also print what has changed since this scene, the .effective.toml of a run, or a cache",
             [this](const std::string& text) { check.against = text; });
@@ -47,7 +48,7 @@ void Parser::add_check() {
 
 void Parser::add_schema() {
   CLI::App& command = *app.add_subcommand("schema", "Print the JSON schema of the scene format");
-  command.add_flag("--pattern", schema.pattern, "That of sewing patterns instead");
+  command.add_flag("--pattern", schema.pattern, "Print the schema of sewing patterns instead");
   command.footer("\nExample:\n  weft schema > weft.schema.json\n  weft schema --pattern > pattern.schema.json");
 }
 
@@ -61,16 +62,14 @@ void Parser::add_bench() {
   command
       .add_option_function<std::string>(
           "WHAT", [this](const std::string& text) { bench.kind = parse_choice("WHAT", text, kBenches); },
-          "stability: what comes of stiff and extreme scenes, or at what values a scene breaks; accuracy: error "
-          "against "
-          "run time of a scene; speed: "
-          "time by stage, iterations and memory over sizes, threads and steps; fabrics: drape, bending and extension "
-          "against what was published")
+          "stability: results of stiff and extreme scenes, or the values at which a scene breaks; accuracy: error "
+          "against run time of a scene; speed: time by stage, iterations and memory over sizes, threads and steps; "
+          "fabrics: drape, bending and extension against published measurements")
       ->required()
       ->type_name("stability|accuracy|speed|fabrics");
   command
       .add_option("SCENE", bench.scene,
-                  "The scene, a TOML file, not of fabrics [extreme ones; a swinging sheet; a drape]")
+                  "The scene, a TOML file; not for fabrics [extreme scenes; a swinging sheet; a drape]")
       ->type_name("");
   add_overrides(command, bench.overrides);
   add_value(command, "-o,--output", "DIR", "Folder for tables and plots [output/bench]",
@@ -89,45 +88,44 @@ void Parser::add_bench() {
     only_of({Kind::speed}, name, value, description, std::move(read));
   };
   only_of({Kind::accuracy}, "--integrators", "NAME,NAME,...",
-          "Of accuracy: time.integrator [implicit_euler,implicit_midpoint,bdf2]", [this](const std::string& text) {
+          "For accuracy: values of time.integrator [implicit_euler,implicit_midpoint,bdf2]",
+          [this](const std::string& text) {
             bench.plan.integrators = parse_list<scene::Integrator>(
                 "--integrators", text,
                 [](const char* option, const std::string& part) { return parse_choice(option, part, kIntegrators); });
           });
+  only_of({Kind::speed, Kind::accuracy}, "--steps", "F,F,...",
+          "For speed and accuracy: factors on time.step, for speed also on time.tolerance [0.5,1,2; for accuracy 0.125 "
+          "to 4]",
+          [this](const std::string& text) {
+            bench.steps = parse_list<double>("--steps", text, parse_factor);
+            bench.plan.steps = bench.steps;
+          });
   only_of(
-      {Kind::speed, Kind::accuracy}, "--steps", "F,F,...",
-      "Of speed and accuracy: time.step, of speed also time.tolerance, times that of the scene [0.5,1,2; of accuracy "
-      "0.125 to 4]",
-      [this](const std::string& text) {
-        bench.steps = parse_list<double>("--steps", text, parse_factor);
-        bench.plan.steps = bench.steps;
-      });
-  only_of(
-      {Kind::accuracy}, "--tolerances", "M,M,...|none", "Of accuracy: time.tolerance in m [1e-3 downwards]",
+      {Kind::accuracy}, "--tolerances", "M,M,...|none", "For accuracy: values of time.tolerance in m [1e-3 downwards]",
       [this](const std::string& text) { bench.plan.tolerances = parse_values("--tolerances", text, parse_length); });
   only_of({Kind::accuracy}, "--meshes", "F,F,...|none",
-          "Of accuracy: cells along each side, times those of the scene [0.25,0.5,1]",
+          "For accuracy: factors on the cells along each side [0.25,0.5,1]",
           [this](const std::string& text) { bench.plan.meshes = parse_values("--meshes", text, parse_factor); });
   only_of({Kind::accuracy}, "--starts", "N",
-          "Of accuracy: runs of each setting, their starts moved by 1 µm from one to the next [1; with contact 3]",
+          "For accuracy: runs of each setting, with starts that differ by 1 µm [1; with contact 3]",
           [this](const std::string& text) { bench.plan.starts = parse_integer("--starts", text, 1, kMaxStarts); });
-  of_speed("--sizes", "F,F,...", "Of speed: particles along each side, times those of the scene [0.5,1,2,4]",
+  of_speed("--sizes", "F,F,...", "For speed: factors on the particles along each side [0.5,1,2,4]",
            [this](const std::string& text) { bench.sizes = parse_list<double>("--sizes", text, parse_factor); });
-  of_speed("--threads", "N,N,...", "Of speed: numbers of threads [1 and all cores]", [this](const std::string& text) {
+  of_speed("--threads", "N,N,...", "For speed: numbers of threads [1 and all cores]", [this](const std::string& text) {
     bench.threads = parse_list<int>("--threads", text, [](const char* option, const std::string& part) {
       return parse_integer(option, part, 1, kMaxThreads);
     });
   });
-  of_speed("--frames", "A:B", "Of speed: frames to measure, from A up to but without B [1:9]",
-           [this](const std::string& text) {
-             bench.frames = parse_frames(text);
-             if (bench.frames.step != 1 || bench.frames.begin == 0)
-               throw Error(ExitCode::usage,
-                           "--frames: expected A:B with A from 1, for frame 0 takes no time and each needs the one "
-                           "before, got {}",
-                           text);
-           });
-  of_speed("--draw", "draft|preview|final", "Of speed: draw each frame too, with such care",
+  of_speed("--frames", "A:B", "For speed: measure frames A to B - 1 [1:9]", [this](const std::string& text) {
+    bench.frames = parse_frames(text);
+    if (bench.frames.step != 1 || bench.frames.begin == 0)
+      throw Error(ExitCode::usage,
+                  "--frames: expected A:B with A >= 1 and without a STEP, since frame 0 takes no time and each frame "
+                  "needs the one before, got {}",
+                  text);
+  });
+  of_speed("--draw", "draft|preview|final", "For speed: also draw each frame, in this quality",
            [this](const std::string& text) { bench.drawing = parse_choice("--draw", text, kQualities); });
   command.footer(
       "\nExamples:\n"
@@ -140,30 +138,32 @@ void Parser::add_bench() {
 
 void Parser::add_diff() {
   CLI::App& command = *app.add_subcommand("diff", "Compare pictures, videos, or folders of them");
-  command.add_option("REFERENCE", diff.reference, "As it should be: .png, video, folder")->required()->type_name("");
-  command.add_option("TEST", diff.test, "As it is now: likewise")->required()->type_name("");
+  command.add_option("REFERENCE", diff.reference, "The reference: .png, video or folder")->required()->type_name("");
+  command.add_option("TEST", diff.test, "The result to compare, likewise")->required()->type_name("");
   int& limit = diff.limits.pixel_tolerance;
-  add_value(command, "--pixel-tolerance", "N", fmt::format("Levels of 255 by which a pixel may differ [{}]", limit),
+  add_value(command, "--pixel-tolerance", "N",
+            fmt::format("Levels, out of 255, by which a pixel may differ [{}]", limit),
             [&limit](const std::string& text) { limit = parse_integer("--pixel-tolerance", text, 0, 255); });
   const auto add_share = [&](const char* name, double& most, const char* what) {
     add_value(command, name, "X", fmt::format("{} [{}]", what, most),
               [name, &most](const std::string& text) { most = parse_fraction(name, text); });
   };
   add_share("--pixel-budget", diff.limits.pixel_budget,
-            "Share of the pixels that may differ by more; unless given, at edges a fortieth of them counts");
+            "Fraction of pixels that may differ by more; with the default, a pixel at an edge counts a fortieth");
   add_share("--max-flip", diff.limits.flip,
-            "Largest mean of FLIP, 0 (looks the same) to 1; unless given, wider below 640x360 pixels");
-  add_share("--max-spot", diff.limits.spot, "Largest value of FLIP at any pixel");
-  add_value(command, "--heatmap", "FILE.png|DIR", "Also paint where it differs; a video's worst frame",
+            "Maximum mean of FLIP, 0 (looks the same) to 1; the default grows below 640x360 pixels");
+  add_share("--max-spot", diff.limits.spot, "Maximum of FLIP at any pixel");
+  add_value(command, "--heatmap", "FILE.png|DIR",
+            "Also write a picture of the differences; for a video, of its worst frame",
             [this](const std::string& text) { diff.heatmap = text; });
-  add_value(command, "--limits", "FILE.toml", "Limits and masks of single pictures, by name",
+  add_value(command, "--limits", "FILE.toml", "Limits and masks for single pictures, by name",
             [this](const std::string& text) { diff.limits_file = text; });
-  add_value(command, "--junit", "FILE.xml", "Also write what came of each pair for CI systems",
+  add_value(command, "--junit", "FILE.xml", "Also write the result of each pair as JUnit XML for CI systems",
             [this](const std::string& text) { diff.junit = text; });
-  add_value(command, "--html", "FILE.html", "Also write a page of what differs: before, after, difference",
+  add_value(command, "--html", "FILE.html", "Also write a page of all differences: before, after, difference",
             [this](const std::string& text) { diff.html = text; });
   command.add_flag("--annotations", diff.annotations,
-                   "Also print lines that GitHub Actions shows at the files [where GITHUB_ACTIONS is true]");
+                   "Also print annotations for GitHub Actions [if GITHUB_ACTIONS is true]");
   command.add_flag("--overwrite", diff.overwrite, "Replace heat maps and reports that exist already");
   command.add_flag("--json", diff.json, "Print JSON instead of text");
   command.footer(
@@ -171,20 +171,24 @@ void Parser::add_diff() {
       "  weft diff references/band.png band.png --heatmap difference.png\n"
       "  weft diff references output --limits limits.toml --html differences.html --junit differences.xml\n"
       "  weft diff before.mp4 after.mp4\n"
-      "\nFolders are compared with all below them, by name. References may lie in one folder for each class\n"
-      "of machines, named as weft doctor says, and one named default. Limits are tables [[picture]]\n"
-      "with a name, in which * stands for anything, and pixel_tolerance, pixel_budget, max_flip, max_spot or mask, a\n"
-      "picture beside the file that is white where is compared; the last that fits counts. "
-      "Exit codes: 0 all within the limits, 7 something differs, 8 a reference is missing, 4 a file is unreadable.");
+      "\nFolders are compared with everything below them, by name. References may be in one folder for each class\n"
+      "of machines, named as weft doctor prints it, and one named default. The file of limits has tables\n"
+      "[[picture]] with a name, in which * stands for any text, and pixel_tolerance, pixel_budget, max_flip,\n"
+      "max_spot or mask. A mask is a picture beside that file that is white where pictures are compared. The last\n"
+      "table that fits counts.\n"
+      "Exit codes: 0 all within the limits, 7 something differs, 8 a reference is missing, 4 a file is\n"
+      "unreadable.");
 }
 
 void Parser::add_accept() {
-  CLI::App& command = *app.add_subcommand("accept", "Make pictures the new references, and record why");
+  CLI::App& command = *app.add_subcommand("accept", "Accept pictures as the new references, and record why");
   command.add_option("REFERENCE", accept.reference, "The reference, or its folder")->required()->type_name("");
   command.add_option("TEST", accept.tests, "The new pictures or videos, each by name, or folders of them")
       ->required()
       ->type_name("");
-  command.add_option("--reason", accept.reason, "Why: kept in accepted.md")->required()->type_name("TEXT");
+  command.add_option("--reason", accept.reason, "Reason of the change, which is kept in accepted.md")
+      ->required()
+      ->type_name("TEXT");
   command.footer(
       "\nExamples:\n"
       "  weft accept references output/band.png --reason \"floor is darker by design\"\n"
@@ -192,7 +196,7 @@ void Parser::add_accept() {
 }
 
 void Parser::add_review() {
-  CLI::App& command = *app.add_subcommand("review", "Write a page for looking at runs, which opens in any browser");
+  CLI::App& command = *app.add_subcommand("review", "Write a page to review runs, which opens in any browser");
   command.add_option("DIR", review.folders, "Folders with videos and statistics of weft run")
       ->required()
       ->type_name("");
@@ -205,16 +209,18 @@ void Parser::add_review() {
       "\nExample:\n"
       "  weft run scenes/falling_band.toml -o runs/band.mp4 --stats runs/band.json\n"
       "  weft review runs -o page\n"
-      "\nOpen page/index.html; the folder needs no server and loads nothing from elsewhere.");
+      "\nOpen page/index.html; the page needs no server and loads nothing from the network.");
 }
 
 void Parser::add_export() {
   CLI::App& command = *app.add_subcommand("export", "Write the frames of a cache as files for other programs");
-  command.add_option("CACHE", exported.cache, "Folder of weft simulate --cache")->required()->type_name("");
-  add_value(command, "--format", "ply|obj|pc2|gltf|usd|usdz|blender", "Form of the files [gltf]",
+  command.add_option("CACHE", exported.cache, "Folder of the cache that weft simulate wrote")
+      ->required()
+      ->type_name("");
+  add_value(command, "--format", "ply|obj|pc2|gltf|usd|usdz|blender", "Format of the files [gltf]",
             [this](const std::string& text) { exported.format = parse_choice("--format", text, kFormats); });
   command.add_option("-o,--output", exported.output, "Folder of the files")->required()->type_name("DIR");
-  add_value(command, "--frames", "A:B[:STEP]", "Frames A up to but without B, counted from 0 [all]",
+  add_value(command, "--frames", "A:B[:STEP]", "Frames A to B - 1, counted from 0 [all]",
             [this](const std::string& text) { exported.frames = parse_frames(text); });
   add_partial(command, exported.partial);
   command.add_flag("--overwrite", exported.overwrite, "Replace files that exist already");
@@ -223,12 +229,11 @@ void Parser::add_export() {
       "  weft export band.cache --format gltf -o band\n"
       "  weft export band.cache --format ply -o band --frames 0:126:25\n"
       "  weft export band.cache --format blender -o band && blender -P band/falling_band.py\n"
-      "\nply, obj: a file for each object and frame; pc2: for each object an OBJ file and a point cache that moves\n"
-      "its vertices; gltf: one file with all that is visible, its colours and its motion (morph targets);\n"
-      "usd: one text file with all that is visible, its colours, its motion and the cameras; usdz: the same, packed, "
-      "as\n"
-      "viewers of phones ask for it; blender: as pc2, and a\n"
-      "script that loads all of it with cameras, lights, frame rate and picture size.");
+      "\nply, obj: one file for each object and frame. pc2: for each object an OBJ file and a point cache that\n"
+      "moves its vertices. gltf: one file with all visible objects, their colours and motion (morph targets).\n"
+      "usd: one text file with all visible objects, their colours and motion, and the cameras. usdz: the same,\n"
+      "packed, for viewers on phones. blender: as pc2, and a script that loads everything with cameras, lights,\n"
+      "frame rate and picture size.");
 }
 
 }  // namespace weft::cli

@@ -72,8 +72,8 @@ void warn_of_odd_size(const FilmPlan& plan, video::Codec codec) {
   const bool any_size = codec == video::Codec::ffv1 || codec == video::Codec::h264_lossless;
   if (any_size || (width % 2 == 0 && height % 2 == 0)) return;
   log::warn(
-      fmt::format("{}x{}: expected even sides, which videos of this kind have; the video gets {}x{}, by a column "
-                  "or row twice",
+      fmt::format("{}x{}: expected an even width and height for this kind of video; the video gets {}x{}, with a "
+                  "column or row repeated",
                   width, height, width + width % 2, height + height % 2));
 }
 
@@ -226,7 +226,7 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
 
 void Session::estimate_error(const scene::Scene& scene, bench::Recorder& recorder) {
   if (report_.exit_code != ExitCode::ok) return;
-  log::info("simulating companions, which tell the error");
+  log::info("simulating comparison runs to estimate the error");
   const simulation::Simulation particles(scene);
   const bench::CompanionOptions options{.mesh = options_.mesh_error, .proceed = [this] { return !stop(); }};
   try {
@@ -284,7 +284,7 @@ void Session::end_early(const FilmPlan& plan, const Store* store) {
   // A failed simulation would fail again.
   if (store != nullptr && store->can_resume() && report_.exit_code != ExitCode::simulation_failed &&
       fs::exists(store->folder(), ignored))
-    report_.message += "; the same command with --resume goes on from there";
+    report_.message += "; the same command with --resume continues from there";
 }
 
 // Writes side files first, since their failures affect the exit code, and prints the message last, where it is visible.
@@ -379,7 +379,7 @@ ExitCode run(const RunOptions& options) {
   if (options.resume && !overwrite && !cache::is_cache(cache) &&
       is_whole(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects)) {
     if (fs::exists(cache)) cache::Lock(cache).remove();  // an earlier run was killed during removal
-    log::info(fmt::format("note: {} is whole already: frames {}", plan.target.text, plan.wanted.text()));
+    log::info(fmt::format("note: {} is complete already: frames {}", plan.target.text, plan.wanted.text()));
     return ExitCode::ok;
   }
   if (!options.resume) paths.check_absent(overwrite);
@@ -391,9 +391,8 @@ ExitCode run(const RunOptions& options) {
     paths.check_absent(overwrite, store.outputs(),
                        [&](const fs::path& file) { return is_output_of(file, scene.name); });
   } else if (store.has_leftover()) {
-    log::info(fmt::format(
-        "note: {} frames of a run that did not end well are thrown away; with --resume it would have gone on",
-        store.leftover_frames()));
+    log::info(fmt::format("note: {} frames of an unfinished run are discarded; --resume would have continued it",
+                          store.leftover_frames()));
   }
   const ExitCode code = make_from_scene(session, scene, plan, paths, store);
   if (code == ExitCode::ok) store.remove();
@@ -414,14 +413,13 @@ ExitCode simulate(const SimulateOptions& options) {
   if (options.resume) store.find_start();
   if (store.has_leftover() && !options.common.overwrite && !options.resume)
     throw Error(ExitCode::output_failed,
-                "{}: holds a cache already; give --resume to go on with it, --overwrite to start again, or another "
-                "name",
+                "{}: holds a cache already; give --resume to continue it, --overwrite to start again, or another name",
                 options.cache.string());
   paths.check_absent(options.common.overwrite, options.resume ? store.outputs() : std::set<std::string>{},
                      [&](const fs::path& file) { return is_output_of(file, scene.name); });
   paths.check_writable();
   if (store.resumes() && store.holds(plan.wanted.last()))
-    log::info(fmt::format("note: {} is whole already: frames 0:{}", options.cache.string(), plan.made.end));
+    log::info(fmt::format("note: {} is complete already: frames 0:{}", options.cache.string(), plan.made.end));
   return make_from_scene(session, scene, plan, paths, store);
 }
 

@@ -46,13 +46,13 @@ void Store::find_start() {
     const cache::Manifest& found = reader->manifest();
     if (found.simulation_hash != manifest_.simulation_hash)
       throw Error(ExitCode::output_failed,
-                  "--resume: {} is of scene {:016x}, which has changed since (now {:016x}); leave --resume away to "
-                  "start again, or undo the change",
+                  "--resume: {} is of scene {:016x}, which has changed since (now {:016x}); omit --resume to start "
+                  "again, or undo the change",
                   folder().string(), found.scene_hash, manifest_.scene_hash);
     if (found.program != manifest_.program)
       throw Error(ExitCode::output_failed,
-                  "--resume: {} was made by another build of Weft ({}, for {}), which may compute other bits; leave "
-                  "--resume away to start again",
+                  "--resume: {} was made by another build of Weft ({}, for {}), which may compute slightly different "
+                  "results; omit --resume to start again",
                   folder().string(), found.weft_version, found.cpu_target);
     std::optional<cache::SolverState> state = reader->state();
     if (!state) return;
@@ -73,8 +73,8 @@ void Store::note_former_looks(const cache::Manifest& found) {
   former.erase(manifest_.scene_hash);
   manifest_.former_hashes.assign(former.begin(), former.end());
   if (found.scene_hash != manifest_.scene_hash)
-    log::info(fmt::format("note: {}: the looks of the scene have changed, not its simulation, which is gone on with",
-                          folder().string()));
+    log::info(
+        fmt::format("note: {}: only the look of the scene has changed; its simulation continues", folder().string()));
 }
 
 bool Store::holds(int frame) const {
@@ -100,7 +100,7 @@ void Store::note_outputs(std::set<std::string> outputs) const {
 
 // Keeps stored frames: if the output fails for the same reason, no other result of the run exists.
 void Store::give_up(const std::string& reason) {
-  log::warn(reason + "; the run goes on, but from here on it would have to be simulated again if it is interrupted");
+  log::warn(reason + "; the run continues, but if it is interrupted, frames from here on must be simulated again");
   writer_.reset();
   if (!can_resume()) lock_.clear();
 }
@@ -137,7 +137,7 @@ void Store::keep(const MadeFrame& frame) {
       std::error_code error;
       const std::filesystem::space_info space = std::filesystem::space(folder(), error);
       if (need_ == Need::helpful && !error && space.available < bytes())
-        return give_up(fmt::format("{}: the rest of the disk is left to the output", folder().string()));
+        return give_up(fmt::format("{}: the disk is nearly full; its space is left to the output", folder().string()));
       writer_->add(*frame.snapshot, frame.report);
     });
   simulation_ = frame.simulation;

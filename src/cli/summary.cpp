@@ -83,8 +83,8 @@ std::string error_text(const RunReport& report) {
   if (!(std::max(steps, solver) > 0)) return "no step was taken";
   const bool by_solver = solver > steps;
   return fmt::format(
-      "frame {}, the worst, adds about {} to the error of positions, by the {} (the {}: {:.2g} mm); a smaller {} "
-      "lessens it; --error measures the whole run",
+      "frame {}, the worst, adds about {} to the error of positions, due to the {} (the {}: {:.2g} mm); a smaller {} "
+      "reduces it; --error estimates that of the whole run",
       worst.frame, relative_length(by_solver ? solver : steps, report.cloth_size), by_solver ? "solver" : "time steps",
       by_solver ? "time steps" : "solver", 1e3 * (by_solver ? steps : solver),
       by_solver ? "solver.newton_tolerance" : "time.step or time.tolerance");
@@ -102,20 +102,20 @@ std::string figures_table(const RunReport& report) {
   const bool none_near = std::all_of(report.frames.begin(), report.frames.end(),
                                      [](const FrameRecord& r) { return std::isinf(r.report.min_distance); });
   const auto strain = [](const simulation::FrameReport& r) { return r.max_strain; };
-  return format_table(
-      {{"particles", fmt::format("{} in {} objects", report.particles, report.objects.size())},
-       {"steps", fmt::format("{} and {} rejected; {} Newton and {} linear iterations", steps.accepted, steps.rejected,
-                             newton, linear)},
-       {"error", error_text(report)},
-       {"smallest distance", none_near ? "nothing came near" : at_largest(report.frames, "{:.3g} mm", nearness, -1e3)},
-       {"largest strain", at_largest(report.frames, "{:.2f} %", strain, 100)},
-       {"energy at the end",
-        fmt::format("kinetic {} (start {}), elastic {} (start {})", joule(last.kinetic_energy),
-                    joule(first.kinetic_energy), joule(last.elastic_energy), joule(first.elastic_energy))},
-       {"peak memory", bytes_text(static_cast<std::uintmax_t>(report.peak_memory))},
-       {"scene", fmt::format("{} ({:016x}), {} thread{}", report.scene_file, report.scene_hash, report.threads,
-                             report.threads == 1 ? "" : "s")}},
-      "ll", 2);
+  return format_table({{"particles", fmt::format("{} in {} objects", report.particles, report.objects.size())},
+                       {"steps", fmt::format("{} and {} rejected; {} Newton and {} linear iterations", steps.accepted,
+                                             steps.rejected, newton, linear)},
+                       {"error", error_text(report)},
+                       {"smallest distance", none_near ? "nothing within the detection distance"
+                                                       : at_largest(report.frames, "{:.3g} mm", nearness, -1e3)},
+                       {"largest strain", at_largest(report.frames, "{:.2f} %", strain, 100)},
+                       {"energy at the end", fmt::format("kinetic {} (start {}), elastic {} (start {})",
+                                                         joule(last.kinetic_energy), joule(first.kinetic_energy),
+                                                         joule(last.elastic_energy), joule(first.elastic_energy))},
+                       {"peak memory", bytes_text(static_cast<std::uintmax_t>(report.peak_memory))},
+                       {"scene", fmt::format("{} ({:016x}), {} thread{}", report.scene_file, report.scene_hash,
+                                             report.threads, report.threads == 1 ? "" : "s")}},
+                      "ll", 2);
 }
 
 }  // namespace
@@ -147,13 +147,12 @@ std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
   if (const auto torn =
           std::ranges::count_if(frames, [](const FrameRecord& r) { return r.report.stretch_ratio > 1.1; });
       torn > 0) {
-    warnings.push_back(
-        fmt::format("cloth was stretched beyond its max_stretch in {} of {} frames, by up to {:.1f} times of it: pins "
-                    "farther apart than it is long, an obstacle driven into what is held, or something too fast for "
-                    "time.step",
-                    torn, frames.size(), std::ranges::max(frames, {}, [](const FrameRecord& r) {
-                                           return r.report.stretch_ratio;
-                                         }).report.stretch_ratio));
+    warnings.push_back(fmt::format(
+        "cloth was stretched beyond its max_stretch in {} of {} frames, up to {:.1f} times that limit: pins farther "
+        "apart than the cloth is long, an obstacle pressed into pinned cloth, or a motion too fast for time.step",
+        torn, frames.size(), std::ranges::max(frames, {}, [](const FrameRecord& r) {
+                               return r.report.stretch_ratio;
+                             }).report.stretch_ratio));
   }
   if (steps.rejected > steps.accepted / 4) {
     warnings.push_back(fmt::format("{} of {} steps were rejected: a smaller time.step would be faster", steps.rejected,
@@ -168,14 +167,14 @@ std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
   if (const auto pinched = std::count_if(frames.begin(), frames.end(),
                                          [](const FrameRecord& record) { return record.report.pinched_pairs > 0; });
       pinched > 0) {
-    warnings.push_back(fmt::format("cloth had no room between obstacles, and is in one of them, in {} of {} frames",
-                                   pinched, frames.size()));
+    warnings.push_back(fmt::format(
+        "obstacles left cloth no space, so that it is inside one of them, in {} of {} frames", pinched, frames.size()));
   }
   if (const auto lagging = std::count_if(frames.begin(), frames.end(),
                                          [](const FrameRecord& record) { return record.report.lagging_particles > 0; });
       lagging > 0) {
-    warnings.push_back(fmt::format("something was in the way of pins, which lagged behind, in {} of {} frames", lagging,
-                                   frames.size()));
+    warnings.push_back(fmt::format("pins lagged behind, because something was in their way, in {} of {} frames",
+                                   lagging, frames.size()));
   }
   if (distance <= 0) warnings.push_back("surfaces touched or passed through each other");
   return warnings;

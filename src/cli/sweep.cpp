@@ -152,7 +152,7 @@ class Sweep {
     const auto failed = std::ranges::find_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
     const auto count = std::ranges::count_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
     if (stop_.requested()) {
-      log::info(fmt::format("weft: interrupted: {} of {} runs are not done; the same command goes on", count,
+      log::info(fmt::format("weft: interrupted: {} of {} runs are not finished; the same command continues", count,
                             results.size()));
       return ExitCode::interrupted;
     }

@@ -70,9 +70,10 @@ void check_sweep_folder(const SweepOptions& options, PathLedger& paths) {
   std::vector<std::string> words;
   for (const Json& word : before["options"]) words.push_back(word.is_string() ? word.get<std::string>() : word.dump());
   if (!options.overwrite && words != options.passed_on)
-    throw Error(ExitCode::output_failed,
-                "{}: holds runs with other options ({}); give these, --overwrite to start again, or another name",
-                folder.string(), fmt::join(words, " "));
+    throw Error(
+        ExitCode::output_failed,
+        "{}: holds runs with other options ({}); give the same options, --overwrite to start again, or another name",
+        folder.string(), fmt::join(words, " "));
 }
 
 void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>& jobs) {

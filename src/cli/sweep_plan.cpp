@@ -221,7 +221,7 @@ std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::ve
     std::set<std::string> keys;
     for (const auto& [key, value] : changes)
       if (!keys.insert(key).second)
-        throw Error(ExitCode::usage, "{}: expected its values in one place, got it twice", key);
+        throw Error(ExitCode::usage, "{}: expected its values once, in --set or in --list, got them twice", key);
     if (!known.insert(changes).second) continue;
     for (const auto& [key, value] : changes) values[key].insert(value);
     runs.push_back({std::move(changes), {}, {}});

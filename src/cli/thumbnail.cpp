@@ -23,7 +23,8 @@ void check_frame(int frame, const Stills& stills) {
   const std::vector<int>& frames = stills.frames();
   if (std::binary_search(frames.begin(), frames.end(), frame)) return;
   if (frame < stills.scene().frame_count)
-    throw Error(ExitCode::frames_missing, "frame {} is missing; weft simulate --resume makes what is missing", frame);
+    throw Error(ExitCode::frames_missing, "frame {} is missing; weft simulate --resume simulates the missing frames",
+                frame);
   throw Error(ExitCode::usage, "--frame: expected one of the {} frames from {} to {}, got {}", frames.size(),
               frames.front(), frames.back(), frame);
 }
@@ -52,8 +53,9 @@ Still most_salient(Stills& stills, const std::vector<int>& frames, Progress& pro
 }
 
 std::string describe_choice(const render::Saliency& saliency, std::size_t count) {
-  return fmt::format(", the most telling of {}: cloth covers {:.0f} % of the picture, folding {:.2f}, motion {:.2f}",
-                     count, 100 * saliency.coverage, saliency.folding, saliency.motion);
+  return fmt::format(
+      ", the most informative of {}: cloth covers {:.0f} % of the picture, folding {:.2f}, motion {:.2f}", count,
+      100 * saliency.coverage, saliency.folding, saliency.motion);
 }
 
 /// File name of the picture.

@@ -381,8 +381,8 @@ std::optional<std::string> describe(const Cast& cast, const MaxDisplacement& mos
   if (most.moved.distance < kMinReportedDisplacement) return std::nullopt;
   const Vec3 x = cast.settings.pose.position + cast.settings.pose.rotation * most.place;
   return fmt::format(
-      "{}: room: skin of the {} moves by up to {:.3g} mm, at ({:.3g}, {:.3g}, {:.3g}) m and {:.3g} s, to leave cloth "
-      "room from the {}; room = 0 leaves it as it is",
+      "{}: room: skin of the {} moves by up to {:.3g} mm, at ({:.3g}, {:.3g}, {:.3g}) m and {:.3g} s, to leave space "
+      "for cloth beside the {}; room = 0 prevents this",
       cast.where, most.moved.limb, 1e3 * most.moved.distance, x.x(), x.y(), x.z(), most.time, most.moved.away_from);
 }
 

@@ -81,8 +81,8 @@ std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::s
     wanted.push_back(part_named("hands"));
     wanted.back().collide = false;
     body.warnings.push_back(
-        fmt::format("{}: the hands have fingers, which would catch cloth: it passes through them; if it is not to, "
-                    "write [[character.part]] name = \"hands\"",
+        fmt::format("{}: the hands have fingers, which would catch cloth: cloth passes through them; to let them "
+                    "collide, write [[character.part]] name = \"hands\"",
                     cast.where));
   }
   for (const FollowingPin& pin : following)

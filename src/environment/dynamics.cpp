@@ -19,12 +19,11 @@ std::shared_ptr<const Dynamics> make_dynamics(const scene::Scene& scene, const s
     const double release = obstacle.release > 0 ? obstacle.release : -std::numeric_limits<double>::infinity();
     return std::make_shared<const Dynamics>(Dynamics{std::move(frame), mass, obstacle.velocity, turn, release});
   } catch (const std::invalid_argument& expected) {
-    throw Error(
-        ExitCode::scene_invalid,
-        "{}:{}:{}: obstacle.{}: expected {} for a body with a mass, whose inertia is that of what is inside; got "
-        "{} triangles that leave it open; fill its holes in a modelling program, or use a shape",
-        scene.file.string(), obstacle.line, obstacle.column, obstacle.name, expected.what(),
-        mesh.topology.triangles.size());
+    throw Error(ExitCode::scene_invalid,
+                "{}:{}:{}: obstacle.{}: expected {} for a body with a mass, whose inertia is that of its interior; got "
+                "{} triangles that leave it open; fill its holes in a modelling program, or use a shape",
+                scene.file.string(), obstacle.line, obstacle.column, obstacle.name, expected.what(),
+                mesh.topology.triangles.size());
   }
 }
 

@@ -169,7 +169,7 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
                     where, cloth.file.string(), loaded.lost_vertices, mesh.positions.size()));
   if (const assets::MendingReport mended = assets::mend_sheet(loaded, 1 / kMaxUnevenness); mended.any())
     object.warnings.push_back(
-        fmt::format("{}: mesh file {}: made a sheet: {}", where, cloth.file.string(), mended.describe()));
+        fmt::format("{}: mesh file {}: repaired to a sheet: {}", where, cloth.file.string(), mended.describe()));
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
   if (!report.manifold())
     throw Error(
@@ -208,11 +208,13 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
   constexpr double kMaxDrapeStretch = 0.25;  // relative to the panels; draped cloth is stretched less
   if (!rest.has_panel_lengths())
     object.warnings.push_back(
-        fmt::format("{}: its UVs may not be the pattern that it was sewn from: {}; rest = \"mesh\" takes its own shape",
+        fmt::format("{}: its UVs may not be the pattern that it was sewn from: {}; rest = \"mesh\" uses the shape of "
+                    "the mesh instead",
                     in_file, rest.describe()));
   else if (rest.stretch_quantile_95 > kMaxDrapeStretch && cloth.sewing == 0)
-    object.warnings.push_back(fmt::format("{}: it is far off its UVs: {}; sewing = 1 lets it go there in a second",
-                                          in_file, rest.describe()));
+    object.warnings.push_back(
+        fmt::format("{}: the mesh differs much from its UVs: {}; sewing = 1 gives it a second to change to them",
+                    in_file, rest.describe()));
   if (rest.unusable > 0)
     object.warnings.push_back(fmt::format("{}: {} of {} triangles have no area in its UVs and keep that of the mesh",
                                           in_file, rest.unusable, rest.material.size()));

@@ -35,63 +35,67 @@ constexpr double kMaxPanelSize = 100;
 
 const Table& panel_rules() {
   static const Table kFabric =
-      TableBuilder<mesh::Reinforcement>("The fabric of a panel against that of the garment: fusing, or another one.")
+      TableBuilder<mesh::Reinforcement>(
+          "The fabric of a panel relative to that of the garment, as for fused or heavier panels.")
           .number("stretch", &mesh::Reinforcement::stretch, scene::above(0, 1000), "",
                   "factor on the stiffness against stretch and shear")
-          .number("bend", &mesh::Reinforcement::bend, scene::above(0, 1000), "", "on that against bending")
-          .number("density", &mesh::Reinforcement::density, scene::above(0, 1000), "", "on the mass")
+          .number("bend", &mesh::Reinforcement::bend, scene::above(0, 1000), "",
+                  "factor on the stiffness against bending")
+          .number("density", &mesh::Reinforcement::density, scene::above(0, 1000), "", "factor on the mass")
           .build();
   static const Table kTable =
       TableBuilder<Panel>(
-          "A flat piece of cloth, drawn as seen from before the wearer where it has a side, else from outside.")
-          .plain(Type::name, "name", &Panel::name, "unlike that of any other panel")
+          "A flat piece of cloth. With a side, it is drawn as seen from in front of the wearer, otherwise as seen from "
+          "outside.")
+          .plain(Type::name, "name", &Panel::name, "unique name of the panel")
           .need(Need::required)
           .choice_by(
-              "side", {"front", "back"}, "of the wearer, or of the part, that it covers",
+              "side", {"front", "back"}, "side of the wearer, or of the part, that it covers",
               [](Panel& p) { return static_cast<std::size_t>(p.side.value_or(Side::front)); },
               [](Panel& p, std::size_t index) { p.side = static_cast<Side>(index); })
           .by_default("front")
           .excludes("angle")
           .choice_by(
               "around", std::vector<std::string>(kAroundNames.begin() + 1, kAroundNames.end()),
-              "part of the wearer that it starts bent around; where panels of a pattern have it, torso is the part of "
-              "those without",
+              "part of the wearer around which the panel starts bent; if any panel of the pattern has this key, torso "
+              "is the part of the others",
               [](Panel& p) { return static_cast<std::size_t>(p.around) - 1; },
               [](Panel& p, std::size_t index) { p.around = static_cast<Around>(index + 1); })
           .by_default("none: panels start flat")
           .number("angle", &Panel::angle, within(-360, 360), "degrees",
-                  "where around its part the panel's origin starts: 0 the front, 90 the wearer's left, 180 the back; "
-                  "the panel is drawn as seen from outside")
-          .by_default("of arms their outside, else that of `side`")
+                  "angle around its part at which the panel's origin starts: 0 is the front, 90 the wearer's left, 180 "
+                  "the back; the panel is drawn as seen from outside")
+          .by_default("for arms the outside, else that of `side`")
           .excludes("side")
-          .whole_number("layer", &Panel::layer, within(0, 20), "how many panels of its part it starts above")
+          .whole_number("layer", &Panel::layer, within(0, 20), "number of panels of the same part that it starts above")
           .plain(Type::text, "path", &Panel::path, "closed outline as SVG path data, in metres, y upward")
           .excludes("file")
           .plain(Type::file, "file", &Panel::file, "SVG drawing with the outline; relative to the pattern's folder")
           .excludes("path")
           .plain(
               Type::text, "id", &Panel::id,
-              "of the outline in the drawing, or of a group with one outline and texts that name edges; or its label")
+              "id or label, in the drawing, of the outline, or of a group with one outline and texts that name edges")
           .plain(Type::text, "mirror_of", &Panel::mirror_of,
-                 "panel before it that it is the mirror image of; what it does not say itself it has from there, with "
+                 "an earlier panel whose mirror image this one is; keys that are not given are taken from it, with "
                  "left and right exchanged")
           .plain(Type::text, "edges", &Panel::edge_names,
-                 "names of the curves of the outline, in their order; neighbours of one name are one edge")
+                 "names of the curves of the outline, in their order; neighbours with the same name are one edge")
           .by_default("those in the drawing, else 1 2 3 and so on")
-          .plain(
-              Type::text, "fold", &Panel::fold,
-              "straight edge at which the outline is half of a panel cut on the fold: the whole has the mirror image "
-              "too, whose edges have left and right, _l and _r exchanged, or _2 behind; those that meet the fold go on")
+          .plain(Type::text, "fold", &Panel::fold,
+                 "straight edge at which the outline is half of a panel cut on the fold: the panel gets the mirror "
+                 "image too; its edges are named with left and right, or _l and _r, exchanged, or with _2 appended; "
+                 "edges that meet the fold continue")
           .by_default("none")
           .number("grain", &Panel::grain, within(-360, 360), "degrees",
                   "direction of the warp, counter-clockwise from the panel's y axis")
           .vector("position", &Panel::position, {"across", "up"}, within(-100, 100), "m",
-                  "of the panel's origin at the start: above the floor, on arms above the shoulder; across along the "
-                  "skin from its angle")
-          .by_default("[0, 0]; of a panel that is bent, where its seams are shortest")
+                  "position of the panel's origin at the start: across, along the skin from its angle; up, above the "
+                  "floor, on arms above the shoulder")
+          .by_default("[0, 0]; for a bent panel, where its seams are shortest")
           .number("rotation", &Panel::rotation, within(-360, 360), "degrees",
-                  "at the start, counter-clockwise seen from before")
-          .vector("scale", &Panel::scale, {"across", "up"}, scene::above(0, 10), "", "of lengths at the start")
+                  "rotation at the start, counter-clockwise as seen from in front")
+          .vector("scale", &Panel::scale, {"across", "up"}, scene::above(0, 10), "",
+                  "factor on the lengths at the start")
           .single_fills_all()
           .table("fabric", &Panel::reinforcement, kFabric)
           .build();
@@ -329,61 +333,67 @@ bool Pattern::wraps() const {
 const scene::Table& pattern_rules() {
   static const Table kSeams =
       TableBuilder<Seam>(
-          "Two edges sewn together; with buttons, open or closed a closure that holds them "
-          "together while it is closed.")
-          .plain(Type::text, "a", &Seam::a, "an edge, as panel.edge")
+          "Two edges that are sewn together. With buttons, open or closed, it is a closure, which holds them together "
+          "while it is closed.")
+          .plain(Type::text, "a", &Seam::a, "one edge, as panel.edge")
           .need(Need::required)
-          .plain(Type::text, "b", &Seam::b, "the other, of any panel")
+          .plain(Type::text, "b", &Seam::b, "the other edge, of any panel")
           .need(Need::required)
-          .whole_number("buttons", &Seam::buttons, within(0, 1000),
-                        "that hold the edges together, evenly from end to end; 0: a zip, or a "
-                        "seam that is sewn")
-          .number("open", &Seam::open, within(-1e6, 1e6), "s", "time of the scene from which on the closure is open")
+          .whole_number(
+              "buttons", &Seam::buttons, within(0, 1000),
+              "number of buttons that hold the edges together, evenly from end to end; 0: a zip, or a sewn seam")
+          .number("open", &Seam::open, within(-1e6, 1e6), "s", "time of the scene from which the closure is open")
           .by_default("never")
           .number("closed", &Seam::closed, within(-1e6, 1e6), "s",
-                  "from which on it is closed; before the first of both times it is the other")
+                  "time of the scene from which the closure is closed; before the earlier of both times, it is in the "
+                  "other state")
           .by_default("never")
           .number("strength", &Seam::strength, scene::above(0, 1e4), "N",
-                  "most that each button, or each point of a zip, pulls with")
+                  "maximum force of each button, or of each point of a zip")
           .number("allowance", &Seam::allowance, within(0, 1), "m",
-                  "width of the cloth turned in along the seam, of both sides together; it "
-                  "weighs and resists stretching like any other")
+                  "width of the cloth turned in along the seam, both sides together; it has mass and resists stretch "
+                  "like other cloth")
           .build();
   static const Table kElastics =
       TableBuilder<Elastic>("An elastic band along an edge.")
-          .plain(Type::text, "edge", &Elastic::edge, "as panel.edge")
+          .plain(Type::text, "edge", &Elastic::edge, "the edge, as panel.edge")
           .need(Need::required)
-          .number("ratio", &Elastic::ratio, within(0.1, 1), "", "rest length of the band by that of the edge")
+          .number("ratio", &Elastic::ratio, within(0.1, 1), "", "rest length of the band, relative to that of the edge")
           .number("stiffness", &Elastic::stiffness, within(0, 1e6), "N", "force per strain of the band")
           .build();
-  static const Table kHems = TableBuilder<Hem>("A hem along an edge: heavier and stiffer than the cloth.")
-                                 .plain(Type::text, "edge", &Hem::edge, "as panel.edge")
-                                 .need(Need::required)
-                                 .number("mass", &Hem::mass, within(0, 100), "kg/m", "beside that of the cloth")
-                                 .number("bend", &Hem::bend, within(0, 1), "N·m²", "against bending of the edge")
-                                 .build();
+  static const Table kHems =
+      TableBuilder<Hem>("A hem along an edge: heavier and stiffer than the cloth.")
+          .plain(Type::text, "edge", &Hem::edge, "the edge, as panel.edge")
+          .need(Need::required)
+          .number("mass", &Hem::mass, within(0, 100), "kg/m", "mass per length, in addition to that of the cloth")
+          .number("bend", &Hem::bend, within(0, 1), "N·m²", "stiffness against bending of the edge")
+          .build();
   static const Table kMeasures =
-      TableBuilder<Measures>("Of the body that the pattern is drawn for; `fit` of a scene's cloth scales from them.")
-          .number("chest", &Measures::chest, scene::above(0, 100), "m", "widest girth below the armpits")
+      TableBuilder<Measures>(
+          "Measures of the body for which the pattern is drawn; with `fit` of a scene's cloth, the pattern is scaled "
+          "from them.")
+          .number("chest", &Measures::chest, scene::above(0, 100), "m", "largest girth below the armpits")
           .by_default("not given")
-          .number("waist", &Measures::waist, scene::above(0, 100), "m", "narrowest girth")
+          .number("waist", &Measures::waist, scene::above(0, 100), "m", "smallest girth of the trunk")
           .by_default("not given")
-          .number("hip", &Measures::hip, scene::above(0, 100), "m", "widest girth below the waist")
+          .number("hip", &Measures::hip, scene::above(0, 100), "m", "largest girth below the waist")
           .by_default("not given")
-          .number("height", &Measures::height, scene::above(0, 100), "m", "from the floor to the crown")
+          .number("height", &Measures::height, scene::above(0, 100), "m",
+                  "height from the floor to the top of the head")
           .by_default("not given")
           .build();
-  static const Table kTable = TableBuilder<Pattern>("A sewing pattern.")
-                                  .number("depth", &Pattern::depth, scene::above(0, 10), "m",
-                                          "of the panels before and behind the wearer's coronal plane at the start")
-                                  .number("gap", &Pattern::gap, scene::above(0, 1), "m",
-                                          "of panels that start bent around the wearer from the skin")
-                                  .table("measures", &Pattern::measures, kMeasures)
-                                  .list(Type::list, "panel", &Pattern::panels, panel_rules())
-                                  .list(Type::list, "seam", &Pattern::seams, kSeams)
-                                  .list(Type::list, "elastic", &Pattern::elastics, kElastics)
-                                  .list(Type::list, "hem", &Pattern::hems, kHems)
-                                  .build();
+  static const Table kTable =
+      TableBuilder<Pattern>("A sewing pattern.")
+          .number("depth", &Pattern::depth, scene::above(0, 10), "m",
+                  "distance of flat panels in front of and behind the middle of the wearer at the start")
+          .number("gap", &Pattern::gap, scene::above(0, 1), "m",
+                  "distance from the skin of panels that start bent around the wearer")
+          .table("measures", &Pattern::measures, kMeasures)
+          .list(Type::list, "panel", &Pattern::panels, panel_rules())
+          .list(Type::list, "seam", &Pattern::seams, kSeams)
+          .list(Type::list, "elastic", &Pattern::elastics, kElastics)
+          .list(Type::list, "hem", &Pattern::hems, kHems)
+          .build();
   return kTable;
 }
 

@@ -106,13 +106,14 @@ const char* kind_of(const FrameObject& object) {
 
 // Makes the exceptions; SceneError has the places of the mistakes in `mistakes`.
 void bind_errors(py::module_& module) {
-  py::class_<Mistake>(module, "Mistake", "One mistake of a scene, with its place.")
-      .def_readonly("file", &Mistake::file, "File of the scene, as it was given.")
-      .def_readonly("line", &Mistake::line, "Counted from 1; 0: the file as a whole, or a change.")
-      .def_readonly("column", &Mistake::column, "Counted from 1; 0 likewise.")
-      .def_readonly("change", &Mistake::change, "\"key=value\", if a change brought the mistake; else empty.")
-      .def_readonly("key", &Mistake::key, "Such as \"cloth.band.material.thickness\"; may be empty.")
-      .def_readonly("text", &Mistake::text, "Such as \"expected > 0 m, got -0.001\".");
+  py::class_<Mistake>(module, "Mistake", "One mistake in a scene, with its place in the file.")
+      .def_readonly("file", &Mistake::file, "Path of the scene file, as it was given.")
+      .def_readonly("line", &Mistake::line, "Line, counted from 1; 0 for the file as a whole or for a change.")
+      .def_readonly("column", &Mistake::column, "Column, counted from 1; 0 likewise.")
+      .def_readonly("change", &Mistake::change,
+                    "\"key=value\" of the change that contains the mistake; empty if the mistake is in the file.")
+      .def_readonly("key", &Mistake::key, "Key, such as \"cloth.band.material.thickness\"; may be empty.")
+      .def_readonly("text", &Mistake::text, "Description, such as \"expected > 0 m, got -0.001\".");
   // These are never released, because the interpreter may end before this library.
   static const py::handle scene_error = py::exception<SceneError>(module, "SceneError", PyExc_ValueError).release();
   static const py::handle file_error = py::exception<FileError>(module, "FileError", scene_error).release();
@@ -140,16 +141,16 @@ void bind_scene(py::module_& module) {
   py::class_<Scene>(module, "Scene", "A checked scene; it never changes.")
       .def("with_changes", &change, py::arg("changes"),
            "This scene with further changes, such as {\"cloth.band.material.fabric\": \"silk\"}.")
-      .def_property_readonly("name", &Scene::name, "That of the file without its ending.")
-      .def_property_readonly("fps", &Scene::fps, "Frames a second.")
+      .def_property_readonly("name", &Scene::name, "Name of the file without its ending.")
+      .def_property_readonly("fps", &Scene::fps, "Frames per second.")
       .def_property_readonly("frames", &Scene::frames, "Number of frames; frame k is the state at time k / fps.")
       .def_property_readonly("cloths", &Scene::cloths, "Names of the cloths.")
       .def_property_readonly("obstacles", &Scene::obstacles, "Names of the obstacles.")
-      .def_property_readonly("text", &Scene::text, "The scene as TOML, with every default.");
+      .def_property_readonly("text", &Scene::text, "The scene as TOML text, with every default.");
   module.def("load", &load, py::arg("file"), py::arg("changes") = py::none(),
              "Read a scene file. Raises SceneError with all mistakes.");
   module.def("parse", &parse, py::arg("toml"), py::arg("changes") = py::none(), py::arg("name") = "scene.toml",
-             "The same for the text of a file; relative paths start at the folder of `name`.");
+             "Read a scene from text, as load() does; relative paths start at the folder of `name`.");
 }
 
 void bind_frame(py::module_& module) {
@@ -157,7 +158,7 @@ void bind_frame(py::module_& module) {
       .def_readonly("cloth", &EnclosedAir::cloth)
       .def_readonly("volume", &EnclosedAir::volume)
       .def_readonly("pressure", &EnclosedAir::pressure);
-  py::class_<Report>(module, "Report", "What the computation of a frame took and found; SI units.")
+  py::class_<Report>(module, "Report", "Cost and results of the computation of one frame; SI units.")
       .def_readonly("wall_s", &Report::wall_s)
       .def_readonly("cpu_s", &Report::cpu_s)
       .def_readonly("steps", &Report::steps)
@@ -181,19 +182,20 @@ void bind_frame(py::module_& module) {
       .def_readonly("enclosed_air", &Report::enclosed_air)
       .def_readonly("warnings", &Report::warnings);
   py::class_<FrameObject>(module, "Object",
-                          "A cloth or body in one frame. Arrays are views that cannot be written to; they stay valid.")
+                          "A cloth or body in one frame. Arrays are read-only views; they stay valid.")
       .def_property_readonly("name", [](const FrameObject& self) { return std::string(self.object->name); })
       .def_property_readonly("kind", &kind_of, "\"cloth\", \"obstacle\", \"character\" or \"rope\".")
       .def_property_readonly("positions", &rows<&Object::positions>, "n x 3, m.")
-      .def_property_readonly("velocities", &rows<&Object::velocities>, "n x 3, m/s; no rows for bodies.")
+      .def_property_readonly("velocities", &rows<&Object::velocities>, "Velocities, n x 3, m/s; no rows for bodies.")
+      .def_property_readonly("contact_forces", &rows<&Object::contact_forces>,
+                             "Contact force on each particle, friction included, at the end of the last time step: n x "
+                             "3, N; zeros in the first frame of a simulation; no rows for bodies and caches.")
       .def_property_readonly(
-          "contact_forces", &rows<&Object::contact_forces>,
-          "n x 3, N, of all that touches a particle, friction too, at the end of the last time step; "
-          "zeros where a simulation begins; no rows for bodies and caches.")
-      .def_property_readonly("strains", &strains, "n: largest |length / rest length - 1| next to each particle.")
-      .def_property_readonly("rest", &rows<&Object::rest>, "n x 2: rest coordinates along weft and warp, m.")
-      .def_property_readonly("triangles", &rows<&Object::triangles>, "m x 3: numbers of vertices.");
-  py::class_<Frame>(module, "Frame", "One frame; it never changes. frame[\"band\"] is an object of it.")
+          "strains", &strains,
+          "Strain at each particle, n values: the largest |length / rest length - 1| of the threads at it.")
+      .def_property_readonly("rest", &rows<&Object::rest>, "Rest coordinates along weft and warp, n x 2, m.")
+      .def_property_readonly("triangles", &rows<&Object::triangles>, "Vertex numbers of the triangles, m x 3.");
+  py::class_<Frame>(module, "Frame", "One frame; it never changes. frame[\"band\"] is its object with this name.")
       .def_property_readonly("number", &Frame::number, "Counted from 0.")
       .def_property_readonly("time", &Frame::time, "s.")
       .def_property_readonly("report", &Frame::report, py::return_value_policy::reference_internal)
@@ -221,20 +223,24 @@ void bind_simulation(py::module_& module) {
                        const std::array<double, 4>& rotation) {
     self.move(obstacle, {position, rotation});
   };
-  py::class_<Simulation>(module, "Simulation", "A scene, simulated frame by frame. Use each from one thread at a time.")
+  py::class_<Simulation>(module, "Simulation",
+                         "Simulates a scene frame by frame. Use each object from one thread at a time.")
       .def(py::init(make), py::arg("scene"), py::kw_only(), py::arg("driven") = std::vector<std::string>(),
            py::arg("state") = py::bytes(),
-           "`driven`: obstacles that move() moves. `state`: what save() returned, to continue from there.")
+           "`driven`: names of the obstacles that move() will move. `state`: bytes returned by save(), to continue "
+           "from there.")
       .def_property_readonly("frame", &Simulation::frame, py::return_value_policy::copy, "The current frame.")
       .def("advance", &Simulation::advance, py::return_value_policy::copy, WithoutLock(),
-           "Compute the next frame. Raises SimulationError; the current frame then stays as it was.")
+           "Compute the next frame. If it raises SimulationError, the current frame stays as it was.")
       .def("move", move, py::arg("obstacle"), py::arg("position"),
            py::arg("rotation") = std::array<double, 4>{1, 0, 0, 0},
-           "In the next frame a driven obstacle goes there (m; unit quaternion w, x, y, z) at constant velocity. Pins "
-           "that follow it go along.")
+           "During the next frame, move a driven obstacle to this pose (m; unit quaternion w, x, y, z) at constant "
+           "velocity. Pins that follow it move with it.")
       .def(
-          "save", [](const Simulation& self) { return py::bytes(self.save()); }, "All that later frames depend on.");
-  module.def("set_threads", &set_threads, py::arg("threads"), "At most so many threads compute; 0: all processors.");
+          "save", [](const Simulation& self) { return py::bytes(self.save()); },
+          "The complete state, from which later frames follow.");
+  module.def("set_threads", &set_threads, py::arg("threads"),
+             "Set the maximum number of threads that compute; 0: all processors.");
   module.attr("__version__") = version();
   set_warning_handler([](std::string_view text) {
     const py::gil_scoped_acquire lock;

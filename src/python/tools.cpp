@@ -101,11 +101,12 @@ void bind_difference(py::module_& module) {
     return [field](const Difference& self) { return self.files.worst.figures.*field; };
   };
   using Figures = compare::Figures;
-  py::class_<Difference>(module, "Difference", "How two pictures or videos differ; figures are of the worst frame.")
+  py::class_<Difference>(module, "Difference",
+                         "Differences of two pictures or videos; the values are those of the worst frame.")
       .def_readonly("outcome", &Difference::outcome,
                     "\"same\", \"within\" the limits, \"differs\", \"size\", \"frame count\", \"no test\", "
                     "\"no reference\" or \"unreadable\".")
-      .def_readonly("problem", &Difference::problem, "In words, for outcomes from \"size\" on.")
+      .def_readonly("problem", &Difference::problem, "Explanation in words, for the outcomes from \"size\" on.")
       .def_property_readonly("good",
                              [](const Difference& self) { return self.outcome == "same" || self.outcome == "within"; })
       .def_property_readonly("frames", [](const Difference& self) { return self.files.frames; })
@@ -114,8 +115,8 @@ void bind_difference(py::module_& module) {
       .def_property_readonly("pixels_changed", figure(&Figures::pixels_changed))
       .def_property_readonly("pixels_over", figure(&Figures::pixels_over))
       .def_property_readonly("pixels_at_edges", figure(&Figures::pixels_at_edges),
-                             "Of pixels_over; of the default budget they use a fortieth.")
-      .def_property_readonly("largest", figure(&Figures::largest), "Difference of a channel, of 255.")
+                             "Number of pixels_over that are at edges; with the default budget each counts a fortieth.")
+      .def_property_readonly("largest", figure(&Figures::largest), "Largest difference of a channel, out of 255.")
       .def_property_readonly("ssim", figure(&Figures::ssim), "Mean structural similarity, 1 where equal.")
       .def_property_readonly("flip", figure(&Figures::flip), "Mean of the FLIP map, 0 where equal.")
       .def_property_readonly("spot", figure(&Figures::spot), "Largest value of the FLIP map.");
@@ -134,18 +135,19 @@ void bind_difference(py::module_& module) {
 }  // namespace
 
 void bind_tools(py::module_& module) {
-  py::class_<ErrorOfRun>(module, "ErrorEstimate", "How far a run is from the motion of exactly solved, short steps.")
+  py::class_<ErrorOfRun>(module, "ErrorEstimate", "Estimated error of a run, compared with exactly solved short steps.")
       .def_readonly("all", &ErrorOfRun::all, "By quantity: position (m), velocity (m/s), energy (relative), ...")
       .def_readonly("parts", &ErrorOfRun::parts,
-                    "The same by source: time steps, solver, start, mesh; None: not known.")
-      .def_readonly("chaotic", &ErrorOfRun::chaotic,
-                    "A start moved by 1 um changes the run as much as its errors: no setting lessens them.")
-      .def_readonly("cpu_s", &ErrorOfRun::cpu_s, "Spent on the runs that it was compared with.");
+                    "The same for each source: time steps, solver, start, mesh; None if not known.")
+      .def_readonly(
+          "chaotic", &ErrorOfRun::chaotic,
+          "Whether a start moved by 1 um changes the run as much as its errors do; then no setting reduces them.")
+      .def_readonly("cpu_s", &ErrorOfRun::cpu_s, "CPU seconds of the comparison runs.");
   module.def("estimate_error", &estimate_error, py::arg("scene"), py::arg("mesh") = false, WithoutLock(),
-             "Simulate the scene several times and estimate its error, with `mesh` that of the mesh too.");
-  py::class_<Cache>(module, "Cache", "A frame cache that `weft simulate` wrote; also while it is written.")
+             "Simulate the scene several times and estimate its error; with `mesh`, also that of the mesh.");
+  py::class_<Cache>(module, "Cache", "A frame cache that `weft simulate` wrote or is still writing.")
       .def(py::init<const std::filesystem::path&>(), py::arg("folder"))
-      .def_property_readonly("frames", &Cache::frames, "Numbers of the frames that are there now.")
+      .def_property_readonly("frames", &Cache::frames, "Numbers of the frames that the cache contains now.")
       .def_property_readonly("fps", &Cache::fps)
       .def_property_readonly("scene", &Cache::scene)
       .def("__getitem__", &Cache::frame, py::arg("number"), WithoutLock());

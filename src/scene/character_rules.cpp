@@ -9,39 +9,41 @@ namespace {
 
 const Table& joint_rules() {
   static const Table kTable =
-      TableBuilder<JointNames>("A joint that the motion moves, where it is not found.")
-          .plain(
-              Type::name, "name", &JointNames::name,
-              "Hips, Spine, Chest, Neck, Head, and Shoulder, UpperArm, LowerArm, Hand, UpperLeg, LowerLeg, Foot, Toes "
-              "with Left or Right before it")
+      TableBuilder<JointNames>("Names a joint in the files of body and motion, if Weft does not find it there.")
+          .plain(Type::name, "name", &JointNames::name,
+                 "joint: Hips, Spine, Chest, Neck, Head, or Left or Right followed by Shoulder, UpperArm, LowerArm, "
+                 "Hand, UpperLeg, LowerLeg, Foot or Toes")
           .need(Need::required)
-          .plain(Type::text, "body", &JointNames::body, "what it is called in the character's file")
-          .by_default("found by its name, else by the tree and the lengths of bones")
-          .plain(Type::text, "motion", &JointNames::motion, "what it is called in the file of the motion")
-          .by_default("found by its name, else by the tree and the lengths of bones")
+          .plain(Type::text, "body", &JointNames::body, "its name in the character's file")
+          .by_default("found by common names, else by the tree and the lengths of bones")
+          .plain(Type::text, "motion", &JointNames::motion, "its name in the motion file")
+          .by_default("found by common names, else by the tree and the lengths of bones")
           .build();
   return kTable;
 }
 
 const Table& part_rules() {
   static const Table kTable =
-      TableBuilder<BodyPart>("A part of the body with a say of its own in contact.")
+      TableBuilder<BodyPart>("A part of the body with its own contact settings.")
           .plain(Type::name, "name", &BodyPart::name,
-                 "hands, feet, arms, legs, head, torso or a joint as in character.joint, such as LeftHand; any other "
-                 "with bone or material")
+                 "hands, feet, arms, legs, head, torso, or a joint of character.joint such as LeftHand; any other name "
+                 "needs `bone` or `material`")
           .need(Need::required)
-          .plain(Type::text, "bone", &BodyPart::bone, "node of the character's file that it is, with all below it")
-          .by_default("what the name says")
+          .plain(Type::text, "bone", &BodyPart::bone,
+                 "node of the character's file that forms the part, with all nodes below it")
+          .by_default("by `name`")
           .excludes("material")
-          .plain(Type::text, "material", &BodyPart::material, "material of the character's file that it has")
-          .by_default("what the name says")
+          .plain(Type::text, "material", &BodyPart::material,
+                 "material of the character's file; all triangles with it form the part")
+          .by_default("by `name`")
           .excludes("bone")
-          .plain(Type::boolean, "collide", &BodyPart::collide, "false lets cloth pass through it")
+          .plain(Type::boolean, "collide", &BodyPart::collide,
+                 "whether it collides; false: cloth, ropes and bodies pass through it")
           .number("friction", &BodyPart::friction, within(0, 10), "",
-                  "Coulomb coefficient; of a pair, the geometric mean of both")
+                  "Coulomb friction coefficient; a contact uses the geometric mean of the coefficients of both sides")
           .by_default("that of the character")
           .number("thickness", &BodyPart::thickness, within(0, 1), "m",
-                  "half of it is the distance that cloth keeps in addition, as of padding")
+                  "thickness of padding: cloth keeps half of it as additional distance")
           .build();
   return kTable;
 }
@@ -66,70 +68,75 @@ Travel travel_from(const Value& value) {
 template <class Kind>
 void acting_rows(TableBuilder<Character>& rows) {
   rows.plain(Type::file, "motion", of_source<Kind>(&Acting::motion),
-             "file, such as BVH, of a skeleton whose motion it takes over")
+             "file with the motion of another skeleton, such as BVH, which is transferred to this body")
       .by_default("none")
       .choice("motion_up", of_source<Kind>(&Acting::motion_up), {"as_file", "x", "y", "z"},
-              "axis of that file that points up; of BVH, which does not say, the one along which bodies stand")
+              "axis of the motion file that points up; as_file: as the file states it, for BVH the axis along which "
+              "bodies stand")
       .list(Type::list, "joint", of_source<Kind>(&Acting::joints), joint_rules())
-      .plain(Type::text, "clip", of_source<Kind>(&Acting::clip), "animation of the motion, else of the body itself")
+      .plain(Type::text, "clip", of_source<Kind>(&Acting::clip),
+             "name of the animation to play, from the motion file, else from the body's own file")
       .by_default("the first")
       .number_or(
           "travel", {"file", "none"}, above(0, 20), "m/s",
-          "way of the clip over the floor: that of its file, none (it stays in place), or one at a speed, as for clips "
-          "that walk on the spot",
+          "motion over the floor: as in the file, none (in place), or at this mean speed, for clips that walk on the "
+          "spot",
           [](Character& c) { return travel_value(of_source<Kind>(&Acting::travel)(c)); },
           [](Character& c, const Value& value) { of_source<Kind> (&Acting::travel)(c) = travel_from(value); })
       .choice("stance", of_source<Kind>(&Acting::stance), {"first", "rest"},
-              "pose that it stands in before: the one at start, or that without any animation")
+              "pose while it stands still: that of the clip at `start`, or the rest pose of the skeleton")
       .number("stance_arms", of_source<Kind>(&Acting::stance_arms), within(0, 120), "degrees",
-              "of straight arms from hanging down in that pose, as sleeves have them; 90 of a T")
-      .by_default("as the pose has them")
+              "angle of straight arms in that pose, from hanging down; should fit the sleeves: 45 for an A-pose, 90 "
+              "for a T-pose")
+      .by_default("as in the pose")
       .plain(Type::boolean, "loop", of_source<Kind>(&Acting::loop),
-             "again and again, each round from where the last one has come to")
+             "whether the clip repeats; each round continues from where the last one ended")
       .number("crossfade", of_source<Kind>(&Acting::crossfade), within(0, 60), "s",
-              "time of the clip at the end of a round that passes over into the next; 0 for clips that close");
+              "time at the end of each round that is blended into the next round; 0 for clips that end as they begin");
 }
 
 /// The keys of each source, in the order of CharacterSource.
 void source_rows(TableBuilder<Character>& rows) {
   using Rows = TableBuilder<Character>;
-  rows.variant("file", Rows()
-                           .plain(Type::file, "file", of_source<CharacterFile>(&CharacterFile::path),
-                                  "with skeleton, skin and animations; relative paths start at the scene's folder")
-                           .need(Need::required)
-                           .plain(Type::texts, "meshes", of_source<CharacterFile>(&CharacterFile::meshes),
-                                  "that it consists of, by their names or those of their nodes")
-                           .by_default("all that the file holds")
-                           .plain(Type::texts, "without", of_source<CharacterFile>(&CharacterFile::without),
-                                  "meshes that it does not have, likewise")
-                           .by_default("what cloths take from the same file by object")
-                           .with(acting_rows<CharacterFile>));
-  rows.variant("mannequin",
-               Rows()
-                   .number("height", of_source<Mannequin>(&Mannequin::height), within(0.5, 3), "m",
-                           "from the floor to the top of the head")
-                   .number("girth", of_source<Mannequin>(&Mannequin::girth), within(0.8, 1.5), "",
-                           "widths against those of the slender default")
-                   .number("masculinity", of_source<Mannequin>(&Mannequin::masculinity), within(0, 1), "",
-                           "0 for the shape of a woman, 1 for that of a man")
-                   .number("edge_length", of_source<Mannequin>(&Mannequin::edge_length), within(0.005, 0.1), "m",
-                           "of its triangles; shorter at head, hands and feet")
-                   .number("walk", of_source<Mannequin>(&Mannequin::walk), within(0, 1000), "m",
-                           "how far it walks, from standing to standing; 0 leaves it where it is")
-                   .number("pace", of_source<Mannequin>(&Mannequin::pace), within(0.6, 1.6), "m/s", "of even walking")
-                   .plain(Type::boolean, "turn_back", of_source<Mannequin>(&Mannequin::turn_back),
-                          "at the end of its way it turns round and walks back")
-                   .number("arms_out", of_source<Mannequin>(&Mannequin::arms_out), within(0, 60), "degrees",
-                           "of the upper arms from the vertical while it walks: room for clothes")
-                   .with(acting_rows<Mannequin>));
   rows.variant(
-      "sequence",
+      "file",
       Rows()
-          .plain(Type::text, "files", of_source<MeshSequence>(&MeshSequence::files),
-                 "folder of mesh files, or a file name with one *, in the order of the numbers in their names; "
-                 "relative paths start at the scene's folder")
+          .plain(Type::file, "file", of_source<CharacterFile>(&CharacterFile::path),
+                 "character file with skeleton, skin and animations; relative paths start at the scene's folder")
           .need(Need::required)
-          .number("fps", of_source<MeshSequence>(&MeshSequence::fps), above(0, 1000), "Hz", "files a second"));
+          .plain(Type::texts, "meshes", of_source<CharacterFile>(&CharacterFile::meshes),
+                 "meshes of the file that form the body, by their names or those of their nodes")
+          .by_default("all in the file")
+          .plain(Type::texts, "without", of_source<CharacterFile>(&CharacterFile::without),
+                 "meshes of the file that are left out, named likewise")
+          .by_default("those that cloths use from the same file by `object`")
+          .with(acting_rows<CharacterFile>));
+  rows.variant(
+      "mannequin",
+      Rows()
+          .number("height", of_source<Mannequin>(&Mannequin::height), within(0.5, 3), "m",
+                  "height from the floor to the top of the head")
+          .number("girth", of_source<Mannequin>(&Mannequin::girth), within(0.8, 1.5), "",
+                  "factor on the widths and depths of the slender default")
+          .number("masculinity", of_source<Mannequin>(&Mannequin::masculinity), within(0, 1), "",
+                  "0: the shape of a woman, 1: that of a man")
+          .number("edge_length", of_source<Mannequin>(&Mannequin::edge_length), within(0.005, 0.1), "m",
+                  "edge length of its triangles; shorter on head, hands and feet")
+          .number("walk", of_source<Mannequin>(&Mannequin::walk), within(0, 1000), "m",
+                  "distance that it walks, from standing to standing; 0: it stands")
+          .number("pace", of_source<Mannequin>(&Mannequin::pace), within(0.6, 1.6), "m/s", "steady walking speed")
+          .plain(Type::boolean, "turn_back", of_source<Mannequin>(&Mannequin::turn_back),
+                 "whether it turns around at the end of its walk and walks back")
+          .number("arms_out", of_source<Mannequin>(&Mannequin::arms_out), within(0, 60), "degrees",
+                  "angle of the upper arms from the vertical while it walks, which leaves space for clothes")
+          .with(acting_rows<Mannequin>));
+  rows.variant("sequence", Rows()
+                               .plain(Type::text, "files", of_source<MeshSequence>(&MeshSequence::files),
+                                      "folder of mesh files, or a file name with one *; their order is that of the "
+                                      "numbers in their names; relative paths start at the scene's folder")
+                               .need(Need::required)
+                               .number("fps", of_source<MeshSequence>(&MeshSequence::fps), above(0, 1000), "Hz",
+                                       "files per second"));
 }
 
 }  // namespace
@@ -137,43 +144,47 @@ void source_rows(TableBuilder<Character>& rows) {
 const Table& character_rules() {
   static const std::array<CharacterSource, 3> kSources = {CharacterFile{}, Mannequin{}, MeshSequence{}};
   static const Table kTable =
-      TableBuilder<Character>("A body that moves by itself.")
-          .plain(Type::name, "name", &Character::name, "unlike that of any other object")
+      TableBuilder<Character>(
+          "A body whose motion is given: from a file, as the built-in mannequin, or as a sequence of meshes.")
+          .plain(Type::name, "name", &Character::name, "unique name among cloths, ropes, obstacles and characters")
           .need(Need::required)
           .choice_by(
-              "source", {"file", "mannequin", "sequence"}, "where it comes from; decides which further keys it has",
+              "source", {"file", "mannequin", "sequence"},
+              "where the body comes from; it decides which other keys are allowed",
               [](Character& c) { return c.source.index(); },
               [](Character& c, std::size_t index) { c.source = kSources[index]; })
           .selects()
           .with(source_rows)
           .number("scale", &Character::scale, above(0, 1e6), "", "metres per unit of the file")
-          .by_default("what the file says, else 1")
+          .by_default("as the file states, else 1")
           .choice("up", &Character::up, {"as_file", "x", "y", "z"},
-                  "axis of the file that points up; usually the file says")
+                  "axis of the file that points up; as_file: as the file states it, for a sequence y")
           .with([](auto& rows) {
-            pose_rows(rows, &Character::pose, "of the file's origin, or of the floor below the mannequin");
+            pose_rows(rows, &Character::pose, "position of the file's origin, or of the floor below the mannequin");
           })
           .number("dressing", &Character::dressing, within(0, 3600), "s",
-                  "how long it stands still from the start of the preroll on, before it moves")
-          .number("blend", &Character::blend, within(0, 60), "s", "in which it then gets going")
-          .number(
-              "grow", &Character::grow, within(0, 60), "s",
-              "in which it grows from its bones to its size at the beginning of its dressing, into clothes that are "
-              "narrower than it is but hold its bones")
+                  "time for which it stands still, counted from the start of the preroll, before its motion begins")
+          .number("blend", &Character::blend, within(0, 60), "s", "time in which its motion then starts smoothly")
+          .number("grow", &Character::grow, within(0, 60), "s",
+                  "time at the beginning of `dressing` in which it grows from its bones to its size, into clothes that "
+                  "are too narrow but enclose its bones")
           .number("room", &Character::room, within(0, 0.1), "m",
-                  "between its limbs for cloth: where a motion closes them on cloth that is put on there, or presses "
-                  "it to the floor, its skin moves back, each limb by at most half of what is missing; 0 leaves it as "
-                  "it is")
-          .by_default("that of eight layers of the thickest cloth; 0 where the mannequin walks by itself")
-          .number("start", &Character::start, within(0, 86400), "s", "time of the clip that it gets going from")
-          .number("speed", &Character::speed, above(0, 100), "", "of the clip; 1 as it is")
+                  "clearance for cloth between its limbs: if the motion presses limbs on cloth, or cloth on the floor, "
+                  "the skin moves back, each limb by at most half of the missing clearance; 0: never")
+          .by_default(
+              "eight times the thickness of the thickest cloth; 0 if it does not collide, or for a mannequin without "
+              "`motion`")
+          .number("start", &Character::start, within(0, 86400), "s", "time of the clip at which its motion begins")
+          .number("speed", &Character::speed, above(0, 100), "", "factor on the speed of the clip")
           .number("keys_per_second", &Character::keys_per_second, within(1, 1000), "Hz",
-                  "key frames that are stored before the simulation starts")
-          .by_default("as many as the clip has, 10 to 120")
-          .choice("interpolation", &Character::interpolation, kInterpolations, "between its key frames")
+                  "key frames of the skin per second, which are computed before the simulation starts")
+          .by_default("as many as the clip has, but 10 to 120")
+          .choice("interpolation", &Character::interpolation, kInterpolations,
+                  "interpolation between its key frames; cubic is smooth")
           .number("friction", &Character::friction, within(0, 10), "",
-                  "Coulomb coefficient; of a pair, the geometric mean of both")
-          .plain(Type::boolean, "collide", &Character::collide, "false lets cloth pass through it")
+                  "Coulomb friction coefficient; a contact uses the geometric mean of the coefficients of both sides")
+          .plain(Type::boolean, "collide", &Character::collide,
+                 "whether it collides; false: cloth, ropes and bodies pass through it")
           .list(Type::list, "part", &Character::parts, part_rules())
           .table("look", &Character::look, character_look_rules())
           .not_simulated()

@@ -71,8 +71,8 @@ void check_rotation_changes(const std::vector<Key>& keys, const std::string& pat
     if (!findings.has(key) || findings.has_mistake(key)) continue;
     const auto change = change_of_angles(keys[i - 1].pose, keys[i].pose);
     if (!change || (change->array() != 0).count() < 2 || change->cwiseAbs().maxCoeff() <= 180) continue;
-    findings.report(key, fmt::format("expected a change of one angle alone, or of none by more than half a turn, "
-                                     "since the key before; got a change by [{:g}, {:g}, {:g}] degrees",
+    findings.report(key, fmt::format("expected that since the key before only one angle changes, or none by more than "
+                                     "180 degrees; got changes of [{:g}, {:g}, {:g}] degrees",
                                      change->x(), change->y(), change->z()));
   }
 }
@@ -96,22 +96,22 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
     return;
   }
   if (part.at && !cloth.rope)
-    findings.report(path + ".at", "expected none of a cloth that is no rope; low and high say which part it is");
+    findings.report(path + ".at", "expected none for a cloth that is not a rope; give the part by low and high");
   if (part.at && part.at->x() > part.at->y())
     findings.report(path + ".at",
                     fmt::format("expected the lower end first, got {} before {}", part.at->x(), part.at->y()));
   for (const auto& [key, name] : {std::pair(".panel", &part.panel), std::pair(".edge", &part.edge)}) {
     if (name->empty() || cloth.shape == ClothShape::pattern) continue;
-    findings.report(path + key, "expected none of a cloth that is sewn from no pattern, got " + in_quotes(*name));
+    findings.report(path + key, "expected none for a cloth that is not shape = \"pattern\", got " + in_quotes(*name));
     return;
   }
   check_image(part.mask, path + ".mask", findings);
   if (cloth.shape != ClothShape::mesh) {
     if (part.vertex_color != VertexColor::none)
-      findings.report(path + ".vertex_color", "expected none of a cloth that is not shape = \"mesh\", got one");
+      findings.report(path + ".vertex_color", "expected none for a cloth that is not shape = \"mesh\", got one");
     if (!part.vertex_group.empty())
       findings.report(path + ".vertex_group",
-                      "expected none of a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
+                      "expected none for a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
   if (rectangle_particles(cloth) == 0) return;  // the number of particles is known only after the file is read
   // A part between two rows of particles would hold no particle without any message. Returns the nearest row, or
@@ -156,10 +156,11 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
   if (!followed.part.empty() && !findings.has_mistake(path + ".follow"))
     check_reference(followed.body, characters, "a character before the part", path + ".follow", findings);
   if (pin.fade > 0 && !pin.strength)
-    findings.report(path + ".fade",
-                    fmt::format("expected a strength beside it, which fades; got {} m and none; to hold the part and "
-                                "draw what is around it, write a pin that holds and beside it one with both",
-                                pin.fade));
+    findings.report(
+        path + ".fade",
+        fmt::format("expected a strength beside it, got {} m and none; to hold the part exactly and pull the cloth "
+                    "around it, write two pins: one without strength, and one with strength and fade",
+                    pin.fade));
   check_part(cloth, pin, path, findings);
 }
 
@@ -180,10 +181,9 @@ void check_friction_pairs(const Scene& scene, Findings& findings) {
     const auto is_cloth = [&](const std::string& name) { return !std::ranges::count(names_of_bodies, name); };
     if (!findings.has_mistake(path + ".first") && !findings.has_mistake(path + ".second") && !is_cloth(pair.first) &&
         !is_cloth(pair.second))
-      findings.report(path + ".second",
-                      fmt::format("expected a cloth as one of the two, since obstacles and characters "
-                                  "do not meet one another; got {} and {}",
-                                  in_quotes(pair.first), in_quotes(pair.second)));
+      findings.report(path + ".second", fmt::format("expected a cloth or rope as one of the two, since two bodies "
+                                                    "always use their own coefficients; got {} and {}",
+                                                    in_quotes(pair.first), in_quotes(pair.second)));
     if (pair.static_friction && *pair.static_friction < pair.friction)
       findings.report(path + ".static_friction",
                       fmt::format("expected >= {}, that of sliding, got {}", pair.friction, *pair.static_friction));
@@ -232,7 +232,7 @@ void check_look(const Cloth& cloth, const std::string& path, Findings& findings)
     const std::string& entry = findings.entry(path + ".look.panel", p);
     check_image(cloth.look.panels[p].image, entry + ".image", findings);
     if (cloth.shape != ClothShape::pattern)
-      findings.report(entry, "expected none of a cloth that is sewn from no pattern");
+      findings.report(entry, "expected none for a cloth that is not shape = \"pattern\"");
   }
 }
 
@@ -298,7 +298,7 @@ void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::str
   for (const auto& [key, value] : {std::pair("velocity", obstacle.velocity), std::pair("spin", obstacle.spin)})
     if (value != Vec3::Zero())
       findings.report(fmt::format("{}.{}", path, key),
-                      "expected none beside keys, which say how fast it is at release");
+                      "expected none beside keys, which give its velocity at the release");
   if (obstacle.release == 0)
     findings.report(path + ".release", "expected > 0 s beside keys, which move it until then, got 0");
 }
@@ -340,7 +340,8 @@ void check_characters(const Scene& scene, Findings& findings) {
                                                   character.dressing, character.grow));
     if (const auto* mannequin = std::get_if<Mannequin>(&character.source);
         mannequin != nullptr && mannequin->motion && mannequin->walk > 0)
-      findings.report(path + ".walk", fmt::format("expected 0 beside a motion, got {}", mannequin->walk));
+      findings.report(path + ".walk",
+                      fmt::format("expected 0 beside a motion, which moves the mannequin, got {}", mannequin->walk));
     const auto* sequence = std::get_if<MeshSequence>(&character.source);
     if (sequence == nullptr || sequence->files.empty()) continue;
     if (const std::size_t count = sequence_files(sequence->files).size(); count < 2)
@@ -377,7 +378,7 @@ void check_cameras(const Scene& scene, Findings& findings) {
     for (const std::string& name : camera.subjects)
       check_reference(name, objects, "a cloth, rope, obstacle or character", path + ".subject", findings);
     if (camera.kind == CameraKind::file && camera.aperture > 0 && camera.focus <= 0)
-      findings.report(path + ".aperture", "expected focus beside it: nothing says what a camera of a file looks at");
+      findings.report(path + ".aperture", "expected focus beside it, in m, since a camera of a file has no target");
     if (camera.kind != CameraKind::placed) continue;
     for (std::size_t k = 0; k < camera.keys.size(); ++k) {
       if (camera.keys[k].position != camera.keys[k].target) continue;

@@ -39,7 +39,7 @@ void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherw
   const auto of = [pose](S& s) -> Pose& { return std::invoke(pose, s); };
   rows.vector(
           "quaternion", [of](S& s) -> Quat& { return of(s).rotation; }, {"w", "x", "y", "z"}, within(-1e3, 1e3), "",
-          "rotation as a quaternion, of any length but 0")
+          "rotation as a quaternion of any length but 0")
       .nonzero()
       .by_default(otherwise)
       .written_if([of](S& s) { return !of(s).angles; })
@@ -47,8 +47,8 @@ void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherw
   rows.vector(
           "rotation", [of](S& s) -> std::optional<Vec3>& { return of(s).angles; }, {"rx", "ry", "rz"},
           within(-36000, 36000), "degrees",
-          "rotation about the fixed x, then y, then z axis; from key to key, one angle that changes alone turns by "
-          "all of its change, whole turns too; several turn the shortest way")
+          "rotation about the fixed x, then y, then z axis; if one angle alone changes between two keys, it turns by "
+          "its whole change, full turns included; if several change, the object turns the shortest way")
       .excludes("quaternion")
       .when_given([of](S& s) { of(s).rotation = from_angles(*of(s).angles); });
 }
@@ -67,6 +67,6 @@ const Table& obstacle_look_rules();
 const Table& character_look_rules();
 
 /// Documented default of a value that a key frame omits.
-inline const std::string kDefaultOfKey = "that of the key before; of the first key, that of the thing itself";
+inline const std::string kDefaultOfKey = "as in the key before; in the first key, the value given beside `keys`";
 
 }  // namespace weft::scene

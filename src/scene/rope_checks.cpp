@@ -23,14 +23,14 @@ bool check_course(const Scene& scene, const Rope& rope, const std::string& path,
       findings.report(path + ".to", "expected another place than from, got the same");
       return false;
     }
-    if (rope.closed) findings.report(path + ".closed", "expected points of a loop beside it, got from and to");
+    if (rope.closed) findings.report(path + ".closed", "expected points for a closed rope, got from and to");
     const Vec3 up = scene.up == UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
     const Vec3 way = *rope.to - *rope.from;
     const double span = (way - up.dot(way) * up).norm(), least = kMinRopeSpan * rope.diameter;
     if (hangs_slack(rope) && span < least) {
       findings.report(path + ".to",
                       fmt::format("expected ends at least {:.4g} m apart across the up axis, {:g} diameters, as it is "
-                                  "longer than their distance; got {:.4g} m; points can lay it otherwise",
+                                  "longer than their distance; got {:.4g} m; move the ends apart, or give points",
                                   least, kMinRopeSpan, span));
       return false;
     }

@@ -16,10 +16,11 @@ std::vector<std::string> rope_material_names() {
 
 const Table& rope_key_rules() {
   static const Table kTable =
-      TableBuilder<RopeKey>("How long the rope is at a time.")
-          .number("time", &RopeKey::time, kMoment, "s", "later than the key before")
+      TableBuilder<RopeKey>("Length of the rope at one time.")
+          .number("time", &RopeKey::time, kMoment, "s", "time of the scene; later than that of the key before")
           .need(Need::required)
-          .number("length", &RopeKey::length, kExtent, "m", "at rest, all of it alike, as of a cord that is drawn in")
+          .number("length", &RopeKey::length, kExtent, "m",
+                  "length at rest; a change is distributed evenly over the rope, as if a winch pulled it in")
           .need(Need::required)
           .build();
   return kTable;
@@ -29,11 +30,11 @@ const Table& rope_look_rules() {
   static const Table kTable =
       TableBuilder<Look>("How the rope is drawn.")
           .starting_from(rope_look())
-          .color("color", &Look::color, "of the rope")
-          .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
+          .color("color", &Look::color, "color of the rope")
+          .number("roughness", &Look::roughness, within(0, 1), "", "roughness of the surface: 0 like a mirror, 1 matte")
           .plain(Type::boolean, "strands", &Look::strands,
-                 "draws three twisted strands, of ropes from 9 mm on; false: a smooth round cord")
-          .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture")
+                 "true: ropes of at least 9 mm show three twisted strands; false: a smooth round cord")
+          .plain(Type::boolean, "visible", &Look::visible, "whether it is drawn")
           .build();
   return kTable;
 }
@@ -44,48 +45,50 @@ const Table& rope_rules() {
   const std::string of_material = "that of the material, for its diameter";
   static const Table kTable =
       TableBuilder<Rope>(
-          "A rope, cord or line: a thin chain of particles that resists stretch and bending, and meets itself, ropes, "
-          "cloth and bodies.")
-          .plain(Type::name, "name", &Rope::name, "unlike that of any other object")
+          "A rope, cord or line: a thin chain of particles that resists stretch and bending, and collides with itself, "
+          "other ropes, cloth and bodies.")
+          .plain(Type::name, "name", &Rope::name, "unique name among cloths, ropes, obstacles and characters")
           .need(Need::required)
-          .points("points", &Rope::points, kXyz, kPlace, "m", "that it runs through at the start, at least two")
+          .points("points", &Rope::points, kXyz, kPlace, "m",
+                  "points that it runs through at the start; at least two, three if it is closed")
           .by_default("a line from `from` to `to`")
-          .vector("from", &Rope::from, kXyz, kPlace, "m", "where it begins, in place of points")
+          .vector("from", &Rope::from, kXyz, kPlace, "m", "start point, in place of points")
           .by_default("none")
           .excludes("points")
-          .vector("to", &Rope::to, kXyz, kPlace, "m", "where it ends, in place of points")
+          .vector("to", &Rope::to, kXyz, kPlace, "m", "end point, in place of points")
           .by_default("none")
           .excludes("points")
           .plain(Type::boolean, "smooth", &Rope::smooth,
-                 "true bends it through its points; false: straight between them")
-          .plain(Type::boolean, "closed", &Rope::closed, "true joins its end to its beginning: a loop")
-          .number(
-              "length", &Rope::length, kExtent, "m",
-              "at rest; longer than from `from` to `to`, it hangs between them; else it starts stretched, or pushed "
-              "together")
-          .by_default("that of its first key, else as it starts")
+                 "true: a smooth curve through its points; false: straight between them")
+          .plain(Type::boolean, "closed", &Rope::closed, "true: a loop, whose end joins its beginning; needs points")
+          .number("length", &Rope::length, kExtent, "m",
+                  "length at rest; if it exceeds the distance between `from` and `to`, the rope hangs between them; "
+                  "otherwise it starts stretched or compressed")
+          .by_default("that of its first key, else its length at the start")
           .whole_number("segments", &Rope::segments, within(3, 20000),
-                        "pieces between particles; each at least 1.5 diameters long")
-          .by_default("pieces of 3 diameters")
-          .number("diameter", &Rope::diameter, above(0, 1), "m", "that contact and air meet")
+                        "number of pieces between particles; each must be at least 1.5 diameters long")
+          .by_default("as many as give pieces of 3 diameters")
+          .number("diameter", &Rope::diameter, above(0, 1), "m", "diameter, for contact, air resistance and drawing")
           .choice_by(
               "material", rope_material_names(),
-              "kind of rope that gives mass, stretch and bend for its diameter; steel is wire rope",
+              "material, which gives mass, stretch and bend for the diameter; steel is wire rope",
               [](Rope& rope) { return static_cast<std::size_t>(rope.material); },
               [](Rope& rope, std::size_t index) { rope.material = static_cast<int>(index); })
-          .number("mass", &Rope::mass, above(0, 1e4), "kg/m", "of a metre")
+          .number("mass", &Rope::mass, above(0, 1e4), "kg/m", "mass per length")
           .by_default(of_material)
-          .number("stretch", &Rope::stretch, above(0, 1e10), "N", "force per strain (EA)")
+          .number("stretch", &Rope::stretch, above(0, 1e10), "N", "stretching stiffness: force per strain (EA)")
           .by_default(of_material)
           .number("bend", &Rope::bend, within(0, 1e6), "N·m²", "bending stiffness (EI)")
           .by_default(of_material)
           .number("damping", &Rope::damping, within(0, 10), "s",
-                  "viscosity of stretch and bending over their stiffness")
+                  "viscosity of stretch and bending, relative to their stiffness")
           .number("friction", &Rope::friction, within(0, 10), "",
-                  "Coulomb coefficient; of a pair, the geometric mean of both")
-          .number("drag", &Rope::drag, within(0, 100), "", "air resistance of motion across it; 0 for none")
-          .vector("velocity", &Rope::velocity, kXyz, within(-1e4, 1e4), "m/s", "at the start")
-          .choice("interpolation", &Rope::interpolation, kInterpolations, "between its keys")
+                  "Coulomb friction coefficient; a contact uses the geometric mean of the coefficients of both sides")
+          .number("drag", &Rope::drag, within(0, 100), "",
+                  "drag coefficient of motion across the rope; 0: no air resistance")
+          .vector("velocity", &Rope::velocity, kXyz, within(-1e4, 1e4), "m/s", "initial velocity")
+          .choice("interpolation", &Rope::interpolation, kInterpolations,
+                  "interpolation between the entries of `keys`; cubic is smooth")
           .list(Type::keys, "keys", &Rope::keys, rope_key_rules())
           .table("look", &Rope::look, rope_look_rules())
           .not_simulated()

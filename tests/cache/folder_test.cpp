@@ -155,7 +155,7 @@ TEST_F(CacheFolder, VerifyFindsWhatReadingFinds) {
 
 TEST_F(CacheFolder, HasOneWriterAtATime) {
   const auto first = std::make_unique<Lock>(cache());
-  expect_error(ExitCode::output_failed, "another process is at work on it", [&] { Lock second(cache()); });
+  expect_error(ExitCode::output_failed, "another process writes it", [&] { Lock second(cache()); });
 }
 
 TEST_F(CacheFolder, IsFreeAgainOnceItsWriterIsGone) {

@@ -132,13 +132,13 @@ TEST(Recommendation, IsTheFirstLineAndNamesKeysAndCosts) {
   Accuracy accuracy = accuracy_of_one_metre();
   EXPECT_EQ(recommendation(accuracy),
             "Use `time.integrator = \"bdf2\"`, `time.step = 0.01`, `solver.newton_tolerance = 0.1`: 6 CPU s, the "
-            "position off by at most 5 mm, where 10 mm (1 % of the cloth's size) are wanted; the settings of the scene "
-            "take 4 CPU s, the position off by at most 20 mm.");
+            "position off by at most 5 mm, for an accuracy of 10 mm (1 % of the cloth's size); the settings of the "
+            "scene take 4 CPU s, the position off by at most 20 mm.");
   EXPECT_TRUE(accuracy_markdown("x", accuracy, "a", "b")
                   .starts_with("# Error against run time: x\n\n**" + recommendation(accuracy) + "**\n"));
   Accuracy with_contact = accuracy;
   with_contact.contact = true;
-  EXPECT_NE(recommendation(with_contact).find("the centre off by at most 5 mm in the last frame, where"),
+  EXPECT_NE(recommendation(with_contact).find("the centre off by at most 5 mm in the last frame, for an accuracy"),
             std::string::npos)
       << recommendation(with_contact);
   accuracy.of_scene.integrator = Integrator::bdf2;

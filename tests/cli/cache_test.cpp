@@ -122,12 +122,11 @@ TEST_F(CachedRun, EditedSceneNeverMeetsOldFrames) {
   const Outcome edited = weft({"simulate", "s.toml", "--cache", "c", "--resume", "--set", "obstacle.ball.radius=0.11"});
   EXPECT_EQ(edited.exit_code, 6);
   EXPECT_TRUE(contains(edited.err, "which has changed since")) << edited.err;
-  EXPECT_TRUE(contains(edited.err, "leave --resume away to start again, or undo the change")) << edited.err;
+  EXPECT_TRUE(contains(edited.err, "omit --resume to start again, or undo the change")) << edited.err;
   expect_well({"simulate", "s.toml", "--cache", "c", "--resume"});
   const Outcome again = weft({"simulate", "s.toml", "--cache", "c"});
   EXPECT_EQ(again.exit_code, 6);
-  EXPECT_TRUE(contains(again.err, "c: holds a cache already; give --resume to go on with it, --overwrite"))
-      << again.err;
+  EXPECT_TRUE(contains(again.err, "c: holds a cache already; give --resume to continue it, --overwrite")) << again.err;
   expect_well({"simulate", "s.toml", "--cache", "c", "--overwrite", "--frames", ":2"});
   EXPECT_EQ(cache::Reader(folder_ / "c").frames().size(), 2u) << "frames of the cache before are left";
 }
@@ -161,7 +160,7 @@ TEST_F(CachedRun, FramesThatWereNotDressedYetAreNotDrawn) {
   expect_well({"render", "c", "-o", "a.mp4", "--frames", ":3"});
   const Outcome rest = weft({"render", "c", "-o", "b.mp4", "--frames", "3:8"});
   EXPECT_EQ(rest.exit_code, 9);
-  EXPECT_TRUE(contains(rest.err, "it has the looks from before the scene was changed")) << rest.err;
+  EXPECT_TRUE(contains(rest.err, "it has the look from before the scene was changed")) << rest.err;
   expect_well(again);
   expect_well({"render", "c", "-o", "b.mp4"});
 }
@@ -171,7 +170,7 @@ TEST_F(CachedRun, WholeCacheSaysSoAndStaysAsItIs) {
   const auto before = contents("c", ".weft");
   const Outcome again = weft({"simulate", "s.toml", "--cache", "c", "--resume"});
   EXPECT_EQ(again.exit_code, 0);
-  EXPECT_TRUE(again.err.starts_with("note: c is whole already: frames 0:21\n")) << again.err;
+  EXPECT_TRUE(again.err.starts_with("note: c is complete already: frames 0:21\n")) << again.err;
   EXPECT_EQ(contents("c", ".weft"), before);
 }
 
@@ -231,7 +230,7 @@ TEST_F(CachedRun, SecondProcessAtTheSamePlaceIsRefused) {
          {Arguments{"simulate", "s.toml", "--cache", "c"}, Arguments{"run", "s.toml", "-o", "a.mp4"}}) {
       const Outcome outcome = weft(arguments);
       EXPECT_EQ(outcome.exit_code, 6);
-      EXPECT_TRUE(contains(outcome.err, "another process is at work on it")) << outcome.err;
+      EXPECT_TRUE(contains(outcome.err, "another process writes it")) << outcome.err;
     }
   }
   expect_well({"run", "s.toml", "-o", "a.mp4"});
@@ -273,7 +272,7 @@ TEST_F(KilledRun, IsThrownAwayWithANoteByOneThatDoesNotResume) {
   kill_after(5);
   const Outcome outcome = weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "n"});
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_TRUE(contains(outcome.err, "of a run that did not end well are thrown away; with --resume")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "of an unfinished run are discarded; --resume")) << outcome.err;
 }
 
 TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
@@ -285,7 +284,7 @@ TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
   support::write_bytes(folder_ / ".a.weft-cache/frame_00003.weft", "\x89WEFT\r\n\x1A-");
   const Outcome again = resume();
   EXPECT_EQ(again.exit_code, 0);
-  EXPECT_EQ(again.err, "note: a.mp4 is whole already: frames 0:21\n");
+  EXPECT_EQ(again.err, "note: a.mp4 is complete already: frames 0:21\n");
   EXPECT_FALSE(fs::exists(folder_ / ".a.weft-cache"));
   EXPECT_EQ(fs::last_write_time(folder_ / "a.mp4"), written) << "a finished video was replaced";
   EXPECT_EQ(weft({"run", "s.toml", "-o", "a.mp4", "--resume", "--set", "time.duration=0.4"}).exit_code, 6)
@@ -309,7 +308,7 @@ TEST_F(KilledRun, GoesOnWithOtherLooksToTheVideoThatHasThemFromTheStart) {
   resumed.push_back("--resume");
   const Outcome outcome = weft(resumed);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "the looks of the scene have changed, not its simulation")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "only the look of the scene has changed; its simulation")) << outcome.err;
   const std::string pictures = decoded("a.mp4");
   fs::remove(folder_ / "a.mp4");
   expect_well(run);
@@ -335,7 +334,7 @@ TEST_F(CachedRun, InterruptedByCtrlCRunGoesOnToTheWholeVideo) {
   const Outcome interrupted = process.wait();
   if (interrupted.exit_code == 0) GTEST_SKIP() << "it was done before the signal came";
   EXPECT_EQ(interrupted.exit_code, 75);
-  EXPECT_TRUE(contains(interrupted.err, "the same command with --resume goes on from there")) << interrupted.err;
+  EXPECT_TRUE(contains(interrupted.err, "the same command with --resume continues from there")) << interrupted.err;
   EXPECT_LT(probe_video(folder_ / "a.mp4").frames, kFrames);
   expect_well({"run", "s.toml", "-o", "a.mp4", "--resume"});
   EXPECT_EQ(decoded("a.mp4"), decoded("whole.mp4"));
@@ -371,7 +370,7 @@ TEST_F(CachedRun, FullDiskEndsASimulationButOnlyTheCacheOfARun) {
   const std::string camera = "camera=[{name='v',position=[1,-1,1],target=[0,0,0.2]}]";
   const Outcome run = limited({"run", "s.toml", "-o", std::string("p/") + kPictures, "--set", camera}, 8000);
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(contains(run.err, "the run goes on, but")) << run.err;
+  EXPECT_TRUE(contains(run.err, "the run continues, but")) << run.err;
   EXPECT_EQ(contents("p", ".png").size(), static_cast<std::size_t>(kFrames));
   EXPECT_FALSE(fs::exists(folder_ / "p/.s.weft-cache"));
   // With a computed camera the pictures are drawn from the cache.

@@ -58,7 +58,7 @@ TEST(Companions, NameTheSourceOfTheError) {
   EXPECT_EQ(steps.largest().source, ErrorSource::steps);
   EXPECT_LT(part_of(steps, ErrorSource::solver), 0.1 * part_of(steps, ErrorSource::steps));
   EXPECT_EQ(part_of(steps, ErrorSource::mesh), -1) << "not asked for";
-  EXPECT_NE(cli::error_sentence(steps, 0.5).find("most of it by the time steps; a smaller time.step"),
+  EXPECT_NE(cli::error_sentence(steps, 0.5).find("most of it due to the time steps; a smaller time.step"),
             std::string::npos);
   ErrorEstimate solver;
   for (ErrorSource source : {ErrorSource::steps, ErrorSource::solver, ErrorSource::start}) {
@@ -66,7 +66,7 @@ TEST(Companions, NameTheSourceOfTheError) {
     solver.parts.back().errors.fill(source == ErrorSource::solver ? 2e-3 : 1e-3);
   }
   EXPECT_NE(
-      cli::error_sentence(solver, 0.5).find("most of it by the solver; a smaller solver.newton_tolerance lessens"),
+      cli::error_sentence(solver, 0.5).find("most of it due to the solver; a smaller solver.newton_tolerance reduces"),
       std::string::npos);
 }
 

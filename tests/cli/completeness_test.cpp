@@ -45,7 +45,7 @@ TEST_F(Completeness, RenderOfAPartTakesTheFramesBeforeItsEndIfTold) {
   EXPECT_FALSE(fs::exists(folder_ / "all.mp4"));
   const Outcome part = weft({"render", "c", "-o", "part.mp4", "--partial"});
   EXPECT_EQ(part.exit_code, 0);
-  EXPECT_TRUE(contains(part.err, "frames 8:21 are missing; only 0:8 are taken")) << part.err;
+  EXPECT_TRUE(contains(part.err, "frames 8:21 are missing; only 0:8 are used")) << part.err;
   EXPECT_EQ(probe_video(folder_ / "part.mp4").frames, 8);
   EXPECT_EQ(probe_video(folder_ / "part.mp4").metadata.at("frames"), "0:8");
 }
@@ -87,7 +87,7 @@ TEST_F(Completeness, RenderResumesToThePicturesAndMeshesOfOneThatWasNotStopped) 
   EXPECT_EQ(fs::last_write_time(folder_ / "p/00003.png"), drawn) << "a picture that was there was drawn again";
   const Outcome nothing_left = weft(again);
   EXPECT_EQ(nothing_left.exit_code, 0);
-  EXPECT_EQ(nothing_left.err, "note: p/{frame:05}.png is whole already: frames 0:21\n");
+  EXPECT_EQ(nothing_left.err, "note: p/{frame:05}.png is complete already: frames 0:21\n");
 }
 
 TEST_F(Completeness, LayersAreThoseOfOneRunAfterAResumeAndInParts) {
@@ -134,7 +134,7 @@ TEST_F(Completeness, VideoThatWasStoppedIsDrawnAnewAndAnotherIsKept) {
   EXPECT_EQ(render({"--resume", "--quality", "draft"}).exit_code, 6) << "another film has this name";
   EXPECT_EQ(render({"--resume"}).exit_code, 0);
   EXPECT_EQ(probe_video(folder_ / "a.mp4").frames, kFrames);
-  EXPECT_EQ(render({"--resume"}).err, "note: a.mp4 is whole already: frames 0:21\n");
+  EXPECT_EQ(render({"--resume"}).err, "note: a.mp4 is complete already: frames 0:21\n");
 }
 
 class Joining : public Completeness {
@@ -209,7 +209,7 @@ TEST_F(Joining, OfVideosKeepsEveryPictureAndItsTime) {
   EXPECT_EQ(facts.metadata.at("frames"), "0:21");
   // The joined video is accepted as complete.
   EXPECT_EQ(weft({"render", "c", "-o", "joined.mp4", "--resume"}).err,
-            "note: joined.mp4 is whole already: frames 0:21\n");
+            "note: joined.mp4 is complete already: frames 0:21\n");
 }
 
 TEST_F(Joining, NamesWhatIsMissingAndMakesNoFile) {
@@ -233,14 +233,14 @@ TEST_F(Joining, RefusesWhatIsNoPartOfTheFilm) {
   draw("b.mp4", "7:21");
   expect_refused({"a.mp4", "b.mp4", "-o", "joined.mp4"}, 2, "frame 7 is in both a.mp4 and b.mp4");
   expect_refused({"p", "b.mp4", "-o", "joined.mp4"}, 2, "either videos or folders of pictures");
-  expect_refused({"b.mp4", "-o", "joined.mp4", "--frames", "9:21"}, 2, "a video is joined whole");
+  expect_refused({"b.mp4", "-o", "joined.mp4", "--frames", "9:21"}, 2, "a video can only be joined whole");
   expect_well({"simulate", "s.toml", "--cache", "d", "--set", "cloth.cloth.look.color=[1,0,0]"});
   expect_well({"render", "d", "-o", "q/{frame:05}.png", "--frames", "9:21"});
-  expect_refused({"p", "q", "-o", "joined.mp4"}, 2, "q/00009.png: expected parts of one film, its scene_hash is '");
+  expect_refused({"p", "q", "-o", "joined.mp4"}, 2, "q/00009.png: expected parts of one video; its scene_hash is '");
   expect_refused({"c", "-o", "joined.mp4"}, 4, "c: holds no pictures");
   expect_refused({"p", "-o", "p.avi"}, 2, "-o: expected a name ending in .mp4, .mov or .mkv");
   expect_refused({"p", "-o", "p.mov", "--codec", "ffv1"}, 2, "--codec: ffv1 is kept in files ending in .mkv");
-  expect_refused({"p", "-o", "p.mov", "--crf", "20"}, 2, "--crf: expected h264");
+  expect_refused({"p", "-o", "p.mov", "--crf", "20"}, 2, "--crf: expected --codec h264");
   expect_refused({"b.mp4", "-o", "b.mov"}, 2, "b.mov: videos are joined as they are, into .mp4");
   expect_refused({"b.mp4", "-o", "joined.mp4", "--crf", "20"}, 2, "videos are joined as they are");
 }

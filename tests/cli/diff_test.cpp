@@ -93,7 +93,7 @@ TEST_F(Diff, AcceptedPictureIsTheReferenceFromThenOn) {
   write("out/a.png", 130);
   write("out/b.png", 130);
   expect({"accept", "ref", "out/a.png"}, 2, "--reason is required");
-  expect({"accept", "ref", "out/a.png", "--reason", " "}, 2, "--reason: expected words");
+  expect({"accept", "ref", "out/a.png", "--reason", " "}, 2, "--reason: expected a text");
   expect({"accept", "ref/a.png", "out", "--reason", "all"}, 2, "out: a folder cannot become ref/a.png");
   expect({"accept", "ref/a.png", "out/a.png", "out/b.png", "--reason", "two"}, 2, "cannot all become ref/a.png");
   expect({"accept", "ref", "out/a.png", "out/none.png", "--reason", "half"}, 4, "none.png: does not exist");

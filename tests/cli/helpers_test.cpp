@@ -58,7 +58,7 @@ TEST_F(Helpers, TemplateOfARepositoryAddsToOneThatIsThere) {
   EXPECT_TRUE(fs::exists(folder_ / ".github/workflows/pictures.yml"));
   EXPECT_TRUE(fs::exists(folder_ / "pictures.sh"));
   EXPECT_NE(made.err.find("limits.toml: kept as it is"), std::string::npos) << made.err;
-  EXPECT_NE(made.err.find("PICTURES.md says how to go on"), std::string::npos) << made.err;
+  EXPECT_NE(made.err.find("PICTURES.md explains the next steps"), std::string::npos) << made.err;
   // A second call accepts the files that the first call wrote.
   EXPECT_EQ(run_weft({"new", ".", "--template", "ci"}, folder_).exit_code, 0);
   EXPECT_EQ(read(".gitignore"), "/build/\n/out/\n/report/\n/caches/\n/.weft/\n/.ccache/\n");
@@ -150,7 +150,7 @@ TEST_F(Helpers, TwoDashesEndTheOptions) {
   EXPECT_EQ(run_weft({"check", "./-s.toml"}, folder_).exit_code, 0);
   const Outcome outcome = run_weft({"check", "-s.toml"}, folder_);
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("unknown option -s.toml; a file of this name is written ./-s.toml, or behind --"),
+  EXPECT_NE(outcome.err.find("unknown option -s.toml; for a file of this name, write ./-s.toml, or put it after --"),
             std::string::npos)
       << outcome.err;
   EXPECT_NE(run_weft({"check", "--pln"}, folder_).err.find("unknown option --pln; did you mean --plan?"),
@@ -177,7 +177,7 @@ TEST_F(Helpers, CheckSaysWhatHasChangedSinceAnotherScene) {
 TEST_F(Helpers, CheckEstimatesWhatARunTakes) {
   const Outcome outcome = run_weft({"check", "--estimate", "s.toml"}, folder_);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("MB of memory, by 10 frames"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("MB of memory, estimated from 10 frames"), std::string::npos) << outcome.out;
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ TEST_F(UnevenCells, AreNamedByCheckAndRunWhereObstaclesAreMet) {
   const Outcome flat = check(mesh + ball);
   EXPECT_EQ(flat.exit_code, 0);
   EXPECT_TRUE(contains(flat.err, "uneven.toml:1:1: cloth.sheet: mesh file ")) << flat.err;
-  EXPECT_TRUE(contains(flat.err, "made a sheet: 3 edges of flat triangles collapsed or turned")) << flat.err;
+  EXPECT_TRUE(contains(flat.err, "repaired to a sheet: 3 edges of flat triangles collapsed or turned")) << flat.err;
   EXPECT_EQ(check(mesh).exit_code, 0) << "nothing to meet";
   support::write_bytes(folder_ / "needles.obj", needles(0.002));
   EXPECT_EQ(check(mesh + ball).exit_code, 0);

@@ -151,8 +151,8 @@ TEST(Options, OfSpeedAreListsAndForSpeedAlone) {
             "--threads: expected a whole number from 1 to 1024, got 0");
   for (const char* wrong : {"0:3", "1:9:2"})
     EXPECT_EQ(refusal({"bench", "speed", "--frames", wrong}),
-              std::string("--frames: expected A:B with A from 1, for frame 0 takes no time and each needs the one "
-                          "before, got ") +
+              std::string("--frames: expected A:B with A >= 1 and without a STEP, since frame 0 takes no time and each "
+                          "frame needs the one before, got ") +
                   wrong);
   EXPECT_EQ(refusal({"bench", "stability", "--steps", "1,2"}),
             "weft bench: --steps is for weft bench speed or accuracy");

@@ -457,7 +457,7 @@ TEST_F(Interrupted, BySigtermClosesAPlayableVideoAndExitsWith75) {
   EXPECT_EQ(static_cast<std::size_t>(frames), stats.at("frames").size());
   EXPECT_EQ(stats.at("exit_code"), 75);
   EXPECT_TRUE(contains(outcome.err, fmt::format("{} frames are kept in a.mp4", frames))) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "the same command with --resume goes on from there")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "the same command with --resume continues from there")) << outcome.err;
   EXPECT_EQ(tree(), (std::set<std::string>{".a.weft-cache", "a.mp4", "a.effective.toml", "s.json", "s.toml"}));
 }
 

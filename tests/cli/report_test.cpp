@@ -118,7 +118,7 @@ TEST(Summary, NamesTheFramesOfTheExtremes) {
 }
 
 // The summary gives the error of the worst frame, not the sum over all frames: 120 mm for a band of a metre.
-TEST(Summary, SaysByWhatTheWorstFrameIsOffAndWhatLessensIt) {
+TEST(Summary, SaysByWhatTheWorstFrameIsOffAndWhatReducesIt) {
   RunReport report;
   report.frames = two_frames();
   for (int k = 0; k < 100; ++k) report.frames.push_back(report.frames[1]);
@@ -126,13 +126,13 @@ TEST(Summary, SaysByWhatTheWorstFrameIsOffAndWhatLessensIt) {
   report.frames[7].report.error_estimate = 0.005;
   report.cloth_size = 0.5;
   EXPECT_NE(summary(report).find("frame 7, the worst, adds about 5 mm (1 % of the cloth's size) to the error of "
-                                 "positions, by the time steps (the solver: 0.2 mm); a smaller time.step or "
-                                 "time.tolerance lessens it; --error measures the whole run\n"),
+                                 "positions, due to the time steps (the solver: 0.2 mm); a smaller time.step or "
+                                 "time.tolerance reduces it; --error estimates that of the whole run\n"),
             std::string::npos)
       << summary(report);
   report.frames[7].report.solver_error = 0.01;
-  EXPECT_NE(summary(report).find("adds about 10 mm (2 % of the cloth's size) to the error of positions, by the solver "
-                                 "(the time steps: 5 mm); a smaller solver.newton_tolerance lessens it"),
+  EXPECT_NE(summary(report).find("adds about 10 mm (2 % of the cloth's size) to the error of positions, due to the "
+                                 "solver (the time steps: 5 mm); a smaller solver.newton_tolerance reduces it"),
             std::string::npos)
       << summary(report);
   report.frames = {{}};
@@ -147,11 +147,11 @@ TEST(Summary, SaysWhatCompanionsHaveMeasured) {
   steps.errors[static_cast<std::size_t>(bench::Quantity::position)] = 0.008;
   start.errors[static_cast<std::size_t>(bench::Quantity::position)] = 1e-6;
   report.error = bench::ErrorEstimate{.parts = {steps, start}, .all = steps.errors};
-  EXPECT_NE(summary(report).find("positions may be off by 8 mm (0.4 % of the cloth's size), most of it by the time "
-                                 "steps; a smaller time.step or time.tolerance lessens it\n"),
+  EXPECT_NE(summary(report).find("positions may be off by 8 mm (0.4 % of the cloth's size), most of it due to the time "
+                                 "steps; a smaller time.step or time.tolerance reduces it\n"),
             std::string::npos)
       << summary(report);
-  EXPECT_EQ(summary(report).find("--error measures"), std::string::npos);
+  EXPECT_EQ(summary(report).find("--error estimates"), std::string::npos);
   report.error->start_matters = true;
   EXPECT_NE(summary(report).find("the motion is chaotic"), std::string::npos);
 }

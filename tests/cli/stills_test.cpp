@@ -113,7 +113,7 @@ TEST_F(Stills, OfAnUnfinishedCacheShowWhatIsThere) {
 TEST_F(Stills, ThumbnailShowsTheClothAtWorkNotFlatInTheAir) {
   const Outcome outcome = weft({"thumbnail", "s.toml", "-o", "t.png"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("the most telling of 21"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("the most informative of 21"), std::string::npos) << outcome.err;
   EXPECT_GT(std::stoi(about("t.png").at("frame")), 6) << "the cloth meets the ball at frame 6";
 }
 

@@ -71,7 +71,7 @@ TEST(SweepPlan, NamesThatAreCutAlikeAreNumbered) {
 
 TEST(SweepPlan, WhatIsAskedForTwiceIsThereOnce) {
   EXPECT_EQ(plan_sweep({}, {{"k", {"1", "2", "1"}}}).size(), 2u);
-  support::expect_error(ExitCode::usage, "k: expected its values in one place, got it twice", [] {
+  support::expect_error(ExitCode::usage, "k: expected its values once, in --set or in --list, got them twice", [] {
     plan_sweep({}, {{"k", {"1"}}, {"k", {"2"}}});
   });
   support::expect_error(ExitCode::usage, "at most 10000 runs", [] {
@@ -266,7 +266,8 @@ TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
   process.send(SIGTERM);
   const Outcome stopped = process.wait();
   EXPECT_EQ(stopped.exit_code, 75) << stopped.err;
-  EXPECT_NE(stopped.err.find("2 of 2 runs are not done; the same command goes on"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.err.find("2 of 2 runs are not finished; the same command continues"), std::string::npos)
+      << stopped.err;
   EXPECT_EQ(sweep({"--set", kRadius, "--set", "time.step=0.002"}).exit_code, 0);
   expect_well({"run", "s.toml", "-o", "one.mp4", "--set", "time.step=0.002"});
   EXPECT_EQ(decoded("w/radius=0.1/s.mp4"), decoded("one.mp4"));

@@ -36,7 +36,7 @@ segments = 8
 FRAMES = 21
 RUNS = 24
 RETRY = b"exit code 137: try 1 of 3"
-ELSEWHERE = b"goes on from here in a new place in the queue"
+ELSEWHERE = b"continues from here in a new place in the queue"
 SWEEP = ("s.toml", "--quality", "draft", "--set", "obstacle.ball.radius=0.1,0.11,0.12,0.13", "--set",
          "cloth.cloth.material.density=0.1,0.2,0.3", "--set", "obstacle.ball.position=[0,0,0],[0.1,0,0]")
 # A subset of these runs for the test of a full disk.

@@ -73,7 +73,7 @@ const std::vector<Malformed> kMalformed = {
     {"PictureThatIsMissing", "[[cloth]]\nname = 'a'\nlook.image = '/none.png'\n",
      "s.toml:3:14: cloth.a.look.image: expected a readable file, got \"/none.png\": there is no /none.png\n"},
     {"PanelOfNoPattern", "[[cloth]]\nname = 'a'\nlook.panel = [{ name = 'front' }]\n",
-     "s.toml:3:15: cloth.a.look.panel.front: expected none of a cloth that is sewn from no pattern\n"},
+     "s.toml:3:15: cloth.a.look.panel.front: expected none for a cloth that is not shape = \"pattern\"\n"},
     {"SubjectThatIsNotThere", kBand + "[[camera]]\nname = 'c'\nkind = 'follow'\nsubject = 'bond'\n",
      "s.toml:5:11: camera.c.subject: expected the name of a cloth, rope, obstacle or character, got \"bond\"; did you "
      "mean "
@@ -206,12 +206,13 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:5:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows; the "
      "nearest along weft is at 0.2\n"},
     {"PinAtAnEdgeOfASheet", "[[cloth]]\nname = 'band'\npin = [{ edge = 'front.top' }]\n",
-     "s.toml:3:17: cloth.band.pin.0.edge: expected none of a cloth that is sewn from no pattern, got \"front.top\"\n"},
+     "s.toml:3:17: cloth.band.pin.0.edge: expected none for a cloth that is not shape = \"pattern\", got "
+     "\"front.top\"\n"},
     {"PinFadesWithoutStrength", "[[cloth]]\nname = 'band'\npin = [{ high = [1, 0], fade = 0.1 }]\n",
-     "s.toml:3:32: cloth.band.pin.0.fade: expected a strength beside it, which fades; got 0.1 m and none; to hold the "
-     "part and draw what is around it, write a pin that holds and beside it one with both\n"},
+     "s.toml:3:32: cloth.band.pin.0.fade: expected a strength beside it, got 0.1 m and none; to hold the part exactly "
+     "and pull the cloth around it, write two pins: one without strength, and one with strength and fade\n"},
     {"GroupOfARectangle", "[[cloth]]\nname = 'band'\nweight = [{ vertex_group = 'hem' }]\n",
-     "s.toml:3:28: cloth.band.weight.0.vertex_group: expected none of a cloth that is not shape = \"mesh\", got "
+     "s.toml:3:28: cloth.band.weight.0.vertex_group: expected none for a cloth that is not shape = \"mesh\", got "
      "\"hem\"\n"},
     {"PinFollowsAPartOfAnObstacle",
      "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n[[cloth]]\nname = 'band'\npin = [{ follow = 'ball.top' }]\n",
@@ -299,8 +300,8 @@ const std::vector<Malformed> kMalformed = {
     {"TurnsWithoutAnAxis",
      "[[obstacle]]\nname = 'b'\nshape = 'box'\n"
      "keys = [{ time = 0 }, { time = 1, rotation = [0, 0, 720] }, { time = 2, rotation = [10, 0, 1000] }]\n",
-     "s.toml:4:84: obstacle.b.keys.2.rotation: expected a change of one angle alone, or of none by more than half a "
-     "turn, since the key before; got a change by [10, 0, 280] degrees\n"},
+     "s.toml:4:84: obstacle.b.keys.2.rotation: expected that since the key before only one angle changes, or none by "
+     "more than 180 degrees; got changes of [10, 0, 280] degrees\n"},
     {"MissingMesh", "[[obstacle]]\nname = 'b'\nshape = 'mesh'\nfile = '/no/such.obj'\n",
      "s.toml:4:8: obstacle.b.file: expected a readable file, got \"/no/such.obj\": there is no /no/such.obj\n"},
     {"MeshIsAFolder", "[[obstacle]]\nname = 'b'\nshape = 'mesh'\nfile = '/'\n",
@@ -427,7 +428,8 @@ TEST(Mistakes, OfKeysThatAreTooNearAndOfPairsThatNeverMeetAreSaid) {
   };
   EXPECT_EQ(pair("c", "ball"), "");
   EXPECT_EQ(pair("c", "c"), "");
-  EXPECT_NE(pair("ball", "ball").find("expected a cloth as one of the two"), std::string::npos) << pair("ball", "ball");
+  EXPECT_NE(pair("ball", "ball").find("expected a cloth or rope as one of the two"), std::string::npos)
+      << pair("ball", "ball");
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ TEST(RopeScenes, MistakesNameTheKeyAndWhatIsExpected) {
   expect(
       "from = [0, 0, 0]\nto = [1, 0, 0]\n[[cloth]]\nname = \"flag\"\n[[attach]]\nname = \"a\"\ncloth = \"flag\"\n"
       "to = \"line\"\nat = 0.5\n",
-      "attach.a.at: expected none of a cloth that is no rope");
+      "attach.a.at: expected none for a cloth that is not a rope");
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ case $code in
   0 | 2 | 3 | 4 | 5 | 9) ;; # no other place would change that
   *)
     if [ "$stopped" = again ] && [ "${SLURM_RESTART_COUNT:-0}" -lt 100 ]; then
-      echo "the time limit is near: the task goes on from here in a new place in the queue"
+      echo "the time limit is near: the task continues from here in a new place in the queue"
       scontrol requeue "$SLURM_JOB_ID" && exit 75
     fi
     ;;
