@@ -44,7 +44,7 @@ struct Time {
 };
 
 struct Solver {
-  double newton_tolerance = 0.3;  ///< residual relative to the weight and inertia of the cloth
+  double newton_tolerance = 0.4;  ///< what the solver may leave, relative to the error of the step
   int newton_iterations = 60;     ///< maximum per step, before the step is halved
   double linear_tolerance = 0.1;  ///< residual of the conjugate gradients / first residual
   int linear_iterations = 1000;
