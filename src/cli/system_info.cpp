@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <array>
 #include <fstream>
-#include <iterator>
+#include <memory>
 
 #include "cli/child_process.hpp"
 #include "core/installation.hpp"
@@ -22,8 +23,12 @@ std::string cpu_model() {
 
 std::string program_fingerprint() {
   std::ifstream program(own_installation().code.replace_filename(own_program().filename()), std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(program), {}};
-  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
+  XXH3_64bits_reset(state.get());
+  std::array<char, 65536> bytes;
+  while (program.read(bytes.data(), bytes.size()), program.gcount() > 0)
+    XXH3_64bits_update(state.get(), bytes.data(), static_cast<std::size_t>(program.gcount()));
+  return fmt::format("{:016x}", XXH3_64bits_digest(state.get()));
 }
 
 }  // namespace weft::cli

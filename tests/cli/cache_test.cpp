@@ -74,7 +74,7 @@ TEST_F(CachedRun, FourProcessesAtOnceRenderTheQuartersOfOneCache) {
     processes.push_back(
         std::make_unique<Subprocess>(Arguments{"render", "c", "-o", std::string("parts/") + kPictures, "--frames",
                                                frames, "--size", "64x36", "--quality", "draft", "--progress", "none"},
-                                     folder_));
+                                     folder_, 0, Subprocess::Start::fork));
   for (const auto& process : processes) EXPECT_EQ(process->wait().exit_code, 0);
   expect_same("whole", "parts", ".png", kFrames);
 }
@@ -91,7 +91,7 @@ TEST_F(CachedRun, FramesHaveTheSameBitsForAnyNumberOfThreads) {
 TEST_F(CachedRun, SimulationGoesOnWithTheSameBitsFromAnyFrame) {
   expect_well({"simulate", "s.toml", "--cache", "whole"});
   const std::uint64_t expected = hash_of_frames("whole", kFrames);
-  for (const char* end : {":1", ":7", ":13", ":20", ":21"}) {
+  for (const char* end : {":1", ":13", ":21"}) {
     expect_well({"simulate", "s.toml", "--cache", "c", "--frames", end});
     expect_well({"simulate", "s.toml", "--cache", "c", "--resume"});
     EXPECT_EQ(hash_of_frames("c", kFrames), expected) << end;
@@ -104,7 +104,6 @@ TEST_F(CachedRun, SimulationGoesOnFromTheMiddleOfItsPreroll) {
     more.insert(more.begin(), {"simulate", "s.toml", "--set", "time.preroll=0.4"});
     return more;
   };
-  expect_well(simulate({"--cache", "whole"}));
   Subprocess weft(simulate({"--cache", "c", "--set", "time.step=2.5e-4", "--progress", "none"}), folder_);
   // Wait until the first state file exists.
   for (int i = 0; i < 3000 && !fs::exists(folder_ / "c/state.weft"); ++i) usleep(20'000);
@@ -243,7 +242,7 @@ class KilledRun : public CachedRun {
   void kill_after(int frames) const {
     Subprocess process({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--size", "64x36", "--quality", "draft",
                         "--progress", "none", "--log-json", "-"},
-                       folder_);
+                       folder_, 0, Subprocess::Start::fork);
     ASSERT_TRUE(process.wait_for_output("\"frame\":" + std::to_string(frames) + ","));
     process.send(SIGKILL);
     EXPECT_EQ(process.wait().exit_code, 128 + SIGKILL);
@@ -253,13 +252,14 @@ class KilledRun : public CachedRun {
 
 TEST_F(KilledRun, GoesOnToTheFramesAndMeshesOfTheUninterruptedOne) {
   expect_well({"run", "s.toml", "-o", "whole.mp4", "--meshes", "mw"});
-  for (const int frame : {0, 5, 12}) {
+  const std::string whole = decoded("whole.mp4");
+  for (const int frame : {0, 12}) {
     kill_after(frame);
     EXPECT_FALSE(fs::exists(folder_ / "a.mp4")) << "a half file under the final name";
     EXPECT_TRUE(fs::exists(folder_ / ".a.weft-cache/state.weft"));
     const Outcome resumed = resume();
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
-    EXPECT_EQ(decoded("a.mp4"), decoded("whole.mp4"));
+    EXPECT_EQ(decoded("a.mp4"), whole);
     expect_same("m", "mw", ".ply", 3 * kFrames);
     for (const auto& entry : fs::directory_iterator(folder_))
       EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path() << " was left";

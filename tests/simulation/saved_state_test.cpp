@@ -356,6 +356,7 @@ preroll = 0.2
 [[character]]
 name = "model"
 source = "mannequin"
+edge_length = 0.05
 dressing = 0.1
 blend = 0.1
 walk = 1

@@ -12,11 +12,11 @@ TEST_P(FirstFrames, HaveNoIntersection) {
   testing::expect_no_intersections(GetParam());
 }
 
-// Runs until the band has folded, the ball is through, the sheet lies, and the first of the eight sheets have landed.
-// Whole runs test the band with its own step, and the eight sheets with theirs and with twice that.
+// Runs until the band has folded, the ball is through, the sheet lies, and the first of the eight sheets have landed,
+// in steps of four times the length, where contacts are harder to hold. Whole runs test all with their own step and
+// with twice that.
 INSTANTIATE_TEST_SUITE_P(Of, FirstFrames,
-                         ::testing::Values(SceneRun{"falling_band", 4, 36}, SceneRun{"ball_through_cloth", 1, 36},
-                                           SceneRun{"ball_through_cloth", 4, 36}, SceneRun{"sphere_drape", 1, 20},
+                         ::testing::Values(SceneRun{"falling_band", 4, 36}, SceneRun{"ball_through_cloth", 4, 36},
                                            SceneRun{"sphere_drape", 4, 20}, SceneRun{"multi_sheet", 4, 40}),
                          testing::name_of_run);
 

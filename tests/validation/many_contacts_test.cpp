@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "support/intersections.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 
@@ -50,9 +51,13 @@ class ManyContacts : public support::TestFolder {
     });
     EXPECT_LE(rejected, 1);
 
+    const scene::Scene free = support::scene_of_text(text, {"contact.self=false", "contact.obstacles=false"});
+    Simulation simulation(free);
     std::size_t pairs = 0;
-    support::run_scene(support::scene_of_text(text, {"contact.self=false", "contact.obstacles=false"}), {},
-                       [&](const support::MeasuredFrame& frame) { pairs += frame.pairs; });
+    for (int frame = 1; frame < free.frame_count() && pairs == 0; ++frame) {
+      simulation.advance();
+      pairs = support::judge(support::objects_of(*simulation.snapshot())).pairs.size();
+    }
     EXPECT_GT(pairs, 0U);
   }
 };
@@ -62,7 +67,7 @@ std::string sheets_over(const std::string& body) {
   std::string text = "[time]\nduration = 1.0\n";
   for (int i = 0; i < 5; ++i) {
     text += fmt::format(
-        "[[cloth]]\nname = 'sheet_{}'\nsize = [1, 1]\nparticles = [17, 17]\nposition = [0.01, 0.007, {:.3f}]\n"
+        "[[cloth]]\nname = 'sheet_{}'\nsize = [1, 1]\nparticles = [13, 13]\nposition = [0.01, 0.007, {:.3f}]\n"
         "rotation = [0, 0, {}]\npin = [{{ low = [0, 0], high = [0, 0] }}, {{ low = [1, 1], high = [1, 1] }}]\n",
         i, 0.62 + 0.015 * i, 9 * i);
   }
@@ -84,7 +89,7 @@ TEST_F(ManyContacts, OfABallThatGoesThroughEightHangingSheetsKeepThemApart) {
       "keys = [{ time = 0, position = [0.02, -0.2, 0.5] }, { time = 0.8, position = [0.02, 1.2, 0.5] }]\n";
   for (int i = 0; i < 8; ++i) {
     text += fmt::format(
-        "[[cloth]]\nname = 'sheet_{}'\nsize = [0.5, 0.5]\nparticles = [13, 13]\nposition = [0, {:.3f}, 0.6]\n"
+        "[[cloth]]\nname = 'sheet_{}'\nsize = [0.5, 0.5]\nparticles = [11, 11]\nposition = [0, {:.3f}, 0.6]\n"
         "rotation = [90, 0, 0]\npin = [{{ low = [0, 1], high = [1, 1] }}]\n",
         i, 0.015 * i);
   }
@@ -97,7 +102,7 @@ TEST_F(ManyContacts, OfNineRibbonsThatFallIntoAHalfPipeKeepThemApart) {
       "[[obstacle]]\nname = 'pipe'\nshape = 'half_pipe'\nradius = 0.3\nlength = 0.7\nposition = [0, 0, 0.4]\n";
   for (int i = 0; i < 9; ++i) {
     text += fmt::format(
-        "[[cloth]]\nname = 'ribbon_{}'\nsize = [0.06, 1.2]\nparticles = [3, 41]\n"
+        "[[cloth]]\nname = 'ribbon_{}'\nsize = [0.06, 1.2]\nparticles = [3, 31]\n"
         "position = [{:.2f}, {:.2f}, 0.8]\nrotation = [{}, 0, {}]\n",
         i, 0.1 * (i % 3 - 1), 0.08 * (i / 3 - 1), 88 + i % 2, 17 * i - 60);
   }
@@ -127,7 +132,7 @@ TEST_F(ManyContacts, OfABeltRoundThreeTurningRollersKeepThemApart) {
 }
 
 TEST_F(ManyContacts, OfATubeThatIsWrungFromBothEndsKeepItApart) {
-  std::string text = "[time]\nduration = 1.2\n" + tube(0.06, 0.5, 24, 30) + "material = { fabric = 'silk' }\n";
+  std::string text = "[time]\nduration = 1.2\n" + tube(0.06, 0.5, 20, 25) + "material = { fabric = 'silk' }\n";
   for (const int end : {0, 1}) {
     const int sign = end == 0 ? 1 : -1;
     text += fmt::format(
