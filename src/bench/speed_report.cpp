@@ -297,9 +297,10 @@ Table speed_table(const std::vector<SpeedRun>& runs) {
     table[0].push_back(name + "_cpu_ms");
     table[0].push_back(name + "_wall_ms");
   }
-  table[0].insert(table[0].end(), {"full_blocks", "isotropic_blocks", "memory_before_bytes", "peak_memory_bytes",
-                                   "bytes_a_particle", "linear_iteration_bytes", "newton_iteration_bytes",
-                                   "bandwidth_bytes_a_s", "bound_ms", "last_positions", "failure"});
+  table[0].insert(table[0].end(),
+                  {"full_blocks", "isotropic_blocks", "memory_before_bytes", "peak_memory_bytes", "bytes_a_particle",
+                   "linear_iteration_bytes", "newton_iteration_bytes", "bandwidth_bytes_a_s", "bound_ms", "loops",
+                   "chunks", "loops_wall_ms", "last_positions", "failure"});
   for (const SpeedRun& run : runs) {
     const SpeedSetting& s = run.setting;
     std::vector<std::string> row{fmt::format("{:g}", s.size), std::to_string(s.threads), fmt::format("{:g}", s.step)};
@@ -318,6 +319,9 @@ Table speed_table(const std::vector<SpeedRun>& runs) {
       for (double number : {run.bytes_a_particle(), bytes_of_linear_iteration(run), bytes_of_newton_iteration(run),
                             run.bandwidth, bound_ms(run)})
         row.push_back(fmt::format("{:.6g}", number));
+      row.push_back(std::to_string(run.loops.loops));
+      row.push_back(std::to_string(run.loops.chunks));
+      row.push_back(fmt::format("{:.6g}", 1e3 * run.loops.seconds / frames_of(run)));
       row.push_back(fmt::format("{:016x}", run.positions));
     }
     row.resize(table[0].size() - 1);

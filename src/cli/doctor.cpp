@@ -1,6 +1,7 @@
 #include <assimp/version.h>
 #include <fmt/format.h>
 #include <png.h>
+#include <tbb/version.h>
 #include <unistd.h>
 
 #include <CLI/Version.hpp>
@@ -48,11 +49,12 @@ frame::FrameSnapshot test_scene() {
 }
 
 std::string libraries() {
-  return fmt::format("Eigen {}.{}.{}, libpng {}, assimp {}.{}.{}, fmt {}.{}.{}, CLI11 {}, nlohmann-json {}.{}.{}",
-                     EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, png_get_libpng_ver(nullptr),
-                     aiGetVersionMajor(), aiGetVersionMinor(), aiGetVersionPatch(), FMT_VERSION / 10000,
-                     FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION, NLOHMANN_JSON_VERSION_MAJOR,
-                     NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
+  return fmt::format(
+      "Eigen {}.{}.{}, TBB {}, libpng {}, assimp {}.{}.{}, fmt {}.{}.{}, CLI11 {}, nlohmann-json {}.{}.{}",
+      EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, TBB_runtime_version(), png_get_libpng_ver(nullptr),
+      aiGetVersionMajor(), aiGetVersionMinor(), aiGetVersionPatch(), FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+      FMT_VERSION % 100, CLI11_VERSION, NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+      NLOHMANN_JSON_VERSION_PATCH);
 }
 
 // The x86-64 psABI level of the processor and that of this build. Tests features of each level, since clang before 16

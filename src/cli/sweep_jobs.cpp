@@ -46,6 +46,8 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
     job.scene_hash = loaded.scene.hash;
     job.scene = loaded.scene.name;
     job.frame_count = loaded.scene.frame_count();
+    const auto& cameras = loaded.scene.cameras;
+    job.may_find_camera = cameras.empty() || std::ranges::any_of(cameras, scene::is_computed, &scene::Camera::kind);
     job.folder = options.output / job.run.name;
     const auto [twin, fresh] = known.emplace(job.scene_hash, i);
     if (!fresh) job.twin = twin->second;

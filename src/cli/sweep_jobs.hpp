@@ -20,8 +20,9 @@ struct SweepJob {
   std::uint64_t scene_hash = 0;
   std::optional<std::size_t> twin = {};  ///< index of an earlier run of the same scene; its results are used
   std::filesystem::path folder = {};
-  std::string scene = {};  ///< its name
-  int frame_count = 1;     ///< of the scene
+  std::string scene = {};       ///< its name
+  int frame_count = 1;          ///< of the scene
+  bool may_find_camera = true;  ///< a camera of the scene is computed, from all of its frames
 
   std::filesystem::path video() const { return folder / (scene + ".mp4"); }
   std::filesystem::path stats() const { return folder / (scene + ".json"); }

@@ -2,9 +2,11 @@
 // order of chunks, so that the same input gives the same bits on any number of threads.
 #pragma once
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -13,15 +15,9 @@
 
 namespace weft {
 
-/// Sets the number of threads of the loops below; 0: as many as the process may use processors. Call while no loop
-/// runs.
+/// Sets the maximum number of threads of the loops below; 0: all cores. Call before any loop runs.
 void set_thread_count(int threads);
 int thread_count();
-
-/// Calls run(body, c) for c from 0 up to `chunks`, on all threads at once. Inside of a loop, or while another thread
-/// runs one, on the calling thread alone. Rethrows the exception of a chunk; chunks that have not begun are then left
-/// out.
-void run_chunks(std::size_t chunks, void (*run)(const void* body, std::size_t chunk), const void* body);
 
 /// What the loops below would gain from threads. Counted with one thread, on which a loop takes the time of all its
 /// chunks.
@@ -65,9 +61,9 @@ class CountedLoop {
   WallTimer timer_;
 };
 
-/// Items per chunk, so that a chunk takes 1 to 10 µs: the first for vectors and lists of pairs, the second for more
+/// Items per chunk, so that a chunk takes 10 to 50 µs: the first for vectors and lists of pairs, the second for more
 /// expensive items (contacts, leaves). Changing them changes the bits of sums.
-inline constexpr std::size_t kGrainSize = 256, kFineGrainSize = 64;
+inline constexpr std::size_t kGrainSize = 1024, kFineGrainSize = 256;
 
 /// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each, or fewer in the last. Chunks
 /// must write to disjoint data.
@@ -81,8 +77,18 @@ void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
     const CountedLoop counted(chunks);
     for (std::size_t c = 0; c < chunks; ++c) run(c);
   } else {
-    run_chunks(
-        chunks, [](const void* f, std::size_t c) { (*static_cast<const decltype(run)*>(f))(c); }, &run);
+    tbb::parallel_for(std::size_t{0}, chunks, run);
+  }
+}
+
+/// Calls both, at the same time if there are threads; they must not depend on each other.
+template <class One, class Other>
+void parallel_invoke(const One& one, const Other& other) {
+  if (thread_count() == 1) {
+    one();
+    other();
+  } else {
+    tbb::parallel_invoke(one, other);
   }
 }
 

@@ -13,7 +13,7 @@ add_library(weft_shared SHARED library/host_pictures.cpp image/color.cpp image/p
 target_include_directories(weft_shared PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}
                            PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/library/include> $<INSTALL_INTERFACE:include>)
 target_compile_features(weft_shared INTERFACE cxx_std_20)
-target_link_libraries(weft_shared PRIVATE weft_warnings Eigen3::Eigen Threads::Threads PkgConfig::fmt
+target_link_libraries(weft_shared PRIVATE weft_warnings Eigen3::Eigen TBB::tbb Threads::Threads PkgConfig::fmt
                       PkgConfig::tomlplusplus PkgConfig::pugixml assimp::assimp)
 target_link_options(weft_shared PRIVATE -Wl,--as-needed -Wl,-z,defs)
 set_target_properties(weft_shared PROPERTIES OUTPUT_NAME weft EXPORT_NAME weft VERSION ${PROJECT_VERSION} SOVERSION

@@ -59,22 +59,15 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, AggregateSums sum
     if (sums_changed_[p]) summed_version_[p] = parts_[p].version;
   }
   find_touched_particles();
-  if (!levels_.empty()) {
-    parallel_for(parts_.size(), 1, [&](std::size_t p, std::size_t) {
-      if (sums_changed_[p]) sum_aggregate_blocks(p);
-    });
-    coarse_matrix_ = coarse_matrix_without_terms_;
-    add_terms(*system_, coarse_weights_, constraint_of_, coarse_matrix_);
-  }
-  // One thread factorises, the others begin with the particles.
-  const std::size_t rows = inverse_.size(), chunks = (rows + kFineGrainSize - 1) / kFineGrainSize;
-  parallel_for(chunks + 1, 1, [&](std::size_t c, std::size_t) {
-    if (c > 0)
-      invert_particles((c - 1) * kFineGrainSize, std::min(rows, c * kFineGrainSize));
-    else if (!levels_.empty())
-      factorise_coarsest();
+  if (levels_.empty()) return invert_particles();
+  parallel_for(parts_.size(), 1, [&](std::size_t p, std::size_t) {
+    if (sums_changed_[p]) sum_aggregate_blocks(p);
   });
-  if (!levels_.empty()) invert_aggregates();
+  parallel_invoke([&] { factorise_coarsest(); },
+                  [&] {
+                    invert_particles();
+                    invert_aggregates();
+                  });
 }
 
 template <class Real>
@@ -216,25 +209,24 @@ Mat3 Preconditioner<Real>::block_with_terms(Index i) const {
   return block;
 }
 
-// Inverts the blocks of particles [begin, end) that have changed.
 template <class Real>
-void Preconditioner<Real>::invert_particles(std::size_t begin, std::size_t end) {
-  const auto part_of = [&](std::size_t i) {
-    return std::ranges::upper_bound(parts_, static_cast<Index>(i), {}, &DiagonalBlock::begin) - parts_.begin() - 1;
-  };
-  for (std::size_t i = begin; i < end; ++i) {
-    if (!rows_changed_[at(part_of(i))] && !touched_[i] && !touched_before_[i]) continue;
-    const auto particle = static_cast<Index>(i);
-    const Mat3 block = touched_[i] ? block_with_terms(particle) : own_block(particle);
+void Preconditioner<Real>::invert_particles() {
+  const auto invert = [&](Index i) {
+    const Mat3 block = touched_[at(i)] ? block_with_terms(i) : own_block(i);
     Mat3 inverse;
-    if (const Index c = constraint_of_[i]; c < 0) {
+    if (const Index c = constraint_of_[at(i)]; c < 0) {
       inverse = block.inverse();
     } else {
       const Mat3 &free = constraints_[at(c)].free, held = Mat3::Identity() - free;
       inverse = free * (free * block * free + held).inverse() * free;
     }
-    inverse_[i] = PaddedMat3<Real>(inverse);
-  }
+    inverse_[at(i)] = PaddedMat3<Real>(inverse);
+  };
+  for (std::size_t p = 0; p < parts_.size(); ++p)
+    parallel_for(at(parts_[p].end - parts_[p].begin), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = at(parts_[p].begin) + begin; i < at(parts_[p].begin) + end; ++i)
+        if (rows_changed_[p] || touched_[i] || touched_before_[i]) invert(static_cast<Index>(i));
+    });
 }
 
 // Sums the stiffness of one diagonal block (its matrix without the mass part): each 3×3 block into the finest aggregate
@@ -388,9 +380,11 @@ void Preconditioner<Real>::invert_aggregates() {
   }
 }
 
-// Factorises the coarsest level, to which the terms have been added.
+// Adds the terms, exactly, to the coarsest level and factorises it.
 template <class Real>
 void Preconditioner<Real>::factorise_coarsest() {
+  coarse_matrix_ = coarse_matrix_without_terms_;
+  add_terms(*system_, coarse_weights_, constraint_of_, coarse_matrix_);
   for (Eigen::Index g = 0; g < coarse_matrix_.rows(); g += 3)
     coarse_matrix_.block<3, 3>(g, g) += singular_shift(coarse_matrix_.block<3, 3>(g, g));
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(coarse_matrix_);

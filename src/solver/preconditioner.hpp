@@ -71,7 +71,7 @@ class Preconditioner {
   void sum_aggregate_blocks(std::size_t part);
   void scale_sums(std::size_t part);
   void find_touched_particles();
-  void invert_particles(std::size_t begin, std::size_t end);
+  void invert_particles();
   Mat3 block_with_terms(Index i) const;
   Mat3 lumped_terms(Index i) const;
   void invert_aggregates();

@@ -160,8 +160,23 @@ TEST(SpeedReport, BoundIsWhatMovesOverTheBandwidth) {
   EXPECT_LT(read_bandwidth(1e5), 1e13);
 }
 
+TEST(SpeedReport, LoopsBoundWhatThreadsGain) {
+  SpeedRun run = run_with(1, 1, 1);
+  const double wall = run.all().wall_s;
+  run.loops = {.loops = 10, .chunks = 40, .seconds = 0.75 * wall, .seconds_on = {}};
+  run.loops.seconds_on = {0.4 * wall, 0.25 * wall, 0.15 * wall, 0};
+  EXPECT_NEAR(run.serial_fraction(), 0.25, 1e-12);
+  EXPECT_NEAR(run.largest_gain(1), 2, 1e-12);
+  EXPECT_NEAR(run.largest_gain(3), 4, 1e-12);
+  const std::string report = speed_markdown({"drape", "a machine", {1, 2}, {run}}, "plot.svg");
+  EXPECT_TRUE(contains(report, "## What threads can gain")) << report;
+  EXPECT_TRUE(contains(report, " 25.0 % |")) << report;
+  EXPECT_TRUE(contains(report, " 1.5 | 2.0 | 2.5 | 4.0 |")) << report;
+}
+
 TEST(SpeedReport, RunsAreSentWhole) {
   SpeedRun run = run_with(2, 3, 0.5);
+  run.loops = {.loops = 10, .chunks = 40, .seconds = 1, .seconds_on = {}};
   run.failure = "why";
   ByteWriter writer;
   serialize(writer, run);

@@ -6,11 +6,9 @@
 #include <atomic>
 #include <numeric>
 #include <stdexcept>
-#include <string>
 #include <thread>
 #include <vector>
 
-#include "core/isolated.hpp"
 #include "core/parallel_append.hpp"
 
 namespace weft {
@@ -75,14 +73,6 @@ TEST_F(ParallelLoops, MayContainLoopsAndRunBesideLoopsOfOtherThreads) {
     });
   for (std::thread& caller : callers) caller.join();
   EXPECT_EQ(wrong, 0);
-}
-
-// The helping threads of a process do not exist in its children.
-TEST_F(ParallelLoops, RunInChildProcesses) {
-  const int expected = sum_of_sums();
-  const std::string answer = run_isolated([] { return std::to_string(sum_of_sums()); }, {.name = "the child"});
-  EXPECT_EQ(answer, std::to_string(expected));
-  EXPECT_EQ(sum_of_sums(), expected);
 }
 
 TEST_F(ParallelLoops, FindItemsThatDoNotHold) {

@@ -52,7 +52,7 @@ case $task in
   unpack) attempt unpack ;;
   simulate)
     mkdir -p "$name"
-    attempt simulate "$@" --cache "$name/cache" --stats "$name/$scene.json" --frames "$begin:$end:$step" --resume \
+    attempt simulate "$@" --cache "$name/cache" --stats "$name/$scene.json" --frames "$begin:$simulated" --resume \
       --progress none
     ;;
   draw)
