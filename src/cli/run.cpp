@@ -433,7 +433,7 @@ ExitCode render(const RenderOptions& options) {
     const auto count = static_cast<int>(plan.drawn.frames.size());
     const bool whole = count == plan.wanted.count();
     if (count > 0)
-      log::info(fmt::format("note: {} is {}: frames {}", plan.target.text, whole ? "whole already" : "there in part",
+      log::info(fmt::format("note: {} is {}: frames {}", plan.target.text, whole ? "complete already" : "there in part",
                             frames_text({plan.drawn.frames.begin(), plan.drawn.frames.end()})));
     if (whole) return ExitCode::ok;
   }

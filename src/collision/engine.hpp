@@ -80,8 +80,9 @@ class Engine {
   /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. `may_pinch`: allows exempting
   /// pinched cloth from an obstacle; otherwise only a cloth that this obstacle pinches already is exempted. If
   /// `may_move_pins` is false and a pinned particle had to move, the result is not separated and nothing is exempted.
+  /// Only planes of the kinds `which` count.
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
-                              bool may_pinch = false, bool may_move_pins = true);
+                              bool may_pinch = false, bool may_move_pins = true, PlaneKinds which = PlaneKinds::all);
 
   /// Number of exempted cloth triangles, each counted once per obstacle limb.
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }

@@ -217,7 +217,7 @@ TEST_F(Joining, NamesWhatIsMissingAndMakesNoFile) {
   draw("a.mp4", ":9");
   draw("b.mp4", "11:21");
   for (const char* name : {"p/00004.png", "p/00010.png", "p/00011.png"}) fs::remove(folder_ / name);
-  expect_refused({"p", "-o", "joined.mp4"}, 9, "of frames 0:21 frames 4, 10:12 are missing; --partial takes");
+  expect_refused({"p", "-o", "joined.mp4"}, 9, "of frames 0:21 frames 4, 10:12 are missing; --partial uses");
   expect_refused({"a.mp4", "b.mp4", "-o", "joined.mp4"}, 9, "of frames 0:21 frames 9:11 are missing");
   break_file("p/00007.png");
   expect_refused({"p", "-o", "joined.mp4", "--frames", "5:10"}, 9, "frame 7 is missing; p/00007.png");

@@ -60,7 +60,7 @@ class Search {
     if (try_constant_direction(of_a) || try_constant_direction(of_b) || try_constant_direction(centres_) ||
         try_constant_direction(orient_to_side_a(later_of_a)) || try_constant_direction(orient_to_side_a(later_of_b)))
       return found_;
-    const bool turning = which == PlaneKinds::all;
+    const bool turning = which != PlaneKinds::constant;
     if (turning && (try_turning_direction(of_a, orient_as_at_start(later_of_a, t0_.a)) ||
                     try_turning_direction(of_b, orient_as_at_start(later_of_b, t0_.b)) ||
                     try_turning_direction(centres_, between_centres(t1_))))
@@ -123,7 +123,7 @@ bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0
 std::optional<Vec3> find_separating_plane(const CornerPair& pair, std::span<const Vec3> x_t0,
                                           std::span<const Vec3> x_t1, PlaneKinds which) {
   return Search(sides_of(pair, x_t0), sides_of(pair, x_t1), numerics.separation.least_gap)
-      .find(which, numerics.separation.halvings);
+      .find(which, which == PlaneKinds::all ? numerics.separation.halvings : 0);
 }
 
 ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x) {

@@ -28,8 +28,9 @@ double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x)
 /// functions, hence concave, hence positive in between. No root is sought.
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-/// Which planes are tried: only those of constant direction, or also those that turn.
-enum class PlaneKinds { constant, all };
+/// Which planes are tried: of constant direction; or also those that turn in the step; or also one for each part of the
+/// step.
+enum class PlaneKinds { constant, turning, all };
 
 /// Searches for a separating plane, cheap ones first. Directions are face normals (for layers) and the line between the
 /// centres (for neighbours in one plane), first constant, then turning with the pair; then the closest direction,

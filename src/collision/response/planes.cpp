@@ -160,7 +160,7 @@ void Planes::find_failing(std::size_t begin, std::size_t end, const Trajectory& 
 
     const Vec3 n(plane.n[0], plane.n[1], plane.n[2]);
     if (plane.is_known() && separates(n, pair, start, x_t1)) continue;
-    const std::optional<Vec3> found = find_separating_plane(pair, start, x_t1, which);
+    const std::optional<Vec3> found = find_separating_plane(pair, start, x_t1, kinds_of(pair, which));
     if (!found) {
       is_separated_[p] = 0;
       failing.push_back(pair);
@@ -176,7 +176,7 @@ template <class Archive>
 void Planes::serialize(Archive& archive, std::span<const Vec3> reference) {
   std::vector<std::uint32_t> changed;
   if constexpr (!Archive::kReads) {
-    Planes fresh(triangles_);
+    Planes fresh(triangles_, obstacles_from_);
     fresh.watch(pairs_.view(), reference);
     for (std::size_t p = 0; p < planes_.size(); ++p)
       if (planes_[p] != fresh.planes_[p]) changed.push_back(static_cast<std::uint32_t>(p));

@@ -24,7 +24,16 @@ namespace weft::collision {
 class Planes {
  public:
   Planes() = default;
-  explicit Planes(std::span<const Triangle> triangles) : triangles_(triangles) {}
+  /// Vertices from `obstacles_from` on are of obstacles.
+  Planes(std::span<const Triangle> triangles, Index obstacles_from)
+      : triangles_(triangles), obstacles_from_(obstacles_from) {}
+
+  /// The planes that are sought for a pair. With PlaneKinds::turning, pairs with an obstacle get all: obstacles move
+  /// fast and turn (measured: without, a ball that hits a cloth takes 1.13 times the iterations).
+  PlaneKinds kinds_of(const CornerPair& pair, PlaneKinds which) const {
+    const bool with_obstacle = pair.a[0] >= obstacles_from_ || pair.b[0] >= obstacles_from_;
+    return which == PlaneKinds::turning && with_obstacle ? PlaneKinds::all : which;
+  }
 
   /// Watches these pairs, and finds directions at x [m].
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
@@ -68,6 +77,7 @@ class Planes {
   void find_failing(std::size_t begin, std::size_t end, const Trajectory& trajectory, std::vector<CornerPair>& failing);
 
   std::span<const Triangle> triangles_;
+  Index obstacles_from_ = 0;
   PairList pairs_;
   std::vector<Plane> planes_;
   std::vector<Lanes4> rounded_;             // positions in float, for the search in watch()

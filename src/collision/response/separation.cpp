@@ -14,7 +14,10 @@ namespace {}  // namespace
 
 Separation::Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,
                        std::span<const double> masses)
-    : triangles_(triangles), masses_(masses), planes_(triangles_), stars_(deformable) {}
+    : triangles_(triangles),
+      masses_(masses),
+      planes_(triangles_, static_cast<Index>(masses.size())),
+      stars_(deformable) {}
 
 void Separation::set_rigid(std::vector<RigidGroup> groups, Index vertices) {
   groups_ = std::move(groups);
@@ -288,14 +291,14 @@ bool Separation::is_backtracked(const CornerPair& pair, const Step& step) const 
 }
 
 void Separation::test_again(const Step& step) {
-  find_failing(step.x_t0, step.x_t1, step.pinched, step.carried);
+  find_failing(step.x_t0, step.x_t1, step.pinched, step.carried, step.which);
   std::erase_if(failing_, [&](const CornerPair& pair) { return is_backtracked(pair, step); });
 }
 
 SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                      std::span<const std::uint8_t> movable, PinchedPairs* pinched,
-                                     const CarriedStarts* carried, bool is_continued) {
-  Step step{x_t0, x_t1, {movable.begin(), movable.end()}, pinched, carried};
+                                     const CarriedStarts* carried, bool is_continued, PlaneKinds which) {
+  Step step{x_t0, x_t1, {movable.begin(), movable.end()}, pinched, carried, which};
   backtracked_in_.assign(x_t0.size(), 0);
   if (!is_continued) carriers_.assign(x_t0.size(), kAtStart);
   test_again(step);
@@ -308,7 +311,7 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
     const bool is_final = round_ > by_halves;
     for (const CornerPair& pair : failing_) {
       if (round_ <= rounds && !has_carried_vertex(pair)) {
-        if (find_separating_plane(pair, step.start_of(pair), x_t1))
+        if (find_separating_plane(pair, step.start_of(pair), x_t1, planes_.kinds_of(pair, which)))
           continue;  // an earlier push of this round was enough
         if (push_apart(pair, step) && (changed = true)) continue;
         if (release_pins(pair, step) && (changed = true) && push_apart(pair, step)) continue;

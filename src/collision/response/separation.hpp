@@ -93,7 +93,7 @@ class Separation {
   /// which obstacle carries which vertex.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                            PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
-                           bool is_continued = false);
+                           bool is_continued = false, PlaneKinds which = PlaneKinds::all);
 
   /// Saves what was found since watch(), for an object that watches the same pairs from the same positions.
   template <class Archive>
@@ -109,6 +109,7 @@ class Separation {
     std::vector<std::uint8_t> movable;
     PinchedPairs* pinched;
     const CarriedStarts* carried;
+    PlaneKinds which;
     SeparationReport report = {};
     std::span<const Vec3> start_of(const CornerPair& pair) const { return carried ? carried->of(pair, x_t0) : x_t0; }
   };
