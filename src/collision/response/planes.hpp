@@ -25,7 +25,7 @@ class Planes {
  public:
   Planes() = default;
   /// Vertices from `obstacles_from` on are of obstacles.
-  Planes(std::span<const Triangle> triangles, Index obstacles_from)
+  explicit Planes(std::span<const Triangle> triangles, Index obstacles_from = 0)
       : triangles_(triangles), obstacles_from_(obstacles_from) {}
 
   /// The planes that are sought for a pair. With PlaneKinds::turning, pairs with an obstacle get all: obstacles move

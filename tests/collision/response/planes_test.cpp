@@ -41,11 +41,11 @@ struct RandomPairs {
 };
 
 std::vector<CornerPair> failing(Planes& planes, const RandomPairs& of, std::span<const Vec3> x_t0,
-                                std::span<const Vec3> x_t1) {
+                                std::span<const Vec3> x_t1, PlaneKinds which = PlaneKinds::all) {
   const std::vector<float> moved(of.x.size(), 1e9F);  // no pair is certified by its gap alone
   const std::vector<std::uint8_t> changed(of.x.size(), 1);
   std::vector<CornerPair> found;
-  planes.find_failing(of.x, x_t0, x_t1, moved, changed, found);
+  planes.find_failing(of.x, x_t0, x_t1, moved, changed, found, nullptr, which);
   return found;
 }
 
@@ -121,6 +121,19 @@ TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
   writer.bytes.append(16, '\0');
   ByteReader reader{writer.bytes};
   EXPECT_THROW(planes.serialize(reader, pairs.x), std::runtime_error);
+}
+
+// A first guess needs no planes for parts of a step, except beside obstacles.
+TEST(Planes, ThatTurnAreAllThatIsSoughtForClothAlone) {
+  RandomPairs pairs(3000);
+  const auto vertices = static_cast<Index>(pairs.x.size());
+  Planes all(pairs.triangles, vertices), of_cloth(pairs.triangles, vertices), of_obstacles(pairs.triangles, 0);
+  for (Planes* planes : {&all, &of_cloth, &of_obstacles}) planes->watch(pairs.pairs, pairs.x);
+  const std::vector<Vec3> end = pairs.moved(0.05);
+  const std::size_t without_any = failing(all, pairs, pairs.x, end).size();
+  EXPECT_GT(without_any, 0U);
+  EXPECT_GT(failing(of_cloth, pairs, pairs.x, end, PlaneKinds::turning).size(), without_any);
+  EXPECT_EQ(failing(of_obstacles, pairs, pairs.x, end, PlaneKinds::turning).size(), without_any);
 }
 
 // A pair whose triangles have moved less than its gap stays separated without a check.
