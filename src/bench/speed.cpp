@@ -118,8 +118,8 @@ template <class Archive>
 void serialize(Archive& archive, SpeedRun& run) {
   serialize_values(archive, run.setting.size, run.setting.threads, run.setting.step, run.particles, run.full_blocks,
                    run.isotropic_blocks, run.frames, run.steps, run.rejected_steps, run.newton_iterations,
-                   run.linear_iterations, run.memory_before, run.peak_memory, run.bandwidth, run.positions, run.loops.loops,
-                   run.loops.chunks, run.loops.seconds);
+                   run.linear_iterations, run.memory_before, run.peak_memory, run.bandwidth, run.positions,
+                   run.loops.loops, run.loops.chunks, run.loops.seconds);
   for (double& seconds : run.loops.seconds_on) serialize_values(archive, seconds);
   for (StageTime& stage : run.stages) serialize_values(archive, stage.wall_s, stage.cpu_s);
   serialize_plain(archive, run.failure);

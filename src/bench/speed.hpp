@@ -40,7 +40,7 @@ struct SpeedRun {
   int frames = 0;  ///< number of measured frames; the counts and times below are sums over them
   int steps = 0, rejected_steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::array<StageTime, kSpeedStages> stages{};
-  LoopCounts loops = {};  ///< if the run had one thread, else zero
+  LoopCounts loops = {};                            ///< if the run had one thread, else zero
   std::int64_t memory_before = 0, peak_memory = 0;  ///< of the process, before building the scene and at its peak
                                                     ///< [bytes]
   double bandwidth = 0;                             ///< see read_bandwidth() [bytes/s]

@@ -75,7 +75,10 @@ TEST_F(CachedRun, FourProcessesAtOnceRenderTheQuartersOfOneCache) {
         std::make_unique<Subprocess>(Arguments{"render", "c", "-o", std::string("parts/") + kPictures, "--frames",
                                                frames, "--size", "64x36", "--quality", "draft", "--progress", "none"},
                                      folder_, 0, Subprocess::Start::fork));
-  for (const auto& process : processes) EXPECT_EQ(process->wait().exit_code, 0);
+  for (const auto& process : processes) {
+    const Outcome outcome = process->wait();
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
   expect_same("whole", "parts", ".png", kFrames);
 }
 

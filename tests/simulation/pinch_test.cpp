@@ -233,7 +233,10 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
   Simulation simulation(scene);
   int pinched = 0, steps = 0;
   std::vector<std::string> pinches;
-  const auto is_of_pinch = [](const std::string& text) { return text.find("max_stretch") == std::string::npos; };
+  // Long steps also stretch the cloth, and leave forces that do work: other warnings say so.
+  const auto is_of_pinch = [](const std::string& text) {
+    return text.find("max_stretch") == std::string::npos && text.find("solver.newton_tolerance") == std::string::npos;
+  };
   for (int k = 1; k < scene.frame_count(); ++k) {
     const FrameReport report = simulation.advance();  // throws if the run fails
     steps += report.steps;
