@@ -49,7 +49,10 @@ void add_weights(const Weights<Real>& interpolation, Index particle, double weig
     const Index aggregate = interpolation.columns[s];
     const auto known = std::find_if(weights.begin() + static_cast<std::ptrdiff_t>(first), weights.end(),
                                     [&](const CoarseWeight& w) { return w.aggregate == aggregate; });
-    (known == weights.end() ? weights.emplace_back(aggregate, 0) : *known).weight += weight * interpolation.values[s];
+    if (known == weights.end())
+      weights.push_back({aggregate, weight * interpolation.values[s]});
+    else
+      known->weight += weight * interpolation.values[s];
   }
 }
 
