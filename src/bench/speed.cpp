@@ -57,6 +57,15 @@ void count(const simulation::FrameReport& report, const StageTime& whole, SpeedR
   run.at(SpeedStage::rest) += rest;
 }
 
+/// Counts loops during its lifetime.
+class Counting {
+ public:
+  explicit Counting(LoopCounts* counts) { counted_loops = counts; }
+  ~Counting() { counted_loops = nullptr; }
+  Counting(const Counting&) = delete;
+  Counting& operator=(const Counting&) = delete;
+};
+
 }  // namespace
 
 std::string_view name_of(SpeedStage stage) {
@@ -97,9 +106,10 @@ SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, c
   if (draw) draw(*simulation.snapshot());
   for (int k = 1; k < frames.end; ++k) {
     simulation::FrameReport report;
-    if (setting.threads == 1 && k >= frames.begin) counted_loops = &run.loops;
-    const StageTime whole = timed([&] { report = simulation.advance(); });
-    counted_loops = nullptr;
+    const StageTime whole = timed([&] {
+      const Counting counting(setting.threads == 1 && k >= frames.begin ? &run.loops : nullptr);
+      report = simulation.advance();
+    });
     if (k < frames.begin) continue;
     count(report, whole, run);
     if (draw) run.at(SpeedStage::drawing) += timed([&] { draw(*simulation.snapshot()); });

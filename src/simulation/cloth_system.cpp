@@ -296,6 +296,13 @@ void ClothSystem::divide_into_ranges() {
   }
 }
 
+std::size_t ClothSystem::largest_range_count() const {
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < parts(); ++c)
+    count += static_cast<std::size_t>(std::max<Index>(1, (first_[c + 1] - first_[c]) / kMinRangeSize));
+  return count;
+}
+
 // Builds the aggregates of the preconditioner. Each level merges the boxes of the next finer one (coarsen()), until at
 // most numerics.linear.coarsest_aggregates boxes are left, or one per cloth. Frame particles stay aggregates of their
 // own.

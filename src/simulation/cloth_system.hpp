@@ -62,6 +62,8 @@ class ClothSystem {
   };
   /// The ranges of all parts. The division does not change any bit of the forces.
   std::span<const Range> ranges() const { return ranges_; }
+  /// Largest number of ranges, with as many threads as have work.
+  std::size_t largest_range_count() const;
 
   /// Adds the forces on one part, without its weight; `at` has positions, velocities and forces of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;

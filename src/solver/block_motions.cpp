@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "solver/term_rows.hpp"
 
 namespace weft::solver {
 namespace {
@@ -13,9 +12,6 @@ namespace {
 // A motion counts if its part that is independent of the directions before it has more than this fraction of its
 // energy.
 constexpr double kMinIndependentEnergy = 1e-4;
-
-// Terms whose sums one thread makes.
-constexpr std::size_t kTermsAtOnce = 256;
 
 using Block = Eigen::Matrix<double, kDirections, kDirections>;
 
@@ -105,8 +101,8 @@ void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size
   };
   // Sums over chunks, so that threads share them.
   const std::size_t count = term_count(system);
-  std::vector<TermBlocks> of_chunks((count + kTermsAtOnce - 1) / kTermsAtOnce, TermBlocks(selected.size()));
-  parallel_for(count, kTermsAtOnce, [&](std::size_t begin, std::size_t end) {
+  std::vector<TermBlocks> of_chunks((count + kFineGrainSize - 1) / kFineGrainSize, TermBlocks(selected.size()));
+  parallel_for(count, kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<int, TermForces>> of_parts;
     for (std::size_t t = begin; t < end; ++t) {
       const AnyTerm term = term_at(system, t);
@@ -118,7 +114,7 @@ void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size
         if (entry == of_parts.end()) entry = of_parts.insert(entry, {part, TermForces::Zero()});
         entry->second += term.weights[k] * directions_at(term.particles[k]);
       }
-      of_chunks[begin / kTermsAtOnce].add(of_parts, term.stiffness);
+      of_chunks[begin / kFineGrainSize].add(of_parts, term.stiffness);
     }
   });
   TermBlocks terms(selected.size());

@@ -82,22 +82,39 @@ struct LinearSystem {
   std::vector<Aggregates> aggregate_levels;
 };
 
-/// S_i block S_j, where S projects on the free directions. `constraint_of`: number of each particle's constraint, −1
-/// for none.
-inline Mat3 filtered(std::span<const ParticleConstraint> constraints, std::span<const Index> constraint_of, Index i,
-                     const Mat3& block, Index j) {
-  const Index of_i = constraint_of[static_cast<std::size_t>(i)], of_j = constraint_of[static_cast<std::size_t>(j)];
-  Mat3 result = block;
-  if (of_i >= 0) result = constraints[static_cast<std::size_t>(of_i)].free * result;
-  if (of_j >= 0) result = result * constraints[static_cast<std::size_t>(of_j)].free;
-  return result;
-}
-
 /// Calls visit(term) for each StencilTerm, then for each WideTerm.
 template <class Visit>
 void for_each_term(const LinearSystem& system, const Visit& visit) {
   for (const StencilTerm& term : system.terms) visit(term);
   for (const WideTerm& term : system.wide_terms) visit(term);
+}
+
+/// A term of any kind.
+struct AnyTerm {
+  std::span<const Index> particles;
+  std::span<const double> weights;
+  const Mat3& stiffness;
+};
+
+/// Number of terms of all kinds.
+inline std::size_t term_count(const LinearSystem& system) {
+  return system.diagonal_terms.size() + system.terms.size() + system.wide_terms.size();
+}
+
+/// The term with this number. Diagonal terms come first, then those in the order of for_each_term().
+inline AnyTerm term_at(const LinearSystem& system, std::size_t number) {
+  static constexpr double kWeightOfOne = 1;
+  const std::size_t diagonal = system.diagonal_terms.size(), small = diagonal + system.terms.size();
+  if (number < diagonal) {
+    const DiagonalTerm& term = system.diagonal_terms[number];
+    return {{&term.particle, 1}, {&kWeightOfOne, 1}, term.stiffness};
+  }
+  if (number < small) {
+    const StencilTerm& term = system.terms[number - diagonal];
+    return {term.particles, term.weights, term.stiffness};
+  }
+  const WideTerm& term = system.wide_terms[number - small];
+  return {term.particles, term.weights, term.stiffness};
 }
 
 inline std::vector<DiagonalBlock> parts_of(const LinearSystem& system) {

@@ -8,7 +8,6 @@
 
 #include "core/numerics.hpp"
 #include "core/parallel.hpp"
-#include "solver/coarse_terms.hpp"
 
 namespace weft::solver {
 namespace {
@@ -26,6 +25,16 @@ Mat3 singular_shift(const Mat3& block) {
 }
 
 }  // namespace
+
+// S_i block S_j, where S projects on the free directions.
+template <class Real>
+Mat3 Preconditioner<Real>::filtered(Index i, const Mat3& block, Index j) const {
+  const Index ci = constraint_of_[at(i)], cj = constraint_of_[at(j)];
+  Mat3 result = block;
+  if (ci >= 0) result = system_->constraints[at(ci)].free * result;
+  if (cj >= 0) result = result * system_->constraints[at(cj)].free;
+  return result;
+}
 
 template <class Real>
 void Preconditioner<Real>::prepare(const LinearSystem& system, AggregateSums sums) {
@@ -58,7 +67,7 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, AggregateSums sum
     sums_changed_[p] = !same || (sums == AggregateSums::recompute && parts_[p].version != summed_version_[p]);
     if (sums_changed_[p]) summed_version_[p] = parts_[p].version;
   }
-  find_touched_particles();
+  mark_touched_particles();
   if (levels_.empty()) return invert_particles();
   parallel_for(parts_.size(), 1, [&](std::size_t p, std::size_t) {
     if (sums_changed_[p]) sum_aggregate_blocks(p);
@@ -183,36 +192,30 @@ void Preconditioner<Real>::find_common_levels() {
   find(system_->matrix.isotropic(), common_level_isotropic_);
 }
 
-// Finds the particles that terms act on: their blocks change with the terms, other blocks only with the matrix.
+// Marks the particles that terms act on: their blocks change with the terms, other blocks only with the matrix.
 template <class Real>
-void Preconditioner<Real>::find_touched_particles() {
+void Preconditioner<Real>::mark_touched_particles() {
   touched_before_ = touched_;
   std::ranges::fill(touched_, 0);
-  place_in_term_rows_.assign(touched_.size(), -1);
-  term_rows_.assign(*system_);
-  for (std::size_t k = 0; k < term_rows_.rows().size(); ++k) {
-    const std::size_t i = at(term_rows_.rows()[k]);
-    touched_[i] = 1;
-    place_in_term_rows_[i] = static_cast<Index>(k);
-  }
-}
-
-// Block of a particle that terms act on.
-template <class Real>
-Mat3 Preconditioner<Real>::block_with_terms(Index i) const {
-  Mat3 block = own_block(i);
-  for (const auto& [t, end] : term_rows_.terms(at(place_in_term_rows_[at(i)]))) {
-    const AnyTerm term = term_at(*system_, at(t));
-    const double w = term.weights[at(end)];
-    block += w * w * term.stiffness;
-  }
-  return block;
+  for (const DiagonalTerm& term : system_->diagonal_terms) touched_[at(term.particle)] = 1;
+  for_each_term(*system_, [&](const auto& term) {
+    for (std::size_t a = 0; a < term.particles.size(); ++a)
+      if (term.weights[a] != 0) touched_[at(term.particles[a])] = 1;
+  });
 }
 
 template <class Real>
 void Preconditioner<Real>::invert_particles() {
+  TouchedBlocks with_terms = make_touched_blocks();
+  for (std::size_t i = 0; i < touched_.size(); ++i)
+    if (touched_[i]) with_terms.of(static_cast<Index>(i)) = own_block(static_cast<Index>(i));
+  for (const DiagonalTerm& term : system_->diagonal_terms) with_terms.of(term.particle) += term.stiffness;
+  for_each_term(*system_, [&](const auto& term) {
+    for (std::size_t a = 0; a < term.particles.size(); ++a)
+      if (const double w = term.weights[a]; w != 0) with_terms.of(term.particles[a]) += w * w * term.stiffness;
+  });
   const auto invert = [&](Index i) {
-    const Mat3 block = touched_[at(i)] ? block_with_terms(i) : own_block(i);
+    const Mat3 block = touched_[at(i)] ? with_terms.of(i) : own_block(i);
     Mat3 inverse;
     if (const Index c = constraint_of_[at(i)]; c < 0) {
       inverse = block.inverse();
@@ -326,15 +329,32 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
         coarsest.of_matrix[g];
 }
 
-// Stiffness of the terms that act on a particle, if all particles on its side of a term move with it.
+// Returns zero blocks. Terms act on only few particles of a large cloth.
 template <class Real>
-Mat3 Preconditioner<Real>::lumped_terms(Index i) const {
-  Mat3 lumped = Mat3::Zero();
-  for (const auto& [t, end] : term_rows_.terms(at(place_in_term_rows_[at(i)]))) {
-    const AnyTerm term = term_at(*system_, at(t));
-    const double w = term.weights[at(end)], weight = w * term.weight_of_side(w);
-    lumped += is_free(i) ? Mat3(weight * term.stiffness) : filtered(i, weight * term.stiffness, i);
+typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::make_touched_blocks() const {
+  TouchedBlocks all{std::vector<Index>(touched_.size(), -1), {}};
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    if (!touched_[i]) continue;
+    all.place[i] = static_cast<Index>(all.blocks.size());
+    all.blocks.push_back(Mat3::Zero());
   }
+  return all;
+}
+
+// Stiffness of terms for each particle if all particles on its side of a term move with it.
+template <class Real>
+typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lump_terms() const {
+  TouchedBlocks lumped = make_touched_blocks();
+  const auto add = [&](Index i, double weight, const Mat3& stiffness) {
+    lumped.of(i) += is_free(i) ? Mat3(weight * stiffness) : filtered(i, weight * stiffness, i);
+  };
+  for (const DiagonalTerm& term : system_->diagonal_terms) add(term.particle, 1, term.stiffness);
+  for_each_term(*system_, [&](const auto& term) {
+    double of_a = 0, of_b = 0;
+    for (const double w : term.weights) (w > 0 ? of_a : of_b) += w;
+    for (std::size_t k = 0; k < term.particles.size(); ++k)
+      if (const double w = term.weights[k]; w != 0) add(term.particles[k], w * (w > 0 ? of_a : of_b), term.stiffness);
+  });
   return lumped;
 }
 
@@ -342,29 +362,24 @@ Mat3 Preconditioner<Real>::lumped_terms(Index i) const {
 // particles alone, aggregates between scattered contacts would count as free.
 template <class Real>
 void Preconditioner<Real>::invert_aggregates() {
-  std::vector<Mat3> of_members(touched_.size());  // of touched members
-  term_rows_.for_each_row([&](std::size_t k) {
-    const Index i = term_rows_.rows()[k];
-    of_members[at(i)] = lumped_terms(i);
-  });
+  const TouchedBlocks of_particles = lump_terms();
+  std::vector<Mat3> of_members;  // per member, if members are aggregates
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     Level& level = levels_[l];
     // Aggregates of changed diagonal blocks, and those with terms now or at the last call.
     std::vector<char> needs_inverse = level.touched;
-    std::vector<Mat3> of_groups(needs_inverse.size());
+    std::ranges::fill(level.touched, 0);
+    std::vector<Mat3> of_groups(needs_inverse.size(), Mat3::Zero());
     const std::vector<char>& touched = l == 0 ? touched_ : levels_[l - 1].touched;
-    parallel_for(of_groups.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t g = begin; g < end; ++g) {
-        level.touched[g] = 0;
-        of_groups[g].setZero();
-        for (Index s = level.restriction.start[g]; s < level.restriction.start[g + 1]; ++s) {
-          const std::size_t member = at(level.restriction.columns[s]);
-          if (!touched[member]) continue;
-          level.touched[g] = needs_inverse[g] = 1;
-          of_groups[g] += static_cast<double>(level.restriction.values[s]) * of_members[member];
-        }
+    for (std::size_t m = 0; m < touched.size(); ++m) {
+      if (!touched[m]) continue;
+      for (Index s = level.interpolation.start[m]; s < level.interpolation.start[m + 1]; ++s) {
+        const std::size_t group = at(level.interpolation.columns[s]);
+        level.touched[group] = needs_inverse[group] = 1;
+        of_groups[group] += static_cast<double>(level.interpolation.values[s]) *
+                            (l == 0 ? of_particles.of(static_cast<Index>(m)) : of_members[m]);
       }
-    });
+    }
     for (std::size_t p = 0; p < parts_.size(); ++p)
       if (sums_changed_[p])
         std::fill(needs_inverse.begin() + static_cast<std::ptrdiff_t>(level.of_part[p].begin),
@@ -384,7 +399,37 @@ void Preconditioner<Real>::invert_aggregates() {
 template <class Real>
 void Preconditioner<Real>::factorise_coarsest() {
   coarse_matrix_ = coarse_matrix_without_terms_;
-  add_terms(*system_, coarse_weights_, constraint_of_, coarse_matrix_);
+  // Coarsest aggregates from which an end of a term interpolates, with weights.
+  using CoarseWeights = std::vector<std::pair<Index, double>>;
+  const auto add_coarse_weights = [&](Index i, double weight, CoarseWeights& weights_of_end) {
+    for (Index s = coarse_weights_.start[i]; weight != 0 && s < coarse_weights_.start[i + 1]; ++s) {
+      const auto known =
+          std::ranges::find(weights_of_end, coarse_weights_.columns[s], &CoarseWeights::value_type::first);
+      (known == weights_of_end.end() ? weights_of_end.emplace_back(coarse_weights_.columns[s], 0) : *known).second +=
+          weight * coarse_weights_.values[s];
+    }
+  };
+  const auto add = [&](const CoarseWeights& rows, const Mat3& stiffness, const CoarseWeights& columns) {
+    for (const auto& [g, of_g] : rows)
+      for (const auto& [h, of_h] : columns)
+        if (g >= h) coarse_matrix_.block<3, 3>(3 * g, 3 * h) += of_g * of_h * stiffness;
+  };
+  std::array<CoarseWeights, 8> of;
+  for (const DiagonalTerm& term : system_->diagonal_terms) {
+    of[0].clear();
+    add_coarse_weights(term.particle, 1, of[0]);
+    add(of[0], filtered(term.particle, term.stiffness, term.particle), of[0]);
+  }
+  for_each_term(*system_, [&](const auto& term) {
+    // If all particles are free, their weights are added up first; if one is constrained, each is filtered by itself.
+    const std::size_t count = term.particles.size();
+    const bool free = std::ranges::all_of(term.particles, [&](Index i) { return is_free(i); });
+    for (CoarseWeights& weights_of_end : of) weights_of_end.clear();
+    for (std::size_t k = 0; k < count; ++k) add_coarse_weights(term.particles[k], term.weights[k], of[free ? 0 : k]);
+    for (std::size_t a = 0; a < (free ? 1 : count); ++a)
+      for (std::size_t b = 0; b < (free ? 1 : count); ++b)
+        add(of[a], free ? term.stiffness : filtered(term.particles[a], term.stiffness, term.particles[b]), of[b]);
+  });
   for (Eigen::Index g = 0; g < coarse_matrix_.rows(); g += 3)
     coarse_matrix_.block<3, 3>(g, g) += singular_shift(coarse_matrix_.block<3, 3>(g, g));
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(coarse_matrix_);

@@ -8,7 +8,6 @@
 
 #include "solver/linear_system.hpp"
 #include "solver/padded_vec3.hpp"
-#include "solver/term_rows.hpp"
 #include "solver/weights.hpp"
 
 namespace weft::solver {
@@ -70,10 +69,17 @@ class Preconditioner {
   void find_common_levels();
   void sum_aggregate_blocks(std::size_t part);
   void scale_sums(std::size_t part);
-  void find_touched_particles();
+  void mark_touched_particles();
   void invert_particles();
-  Mat3 block_with_terms(Index i) const;
-  Mat3 lumped_terms(Index i) const;
+  /// A 3×3 block for each particle that terms act on.
+  struct TouchedBlocks {
+    std::vector<Index> place;  // per particle, −1 for none
+    std::vector<Mat3> blocks;
+    Mat3& of(Index i) { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
+    const Mat3& of(Index i) const { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
+  };
+  TouchedBlocks make_touched_blocks() const;
+  TouchedBlocks lump_terms() const;
   void invert_aggregates();
   void factorise_coarsest();
   void select(std::span<const std::size_t> parts);
@@ -81,9 +87,7 @@ class Preconditioner {
   void correct_aggregates();
   bool is_free(Index i) const { return constraint_of_[i] < 0; }
   Mat3 own_block(Index i) const { return system_->matrix.block(system_->matrix.diagonal(i)); }
-  Mat3 filtered(Index i, const Mat3& block, Index j) const {
-    return solver::filtered(system_->constraints, constraint_of_, i, block, j);
-  }
+  Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
   const LinearSystem* system_ = nullptr;
   bool interpolates_ = true;                       // false if threads are very stiff
@@ -97,8 +101,6 @@ class Preconditioner {
     PaddedMat3<Real> free;
   };
   std::vector<std::vector<Filter>> filters_;    // per diagonal block
-  TermRows term_rows_;                          // of the system's terms
-  std::vector<Index> place_in_term_rows_;       // per particle; −1 if no term acts on it
   std::vector<char> touched_, touched_before_;  // per particle: terms act on it
   std::vector<PaddedMat3<Real>> inverse_;       // per particle: S A_0⁻¹ S
   std::vector<Level> levels_;                   // the last one is the coarsest

@@ -145,7 +145,6 @@ void Product<Real>::select(std::span<const std::size_t> parts) {
   };
   stencils_.clear();
   for (const StencilTerm& term : system_->terms) add_stencil(term, is_inside, stencils_);
-  list_stencils_of_rows();
   wide_stencils_.clear();
   for (const WideTerm& term : system_->wide_terms) add_stencil(term, is_inside, wide_stencils_);
   terms_.clear();
@@ -154,54 +153,6 @@ void Product<Real>::select(std::span<const std::size_t> parts) {
   filters_.clear();
   for (const ParticleConstraint& c : system_->constraints)
     if (is_inside(c.particle)) filters_.push_back({c.particle, PaddedMat3<Real>(c.free)});
-}
-
-template <class Real>
-void Product<Real>::list_stencils_of_rows() {
-  stencils_on_rows_.clear();
-  if (thread_count() == 1 || stencils_.size() <= kGrainSize / 4) return;
-  std::vector<Index> next(static_cast<std::size_t>(system_->matrix.rows()), 0);
-  for (const Stencil<4>& stencil : stencils_)
-    for (std::size_t k = 0; k < 4; ++k)
-      if (stencil.weights[k] != 0) ++next[static_cast<std::size_t>(stencil.particles[k])];
-  rows_of_stencils_.clear();
-  start_of_row_.assign(1, 0);
-  for (std::size_t i = 0; i < next.size(); ++i) {
-    if (next[i] == 0) continue;
-    rows_of_stencils_.push_back(static_cast<Index>(i));
-    start_of_row_.push_back(start_of_row_.back() + static_cast<std::size_t>(next[i]));
-    next[i] = static_cast<Index>(start_of_row_.end()[-2]);
-  }
-  stencils_on_rows_.resize(start_of_row_.back());
-  for (std::size_t s = 0; s < stencils_.size(); ++s)
-    for (std::size_t k = 0; k < 4; ++k)
-      if (const Real weight = stencils_[s].weights[k]; weight != 0)
-        stencils_on_rows_[static_cast<std::size_t>(next[static_cast<std::size_t>(stencils_[s].particles[k])]++)] = {
-            static_cast<Index>(s), weight};
-  stencil_forces_.resize(stencils_.size());
-  stencil_work_.resize(stencils_.size());
-}
-
-// Adds the products of all stencils with p to q, and to p·q. The sums have the order of the stencils.
-template <class Real>
-void Product<Real>::add_stencils(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q,
-                                 double& product) const {
-  if (stencils_on_rows_.empty()) {
-    const CountedLoop counted(stencils_.size() / kFineGrainSize);
-    for (const Stencil<4>& stencil : stencils_) product += stencil.add_product(p, q);
-    return;
-  }
-  parallel_for(stencils_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) stencil_forces_[s] = stencils_[s].force(p, stencil_work_[s]);
-  });
-  parallel_for(rows_of_stencils_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      PaddedVec3<Real>& sum = q[rows_of_stencils_[k]];
-      for (std::size_t e = start_of_row_[k]; e < start_of_row_[k + 1]; ++e)
-        sum += stencils_on_rows_[e].weight * stencil_forces_[static_cast<std::size_t>(stencils_on_rows_[e].stencil)];
-    }
-  });
-  for (const double of_stencil : stencil_work_) product += of_stencil;
 }
 
 template <class Real>
@@ -231,7 +182,7 @@ double Product<Real>::multiply(std::span<const PaddedVec3<Real>> p, std::span<Pa
     q[term.particle] += force;
     curvature += sum_of_first_three(products(p[term.particle], force));
   }
-  add_stencils(p, q, curvature);
+  for (const auto& term : stencils_) curvature += term.add_product(p, q);
   for (const auto& term : wide_stencils_) curvature += term.add_product(p, q);
   filter(q);
   return curvature;

@@ -60,20 +60,13 @@ class Product {
     std::array<Real, N> weights;
     PaddedMat3<Real> stiffness;
 
-    /// The term's force along p; its product with p goes to `work`.
-    PaddedVec3<Real> force(std::span<const PaddedVec3<Real>> p, double& work) const {
-      PaddedVec3<Real> combined = weights[0] * p[particles[0]];
-      for (std::size_t k = 1; k < N; ++k) combined += weights[k] * p[particles[k]];
-      const PaddedVec3<Real> result = stiffness * combined;
-      work = sum_of_first_three(products(combined, result));
-      return result;
-    }
     /// Adds the term's product with p to q; returns the increase of p·q.
     double add_product(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q) const {
-      double work = 0;
-      const PaddedVec3<Real> of_term = force(p, work);
-      for (std::size_t k = 0; k < N; ++k) q[particles[k]] += weights[k] * of_term;
-      return work;
+      PaddedVec3<Real> combined = weights[0] * p[particles[0]];
+      for (std::size_t k = 1; k < N; ++k) combined += weights[k] * p[particles[k]];
+      const PaddedVec3<Real> force = stiffness * combined;
+      for (std::size_t k = 0; k < N; ++k) q[particles[k]] += weights[k] * force;
+      return sum_of_first_three(products(combined, force));
     }
   };
   struct ParticleBlock {
@@ -84,8 +77,6 @@ class Product {
   template <class Term, std::size_t N, class IsInside>
   static void add_stencil(const Term& term, const IsInside& is_inside, std::vector<Stencil<N>>& stencils);
   Mat3 sum_of_row(std::size_t row) const;
-  void list_stencils_of_rows();
-  void add_stencils(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q, double& product) const;
 
   const LinearSystem* system_ = nullptr;
   std::vector<DiagonalBlock> parts_;  // when the matrix was read
@@ -94,16 +85,6 @@ class Product {
   std::vector<std::size_t> selected_;
   RowChunks rows_;  // of the selected blocks
   std::vector<Stencil<4>> stencils_;
-  /// The stencils that act on a row, in their order, so that threads can add them row by row. Empty on one thread.
-  struct OnRow {
-    Index stencil;
-    Real weight;
-  };
-  std::vector<Index> rows_of_stencils_;    // sorted
-  std::vector<std::size_t> start_of_row_;  // in stencils_on_rows_, of each of these rows; then its size
-  std::vector<OnRow> stencils_on_rows_;
-  mutable std::vector<PaddedVec3<Real>> stencil_forces_;  // scratch, per stencil
-  mutable std::vector<double> stencil_work_;              // scratch, per stencil
   std::vector<Stencil<8>> wide_stencils_;
   std::vector<ParticleBlock> terms_, filters_;
 };

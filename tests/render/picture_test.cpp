@@ -428,7 +428,7 @@ TEST(Picture, OddSnapshotsAreDrawn) {
   EXPECT_THROW(renderer.draw(broken), Error);
 }
 
-// Other threads do not count: the expected time is that of the process minus that of a busy thread. Idle threads
+// Other threads do not count: the expected time is that of the process minus that of a busy thread. Idle TBB threads
 // that search for work add a few percent.
 TEST(Picture, TimesAreThoseOfDrawingAlone) {
   Renderer renderer(settings());
