@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -15,6 +16,7 @@
 #include <set>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "core/error.hpp"
@@ -112,10 +114,12 @@ bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   return std::rename(from.c_str(), to.c_str()) == 0;
 }
 
-// Creates the file or folder and locks it. Tries again if a process that cleans up removes it before it is locked.
+// Creates the file or folder and locks it. Tries again if a process that cleans up removes it before it is locked, for
+// a second at most: that process may have to wait for a processor while it holds the lock.
 int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
   constexpr int kAttempts = 10;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (attempt > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1 << (attempt - 1)));
     if (kind == TemporaryName::Kind::folder && ::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) return -1;
     const int flags = kind == TemporaryName::Kind::file ? O_RDWR | O_CREAT : O_RDONLY | O_DIRECTORY;
     const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);

@@ -1,16 +1,20 @@
 #include "core/temporary_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 
 #include "core/error.hpp"
 
@@ -208,6 +212,21 @@ TEST_F(TemporaryFileTest, OfALivingProcessStays) {
   ::close(done[0]);
   ::close(done[1]);
   ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  EXPECT_EQ(content(folder_ / "a.txt"), "whole");
+}
+
+// A process that cleans up may lock a file that was just made, and lose its processor before it removes the file.
+TEST_F(TemporaryFileTest, WaitsForAProcessThatCleansUp) {
+  const fs::path temporary = folder_ / fmt::format(".a.txt.weft-{}.tmp", ::getpid());
+  const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  ASSERT_EQ(::flock(descriptor, LOCK_EX | LOCK_NB), 0);
+  std::thread cleaner([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    ::unlink(temporary.c_str());
+    ::close(descriptor);
+  });
+  EXPECT_NO_THROW(write_file(folder_ / "a.txt", "whole"));
+  cleaner.join();
   EXPECT_EQ(content(folder_ / "a.txt"), "whole");
 }
 
