@@ -88,7 +88,7 @@ class DependencyWalk {
  public:
   explicit DependencyWalk(const DependencyVisitor& each) : each_(each) {}
 
-  void visit(const fs::path& file) {
+  void visit(const fs::path& file, FileUse use = FileUse::simulation) {
     std::error_code error;
     if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return;
     if (fs::file_size(file, error) > kMaxDependencyBytes) return;
@@ -98,10 +98,10 @@ class DependencyWalk {
     } catch (const std::runtime_error&) {
       return;  // the reader of the file's format reports the reason
     }
-    each_(file, content);
-    for (const std::string& name : find_possible_names(content)) visit(file.parent_path() / name);
+    each_(file, content, use);
+    for (const std::string& name : find_possible_names(content)) visit(file.parent_path() / name, use);
     // The readers of this format find the motion file by the name of the mesh file.
-    if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"));
+    if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"), use);
   }
 
  private:
@@ -128,6 +128,20 @@ void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
     if (const auto* sequence = std::get_if<MeshSequence>(&character.source))
       for (const fs::path& file : sequence_files(sequence->files)) walk.visit(file);
   }
+  const auto visit_picture = [&](const Paint& paint) {
+    if (paint.image) walk.visit(*paint.image, FileUse::pictures);
+  };
+  const auto visit_pictures = [&](const auto& objects) {
+    for (const auto& object : objects) {
+      visit_picture(object.look);
+      for (const PanelPaint& panel : object.look.panels) visit_picture(panel);
+    }
+  };
+  visit_pictures(scene.cloths);
+  visit_pictures(scene.obstacles);
+  visit_pictures(scene.characters);
+  for (const Camera& camera : scene.cameras)
+    if (!camera.file.empty()) walk.visit(camera.file, FileUse::pictures);
 }
 
 }  // namespace weft::scene

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <optional>
 #include <span>
 
 #include "scene/dependencies.hpp"
@@ -135,6 +137,36 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325ull;
 };
 
+/// The content and the name of files count, but not their folder.
+void keep_file_names(Scene& scene) {
+  const auto keep_name = [](std::filesystem::path& path) { path = path.filename(); };
+  const auto keep_name_if_any = [&](std::optional<std::filesystem::path>& path) {
+    if (path) keep_name(*path);
+  };
+  const auto keep_names_of_pictures = [&](Look& look) {
+    keep_name_if_any(look.image);
+    for (PanelPaint& panel : look.panels) keep_name_if_any(panel.image);
+  };
+  for (Obstacle& obstacle : scene.obstacles) {
+    if (auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) keep_name(mesh->path);
+    keep_names_of_pictures(obstacle.look);
+  }
+  for (Cloth& cloth : scene.cloths) {
+    keep_name(cloth.file);
+    for (Pin& pin : cloth.pins) keep_name_if_any(pin.mask);
+    for (Weight& weight : cloth.weights) keep_name_if_any(weight.mask);
+    keep_names_of_pictures(cloth.look);
+  }
+  for (Character& character : scene.characters) {
+    if (auto* file = std::get_if<CharacterFile>(&character.source)) keep_name(file->path);
+    if (Acting* acting = acting_of(character)) keep_name_if_any(acting->motion);
+    if (auto* sequence = std::get_if<MeshSequence>(&character.source))
+      sequence->files = std::filesystem::path(sequence->files).filename().string();
+    keep_names_of_pictures(character.look);
+  }
+  for (Camera& camera : scene.cameras) keep_name(camera.file);
+}
+
 }  // namespace
 
 std::string effective_scene(const Scene& scene) {
@@ -142,25 +174,17 @@ std::string effective_scene(const Scene& scene) {
 }
 
 void identify(Scene& scene) {
-  Fnv1a files;
-  for_each_dependency(scene, [&](const std::filesystem::path& file, std::string_view content) {
+  Fnv1a shown, simulated;
+  for_each_dependency(scene, [&](const std::filesystem::path& file, std::string_view content, FileUse use) {
     scene.files.push_back(file);
-    files.add(fmt::format("{} ", content.size()));  // so that the boundary between files counts
-    files.add(content);
+    for (Fnv1a* hash : {&shown, &simulated}) {
+      if (hash == &simulated && use == FileUse::pictures) continue;
+      hash->add(fmt::format("{} ", content.size()));  // so that the boundary between files counts
+      hash->add(content);
+    }
   });
-  // The content and the name of these files count, but not their folder.
   Scene copy = scene;
-  const auto keep_file_name = [](std::filesystem::path& path) { path = path.filename(); };
-  for (Obstacle& obstacle : copy.obstacles)
-    if (auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) keep_file_name(mesh->path);
-  for (Cloth& cloth : copy.cloths) keep_file_name(cloth.file);
-  for (Character& character : copy.characters) {
-    if (auto* file = std::get_if<CharacterFile>(&character.source)) keep_file_name(file->path);
-    if (Acting* acting = acting_of(character); acting != nullptr && acting->motion) keep_file_name(*acting->motion);
-    if (auto* sequence = std::get_if<MeshSequence>(&character.source))
-      sequence->files = std::filesystem::path(sequence->files).filename().string();
-  }
-  Fnv1a shown = files, simulated = files;
+  keep_file_names(copy);
   shown.add(text_of(copy, Part::all));
   simulated.add(text_of(copy, Part::simulated));
   // Characters are sampled up to the end of the film, and the last key frames influence the motion between them.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "image/png.hpp"
 #include "scene/loader.hpp"
 #include "support/test_folder.hpp"
 
@@ -14,6 +15,10 @@ class Dependencies : public support::TestFolder {
   void put(const std::string& file, const std::string& content) {
     std::filesystem::create_directories((folder_ / file).parent_path());
     support::write_bytes(folder_ / file, content);
+  }
+  void put_picture(const std::string& file) {
+    put(file, "");
+    image::write_png(folder_ / file, image::Image(4, 4));
   }
   std::uint64_t hash_of(const std::string& scene) {
     const LoadResult result = load_text(scene, folder_ / "s.toml");
@@ -68,6 +73,41 @@ TEST_F(Dependencies, FilesOfASequence) {
   expect_counts(scene, "run/a_3.obj");
 }
 
+TEST_F(Dependencies, PicturesAndCameraFilesCountButAreNotSimulated) {
+  for (const char* file : {"print.png", "panel.png", "globe.png"}) put_picture(file);
+  put("shot.gltf", R"({ "uri": "shot.bin" })"), put("shot.bin", "1234"), put("p/skirt.toml", "");
+  const std::string scene =
+      "cloth = [{ name = 'c', look = { image = 'print.png' } }, { name = 'd', shape = 'pattern', file = "
+      "'p/skirt.toml', "
+      "look = { panel = [{ name = 'front', image = 'panel.png' }] } }]\n"
+      "obstacle = [{ name = 'o', shape = 'sphere', look = { image = 'globe.png' } }]\n"
+      "camera = [{ name = 'shot', kind = 'file', file = 'shot.gltf' }]\n";
+  const auto simulated = [&] { return load_text(scene, folder_ / "s.toml").scene.simulation_hash; };
+  const auto before = simulated();
+  for (const char* file : {"print.png", "panel.png", "globe.png", "shot.gltf", "shot.bin"}) {
+    expect_counts(scene, file);
+    const std::string content = support::read_bytes(folder_ / file);
+    put(file, content + "\n");
+    EXPECT_EQ(simulated(), before) << file;
+    put(file, content);
+  }
+}
+
+TEST_F(Dependencies, FoldersDoNotCount) {
+  const std::string scene =
+      "cloth = [{ name = 'c', look = { image = 'print.png' }, pin = [{ mask = 'mask.png' }] }]\n"
+      "camera = [{ name = 'shot', kind = 'file', file = 'shot.gltf' }]\n";
+  std::vector<std::uint64_t> hashes;
+  for (const std::string folder : {"here", "there"}) {
+    put(folder + "/shot.gltf", "{}");
+    for (const char* file : {"/print.png", "/mask.png"}) put_picture(folder + file);
+    const LoadResult result = load_text(scene, folder_ / folder / "s.toml");
+    EXPECT_EQ(result.describe(), "");
+    hashes.push_back(result.scene.hash);
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
 // Moving a byte from the end of one file to the start of the next is a change.
 TEST_F(Dependencies, WhereOneFileEndsCounts) {
   const std::string scene =
@@ -85,7 +125,7 @@ TEST_F(Dependencies, EachFileIsReadOnce) {
   const LoadResult result =
       load_text("obstacle = [{ name = 'a', shape = 'mesh', file = 'a.obj' }]\n", folder_ / "s.toml");
   int count = 0;
-  for_each_dependency(result.scene, [&](const auto&, std::string_view) { ++count; });
+  for_each_dependency(result.scene, [&](const auto&, std::string_view, FileUse) { ++count; });
   EXPECT_EQ(count, 2);
 }
 
