@@ -5,7 +5,6 @@
 #include <vector>
 
 namespace weft::character {
-namespace {}  // namespace
 
 double clip_time(const Timing& timing, double t) {
   const double elapsed = t - timing.dressing;

@@ -151,7 +151,6 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double fra
   double mass = 0, mass_weight = 0;
   std::array<double, 2> side_mass{}, side_weight{};
   bool is_rigid = false;
-  int failures = 0;
   std::array<std::size_t, 2> sides{};
   for (std::size_t k = 0; k < 4; ++k) {
     const Index v = pair.vertices[k];
@@ -168,7 +167,6 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double fra
       side_mass[weight > 0 ? 0 : 1] += std::abs(weight) * masses_[v];
       side_weight[weight > 0 ? 0 : 1] += std::abs(weight);
       is_rigid |= bodies_[bodies_.body_of(v)].rigid;
-      if (!motion.failures.empty()) failures = std::max<int>(failures, motion.failures[v]);
     } else {
       contact.against_obstacle = true;
       contact.obstacle_start += weight * motion.x_t0[v];
@@ -186,8 +184,6 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double fra
   contact.depth = contact.range - contact.normal.dot(relative);
   contact.stiffness =
       fraction * std::max(stiffness_, numerics.contact.inertial_stiffness * mass / mass_weight / (step_ * step_));
-  if (contact.obstacle_start != contact.obstacle_end)
-    contact.stiffness *= std::pow(numerics.contact.hardening, std::clamp(failures - 1, 0, numerics.contact.hardenings));
   const Friction& friction = friction_of(sides[0], sides[1]);
   contact.friction = friction.sliding;
   contact.static_friction = friction.static_friction;

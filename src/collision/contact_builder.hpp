@@ -35,7 +35,6 @@ struct ContactParameters {
 struct StepMotion {
   std::span<const Vec3> x_t0, x_from, x_t1;  ///< [m]
   double h = 0;                              ///< [s]
-  std::span<const std::uint8_t> failures{};  ///< how often each particle was pushed apart; empty: never
   bool is_straight() const { return x_t0.data() == x_from.data(); }
 };
 

@@ -49,7 +49,6 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       finder_(bodies_.triangles(), bodies_.vertex_count()),
       builder_(bodies_, parameters.contact, masses),
       response_(parameters.response, {masses.begin(), masses.end()}, parameters.stick_speed),
-      failures_(masses.size()),
       pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices(), bodies_.limb_of_vertices()),
       carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
   separation_.set_rigid(rigid_groups(bodies_, masses), bodies_.vertex_count());
@@ -127,7 +126,6 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   }
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
   pushed_pairs_.clear();
-  std::ranges::fill(failures_, 0);
   // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here,
   // because pairs that need others come near each other.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
@@ -203,7 +201,7 @@ void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& mot
 }
 
 void Engine::continue_from(std::span<const Vec3> x) {
-  const StepMotion motion{x_t0_, x, x, step_, failures_};
+  const StepMotion motion{x_t0_, x, x, step_};
   carried_.begin_step(x, x, {});
   if (coherence_) candidates_.drop();  // kept closest points belong to the start of the step
   begin_contacts(x, x);
@@ -253,17 +251,6 @@ std::span<const CornerPair> Engine::find_intersections(std::span<const Vec3> x) 
   return failing_;
 }
 
-// Records the failing pairs, and adds one to the count of each of their particles.
-void Engine::count_failures() {
-  std::vector<std::uint8_t> fails(failures_.size());
-  for (const CornerPair& pair : failing_)
-    for (const Triangle& corners : {pair.a, pair.b})
-      for (Index v : corners)
-        if (static_cast<std::size_t>(v) < fails.size()) fails[v] = 1;
-  for (std::size_t i = 0; i < fails.size(); ++i) failures_[i] += fails[i];
-  pushed_pairs_.insert(pushed_pairs_.end(), failing_.begin(), failing_.end());
-}
-
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                     std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_move_pins,
                                     PlaneKinds which) {
@@ -271,7 +258,7 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
   // kTightCollections times, for every trajectory between start and end.
   constexpr int kCollections = 8, kTightCollections = 3;
   SeparationReport report;
-  count_failures();
+  pushed_pairs_.insert(pushed_pairs_.end(), failing_.begin(), failing_.end());
   PinchedPairs pinched = pinched_;
   std::vector<std::uint8_t> movable(movable_in_step.begin(), movable_in_step.end());
   for (int c = 0; c < kCollections; ++c) {

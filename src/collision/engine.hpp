@@ -117,7 +117,6 @@ class Engine {
   template <class Collect>
   void collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs);
   void gather(std::span<const Vec3> x);
-  void count_failures();
   bool separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
   bool find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, PlaneKinds which);
   void find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
@@ -139,7 +138,6 @@ class Engine {
   ContactBuilder builder_;
   ContactResponse response_;
   std::vector<Vec3> predicted_walls_x_t1_;
-  std::vector<std::uint8_t> failures_;  // per particle: how often pushed apart in this step
   PinchedPairs pinched_;
   CarriedStarts carried_;
 

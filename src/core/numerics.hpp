@@ -11,25 +11,10 @@ namespace weft {
 struct Numerics {
   /// The linear solver (src/solver).
   struct Linear {
-    /// Multigrid: fraction of a member's motion that comes from the aggregates of its neighbours; the rest comes from
-    /// its own aggregate. 0: aggregates move as wholes, and iterations grow with finer meshes.
-    double interpolation = 0.6;
-    /// Factor per level on the stiffness that aggregates sum up. 1: plain sums, which are too stiff.
-    double level_stiffness = 0.5;
-    /// Factor on the stiffness of contacts on all levels but the coarsest. 1: a quarter more iterations in scenes with
-    /// many contacts.
-    double contact_weight = 2;
     /// Trace of a particle's 3×3 block, relative to the sum of `LinearSystem::norm_weights` over its diagonal block. If
-    /// any particle exceeds it, all aggregates move as wholes. Larger: threads of 1e6 N/m take ten times the
-    /// iterations; smaller: soft cloth takes twice as many.
+    /// any particle exceeds it, all aggregates move as wholes. Larger: slender cells, and a viscosity of 1e4 N·s/m, are
+    /// not solved; smaller: soft cloth takes twice as many iterations.
     double stiff_particle = 1e3;
-    /// Every so many iterations, the solver predicts how many are left; at 2.5 times as many, it makes the incomplete
-    /// factor.
-    int factor_cost = 40;
-    /// Weight of the incomplete factor beside the multigrid levels. 1: long waves count in both, twice the iterations.
-    double factor_weight = 16;
-    /// First diagonal shift if the factorisation fails, relative to the diagonal. 0.1: a third more iterations.
-    double factor_shift = 1e-3;
     /// Number of last iterations from which the error is estimated: `least_delay`, or all so far divided by
     /// `delay_fraction` if that is more. Fewer: solves end on a plateau, and a viscosity of 1e4 N·s/m gains energy.
     int least_delay = 3;
@@ -45,21 +30,15 @@ struct Numerics {
   /// Newton's method (src/integrator).
   struct Newton {
     /// Allowed linear error, relative to the allowed Newton error; a diagonal block whose error is below it is not
-    /// solved again.
+    /// solved again. 1: fewer iterations, but more strain.
     double linear_fraction = 0.8;
     /// Factor on `linear_fraction` and on the linear tolerance for the midpoint rule, which damps nothing. Larger: flat
     /// sheets fold in free fall.
     double undamped = 0.1;
-    /// A line search ends at a slope between −`overshoot` and `undershoot` times the initial one; once a trial has
-    /// overshot, between −`overshoot` and `overshoot` times.
-    double overshoot = 0.7;
-    double undershoot = 0.5;
-    /// Longest step of a line search, relative to the solution of the linear system; maximum number of evaluations.
-    double longest_search = 4;
+    /// Slope at which a line search ends, relative to that at its start; maximum number of evaluations. Smaller: more
+    /// evaluations; larger: iterations oscillate.
+    double slope_left = 0.7;
     int line_trials = 6;
-    /// Newton iteration, counted from 0, from which compressed threads count with the absolute value of their
-    /// stiffness. 0: cloth at rest takes four times the iterations; 4: folding cloth a quarter more.
-    int clamped_iterations = 2;
     /// Newton iterations after which the trajectory is checked for contacts that only the solve reveals.
     int check_after = 4;
     /// Newton iterations of a step in which friction follows the normal forces. After as many, a velocity error below
@@ -74,9 +53,6 @@ struct Numerics {
     /// tolerance.
     double unseen_acceleration = 0.01;
     double unseen_velocity = 1e-3;
-    /// Allowed sliding error of a diagonal block, relative to the allowed velocity error. Larger: sheets slide too
-    /// slowly.
-    double sliding_fraction = 0.2;
     /// Friction, relative to its limit, above which a diagonal block counts as about to slide.
     double about_to_slide = 0.9;
     /// Largest motion since the rows of a cloth were assembled, in particle spacings, at which they are kept. Larger:
@@ -90,15 +66,12 @@ struct Numerics {
     double aim = 0.7;
     /// Relative change of a step size that does not justify a new matrix.
     double kept_change = 0.1;
-    /// Minimum and maximum factor between successive steps. Larger: BDF2 propagates its error.
+    /// Minimum and maximum factor between successive steps, also after a rejection. Larger: BDF2 propagates its error.
     double least_factor = 0.2;
     double largest_factor = 1.5;
     /// Minimum step size [s], 1e-4 m at 10 m/s: errors do not reduce a step below it, and unsolved steps below it end
     /// the run.
     double least = 1e-5;
-    /// Maximum factor between successive steps after a rejection. Larger: cloth that is wrung is rejected again and
-    /// again.
-    double recovery = 1.1;
     /// Maximum speed of cloth at rest [m/s]; see StepLoop::may_rest(). A frame at rest is one step.
     double rest_velocity = 0.02;
   } steps;
@@ -132,11 +105,6 @@ struct Numerics {
     /// How often in a step a contact may begin to slide and still stick when it slides back. 0: ribbons take 1.4 times
     /// the iterations; 20: friction of 10 does not settle.
     int returns = 2;
-    /// Factor on the stiffness of a contact with a moving obstacle for each time but the first that its particles were
-    /// pushed apart in the step; maximum number of such factors. 0: cloth that a plate hits at 30 m/s takes 1.5 times
-    /// the iterations.
-    double hardening = 3;
-    int hardenings = 5;
     /// Depenetration speed of pinched cloth [m/s], 8 mm per frame; its relative stiffness while there is no space.
     double depenetration_velocity = 0.2;
     double depenetration_stiffness = 0.05;
@@ -176,31 +144,25 @@ struct Numerics {
 
   /// Repairs of a step (src/simulation/step_loop.cpp).
   struct Repair {
-    /// Rejections of a step before cloth may count as pinched, and before a diverged or overstretched solve is
-    /// accepted.
+    /// Rejections of a step before cloth may count as pinched, and before an overstretched solve is accepted. As many
+    /// attempts at a step release the particles of obstructed pins; one more may also move pinned particles.
     int halvings = 3;
     /// How often a solve continues from cloth that was pushed apart. 0: a ring takes four times the steps.
     int restarts = 16;
-    /// Energy, relative to the kinetic and elastic energy at the start of the step, and strain that pushing apart may
-    /// add. Beyond either, the solve continues; if it cannot, a step is halved only because of the energy.
-    double added_energy = 0.1;
+    /// Strain that pushing apart may add, and energy, as Energy::doubtful_gain. Beyond either, the solve continues; if
+    /// it cannot, a step is halved only because of the energy. Larger: single frames show strain of 0.1 and more.
     double added_strain = 0.05;
-    /// Energy gain, relative to the same energy, above which an unfinished solve starts anew with fixed normal forces.
+    /// Energy gain, relative to the kinetic and elastic energy at the start of the step, above which an unfinished
+    /// solve starts anew with fixed normal forces.
     double astray_energy = 3;
-    /// Maximum increase in a step: of stretch, in stretch limits; of strain, by an unfinished solve.
+    /// Maximum increase of stretch in a step, in stretch limits.
     double overstretch = 2;
-    double diverged_strain = 0.5;
-    /// Maximum number of attempts at a step while pins are obstructed. Each further attempt releases their particles;
-    /// the last one may also move pinned particles.
-    int attempts = 4;
   } repair;
 
   /// Pins that an obstacle keeps from their position (src/simulation/yielding_pins.cpp).
   struct Pins {
-    /// Speed [m/s], relative to its target, at which a particle returns; lower bound [m/s] of the speed by which the
-    /// maximum force is divided to get the damping.
+    /// Speed [m/s], relative to its target, at which a particle returns.
     double return_velocity = 1;
-    double slowest = 1e-3;
     /// Maximum force on a lagging particle: the largest of `acceleration` [m/s²] times its mass; `weights` times the
     /// weight of the cloth, divided among all particles of the pin; the same divided among those that lag, but at most
     /// `most_acceleration` [m/s²] times its mass.
@@ -222,7 +184,8 @@ struct Numerics {
 
   /// Energy without a source (src/simulation/energy_bound.cpp), relative to the energy in play.
   struct Energy {
-    /// Gain above which a run fails, also the work of the residual above which it warns; gain above which it warns.
+    /// Gain above which a run fails, also the work of the residual above which it warns; gain above which it warns, and
+    /// which pushing apart may add to a step.
     double failing_gain = 0.3;
     double doubtful_gain = 0.1;
     /// Energy that is never an error [J/kg]: lifts cloth by 1 cm.

@@ -113,10 +113,7 @@ void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
   at.force.subtract(b, pull);
   if (!at.assembly) return;
   // See Stretch.
-  const double ratio = 1 - piece.rest / length;
-  const double lateral =
-      piece.elasticity *
-      (at.linearisation == Linearisation::clamped ? std::max(ratio, 0.0) : std::min(std::abs(ratio), 1.0));
+  const double lateral = piece.elasticity * std::max(1 - piece.rest / length, 0.0);
   const double along = piece.elasticity + at.rate * piece.viscosity;
   at.assembly.add(piece.block, Mat3((lateral - along) * n * n.transpose() - lateral * Mat3::Identity()));
 }

@@ -31,15 +31,12 @@ std::array<std::size_t, 3> corners_of(std::size_t k) {
 // Weights of the corners in the twist; the middle has none.
 constexpr std::array<double, 5> kTwist{1, -1, 1, -1, 0};
 
-// Stiffness across a thread by tension: exact, and in two definite forms; see Stretch.
+// Stiffness across a thread by tension: exact, and in a definite form; see Stretch.
 double exact_lateral(double length) {
   return 1 - 1 / length;
 }
 double clamped_lateral(double length) {
   return std::max(exact_lateral(length), 0.0);
-}
-double absolute_lateral(double length) {
-  return std::min(std::abs(exact_lateral(length)), 1.0);
 }
 
 }  // namespace
@@ -194,8 +191,7 @@ void CrossedMembrane::add(const Evaluation& at) const {
     pull_back(state, force, along_height, along_skew);
     for (std::size_t i = 0; i < 5; ++i) at.force.add(cell.particles[i], solver::padded<double>(force[i]));
     if (!at.assembly) return;
-    const Blocks blocks = blocks_of(
-        c, state, at.rate, at.linearisation == Linearisation::clamped ? clamped_lateral : absolute_lateral, true);
+    const Blocks blocks = blocks_of(c, state, at.rate, clamped_lateral, true);
     for (std::size_t a = 0; a < 5; ++a)
       for (std::size_t b = 0; b < 5; ++b)
         if (cell.particles[a] < cell.particles[b]) at.assembly.add(cell_blocks_[c][5 * a + b], blocks[5 * a + b]);

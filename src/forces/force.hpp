@@ -15,12 +15,6 @@
 
 namespace weft::forces {
 
-/// How the part of the Jacobian that is indefinite under compression is made definite.
-enum class Linearisation {
-  clamped,         ///< clamped to zero term by term
-  absolute_value,  ///< absolute values where edges are compressed: shorter steps where clamping overshoots
-};
-
 /// The forces on particles [begin, end); forces that are added to others are ignored.
 class ForceRows {
  public:
@@ -54,7 +48,6 @@ struct Evaluation {
   double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂), x̂ fixed in a step [1/s]; 0: none
   /// Earlier positions from which v is computed. Empty: rates of strain follow from v at x.
   std::span<const Past> past = {};
-  Linearisation linearisation = Linearisation::clamped;
   /// Range of Force::cut() to evaluate; kAll: everything.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   std::size_t range = kAll;

@@ -72,13 +72,9 @@ void Stretch::add(const Evaluation& at) const {
     subtract(at.force, edges.j, pull);
     if (!at.assembly) return;
 
-    // Across the edge, tension adds stiffness and compression subtracts it. The absolute-value projection uses the
-    // absolute value (Chen, Liu, Levin, Zheng & Jacobson, "Stabler Neo-Hookean Simulation: Absolute Eigenvalue
-    // Filtering for Projected Newton", 2024), but at most the stiffness along the edge.
-    const Lanes ratio = 1 - edges.rest_length / length;
-    const Lanes lateral =
-        edges.elasticity *
-        (at.linearisation == Linearisation::clamped ? max(ratio, lanes_of(0.0)) : min(abs(ratio), lanes_of(1.0)));
+    // Across the edge, tension adds stiffness. What compression subtracts is left out, so that the matrix stays
+    // definite.
+    const Lanes lateral = edges.elasticity * max(1 - edges.rest_length / length, lanes_of(0.0));
     const Lanes along = edges.elasticity + at.rate * edges.viscosity;
     forces::add(at.assembly, edges.block, outer((lateral - along) * n, n, -lateral));
   });

@@ -156,10 +156,7 @@ void TriangleMembrane::add(const Evaluation& at) const {
 // derivative 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), the half whose sign agrees with the stress.
 void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s, const Lanes& length_u,
                                      const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
-  const auto lateral_of = [&](const Lanes& length) {
-    const Lanes lateral = 1 - 1 / length;
-    return at.linearisation == Linearisation::clamped ? max(lateral, lanes_of(0.0)) : min(abs(lateral), lanes_of(1.0));
-  };
+  const auto lateral_of = [](const Lanes& length) { return max(1 - 1 / length, lanes_of(0.0)); };
   const Lanes lateral_u = lateral_of(length_u), lateral_v = lateral_of(length_v);
   const double viscous = at.rate * stretch_.viscosity;
   const Lanes shear_stress = 0.5 * shear_.modulus * t.area * shear;

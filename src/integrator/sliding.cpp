@@ -6,7 +6,6 @@
 #include "core/numerics.hpp"
 
 namespace weft::integrator {
-namespace {}  // namespace
 
 bool Sliding::evaluate(const System& system, const StagePoint& at) {
   for (auto* force : {&push_, &friction_}) force->assign(at.v.size(), Vec3::Zero());

@@ -115,8 +115,6 @@ void Stepper::update_tolerances(double h, int iterations) {
     if (iterations >= numerics.newton.patience)
       error = std::max(error, numerics.newton.velocity_ratio * part.velocity_error);
     part.allowed = std::max(parameters_.tolerance * error, part.rounding);
-    part.allowed_sliding = std::max(
-        {numerics.newton.sliding_fraction * part.allowed, parameters_.tolerance * unseen / time, part.rounding});
   }
 }
 
@@ -177,18 +175,16 @@ bool Stepper::is_solved(int iterations) const {
       iterations < numerics.newton.patience ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity;
   if (parameters_.position_tolerance > 0)
     unseen_speed = std::min(unseen_speed, parameters_.position_tolerance / numerics.newton.lasting_time);
-  return std::ranges::all_of(blocks_, [&](const BlockState& part) {
-    return part.left <= std::max(part.allowed, unseen_speed) &&
-           part.sliding_error <= (iterations < numerics.newton.patience / 2 ? part.allowed_sliding
-                                                                            : std::max(part.allowed, unseen_speed));
-  });
+  return std::ranges::all_of(
+      blocks_, [&](const BlockState& part) { return part.error() <= std::max(part.allowed, unseen_speed); });
 }
 
 // Selects the blocks of the next linear solve.
 void Stepper::select_unsolved(int iterations) {
   unsolved_.clear();
   for (std::size_t p = 0; p < blocks_.size(); ++p)
-    if (iterations >= numerics.newton.patience / 2 || blocks_[p].tolerance_ratio() > numerics.newton.linear_fraction)
+    if (iterations >= numerics.newton.patience / 2 ||
+        blocks_[p].error() > numerics.newton.linear_fraction * blocks_[p].allowed)
       unsolved_.push_back(p);
 }
 
@@ -209,21 +205,15 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
     residual(system, now, stage, Equation::linear);
     const double slope = dot(residual_, delta_);
     if (!std::isfinite(slope)) return slope;
-    const bool undershoots = slope > numerics.newton.undershoot * start_slope,
-               overshoots = slope < -numerics.newton.overshoot * start_slope;
-    if (trial == numerics.newton.line_trials ||
-        (!overshoots && (high > 0 ? slope <= numerics.newton.overshoot * start_slope : !undershoots)))
+    if (std::abs(slope) <= numerics.newton.slope_left * std::abs(start_slope) || trial == numerics.newton.line_trials)
       break;
-    if (overshoots) {
+    if (slope < 0)
       high = fraction, high_slope = slope;
-    } else {
+    else
       low = fraction, low_slope = slope;
-      if (high == 0 && fraction >= numerics.newton.longest_search) break;
-    }
     if (high == 0) {
-      fraction = low_slope < start_slope
-                     ? std::min(numerics.newton.longest_search, fraction * start_slope / (start_slope - slope))
-                     : numerics.newton.longest_search;
+      if (trial == numerics.newton.line_trials / 2) break;
+      fraction *= 2;
     } else {
       // Regula falsi, at a distance from the ends.
       const double guess = low + (high - low) * low_slope / (low_slope - high_slope);
@@ -387,12 +377,11 @@ void Stepper::report_worst(StepReport& report) const {
   double worst = -1;
   for (const BlockState& part : blocks_) {
     report.local_error = std::max(report.local_error, part.local_error);
-    report.solver_error = std::max({report.solver_error, part.left * time, part.sliding_error * time});
-    if (part.tolerance_ratio() <= worst) continue;
-    worst = part.tolerance_ratio();
-    const bool is_velocity_worse = part.left * part.allowed_sliding >= part.sliding_error * part.allowed;
-    report.left = is_velocity_worse ? part.left : part.sliding_error;
-    report.allowed = is_velocity_worse ? part.allowed : part.allowed_sliding;
+    report.solver_error = std::max(report.solver_error, part.error() * time);
+    if (part.error() / part.allowed <= worst) continue;
+    worst = part.error() / part.allowed;
+    report.left = part.error();
+    report.allowed = part.allowed;
   }
 }
 

@@ -150,11 +150,9 @@ class Stepper {
     double left = 0;             // remaining velocity error [m/s]
     double rounding = 0;         // velocity that corresponds to rounding of its positions [m/s]
     bool holds_sliding = false;  // a constraint holds it against sliding
-    double allowed_sliding = 0;  // bound of sliding_error [m/s]
     double sliding_error = 0;    // velocity error of the whole block by wrong friction, if it is about to slide [m/s]
 
-    // Largest error relative to its bound.
-    double tolerance_ratio() const { return std::max(left / allowed, sliding_error / allowed_sliding); }
+    double error() const { return std::max(left, sliding_error); }  // [m/s]
   };
 
   bool is_first_order(double h) const;

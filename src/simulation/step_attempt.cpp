@@ -15,7 +15,7 @@ namespace weft::simulation {
 // Repeats the attempt without the pinned particles that obstacles or other cloth keep from their targets.
 StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool is_last, FrameReport& report) {
   for (int tries = 1;; ++tries) {
-    const Attempt attempt{t, h, rejections, is_last, tries == numerics.repair.attempts};
+    const Attempt attempt{t, h, rejections, is_last, tries > numerics.repair.halvings};
     pins_.begin_step(t, h, progress_.now.x);
     const Start start = begin_attempt(attempt, report);
     if (!collisions_) return rejection_of(solve(h, start, false, report));
@@ -94,7 +94,7 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
       continuations = numerics.repair.restarts;  // some pairs cannot be pushed apart: push_apart(attempt) decides
       continue;
     }
-    if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.repair.added_energy &&
+    if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.energy.doubtful_gain &&
         cloth_.max_strain(next_.particles()) <= strain_before + numerics.repair.added_strain)
       return std::nullopt;
     ++continuations;
@@ -148,7 +148,7 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
     return rejection;
   }
   solved = step.verdict == integrator::Verdict::solved;
-  return solved || !may_shorten(attempt) ? std::nullopt : check_divergence(attempt.h);
+  return std::nullopt;
 }
 
 // `check_early`: the solve ends unfinished after a few iterations, so that contacts that it reveals are found soon.
@@ -185,7 +185,7 @@ StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
     return stuck;
   if (!may_shorten(attempt)) return std::nullopt;
   const double ratio = added_energy_ratio(energy_before, attempt.h);
-  if (ratio <= numerics.repair.added_energy) return std::nullopt;
+  if (ratio <= numerics.energy.doubtful_gain) return std::nullopt;
   progress_.longest = 0.5 * attempt.h;
   return fmt::format("keeping cloth from passing through adds {:.2g} times the energy of its motion and threads",
                      ratio);
@@ -199,16 +199,6 @@ bool StepLoop::may_shorten(const Attempt& attempt) {
 bool StepLoop::is_short_enough(const Attempt& attempt) const {
   return attempt.is_last ||
          (attempt.rejections >= numerics.repair.halvings && collisions_->obstacles_move_little(progress_.now, next_));
-}
-
-// Asks for a shorter step if an unfinished solve has stretched cloth far. Such a solve scatters particles: all pairs of
-// triangles may then meet, and pushing them apart takes a hundred times as long as two shorter steps.
-StepLoop::Rejection StepLoop::check_divergence(double h) {
-  const double strain = cloth_.max_strain(next_.particles());
-  const double most = numerics.repair.diverged_strain;
-  if (strain <= most || strain <= cloth_.max_strain(progress_.now.particles()) + most) return std::nullopt;
-  progress_.longest = 0.5 * h;
-  return fmt::format("the solve diverges, to a strain of {:.2g}", strain);
 }
 
 // Asks for a shorter step if this one stretches threads far beyond their limit.

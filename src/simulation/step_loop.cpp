@@ -233,7 +233,7 @@ void StepLoop::accept(double h, FrameReport& report) {
   attachments_.accept(next_.particles());
   if (collisions_) collisions_->accept();
   std::swap(progress_.now, next_);
-  progress_.longest *= numerics.steps.recovery;
+  progress_.longest *= numerics.steps.largest_factor;
   measure_stretch(report);
   ++report.steps;
   report.error_estimate += local_error_;

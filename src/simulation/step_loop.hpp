@@ -135,7 +135,6 @@ class StepLoop {
   Rejection push_apart(const Attempt& attempt);
   static bool may_shorten(const Attempt& attempt);
   bool is_short_enough(const Attempt& attempt) const;
-  Rejection check_divergence(double h);
   Rejection check_overstretch(double h);
   double energy(const SystemState& moment) const;
   double added_energy_ratio(double before, double h) const;

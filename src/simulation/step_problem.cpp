@@ -93,7 +93,7 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   if (all) memory_.linearised_at.assign(at.x.begin(), at.x.end());
   for (std::size_t c = 0; c < cloth_.parts(); ++c) is_active_[c] = all || is_stale(c, at.x);
   if (!memory_.locks.empty()) cloth_.update_locks(at.x, iteration == 0, memory_.locks);
-  assemble_rows(at, iteration);
+  assemble_rows(at);
   add_cloth_forces(at, force);
   if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
   cloth_.inflation().linearise(at.x, force, system);
@@ -195,7 +195,7 @@ bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoi
 }
 
 // Evaluates forces within the active parts at the remembered positions; with `assemble`, also their matrix rows.
-void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int iteration) {
+void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
   const auto ranges = cloth_.ranges();
   const CountedLoop counted(cloth_.largest_range_count());  // one thread has one range for each part
   parallel_for(ranges.size(), 1, [&](std::size_t r, std::size_t) {
@@ -209,8 +209,6 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
     if (assemble) {
       if (cloth < memory_.locks.size()) evaluation.locks = &memory_.locks[cloth];
       evaluation.assembly = solver::AssemblyRows(memory_.assembly, begin, end);
-      if (iteration >= numerics.newton.clamped_iterations)
-        evaluation.linearisation = forces::Linearisation::absolute_value;
       memory_.assembly.start(begin, end);
     }
     std::fill(memory_.force.begin() + begin, memory_.force.begin() + end, solver::PaddedVec3<double>{});
@@ -227,7 +225,7 @@ bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   return false;
 }
 
-void StepProblem::assemble_rows(const integrator::StagePoint& at, int iteration) {
+void StepProblem::assemble_rows(const integrator::StagePoint& at) {
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;
     solver::DiagonalBlock& part = memory_.system.parts[c];
@@ -235,7 +233,7 @@ void StepProblem::assemble_rows(const integrator::StagePoint& at, int iteration)
     update_positions(c, at);
     ++part.version;
   }
-  evaluate(at, true, iteration);
+  evaluate(at, true);
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;
     const solver::DiagonalBlock& part = memory_.system.parts[c];

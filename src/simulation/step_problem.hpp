@@ -90,13 +90,13 @@ class StepProblem final : public integrator::System {
   void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
   bool update_positions(std::size_t cloth, const integrator::StagePoint& at);
-  void evaluate(const integrator::StagePoint& at, bool assemble, int iteration = 0);
+  void evaluate(const integrator::StagePoint& at, bool assemble);
   void use_rate(double rate);
   bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
   template <class Add>
   void add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3> force, const Add& add);
   std::vector<Vec3> with_vertices(std::span<const Vec3> of_particles) const;
-  void assemble_rows(const integrator::StagePoint& at, int iteration);
+  void assemble_rows(const integrator::StagePoint& at);
 
   ClothSystem& cloth_;
   const collision::ContactResponse* contacts_ = nullptr;  // nullptr if nothing in the scene can collide

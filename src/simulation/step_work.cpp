@@ -3,7 +3,6 @@
 #include "core/parallel.hpp"
 
 namespace weft::simulation {
-namespace {}  // namespace
 
 StepWork measure_work(const integrator::Stepper& stepper, std::span<const integrator::HeldParticle> pinned,
                       std::span<const double> masses, const integrator::State& start, const integrator::State& end) {

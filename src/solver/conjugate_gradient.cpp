@@ -96,7 +96,7 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
   Progress progress;
   progress.parts.resize(all_parts_.size());
   End end = End::needs_double;
-  if (allows_single_ && goal.relative >= kTightGoal) {
+  if (allows_single_ && goal.relative >= kSmallestSingleGoal) {
     end = prepare_recurrence(single_).solve(b, goal, max_iterations, x, directions, parts, progress);
     filter(x);
     copy_as_vec3(single_.recurrence.residual(), residual_);

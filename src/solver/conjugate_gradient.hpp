@@ -16,12 +16,11 @@ struct LinearReport {
   bool definite = true;  ///< false: the iteration ended at a direction without positive curvature
 };
 
-/// Solves A x = b on the free directions. The preconditioner P of particles and multigrid levels is cheap. For
-/// `relative` goals below kTightGoal without absolute goals, or if many more iterations are expected, an incomplete
-/// factor L joins it: P⁻¹ + 16 (L Lᵀ)⁻¹.
+/// Solves A x = b on the free directions, with the Preconditioner P of particles and multigrid levels.
 ///
-/// Single precision is used if `relative` is at least kTightGoal, and no particle exceeds kMaxSingleStiffness. It is
-/// safe because Newton's method evaluates its residual in double, so that the next solve corrects errors of rounding.
+/// Single precision is used if `relative` is at least kSmallestSingleGoal, and no particle exceeds kMaxSingleStiffness.
+/// It is safe because Newton's method evaluates its residual in double, so that the next solve corrects errors of
+/// rounding.
 class ConjugateGradient {
  public:
   /// Prepares the preconditioner for `system`, which must outlive the following calls. With AggregateSums::reuse, sums

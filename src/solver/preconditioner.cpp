@@ -18,6 +18,9 @@ constexpr std::size_t kMaxLevels = 16;
 // fraction of the block's own trace makes the block definite. The fraction must be below the ratio of masses to stiff
 // threads (measured: with 1e-9 of the mean trace, cells of 0.1 m by 1e-5 m took twenty times the iterations).
 constexpr double kMinRelativeShift = 1e-13;
+// Fraction of a member's motion that comes from neighbouring aggregates, the largest that turns no wave around.
+constexpr double kInterpolation = 0.5;
+constexpr double kLevelStiffness = 0.5;  // factor per level; see Preconditioner
 
 Mat3 singular_shift(const Mat3& block) {
   const double trace = block.trace();
@@ -87,8 +90,7 @@ void Preconditioner<Real>::select(std::span<const std::size_t> parts) {
   for (Level& level : levels_) {
     std::vector<RowRange> ranges;
     for (std::size_t p : selected_) ranges.push_back(level.of_part[p]);
-    // A chunk of aggregates has fewer rows than one of particles, as an aggregate costs more: it has about twelve
-    // members.
+    // An aggregate costs more than a particle: it has about twelve members.
     level.chunks = RowChunks(ranges, kGrainSize / 4);
   }
 }
@@ -157,7 +159,7 @@ void Preconditioner<Real>::allocate_levels() {
 // Neighbours are particles that share a full block, and aggregates with neighbouring members.
 template <class Real>
 void Preconditioner<Real>::compute_weights() {
-  const double smoothing = interpolates_ ? numerics.linear.interpolation : 0;
+  const double smoothing = interpolates_ ? kInterpolation : 0;
   const BlockMatrix::Pattern& full = system_->matrix.full();
   std::vector<std::vector<Index>> neighbours(inverse_.size());
   // Each particle of a small diagonal block is an aggregate of its own, and interpolates from no other.
@@ -245,9 +247,8 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
   const std::vector<Index>& coarse_of = levels_.back().aggregate_of;
   const BlockMatrix& matrix = system_->matrix;
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
-  const double stiffness_fraction = interpolates_ && !parts_[part].is_small
-                                        ? std::pow(numerics.linear.level_stiffness, static_cast<double>(depth))
-                                        : 1;
+  const double stiffness_fraction =
+      interpolates_ && !parts_[part].is_small ? std::pow(kLevelStiffness, static_cast<double>(depth)) : 1;
   const auto add_to_coarse = [&](Index i, Index j, const auto& block) {
     // The factorisation reads the lower triangle only.
     const Index coarse_i = coarse_of[at(i)], coarse_j = coarse_of[at(j)];
@@ -310,7 +311,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
   double stiffness_fraction = 1;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
-    if (interpolates_ && !parts_[part].is_small) stiffness_fraction *= numerics.linear.level_stiffness;
+    if (interpolates_ && !parts_[part].is_small) stiffness_fraction *= kLevelStiffness;
     const RowRange groups = level.of_part[part];
     const RowRange members =
         l == 0 ? RowRange{at(parts_[part].begin), at(parts_[part].end)} : levels_[l - 1].of_part[part];
@@ -387,7 +388,7 @@ void Preconditioner<Real>::invert_aggregates() {
     parallel_for(needs_inverse.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
       for (std::size_t g = begin; g < end; ++g) {
         if (!needs_inverse[g]) continue;
-        const Mat3 block = level.of_matrix[g] + numerics.linear.contact_weight * of_groups[g];
+        const Mat3 block = level.of_matrix[g] + of_groups[g];
         level.inverse[g] = PaddedMat3<Real>((block + singular_shift(block)).inverse());
       }
     });

@@ -28,13 +28,12 @@ enum class AggregateSums { recompute, reuse };
 /// is built from R_l A R_lᵀ, where R_l sums over each aggregate. If aggregates move as wholes, all strain is at their
 /// boundaries; the same motion, spread over the width of an aggregate, has half the stiffness for each doubling of
 /// that width. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters with the factor
-/// `level_stiffness` per level, the mass part with factor 1. Contact terms are not part of the matrix. For each
-/// particle of a contact term, the particle's stiffness, times `contact_weight`, enters the aggregates from which it
-/// interpolates. The sum bounds the contact part of the diagonal of T_lᵀ A T_l from above. The last level has T_lᵀ A
-/// T_l of the contact terms exactly.
+/// 1/2 per level, the mass part with factor 1. Contact terms are not part of the matrix. For each particle of a contact
+/// term, the particle's stiffness enters the aggregates from which it interpolates. The sum bounds the contact part of
+/// the diagonal of T_lᵀ A T_l from above. The last level has T_lᵀ A T_l of the contact terms exactly.
 ///
 /// If threads are so stiff that the trace of a particle's block exceeds `stiff_particle` times the sum of
-/// `norm_weights` over its diagonal block, levels do not interpolate: T_l = R_lᵀ, and `level_stiffness` counts as 1.
+/// `norm_weights` over its diagonal block, levels do not interpolate: T_l = R_lᵀ, and the factor per level is 1.
 /// Interpolated motion would stretch threads across folds, and sums over boundaries of aggregates contain nothing of
 /// the threads inside of them.
 ///

@@ -12,13 +12,6 @@
 namespace weft::solver {
 namespace {
 
-// Whether the incomplete factor repays its cost. `before` and `now` are errors relative to the goal, before and after
-// as many iterations as the factor costs. It pays off if, at this rate of convergence, at least 2.5 times as many
-// iterations are still necessary.
-bool factor_pays_off(double before, double now) {
-  return !(std::log(now) < 2.5 * std::log(before / now));
-}
-
 double absolute_goal(const LinearGoal& goal, std::size_t part) {
   return goal.absolute.empty() ? 0 : goal.absolute[part];
 }
@@ -58,15 +51,6 @@ bool Progress::meets(const LinearGoal& goal, std::span<const std::size_t> select
   });
 }
 
-double Progress::largest_error_ratio(const LinearGoal& goal, std::span<const std::size_t> selected) const {
-  double largest_ratio = 0;
-  for (std::size_t p : selected) {
-    const double allowed = std::max(absolute_goal(goal, p), goal.relative * std::sqrt(parts[p].energy));
-    largest_ratio = std::max(largest_ratio, std::sqrt(parts[p].error_energy()) / allowed);
-  }
-  return largest_ratio;
-}
-
 // If the step along `start` is the solution, the residual of rounding in single precision has at most this fraction of
 // the step's energy. Iterating on it would add uneven motion, of micrometres in a fall of 5 m.
 constexpr double kRoundedEnergy = 1e-11;
@@ -83,7 +67,6 @@ void Recurrence<Real>::prepare(const LinearSystem& system, AggregateSums sums) {
   product_.prepare(system);
   preconditioner_.prepare(system, sums);
   rank_one_.prepare(system);
-  factor_state_ = Factor::not_made;
 }
 
 template <class Real>
@@ -92,39 +75,18 @@ std::span<const PaddedVec3<Real>> Recurrence<Real>::precondition(std::span<const
   if (!rank_one_.empty()) {
     selected_ = all_parts_;
     rank_one_.select(selected_);
-    precondition_rank_one(false);
+    precondition_rank_one();
   }
   preconditioner_.apply(q_, z_, all_parts_);
   rank_one_.correct(z_);
   return z_;
 }
 
-// Makes the factor if that has not been tried; returns whether one exists for the prepared system.
+// Prepares the outer products for the preconditioner of the selected blocks.
 template <class Real>
-bool Recurrence<Real>::make_factor() {
-  if (factor_state_ == Factor::not_made) factor_state_ = factor_.factorise(*system_) ? Factor::made : Factor::none;
-  return factor_state_ == Factor::made;
-}
-
-template <class Real>
-void Recurrence<Real>::apply_levels_and_factor(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z,
-                                               bool uses_factor) {
-  preconditioner_.apply(r, z, selected_);
-  if constexpr (std::is_same_v<Real, double>) {
-    if (uses_factor) {
-      factor_parts_.clear();
-      for (std::size_t part : selected_) factor_parts_.push_back(parts_[part]);
-      factor_.add(numerics.linear.factor_weight, r, z, factor_parts_);
-      product_.filter(z);
-    }
-  }
-}
-
-// Prepares the outer products for the preconditioner of the selected blocks, with or without the factor.
-template <class Real>
-void Recurrence<Real>::precondition_rank_one(bool uses_factor) {
+void Recurrence<Real>::precondition_rank_one() {
   rank_one_.use([&](std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z) {
-    apply_levels_and_factor(r, z, uses_factor);
+    preconditioner_.apply(r, z, selected_);
   });
 }
 
@@ -142,10 +104,10 @@ std::vector<double> Recurrence<Real>::dots(std::span<const PaddedVec3<Real>> a,
   return result;
 }
 
-// z = P⁻¹ r, with or without the factor; returns r·z.
+// z = P⁻¹ r; returns r·z.
 template <class Real>
-double Recurrence<Real>::apply_preconditioner(std::span<PaddedVec3<Real>> z, bool uses_factor) {
-  apply_levels_and_factor(r_, z, uses_factor);
+double Recurrence<Real>::apply_preconditioner(std::span<PaddedVec3<Real>> z) {
+  preconditioner_.apply(r_, z, selected_);
   rank_one_.correct(z);
   rz_ = dots(r_, z);
   return std::accumulate(rz_.begin(), rz_.end(), 0.0);
@@ -219,13 +181,8 @@ void Recurrence<Real>::advance(double alpha, Progress& progress) {
 template <class Real>
 End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progress& progress) {
   constexpr bool kSingle = std::is_same_v<Real, float>;
-  if (goal.relative < kTightGoal && goal.absolute.empty()) progress.uses_factor = true;
-  if (progress.uses_factor) {
-    if (kSingle) return End::needs_double;
-    progress.uses_factor = make_factor();
-  }
-  precondition_rank_one(progress.uses_factor);
-  double rz = apply_preconditioner(p_, progress.uses_factor);
+  precondition_rank_one();
+  double rz = apply_preconditioner(p_);
   progress.is_exact = rz <= (kSingle ? kRoundedEnergy * start_gain_ : 0);
   if (progress.is_exact) return End::converged;
   while (progress.iterations < max_iterations) {
@@ -234,21 +191,10 @@ End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progre
     if (!(curvature > 0)) return kSingle ? End::needs_double : End::indefinite;
     advance(rz / curvature, progress);
     if (progress.meets(goal, selected_)) return End::converged;
-    // With the factor, the search directions made without it are no longer conjugate: restart.
-    bool restart = false;
-    if (progress.iterations == 1) progress.last_error_ratio = progress.largest_error_ratio(goal, selected_);
-    if (!progress.uses_factor && progress.iterations % numerics.linear.factor_cost == 0) {
-      const double error_ratio = progress.largest_error_ratio(goal, selected_);
-      restart = progress.uses_factor = factor_pays_off(progress.last_error_ratio, error_ratio);
-      if (restart && kSingle) return End::needs_double;
-      if (restart) restart = progress.uses_factor = make_factor();
-      if (restart) precondition_rank_one(true);
-      progress.last_error_ratio = error_ratio;
-    }
-    const double rz_before = std::exchange(rz, apply_preconditioner(z_, progress.uses_factor));
+    const double rz_before = std::exchange(rz, apply_preconditioner(z_));
     progress.is_exact = rz == 0;
     if (progress.is_exact) return End::converged;
-    const Real beta = static_cast<Real>(restart ? 0 : rz / rz_before);
+    const Real beta = static_cast<Real>(rz / rz_before);
     rows_.for_each([&](std::size_t first, std::size_t end) {
       for (std::size_t i = first; i < end; ++i) p_[i] = z_[i] + beta * p_[i];
     });

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "solver/block_motions.hpp"
-#include "solver/incomplete_cholesky.hpp"
 #include "solver/linear_system.hpp"
 #include "solver/preconditioner.hpp"
 #include "solver/product.hpp"
@@ -15,9 +14,8 @@
 namespace weft::solver {
 
 /// Relative residual that single precision can still tell from rounding: in the energy norm 6e-8 times the root of the
-/// largest stiffness for which single precision is used (kMaxSingleStiffness), times a safety factor of five. For
-/// tighter goals an incomplete factor pays off.
-inline constexpr double kTightGoal = 1e-3;
+/// largest stiffness for which single precision is used (kMaxSingleStiffness), times a safety factor of five.
+inline constexpr double kSmallestSingleGoal = 1e-3;
 
 /// Allowed error of the solution, per diagonal block. One of two bounds must be met: in the energy norm `relative`
 /// times the norm of what the iteration adds to its start, or an absolute bound in the mass-weighted norm.
@@ -54,13 +52,9 @@ struct Progress {
   };
   std::vector<OfPart> parts;  ///< of the whole system
   int iterations = 0;
-  bool uses_factor = false;
   bool is_exact = false;
-  double last_error_ratio = 0;  ///< largest_error_ratio() when the factor was last considered
 
   bool meets(const LinearGoal& goal, std::span<const std::size_t> selected) const;
-  /// Largest error of these diagonal blocks in the energy norm, relative to the larger bound of the goal.
-  double largest_error_ratio(const LinearGoal& goal, std::span<const std::size_t> selected) const;
 };
 
 enum class End {
@@ -95,11 +89,9 @@ class Recurrence {
     const double curvature = product_.multiply(p_, q_, norms_sq_);
     return curvature + rank_one_.multiply(p_, q_);
   }
-  void apply_levels_and_factor(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z, bool uses_factor);
-  void precondition_rank_one(bool uses_factor);
+  void precondition_rank_one();
   void advance(double alpha, Progress& progress);
-  double apply_preconditioner(std::span<PaddedVec3<Real>> z, bool uses_factor);
-  bool make_factor();
+  double apply_preconditioner(std::span<PaddedVec3<Real>> z);
   void balance(const Directions& directions, std::span<Vec3> x);
   std::vector<double> dots(std::span<const PaddedVec3<Real>> a, std::span<const PaddedVec3<Real>> b) const;
   std::vector<AlongMotions> along_motions(std::span<const PaddedVec3<Real>> v, bool has_second) const;
@@ -112,9 +104,6 @@ class Recurrence {
   Preconditioner<Real> preconditioner_;
   RankOneTerms<Real> rank_one_;
   BlockMotions block_motions_;
-  IncompleteCholesky factor_;                                                   // in double only
-  enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // for the prepared system
-  std::vector<DiagonalBlock> factor_parts_;                                     // scratch
   std::vector<PaddedVec3<Real>> x_, r_, z_, p_, q_;
   std::vector<Vec3> start_;            // filtered by the constraints
   double start_multiple_ = 0;          // the solution is x_ plus this multiple of start_

@@ -174,7 +174,7 @@ TEST_P(Derivatives, DefiniteJacobianIsSymmetricAndPositiveSemidefinite) {
     const auto force = GetParam().make(kStiffness, 5);
     const Positions x = testing::crumpled(GetParam().grid, 0.006, seed);
     const Positions v = testing::random_vectors(x.size(), 1, seed + 10);
-    const Eigen::MatrixXd k = testing::stiffness_of(*force, x, v, kRate, Linearisation::clamped);
+    const Eigen::MatrixXd k = testing::stiffness_of(*force, x, v, kRate);
     const double scale = k.cwiseAbs().maxCoeff();
     EXPECT_LT((k - k.transpose()).cwiseAbs().maxCoeff(), 1e-14 * scale);
     // A few dozen roundings in each of 60 rows.
@@ -191,7 +191,7 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
     return Vec3(radius * std::sin(angle), 1.1 * v, radius * (1 - std::cos(angle)));
   }));
   const auto force = GetParam().make(kStiffness, 5);
-  const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::clamped);
+  const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate);
   const Eigen::MatrixXd exact = testing::jacobian_of(*force, x, testing::zeros(x), kRate);
   if (GetParam().name.starts_with("bend")) {
     // The projected damping is as stiff across the curvature as along it: it only adds stiffness.
@@ -209,7 +209,7 @@ TEST(DefiniteJacobian, OfTriangleBendingIsTheExactOneAlongTheNormal) {
   Positions x = sheet.rest;
   for (Vec3& point : x) point.z() = 3 * point.x() * point.x() - 5 * point.x() * point.y();
   TriangleBend force(sheet, 0, BendParameters{kStiffness, 5, 5000});
-  const Eigen::MatrixXd definite = testing::stiffness_of(force, x, testing::zeros(x), kRate, Linearisation::clamped);
+  const Eigen::MatrixXd definite = testing::stiffness_of(force, x, testing::zeros(x), kRate);
   const Eigen::MatrixXd exact = testing::jacobian_of(force, x, testing::zeros(x), kRate);
   double largest = 0, off = 0;
   for (Eigen::Index i = 2; i < exact.rows(); i += 3)
@@ -225,7 +225,7 @@ TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
   const auto force = GetParam().make(kStiffness, 0);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 4), still = testing::zeros(x);
   const Eigen::MatrixXd exact = testing::jacobian_of(*force, x, still, kRate);
-  const Eigen::MatrixXd added = testing::stiffness_of(*force, x, still, kRate, Linearisation::clamped) - exact;
+  const Eigen::MatrixXd added = testing::stiffness_of(*force, x, still, kRate) - exact;
   const double scale = exact.cwiseAbs().maxCoeff();
   EXPECT_GT(added.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * scale);
 }

@@ -103,8 +103,7 @@ inline Eigen::MatrixXd dense(const solver::BlockMatrix& matrix) {
 }
 
 /// −(∂f/∂x + rate ∂f/∂v) as the force adds it to an assembly, including its constant part.
-inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Positions& v, double rate,
-                                    Linearisation linearisation) {
+inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
   force.couple(pairs);
   solver::BlockMatrix matrix(static_cast<Index>(x.size()), pairs);
@@ -114,7 +113,6 @@ inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Posi
   Place place(x, v);
   Evaluation at = place.evaluation(rate);
   at.assembly = assembly;
-  at.linearisation = linearisation;
   force.add(at);
   assembly.write_rows(0, matrix.rows(), matrix);
   return dense(matrix);

@@ -171,18 +171,6 @@ TEST_F(StepProblems, PutTheRowsOfAClothTogetherAnewWhereItHasMovedAndAllInEachSt
   EXPECT_GT(version(0), first);
 }
 
-TEST_F(StepProblems, ProjectCompressedEdgesByTheirAbsoluteValueFromTheThirdIterationOn) {
-  std::vector<std::vector<Mat3>> matrices;
-  for (int iteration : {0, 1, 2, 9}) {
-    StepProblem fresh = problem();
-    linearise(fresh, x_, kRate, iteration);
-    matrices.push_back(blocks(fresh));
-  }
-  EXPECT_EQ(matrices[0], matrices[1]);
-  EXPECT_NE(matrices[1], matrices[2]);
-  EXPECT_EQ(matrices[2], matrices[3]);
-}
-
 TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
   StepProblem problem = this->problem();
   for (int solve = 0; solve < 2; ++solve)

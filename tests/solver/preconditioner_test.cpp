@@ -28,7 +28,7 @@ Eigen::MatrixXd diagonal_blocks(const Eigen::MatrixXd& a) {
   return blocks;
 }
 
-// One damped Jacobi step, factor 0.6, on piecewise constants: each member gets the mean of its neighbours' aggregates.
+// One damped Jacobi step, factor 1/2, on piecewise constants: each member gets the mean of its neighbours' aggregates.
 Eigen::MatrixXd interpolation(const Aggregates& grouping, const Eigen::MatrixXd& neighbours) {
   const auto members = static_cast<Eigen::Index>(grouping.of.size());
   Eigen::MatrixXd constants = Eigen::MatrixXd::Zero(members, grouping.count), means = constants;
@@ -37,7 +37,7 @@ Eigen::MatrixXd interpolation(const Aggregates& grouping, const Eigen::MatrixXd&
     means.row(m) = neighbours.row(m).sum() > 0
                        ? Eigen::RowVectorXd(neighbours.row(m) * constants / neighbours.row(m).sum())
                        : Eigen::RowVectorXd(constants.row(m));
-  return 0.4 * constants + 0.6 * means;
+  return 0.5 * constants + 0.5 * means;
 }
 
 Eigen::MatrixXd threefold(const Eigen::MatrixXd& a) {
@@ -92,7 +92,7 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
       block = diagonal_blocks(coarse);
       for (Eigen::Index g = 0; g < grouping.count; ++g)
         for (Eigen::Index i = 0; i < rows; ++i)
-          block.block<3, 3>(3 * g, 3 * g) += 2 * from_groups(i, g) * lumped.block<3, 3>(3 * i, 3 * i);
+          block.block<3, 3>(3 * g, 3 * g) += from_groups(i, g) * lumped.block<3, 3>(3 * i, 3 * i);
     }
     sum += p * block.inverse() * p.transpose();
 

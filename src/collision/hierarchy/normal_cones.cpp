@@ -6,8 +6,6 @@
 
 namespace weft::collision {
 
-namespace {}  // namespace
-
 bool is_star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis, std::span<const Vec3> x_t0,
                     std::span<const Vec3> x_t1) {
   Vec3 centre_t0 = Vec3::Zero(), centre_t1 = Vec3::Zero();

@@ -10,7 +10,6 @@
 #include "core/stop.hpp"
 
 namespace weft::collision {
-namespace {}  // namespace
 
 Separation::Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,
                        std::span<const double> masses)

@@ -122,7 +122,6 @@ const std::vector<Entry>& entries() {
   static const std::vector<Entry> kEntries{
       {"block Jacobi", block_jacobi},
       {"additive levels", additive_multilevel},
-      {"levels + IC(0)", levels_and_factor},
       {kProgram, {}},
       {"IC(0)", incomplete_cholesky},
       {"V-cycle, bilinear", geometric_multigrid},

@@ -4,7 +4,6 @@
 
 #include "bench/solver/block_rows.hpp"
 #include "bench/solver/solvers.hpp"
-#include "solver/incomplete_cholesky.hpp"
 #include "solver/preconditioner.hpp"
 
 namespace weft::bench {
@@ -122,38 +121,8 @@ class BlockIncompleteCholesky final : public Inverse {
   BlockRows<Mat3> lower_;
 };
 
-// The weighted sum of levels and factor to which ConjugateGradient switches.
-class LevelsAndFactor final : public Inverse {
- public:
-  void factorise(const SheetSystem& sheet) override {
-    system_ = &sheet.system;
-    levels_.prepare(sheet.system);
-    factor_.factorise(sheet.system);
-  }
-  void apply(std::span<const Vec3> r, std::span<Vec3> z) override {
-    const std::size_t all = 0;
-    vectors_.apply(r, z, [&](auto from, auto to) {
-      levels_.apply(from, to, {&all, 1});
-      factor_.add(16, from, to, solver::parts_of(*system_));
-    });
-    for (const auto& c : system_->constraints) {
-      Vec3& entry = z[static_cast<std::size_t>(c.particle)];
-      entry = (c.free * entry).eval();
-    }
-  }
-
- private:
-  const solver::LinearSystem* system_ = nullptr;
-  solver::Preconditioner<double> levels_;
-  solver::IncompleteCholesky factor_;
-  InPaddedVec3s vectors_;
-};
-
 }  // namespace
 
-std::unique_ptr<Inverse> levels_and_factor() {
-  return std::make_unique<LevelsAndFactor>();
-}
 std::unique_ptr<Inverse> block_jacobi() {
   return std::make_unique<OfTheProgram>(false);
 }

@@ -20,12 +20,10 @@ class Inverse {
 };
 
 std::unique_ptr<Inverse> block_jacobi();
-/// The program's initial preconditioner.
+/// The program's preconditioner, in double.
 std::unique_ptr<Inverse> additive_multilevel();
 /// Block IC(0): has the pattern of the matrix.
 std::unique_ptr<Inverse> incomplete_cholesky();
-/// The program's preconditioner for tolerances below a tenth: the additive levels plus its incomplete factor.
-std::unique_ptr<Inverse> levels_and_factor();
 /// One V-cycle; coarse grids have every second particle, with bilinear interpolation.
 std::unique_ptr<Inverse> geometric_multigrid();
 /// One V-cycle of smoothed aggregation. `functions`: 3 for translations of aggregates, 6 for rotations as well.
