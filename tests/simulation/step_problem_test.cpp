@@ -251,5 +251,22 @@ TEST_F(SewnProblem, ForgetsWhatItKnewOfClothThatIsSewnOn) {
   EXPECT_EQ(force_at(0), start);
 }
 
+// Cells of 125 by 25 mm: the stiffest directions are the short ones.
+TEST(ClothSystems, AggregateSlenderCellsAlongTheirShortSidesFirst) {
+  scene::Scene scene = testing::sheet_alone(1, 9, 1);
+  scene.cloths[0].size = {1, 0.2};
+  const environment::Environment environment(scene);
+  const std::vector<Index> of = ClothSystem(scene, environment).make_linear_system().aggregate_levels.front().of;
+  ASSERT_EQ(of.size(), 81U);
+  int together = 0;
+  for (std::size_t i = 0; i < of.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      if (of[i] != of[j]) continue;
+      ++together;
+      EXPECT_EQ(i % 9, j % 9) << i << " and " << j;
+    }
+  EXPECT_EQ(together, 9 * 4);  // four pairs in each column of nine
+}
+
 }  // namespace
 }  // namespace weft::simulation
