@@ -224,6 +224,17 @@ TEST(Rest, TakesOneStepAFrameAndMovesNothing) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), farthest) << "particle " << i;
 }
 
+// Without gravity and air, a drifting sheet has settled; only its speed tells that it moves.
+TEST(Rest, IsSlow) {
+  for (const double speed : {0.01, 0.1}) {
+    scene::Scene scene = testing::sheet_alone(0.3, 5, 1);
+    scene.physics.gravity = Vec3::Zero();
+    scene.cloths[0].velocity = {speed, 0, 0};
+    Simulation drifting(scene);
+    EXPECT_EQ(steps_of(drifting, 3).back(), speed < 0.02 ? 1 : 2) << speed << " m/s";
+  }
+}
+
 TEST(Rest, EndsWithTheFrameInWhichSomethingMovesOrIsLetGo) {
   scene::Scene scene = sheet_on_block();
   scene.obstacles[0].motion.keys = {{0, {{0, 0, 0.05}, Quat::Identity()}},
