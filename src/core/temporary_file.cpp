@@ -115,7 +115,7 @@ bool rename_to_free_name(const fs::path& from, const fs::path& to) {
 }
 
 // Creates the file or folder and locks it. Tries again if a process that cleans up removes it before it is locked, for
-// a second at most: that process may have to wait for a processor while it holds the lock.
+// half a second at most: that process may have to wait for a processor while it holds the lock.
 int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
   constexpr int kAttempts = 10;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -88,20 +89,28 @@ class DependencyWalk {
  public:
   explicit DependencyWalk(const DependencyVisitor& each) : each_(each) {}
 
+  /// Visits a file, and those that it names.
   void visit(const fs::path& file, FileUse use = FileUse::simulation) {
+    const std::optional<std::string> content = visit_alone(file, use);
+    if (!content) return;
+    for (const std::string& name : find_possible_names(*content)) visit(file.parent_path() / name, use);
+    // The readers of this format find the motion file by the name of the mesh file.
+    if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"), use);
+  }
+
+  /// Visits a file that names no others, such as a picture. Returns its content if it has not been visited before.
+  std::optional<std::string> visit_alone(const fs::path& file, FileUse use) {
     std::error_code error;
-    if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return;
-    if (fs::file_size(file, error) > kMaxDependencyBytes) return;
+    if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return {};
+    if (fs::file_size(file, error) > kMaxDependencyBytes) return {};
     std::string content;
     try {
       content = read_bytes(file, kMaxDependencyBytes);
     } catch (const std::runtime_error&) {
-      return;  // the reader of the file's format reports the reason
+      return {};  // the reader of the file's format reports the reason
     }
     each_(file, content, use);
-    for (const std::string& name : find_possible_names(content)) visit(file.parent_path() / name, use);
-    // The readers of this format find the motion file by the name of the mesh file.
-    if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"), use);
+    return content;
   }
 
  private:
@@ -118,9 +127,9 @@ void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
   for (const Cloth& cloth : scene.cloths) {
     if (!cloth.file.empty()) walk.visit(cloth.file);
     for (const Pin& pin : cloth.pins)
-      if (pin.mask) walk.visit(*pin.mask);
+      if (pin.mask) walk.visit_alone(*pin.mask, FileUse::simulation);
     for (const Weight& weight : cloth.weights)
-      if (weight.mask) walk.visit(*weight.mask);
+      if (weight.mask) walk.visit_alone(*weight.mask, FileUse::simulation);
   }
   for (const Character& character : scene.characters) {
     if (const auto* file = std::get_if<CharacterFile>(&character.source)) walk.visit(file->path);
@@ -129,7 +138,7 @@ void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
       for (const fs::path& file : sequence_files(sequence->files)) walk.visit(file);
   }
   const auto visit_picture = [&](const Paint& paint) {
-    if (paint.image) walk.visit(*paint.image, FileUse::pictures);
+    if (paint.image) walk.visit_alone(*paint.image, FileUse::pictures);
   };
   const auto visit_pictures = [&](const auto& objects) {
     for (const auto& object : objects) {

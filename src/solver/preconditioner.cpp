@@ -18,7 +18,7 @@ constexpr std::size_t kMaxLevels = 16;
 // fraction of the block's own trace makes the block definite. The fraction must be below the ratio of masses to stiff
 // threads (measured: with 1e-9 of the mean trace, cells of 0.1 m by 1e-5 m took twenty times the iterations).
 constexpr double kMinRelativeShift = 1e-13;
-// Fraction of a member's motion that comes from neighbouring aggregates, the largest that turns no wave around.
+// Fraction of a member's motion that comes from neighbouring aggregates. Above 1/2, it reverses the shortest waves.
 constexpr double kInterpolation = 0.5;
 constexpr double kLevelStiffness = 0.5;  // factor per level; see Preconditioner
 

@@ -77,9 +77,9 @@ TEST_F(Dependencies, PicturesAndCameraFilesCountButAreNotSimulated) {
   for (const char* file : {"print.png", "panel.png", "globe.png"}) put_picture(file);
   put("shot.gltf", R"({ "uri": "shot.bin" })"), put("shot.bin", "1234"), put("p/skirt.toml", "");
   const std::string scene =
-      "cloth = [{ name = 'c', look = { image = 'print.png' } }, { name = 'd', shape = 'pattern', file = "
-      "'p/skirt.toml', "
-      "look = { panel = [{ name = 'front', image = 'panel.png' }] } }]\n"
+      "cloth = [{ name = 'c', look = { image = 'print.png' } },\n"
+      "  { name = 'd', shape = 'pattern', file = 'p/skirt.toml', look = { panel = [{ name = 'front', image = "
+      "'panel.png' }] } }]\n"
       "obstacle = [{ name = 'o', shape = 'sphere', look = { image = 'globe.png' } }]\n"
       "camera = [{ name = 'shot', kind = 'file', file = 'shot.gltf' }]\n";
   const auto simulated = [&] { return load_text(scene, folder_ / "s.toml").scene.simulation_hash; };
