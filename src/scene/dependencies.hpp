@@ -16,8 +16,8 @@ using DependencyVisitor = std::function<void(const std::filesystem::path& file, 
 
 /// Calls `each` with the path and content of the files of obstacles, cloths, masks of pins and weights, and characters,
 /// then of the pictures of looks and the files of cameras; after each file but masks and pictures, of those named in
-/// it: drawings of a sewing pattern, buffers of a glTF file, skeletons, materials. Visits each file once, in an order that depends on the scene
-/// and the files alone. Skips unreadable files and files above kMaxDependencyBytes.
+/// it: drawings of a sewing pattern, buffers of a glTF file, skeletons, materials. Visits each file once, in an order
+/// that depends on the scene and the files alone. Skips unreadable files and files above kMaxDependencyBytes.
 void for_each_dependency(const Scene& scene, const DependencyVisitor& each);
 
 }  // namespace weft::scene
