@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/archive.hpp"
+
 namespace weft::forces {
 namespace {
 
@@ -19,7 +21,7 @@ double closed_ratio(const mesh::Tie& tie, double t) {
 
 }  // namespace
 
-Ties::Ties(const mesh::Sheet& sheet, Index first) {
+Ties::Ties(const mesh::Sheet& sheet, Index first) : tearing_seams_(sheet.tearing_seams.size()) {
   for (mesh::Tie tie : sheet.ties) {
     tie.a += first, tie.b += first;
     pieces_.push_back({tie});
@@ -27,8 +29,45 @@ Ties::Ties(const mesh::Sheet& sheet, Index first) {
 }
 
 void Ties::use(double t, double progress) {
-  for (Piece& piece : pieces_) piece.strength = piece.tie.strength * progress * closed_ratio(piece.tie, t);
+  for (Piece& piece : pieces_)
+    piece.strength = piece.state == State::torn ? 0 : piece.tie.strength * progress * closed_ratio(piece.tie, t);
 }
+
+void Ties::accept(std::span<const Vec3> x) {
+  for (Piece& piece : pieces_) {
+    if (piece.tie.tearing < 0 || piece.strength < piece.tie.strength) continue;
+    const bool is_full_pull = (x[piece.tie.b] - x[piece.tie.a]).norm() >= 2 * kRest;
+    if (piece.state == State::open && !is_full_pull) piece.state = State::holds;
+    if (piece.state == State::holds && is_full_pull) piece.state = State::torn, piece.strength = 0;
+  }
+}
+
+std::vector<Ties::SeamLoad> Ties::measure_seams(std::span<const Vec3> x) const {
+  std::vector<SeamLoad> loads(tearing_seams_);
+  for (const Piece& piece : pieces_) {
+    if (piece.tie.tearing < 0) continue;
+    SeamLoad& seam = loads[static_cast<std::size_t>(piece.tie.tearing)];
+    seam.load += pull(piece, (x[piece.tie.b] - x[piece.tie.a]).norm()).force;
+    seam.holds |= piece.strength > 0;
+  }
+  return loads;
+}
+
+void Ties::copy_state_from(const Ties& there) {
+  for (std::size_t k = 0; k < pieces_.size(); ++k) pieces_[k].state = there.pieces_[k].state;
+}
+
+template <class Archive>
+void Ties::serialize(Archive& archive) {
+  if (tearing_seams_ == 0) return;
+  for (Piece& piece : pieces_) {
+    archive.value(piece.state);
+    if constexpr (Archive::kReads) require(piece.state <= State::torn, "a tie");
+  }
+}
+
+template void Ties::serialize(ByteWriter&);
+template void Ties::serialize(ByteReader&);
 
 void Ties::couple(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Piece& piece : pieces_) pairs.emplace_back(piece.tie.a, piece.tie.b);

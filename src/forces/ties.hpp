@@ -1,5 +1,7 @@
-// Buttons and zips: pairs of particles that pull together while a closure is closed.
+// Buttons, zips, and seams that tear: pairs of particles that pull together while a closure is closed.
 #pragma once
+
+#include <cstdint>
 
 #include "forces/force.hpp"
 #include "mesh/sheet.hpp"
@@ -8,7 +10,7 @@ namespace weft::forces {
 
 /// The ties of a sheet. Both particles of a tie, at a distance l, pull each other with F min(l / r − 1, 1) if l > r =
 /// kRest. Below that distance they do not; contact keeps them apart. F is the strength [N]. It grows from zero during
-/// sewing, and after a tie closes.
+/// sewing, and after a tie closes. A tie of a seam that tears, once it holds, is torn for good when it pulls with F.
 class Ties final : public Force {
  public:
   /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press.
@@ -21,6 +23,19 @@ class Ties final : public Force {
   /// Updates strengths at time t [s] of the scene. `progress`: of sewing, 0 to 1.
   void use(double t, double progress);
 
+  /// Accepts the end of a step, with particles at x [m]: ties that tear begin to hold, or tear.
+  void accept(std::span<const Vec3> x);
+  /// Pull of a seam that tears [N], and whether any of its ties is not torn yet.
+  struct SeamLoad {
+    double load = 0;
+    bool holds = false;
+  };
+  std::vector<SeamLoad> measure_seams(std::span<const Vec3> x) const;
+  /// Which ties hold or are torn.
+  void copy_state_from(const Ties& there);
+  template <class Archive>
+  void serialize(Archive& archive);
+
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
   void cut(std::span<const Index> /*bounds*/) override {}  // few elements
@@ -30,10 +45,12 @@ class Ties final : public Force {
   double energy(std::span<const Vec3> x) const override;
 
  private:
+  enum class State : std::uint8_t { open, holds, torn };  // of a tie that tears
   struct Piece {
     mesh::Tie tie;        // particles in the global numbering
     double strength = 0;  // current [N]
     Index block = 0;
+    State state = State::open;
   };
   /// Pull and its derivative along the tie. The derivative across the tie is the pull over the distance.
   struct Pull {
@@ -43,6 +60,7 @@ class Ties final : public Force {
   static Mat3 stiffness(const Piece& piece, const Vec3& along);
 
   std::vector<Piece> pieces_;
+  std::size_t tearing_seams_;
 };
 
 }  // namespace weft::forces

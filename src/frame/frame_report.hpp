@@ -16,7 +16,7 @@ struct EnclosedAir {
   double pressure = 0;  ///< gauge pressure: above that outside [Pa]
 };
 
-/// The force that an attachment bears.
+/// The force that an attachment, or a seam that tears, bears.
 struct AttachmentLoad {
   std::string name;
   double load = 0;  ///< sum of the forces of its springs, at the end of the frame [N]
@@ -53,7 +53,7 @@ struct FrameReport {
   int pinched_pairs = 0;              ///< largest number of pinched cloth triangles at once, per obstacle limb
   int lagging_particles = 0;          ///< largest number of pinned particles kept from their targets at once
   std::vector<EnclosedAir> enclosed;  ///< of each cloth with pressure
-  std::vector<AttachmentLoad> attachments;  ///< of each attachment of the scene
+  std::vector<AttachmentLoad> attachments;  ///< of each attachment, then of each seam that tears
   /// Warnings of this frame, such as "frame 37: 'sheet' has no room between ..., near (x, y, z) m".
   std::vector<std::string> warnings;
 };

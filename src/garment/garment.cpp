@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "core/disjoint_sets.hpp"
 #include "core/error.hpp"
@@ -348,6 +349,7 @@ class Sewing {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {
       if (!seam.closure()) continue;
+      if (seam.tears) garment_.sheet.tearing_seams.push_back(seam.a + " + " + seam.b);
       const std::vector<Index>& a = garment_.edges.at(seam.a);
       std::vector<Index> b = garment_.edges.at(seam.b);
       const auto end_distance = [&] {
@@ -357,15 +359,33 @@ class Sewing {
       std::ranges::reverse(b);
       if (straight < end_distance()) std::ranges::reverse(b);
       const std::size_t last = a.size() - 1;
+      Index last_tied = -1;
       const std::size_t count = seam.buttons > 0 ? static_cast<std::size_t>(seam.buttons) : a.size();
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t k = count == 1 ? last / 2 : (2 * i * last + count - 1) / (2 * (count - 1));
         mesh::Tie tie{.a = a[k], .b = b[k], .strength = seam.strength};
+        if (seam.tears) {
+          tie.strength = *seam.tears * length_of(seam.a) / static_cast<double>(count);
+          tie.tearing = static_cast<int>(garment_.sheet.tearing_seams.size()) - 1;
+        }
         if (seam.open) tie.open = *seam.open;
         if (seam.closed) tie.closed = *seam.closed;
-        if (tie.a != tie.b && (i == 0 || garment_.sheet.ties.back().a != tie.a)) garment_.sheet.ties.push_back(tie);
+        // Edges may meet in one particle at an end; more buttons than particles share them.
+        if (tie.a != tie.b && std::exchange(last_tied, tie.a) != tie.a) garment_.sheet.ties.push_back(tie);
       }
     }
+  }
+
+  // Length of an edge in the pattern [m].
+  double length_of(const std::string& edge) const {
+    const auto [p, e] = pattern_.find(edge);
+    const std::vector<Index> points = chain(p, e);
+    double sum = 0;
+    for (std::size_t k = 1; k < points.size(); ++k)
+      sum +=
+          (meshes_[p].points[at(points[k] - first_point_[p])] - meshes_[p].points[at(points[k - 1] - first_point_[p])])
+              .norm();
+    return sum;
   }
 
   void check() const {

@@ -51,16 +51,17 @@ struct Panel {
 };
 
 /// Sews two edges together, each named "panel.edge". Both get the same points, at the same fractions of their lengths;
-/// the longer edge is eased in. With buttons or times the seam is a closure: its points are held together while it is
-/// closed.
+/// the longer edge is eased in. With buttons or times, or if it tears, the seam is a closure: its points are held
+/// together while it is closed.
 struct Seam {
   std::string a, b;
   int buttons = 0;                     ///< number of buttons that hold the seam; 0: all points hold it, as in a zip
   std::optional<double> open, closed;  ///< times at which the closure opens and closes [s]
   double strength = 2;                 ///< maximum pull of a button, or of a point of a zip [N]
+  std::optional<double> tears;         ///< load per length at which points of the seam part for good [N/m]
   double allowance = 0.02;             ///< width of the seam allowances, both sides together [m]
 
-  bool closure() const { return buttons > 0 || open || closed; }
+  bool closure() const { return buttons > 0 || open || closed || tears; }
 };
 
 /// An elastic band that gathers an edge.

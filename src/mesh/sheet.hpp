@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -26,6 +27,7 @@ struct Band {
 struct Tie {
   Index a = 0, b = 0;
   double strength = 0;  ///< maximum force [N]
+  int tearing = -1;     ///< number of the seam in Sheet::tearing_seams that it belongs to; −1: it never tears
   double open = std::numeric_limits<double>::infinity(), closed = std::numeric_limits<double>::infinity();
 };
 
@@ -44,6 +46,7 @@ struct Sheet {
   bool sewn = false;  ///< made of flat panels: the rest shape is `material` alone, and `rest` is the start position
   std::vector<Band> bands;
   std::vector<Tie> ties;
+  std::vector<std::string> tearing_seams;     ///< names of the seams that tear
   std::vector<Reinforcement> reinforcements;  ///< per triangle; empty: no reinforcement
 };
 

@@ -267,6 +267,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   if (!sheet.ties.empty()) {
     auto ties = std::make_unique<forces::Ties>(sheet, first);
     sewing_.back().ties = ties.get();
+    for (const std::string& seam : sheet.tearing_seams) sewing_.back().tearing_seams.push_back(of.name + ": " + seam);
     forces_[cloth].push_back(std::move(ties));
   }
   if (bends(material))
@@ -374,11 +375,35 @@ bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {
   return true;
 }
 
+void ClothSystem::accept(std::span<const Vec3> x) {
+  for (Sewing& sewing : sewing_)
+    if (!sewing.tearing_seams.empty()) sewing.ties->accept(x);
+}
+
+std::vector<frame::AttachmentLoad> ClothSystem::measure_seams(std::span<const Vec3> x) const {
+  std::vector<frame::AttachmentLoad> loads;
+  for (const Sewing& sewing : sewing_) {
+    if (sewing.tearing_seams.empty()) continue;
+    const auto seams = sewing.ties->measure_seams(x);
+    for (std::size_t s = 0; s < seams.size(); ++s)
+      loads.push_back({sewing.tearing_seams[s], seams[s].load, seams[s].holds});
+  }
+  return loads;
+}
+
+void ClothSystem::copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths) {
+  for (const Sewing& before : there.sewing_) {
+    if (before.tearing_seams.empty()) continue;
+    std::ranges::find(sewing_, cloths[before.cloth], &Sewing::cloth)->ties->copy_state_from(*before.ties);
+  }
+}
+
 template <class Archive>
 void ClothSystem::serialize(Archive& archive) {
   for (Sewing& sewing : sewing_) {
     archive.value(sewing.progress);
     if (sewing.ties != nullptr) archive.value(sewing.time);
+    if (sewing.ties != nullptr) sewing.ties->serialize(archive);
     if constexpr (!Archive::kReads) continue;
     require(sewing.progress >= 0 && sewing.progress <= 1, "a share of the way to the pattern");
     sewing.set_progress(sewing.progress);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "environment/environment.hpp"
@@ -12,6 +13,7 @@
 #include "forces/force.hpp"
 #include "forces/ties.hpp"
 #include "forces/triangle_membrane.hpp"
+#include "frame/frame_report.hpp"
 #include "integrator/system.hpp"
 #include "scene/scene.hpp"
 #include "simulation/inflation.hpp"
@@ -95,7 +97,14 @@ class ClothSystem {
   /// Sets which particles pins hold. Returns whether they changed, and with them the stiffness at the borders of pins.
   bool hold(std::span<const integrator::HeldParticle> pinned);
 
-  /// What persists from frame to frame: progress of sewing, and enclosed air.
+  /// Accepts a step that ends with particles at x [m]: seams may tear.
+  void accept(std::span<const Vec3> x);
+  /// The pull of each seam that tears.
+  std::vector<frame::AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
+  /// Which parts of seams are torn. `cloths`: number here of each cloth there.
+  void copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths);
+
+  /// What persists from frame to frame: progress of sewing, torn seams, and enclosed air.
   template <class Archive>
   void serialize(Archive& archive);
 
@@ -142,10 +151,11 @@ class ClothSystem {
     double begin, duration;  // [s]
     double progress = -1;    // from the start shape (0) to the pattern (1); −1: not set yet
     forces::TriangleMembrane* membrane;
-    forces::Bands* bands;         // nullptr if the cloth has none
-    forces::StretchLimit* limit;  // nullptr if the cloth has none
-    forces::Ties* ties;           // nullptr if the cloth has none
-    double time = 0;              // for which the ties were last set [s since the start of the run]
+    forces::Bands* bands;                      // nullptr if the cloth has none
+    forces::StretchLimit* limit;               // nullptr if the cloth has none
+    forces::Ties* ties;                        // nullptr if the cloth has none
+    std::vector<std::string> tearing_seams{};  // names
+    double time = 0;                           // for which the ties were last set [s since the start of the run]
 
     void set_progress(double new_progress);
   };

@@ -222,6 +222,7 @@ void Simulation::Impl::measure_energies(FrameReport& report) const {
   report.air_energy = steps->cloth().air_energy(now.particles());
   report.enclosed = steps->cloth().inflation().measure(now.particles());
   report.attachments = steps->attachments().measure();
+  std::ranges::move(steps->cloth().measure_seams(now.particles()), std::back_inserter(report.attachments));
 }
 
 void Simulation::Impl::measure(FrameReport& report) const {

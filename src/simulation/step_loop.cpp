@@ -67,6 +67,7 @@ void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size
   if (collisions_ && before.collisions_) collisions_->copy_state_from(*before.collisions_, cloths);
   cloth_.inflation().copy_state_from(before.cloth_.inflation(), cloths);
   attachments_.copy_state_from(before.attachments_, cloths);
+  cloth_.copy_seams_from(before.cloth_, cloths);
   next_ = progress_.now;
 }
 
@@ -231,6 +232,7 @@ void StepLoop::accept(double h, FrameReport& report) {
   stepper_.accept(progress_.now, next_, h);
   pins_.accept();
   attachments_.accept(next_.particles());
+  cloth_.accept(next_.particles());
   if (collisions_) collisions_->accept();
   std::swap(progress_.now, next_);
   progress_.longest *= numerics.steps.largest_factor;

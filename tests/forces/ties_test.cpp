@@ -69,5 +69,30 @@ TEST(Ties, AreOpenAndClosedAtTheirTimes) {
   EXPECT_NEAR(held(0.5, 1, kAfter), kPull, 1e-6);
 }
 
+TEST(Ties, OfSeamsThatTearPartForGoodOnceTheyHaveHeld) {
+  mesh::Sheet sheet;
+  sheet.tearing_seams = {"side"};
+  sheet.ties.push_back({.a = 0, .b = 1, .strength = kPull, .tearing = 0});
+  Ties ties(sheet, 0);
+  const auto accept = [&](double distance) {
+    const std::vector<Vec3> x{Vec3(0, 0, 0), Vec3(0, distance * Ties::kRest, 0)};
+    ties.accept(x);
+    return ties.measure_seams(x).at(0);
+  };
+  ties.use(0, 0.5);
+  accept(1.5);
+  ties.use(0, 1);
+  EXPECT_TRUE(accept(5).holds) << "was sewn already, but had not held yet";
+  EXPECT_NEAR(accept(1.5).load, 0.5 * kPull, 1e-12);
+  EXPECT_FALSE(accept(2).holds);
+  EXPECT_EQ(accept(1.5).load, 0);
+  ties.use(0, 1);
+  EXPECT_EQ(pull(ties, 1.5 * Ties::kRest), 0);
+  Ties others(sheet, 0);
+  others.copy_state_from(ties);
+  others.use(0, 1);
+  EXPECT_EQ(pull(others, 1.5 * Ties::kRest), 0);
+}
+
 }  // namespace
 }  // namespace weft::forces
