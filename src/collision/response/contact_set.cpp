@@ -301,20 +301,27 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const C
 
 bool ContactSet::add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
                              std::span<Vec3> right_side, solver::LinearSystem& system) const {
-  bool any = false;
+  struct Active {
+    const Contact* contact;
+    double fraction, force, slope;  // force along the normal [N]
+  };
+  std::vector<Active> active;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
     const Response response = respond(c, Law::tangent, x_end, lag);
-    const double fraction = response.active ? impact_fraction(contact, start) : 0;
-    if (fraction == 0 || response.slope == 0) continue;
-    any = true;
-    const Vec3& n = contact.normal;
-    const Vec3 push = fraction / start.h * n.dot(response.force) * n;
-    Mat3 stiffness = Mat3::Zero();
-    if (contact.static_friction > 0) stiffness = fraction * response.slope * (Mat3::Identity() - n * n.transpose());
-    add_term(contact, push + stiffness * tangential_jump(contact, x_end, start), stiffness, right_side, system);
+    if (response.active && response.slope > 0)
+      active.push_back({&contact, impact_fraction(contact, start), contact.normal.dot(response.force), response.slope});
   }
-  return any;
+  if (std::ranges::all_of(active, [](const Active& one) { return one.fraction == 0; })) return false;
+  for (const auto& [contact, fraction, force, slope] : active) {
+    const Mat3 along = contact->normal * contact->normal.transpose();
+    Mat3 friction = Mat3::Zero();
+    if (contact->static_friction > 0) friction = fraction * slope * (Mat3::Identity() - along);
+    add_term(*contact,
+             fraction / start.h * force * contact->normal + friction * tangential_jump(*contact, x_end, start),
+             friction + (1 - fraction) * slope * along, right_side, system);
+  }
+  return true;
 }
 
 int ContactSet::active(std::span<const Vec3> x_end) const {
