@@ -46,7 +46,7 @@ double cpu_of(const Run& run) {
 
 std::string error_label(Quantity quantity) {
   const std::string unit(unit_of(quantity));
-  return fmt::format("error of the {} [{}]", name_of(quantity), unit == "1" ? "share" : unit);
+  return fmt::format("error of the {} [{}]", name_of(quantity), unit == "1" ? "ratio" : unit);
 }
 
 // Adds curves for the coarsest step, the scene's step and the finest.

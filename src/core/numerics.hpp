@@ -102,6 +102,9 @@ struct Numerics {
     double stick_spacings = 0.002;
     /// Slip velocity, in stick velocities, from which friction is no longer static.
     double slide_velocity = 5;
+    /// Velocity at which a contact closes [m/s] from which it is an impact, in part below (BDF2 only). Larger: impacts
+    /// in short steps rebound; 0.1: five balls that meet keep a quarter of the energy, not a fifth.
+    double impact_velocity = 0.05;
     /// How often in a step a contact may begin to slide and still stick when it slides back. 0: ribbons take 1.4 times
     /// the iterations; 20: friction of 10 does not settle.
     int returns = 2;

@@ -65,9 +65,9 @@ struct StepReport {
 /// energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's method,
 /// and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls, Int. J. Numer.
 /// Meth. Engng 96, 2013). Impacts move particles by δ, A δ = F, with the forces F of impacts and the matrix A of the
-/// step, whose only terms are those of friction in impacts. Positions stay as they are; velocities change by δ/h
-/// instead of δ/β. The start velocity in the history also changes by δ/h, so that the next step starts from a smooth
-/// trajectory. Changes of velocity by corrections after a solve count as impacts, too.
+/// step, whose only terms are those of friction in impacts and of contacts that pass impacts on. Positions stay as they
+/// are; velocities change by δ/h instead of δ/β. The start velocity in the history also changes by δ/h, so that the
+/// next step starts from a smooth trajectory. Changes of velocity by corrections after a solve count as impacts, too.
 ///
 /// The local error of positions is estimated from known velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of
 /// the mean acceleration from the last step to this one; then the leading terms of the error are

@@ -405,7 +405,7 @@ void ClothSystem::serialize(Archive& archive) {
     if (sewing.ties != nullptr) archive.value(sewing.time);
     if (sewing.ties != nullptr) sewing.ties->serialize(archive);
     if constexpr (!Archive::kReads) continue;
-    require(sewing.progress >= 0 && sewing.progress <= 1, "a share of the way to the pattern");
+    require(sewing.progress >= 0 && sewing.progress <= 1, "a progress of sewing");
     sewing.set_progress(sewing.progress);
     if (sewing.ties != nullptr) sewing.ties->use(begin_ + sewing.time, sewing.progress);
   }

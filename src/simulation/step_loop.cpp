@@ -277,7 +277,7 @@ void StepLoop::serialize(Archive& archive) {
   attachments_.serialize(archive);
   for (double& reported : reported_overstretch_) {
     archive.value(reported);
-    if constexpr (Archive::kReads) require(reported >= 0, "a share of a limit to stretch");
+    if constexpr (Archive::kReads) require(reported >= 0, "a ratio of stretch");
   }
 }
 

@@ -109,7 +109,7 @@ double impact_fraction(const Contact& contact, const StepStart& start) {
                         ratio * (along_normal(start.x) - along_normal(start.x_before))});
   }
   opening += contact.normal.dot(contact.obstacle_end - contact.obstacle_start);
-  return opening < 0 ? std::min(1.0, -opening / contact.range) : 0;
+  return opening < 0 ? std::min(1.0, -opening / (start.h * numerics.contact.impact_velocity)) : 0;
 }
 
 // Tangential velocity jump [m/s] in a step that ends at x_end, limited to what friction can cause.

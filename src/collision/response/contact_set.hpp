@@ -90,12 +90,13 @@ class ContactSet {
 
   /// Adds the velocity jumps due to impacts, in a step that ends at x_end, as a linear system whose unknowns are the
   /// jumps: adds terms to `system` and `right_side` [N/s]. Returns false if there is no impact. A contact that closes
-  /// by its activation distance or more in the step is a full impact; one that closes by less counts proportionally. Of
-  /// three estimates of the closing, the smallest counts: from the velocity at the start of the step; from that
-  /// velocity and the last acceleration (for motion along curved obstacles); and from the last displacement (zero at
-  /// rest). The normal force acts as a force. A term in `system` holds the points to the tangential jump that they had,
-  /// because a slip of 1e-7 m already changes the friction force completely. Other contacts pass the jumps on with
-  /// their stiffness (measured without: a ball that falls on cloth on a floor throws it up by 9 to 105 mm, now 1.5 mm).
+  /// at Numerics::Contact::impact_velocity or faster is a full impact; one that closes more slowly counts
+  /// proportionally. Of three estimates of the closing, the smallest counts: from the velocity at the start of the
+  /// step; from that velocity and the last acceleration (for motion along curved obstacles); and from the last
+  /// displacement (zero at rest). The normal force acts as a force. A term in `system` holds the points to the
+  /// tangential jump that they had, because a slip of 1e-7 m already changes the friction force completely. Other
+  /// contacts pass the jumps on with their stiffness (measured without: a ball that falls on cloth on a floor throws it
+  /// up by 9 to 105 mm, now 1.5 mm).
   bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
                    std::span<Vec3> right_side, solver::LinearSystem& system) const;
 
