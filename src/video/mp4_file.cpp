@@ -59,11 +59,12 @@ bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
 }
 
-// Delay between decoding and showing the first frame, in frames.
+// Delay between decoding and showing the first frame, in frames; 0 if the file tells only one of both times.
 std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
   const InputPtr input = open_video(file, reported_file);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
   if (!read_packet(*input, *packet, reported_file)) return 0;
+  if (packet->pts == AV_NOPTS_VALUE || packet->dts == AV_NOPTS_VALUE) return 0;
   return av_rescale_q(packet->pts - packet->dts, input->streams[0]->time_base, av_inv_q(rate));
 }
 

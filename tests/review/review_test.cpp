@@ -301,7 +301,8 @@ TEST_F(Review, NoValueOfStatisticsKeepsThePageFromTheRest) {
   Request odd = request();
   odd.folders.push_back(folder_ / "odd");
   EXPECT_EQ(write_review(odd).runs, k + 2);
-  for (const Json& run : data().at("runs")) {
+  const Json page = data();
+  for (const Json& run : page.at("runs")) {
     const Json& stats = run.at("stats");
     for (const char* key : {"scene_file", "cpu", "gl", "message", "output"})
       EXPECT_TRUE(!stats.contains(key) || stats[key].is_string()) << run.at("name") << key;

@@ -106,7 +106,7 @@ TEST(UntangledStart, OneParticleOfACoarseMeshGetsOutOfABall) {
   scene::Scene scene = empty_scene();
   scene.cloths.push_back(sheet("sheet", {0, 0, 0.02}, 0.6, 7));
   add_obstacle(scene, "ball", scene::Sphere{0.04});
-  const Vec3& middle = expect_untangled(scene)->states[0].positions[3 + 7 * 3];
+  const Vec3 middle = expect_untangled(scene)->states[0].positions[3 + 7 * 3];
   EXPECT_NEAR(middle.z(), 0.04, 0.004);
 }
 

@@ -94,7 +94,7 @@ inline void judge(const support::MotionQuery& query, bool refused, SeparationTal
     return;
   }
   const double distance = support::distance_at(query.a, query.b, 0);
-  const int bin = std::clamp(static_cast<int>(std::floor(std::log10(distance))) + 9, 0, 7);
+  const int bin = static_cast<int>(std::clamp(std::floor(std::log10(distance)) + 9, 0.0, 7.0));
   ++tally.apart[bin];
   tally.refused[bin] += refused;
   if (distance >= 1e-5 && relative_motion(query) <= 0.8 * distance) {
