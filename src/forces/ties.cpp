@@ -35,7 +35,9 @@ void Ties::use(double t, double progress) {
 
 void Ties::accept(std::span<const Vec3> x) {
   for (Piece& piece : pieces_) {
-    if (piece.tie.tearing < 0 || piece.strength < piece.tie.strength) continue;
+    if (piece.tie.tearing < 0) continue;
+    if (piece.strength == 0 && piece.state == State::holds) piece.state = State::open;
+    if (piece.strength < piece.tie.strength) continue;
     const bool is_full_pull = (x[piece.tie.b] - x[piece.tie.a]).norm() >= 2 * kRest;
     if (piece.state == State::open && !is_full_pull) piece.state = State::holds;
     if (piece.state == State::holds && is_full_pull) piece.state = State::torn, piece.strength = 0;

@@ -10,7 +10,7 @@ namespace weft::forces {
 
 /// The ties of a sheet. Both particles of a tie, at a distance l, pull each other with F min(l / r − 1, 1) if l > r =
 /// kRest. Below that distance they do not; contact keeps them apart. F is the strength [N]. It grows from zero during
-/// sewing, and after a tie closes. A tie of a seam that tears, once it holds, is torn for good when it pulls with F.
+/// sewing, and after a tie closes. A tie of a seam that tears is torn for good when it pulls with F after it has held.
 class Ties final : public Force {
  public:
   /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press.

@@ -308,19 +308,21 @@ class Sewing {
       }
   }
 
+  // A band along an edge, with the lengths that it has in the pattern.
+  mesh::Band band_along(const std::string& edge) const {
+    const auto [p, e] = pattern_.find(edge);
+    const std::vector<Index> points = chain(p, e);
+    mesh::Band band;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      band.vertices.push_back(vertex_of_point_[at(points[k])]);
+      if (k == 0) continue;
+      const auto& of = meshes_[p].points;
+      band.lengths.push_back((of[at(points[k] - first_point_[p])] - of[at(points[k - 1] - first_point_[p])]).norm());
+    }
+    return band;
+  }
+
   void add_bands() {
-    const auto band_along = [&](const std::string& edge) {
-      const auto [p, e] = pattern_.find(edge);
-      const std::vector<Index> points = chain(p, e);
-      mesh::Band band;
-      for (std::size_t k = 0; k < points.size(); ++k) {
-        band.vertices.push_back(vertex_of_point_[at(points[k])]);
-        if (k == 0) continue;
-        const auto& of = meshes_[p].points;
-        band.lengths.push_back((of[at(points[k] - first_point_[p])] - of[at(points[k - 1] - first_point_[p])]).norm());
-      }
-      return band;
-    };
     std::size_t s = 0;
     for (const Seam& seam : pattern_.seams) {
       if (seam.closure()) continue;
@@ -349,7 +351,7 @@ class Sewing {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {
       if (!seam.closure()) continue;
-      if (seam.tears) garment_.sheet.tearing_seams.push_back(seam.a + " + " + seam.b);
+      if (seam.tearing_load) garment_.sheet.tearing_seams.push_back(seam.a + " + " + seam.b);
       const std::vector<Index>& a = garment_.edges.at(seam.a);
       std::vector<Index> b = garment_.edges.at(seam.b);
       const auto end_distance = [&] {
@@ -359,13 +361,15 @@ class Sewing {
       std::ranges::reverse(b);
       if (straight < end_distance()) std::ranges::reverse(b);
       const std::size_t last = a.size() - 1;
+      const std::vector<double> lengths = band_along(seam.a).lengths;
+      const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
       Index last_tied = -1;
       const std::size_t count = seam.buttons > 0 ? static_cast<std::size_t>(seam.buttons) : a.size();
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t k = count == 1 ? last / 2 : (2 * i * last + count - 1) / (2 * (count - 1));
         mesh::Tie tie{.a = a[k], .b = b[k], .strength = seam.strength};
-        if (seam.tears) {
-          tie.strength = *seam.tears * length_of(seam.a) / static_cast<double>(count);
+        if (seam.tearing_load) {
+          tie.strength = *seam.tearing_load * length / static_cast<double>(count);
           tie.tearing = static_cast<int>(garment_.sheet.tearing_seams.size()) - 1;
         }
         if (seam.open) tie.open = *seam.open;
@@ -374,18 +378,6 @@ class Sewing {
         if (tie.a != tie.b && std::exchange(last_tied, tie.a) != tie.a) garment_.sheet.ties.push_back(tie);
       }
     }
-  }
-
-  // Length of an edge in the pattern [m].
-  double length_of(const std::string& edge) const {
-    const auto [p, e] = pattern_.find(edge);
-    const std::vector<Index> points = chain(p, e);
-    double sum = 0;
-    for (std::size_t k = 1; k < points.size(); ++k)
-      sum +=
-          (meshes_[p].points[at(points[k] - first_point_[p])] - meshes_[p].points[at(points[k - 1] - first_point_[p])])
-              .norm();
-    return sum;
   }
 
   void check() const {

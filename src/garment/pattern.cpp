@@ -318,8 +318,8 @@ void check(Pattern& pattern, Findings& findings, std::vector<std::string>& in_dr
     const std::string entry = findings.entry("seam", i);
     names.check_sewn_once(pattern.seams[i].a, entry + ".a");
     names.check_sewn_once(pattern.seams[i].b, entry + ".b");
-    if (pattern.seams[i].tears && findings.has(entry + ".strength"))
-      findings.report(entry + ".strength", "expected either strength or tears, got both");
+    if (pattern.seams[i].tearing_load && findings.has(entry + ".strength"))
+      findings.report(entry + ".strength", "expected either strength or tearing_load, got both");
   }
   for (std::size_t i = 0; i < pattern.elastics.size(); ++i)
     names.check(pattern.elastics[i].edge, findings.entry("elastic", i) + ".edge");
@@ -336,7 +336,8 @@ bool Pattern::wraps() const {
 const scene::Table& pattern_rules() {
   static const Table kSeams =
       TableBuilder<Seam>(
-          "Two edges that are sewn together. With buttons, open, closed or tears, it is a closure, which holds them "
+          "Two edges that are sewn together. With buttons, open, closed or tearing_load, it is a closure, which holds "
+          "them "
           "together while it is closed.")
           .plain(Type::text, "a", &Seam::a, "one edge, as panel.edge")
           .need(Need::required)
@@ -353,7 +354,7 @@ const scene::Table& pattern_rules() {
           .by_default("never")
           .number("strength", &Seam::strength, scene::above(0, 1e4), "N",
                   "maximum force of each button, or of each point of a zip")
-          .number("tears", &Seam::tears, scene::above(0, 1e6), "N/m",
+          .number("tearing_load", &Seam::tearing_load, scene::above(0, 1e6), "N/m",
                   "load per length at which the seam tears, point by point; 300: seams of light clothes")
           .by_default("never")
           .number("allowance", &Seam::allowance, within(0, 1), "m",

@@ -58,10 +58,10 @@ struct Seam {
   int buttons = 0;                     ///< number of buttons that hold the seam; 0: all points hold it, as in a zip
   std::optional<double> open, closed;  ///< times at which the closure opens and closes [s]
   double strength = 2;                 ///< maximum pull of a button, or of a point of a zip [N]
-  std::optional<double> tears;         ///< load per length at which points of the seam part for good [N/m]
+  std::optional<double> tearing_load;  ///< load per length at which points of the seam part for good [N/m]
   double allowance = 0.02;             ///< width of the seam allowances, both sides together [m]
 
-  bool closure() const { return buttons > 0 || open || closed || tears; }
+  bool closure() const { return buttons > 0 || open || closed || tearing_load; }
 };
 
 /// An elastic band that gathers an edge.

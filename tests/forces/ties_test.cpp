@@ -94,5 +94,23 @@ TEST(Ties, OfSeamsThatTearPartForGoodOnceTheyHaveHeld) {
   EXPECT_EQ(pull(others, 1.5 * Ties::kRest), 0);
 }
 
+TEST(Ties, OfSeamsThatTearMayOpenAndCloseAgain) {
+  mesh::Sheet sheet;
+  sheet.tearing_seams = {"side"};
+  sheet.ties.push_back({.a = 0, .b = 1, .strength = kPull, .tearing = 0, .open = 1, .closed = 2});
+  Ties ties(sheet, 0);
+  const auto accept = [&](double t, double distance) {
+    const std::vector<Vec3> x{Vec3(0, 0, 0), Vec3(0, distance * Ties::kRest, 0)};
+    ties.use(t, 1);
+    ties.accept(x);
+    return ties.measure_seams(x).at(0).holds;
+  };
+  EXPECT_TRUE(accept(0.5, 1.5));
+  EXPECT_FALSE(accept(1.5, 5)) << "is open";
+  EXPECT_TRUE(accept(2 + Ties::kClosing, 5)) << "draws its ends together and has not torn";
+  EXPECT_TRUE(accept(3, 1.5));
+  EXPECT_FALSE(accept(3.1, 5)) << "is torn";
+}
+
 }  // namespace
 }  // namespace weft::forces

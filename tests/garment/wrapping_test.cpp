@@ -179,7 +179,7 @@ TEST_F(Wrapping, ClosuresAreTiesBetweenEdgesThatStayApart) {
 TEST_F(Wrapping, SeamsThatTearAreTiesOfTheirLoadPerLength) {
   const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
   std::string text = kVest;
-  text.replace(text.find(seam), seam.size(), seam + "tears = 300\n");
+  text.replace(text.find(seam), seam.size(), seam + "tearing_load = 300\n");
   const mesh::Sheet sheet = sew_text(text).sheet;
   EXPECT_EQ(sheet.tearing_seams, std::vector<std::string>{"front.right + back.right"});
   double strength = 0;
@@ -210,8 +210,8 @@ TEST_F(Wrapping, MistakesSayWhatWouldBeRight) {
   expect("[[panel]]\nname = 'a'\naround = 'arm'\n",
          "p.toml:3:10: panel.a.around: expected torso, body, neck, head, "
          "left_arm, right_arm, left_leg or right_leg, got \"arm\"");
-  expect(panel + "[[seam]]\na = 'a.1'\nb = 'a.2'\ntears = 300\nstrength = 2\n",
-         "p.toml:9:12: seam.0.strength: expected either strength or tears, got both");
+  expect(panel + "[[seam]]\na = 'a.1'\nb = 'a.2'\ntearing_load = 300\nstrength = 2\n",
+         "p.toml:9:12: seam.0.strength: expected either strength or tearing_load, got both");
   expect(panel + "side = 'back'\nangle = 90\n", "expected either side or angle, got both");
   expect(panel + "[[panel]]\nname = 'b'\nmirror_of = 'c'\n",
          "panel.b.mirror_of: expected a panel before it that has an outline, got \"c\"");

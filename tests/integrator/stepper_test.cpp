@@ -102,8 +102,8 @@ TEST(Stepper, LeavesAShareOfItsOwnErrorAndSaysHowMuch) {
     const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, next);
     ASSERT_EQ(report.verdict, Verdict::solved);
     EXPECT_LE(report.left, report.allowed);
-    EXPECT_LT((next.v[0] - exact.v[0]).norm(), 3 * report.allowed)
-        << tolerance;  // printed errors are true within a factor of 3
+    // Printed errors are true within a factor of 3.
+    EXPECT_LT((next.v[0] - exact.v[0]).norm(), 3 * report.allowed) << tolerance;
     EXPECT_LE(report.solver_error, tolerance * report.local_error);
   }
 }

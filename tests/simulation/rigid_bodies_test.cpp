@@ -275,13 +275,12 @@ TEST(RigidBodies, PassImpactsOnToWhatTheyTouch) {
         "[[obstacle]]\nname = \"ball{}\"\nshape = \"sphere\"\nsegments = 32\nradius = 0.05\nmass = 0.5\n"
         "position = [{}, 0, 1]\n",
         k, k == 0 ? -0.15 : 0.101 * k);
-  balls += "[[obstacle]]\nname = \"far\"\nshape = \"plane\"\nposition = [0, 0, -9]\n";
   balls.insert(balls.find("[[obstacle]]\nname = \"ball1"), "velocity = [1, 0, 0]\n");
   struct Run {
     std::string method;
     double step, most;
   };
-  // Of 0.25 J a fifth is left. Measured: 0.2000; 0.218, 0.212, 0.201. With impacts of single pairs BDF2 leaves 0.32,
+  // Of 0.25 J a fifth is left. Measured: 0.2000; 0.218, 0.205, 0.201. With impacts of single pairs BDF2 leaves 0.32,
   // 0.28, 0.22; with impacts by the distance of closing, not its velocity, 0.27 at 1 ms.
   for (const Run& run :
        {Run{"implicit_euler", 0.01, 0.201}, {"bdf2", 0.01, 0.22}, {"bdf2", 0.005, 0.22}, {"bdf2", 0.001, 0.202}}) {
@@ -306,7 +305,7 @@ TEST(RigidBodies, DoNotThrowUpTheClothOnWhichTheyFall) {
     if (frame.report.frame < 5) continue;  // it lies on the floor by then
     for (const Vec3& x : frame.cloths.at(0)) highest = std::max(highest, x.z());
   }
-  // Measured: 1.2 mm; 8.8 mm with impacts of single pairs.
+  // Measured: 1.4 mm; 8.8 mm with impacts of single pairs.
   EXPECT_LT(highest, 0.003);
 }
 

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "simulation/saved_state.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -14,16 +16,16 @@ class Tearing : public support::TestFolder {
   static constexpr double kWidth = 0.2, kLower = 0.1, kDensity = 0.3;  // [m], [m], [kg/m²]
   static constexpr double kLoad = kDensity * kLower * 9.81;            // weight below the seam, per length [N/m]
 
-  /// A strip of two panels, pinned at its upper edge, with a seam between them that tears at `tears` [N/m]. The cloth
+  /// A strip of two panels, pinned at its upper edge, with a seam between them that tears at `load` [N/m]. The cloth
   /// is sewn within 0.2 s. `more`: further keys of the cloth.
-  scene::Scene strip(double tears, const std::string& more = "") const {
+  scene::Scene strip(double load, const std::string& more = "") const {
     const std::string file = (folder_ / "strip.toml").string();
     support::write_bytes(file, fmt::format("[[panel]]\nname = 'upper'\nposition = [0, 0.102]\n"
                                            "path = 'M 0 0 L 0.2 0 L 0.2 0.1 L 0 0.1 Z'\nedges = 'low right high left'\n"
                                            "[[panel]]\nname = 'lower'\n"
                                            "path = 'M 0 0 L 0.2 0 L 0.2 0.1 L 0 0.1 Z'\nedges = 'low right high left'\n"
-                                           "[[seam]]\na = 'upper.low'\nb = 'lower.high'\ntears = {}\n",
-                                           tears));
+                                           "[[seam]]\na = 'upper.low'\nb = 'lower.high'\ntearing_load = {}\n",
+                                           load));
     return support::scene_of_text(
         "[time]\nduration = 1\nstep = 0.01\n[physics]\nair_density = 0\n[[cloth]]\nname = 'strip'\nshape = 'pattern'\n"
         "file = '" +
