@@ -1,8 +1,7 @@
 // Infinite floor: lit as a matte surface near the subjects, in the backdrop's colour far away. OPEN: for most floor,
-// where the soft light buffer shows neither shadow nor occlusion.
+// on which no light is missing.
 #include "shading.glsl"
-#include "soft_look_up.glsl"
-#include "bounced_light.glsl"
+#include "traced_light.glsl"
 #include "open_floor.glsl"
 #ifdef REFLECTING
 #include "reflection.glsl"
@@ -22,11 +21,6 @@ float tiles(vec2 at) {
   return 0.5 - 0.5 * i.x * i.y;
 }
 
-vec3 shaded_light(int i, Softness soft, FloorPoint at) {
-  vec3 light = light_on_floor(i, at);
-  return light * share_of_light(i, soft, ShadowPoint(at.position_world, at.n), light.g > 0.0);
-}
-
 void main() {
   vec3 up = frame.up_world.xyz, n = frame.floor_plane_world.xyz, albedo = frame.floor_look.rgb;
   vec3 ray_world = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, 1.0));
@@ -43,20 +37,19 @@ void main() {
 #ifdef OPEN
   vec3 linear = open_floor(albedo, ray_world);
 #else
-  Softness soft = look_up_softness(distance_view, kFloor);
-  vec4 bounced_here = bounced_light(position_world, n);
-  // Floor does not occlude itself: all light that occluders reflect onto it is in the grid.
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 lit = texelFetch(lamps_lit, pixel, 0), from_surfaces = texelFetch(surface_light, pixel, 0);
   FloorPoint at = floor_point(albedo, ray_world);
-  vec3 shown = albedo * (irradiance(n) * min(soft.open, open_at_most(bounced_here.w)) + bounced_here.rgb);
-  shown += shaded_light(0, soft, at);
+  vec3 shown = albedo * (irradiance(n) * from_surfaces.w + from_surfaces.rgb);
+  shown += lit.x * light_on_floor(0, at);
 #if LIGHTS > 1
-  shown += shaded_light(1, soft, at);
+  shown += lit.y * light_on_floor(1, at);
 #endif
 #if LIGHTS > 2
-  shown += shaded_light(2, soft, at);
+  shown += lit.z * light_on_floor(2, at);
 #endif
 #if LIGHTS > 3
-  shown += shaded_light(3, soft, at);
+  shown += lit.w * light_on_floor(3, at);
 #endif
   vec3 linear = fade_out(shown, position_world, ray_world);
 #endif

@@ -2,14 +2,13 @@
 layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;
   mat4 view_from_world;
-  mat4 above_from_world;   // to the texture space of the sky map
   vec4 eye_world;          // w: radius of the surroundings [m]
   vec4 center_world;       // of the surroundings; w: roughness of the floor
   vec4 up_world;
   vec4 right_world;        // right axis of the camera
-  vec4 sky;                // linear light from above; w: range of sky occlusion [m]
+  vec4 sky;                // linear light from above
   vec4 horizon;            // from the sides; w: linear light below which the look darkens tones
-  vec4 ground;             // from below; w: metres per unit of depth of the sky map
+  vec4 ground;             // from below
   vec4 backdrop;           // linear colour at the horizon; w: fraction that it loses far from the subjects
   vec4 backdrop_top;       // straight above
   vec4 viewport;           // width, height [pixels], and their reciprocals

@@ -1,11 +1,8 @@
 // Direct light. SPOTS: some lights are spots.
 struct Light {
-  mat4 shadow_from_world;         // to homogeneous texture coordinates and depth
-  mat4 shadow_planes_from_world;  // its inverse transpose: transforms planes
   vec4 toward_light_world;        // w: squared distance of a spot from its target; sun: 0
   vec4 position_world;            // w: cosine of half the cone angle
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
-  vec4 shadow;                    // penumbra width per unit of depth (x, y); depth bias (z)
 };
 // LIGHTS of these are valid, at least one. Index by constants: llvmpipe reads a member at a variable index once per
 // pixel.

@@ -1,15 +1,7 @@
-// Ambient light and encoding to sRGB; all colour passes use it.
+// Light of the surroundings and encoding to sRGB; all colour passes use it.
 #include "frame.glsl"
 #include "lights.glsl"
 #include "surroundings.glsl"
-
-// Ambient light on a matte surface of which the fraction `open` is unoccluded. Light from the occluders has their
-// colour: in creases, that of the surface itself (Jimenez et al., "Practical Realtime Strategies for Accurate Indirect
-// Occlusion", 2016, Eq. 5).
-vec3 ambient_light(vec3 n_world, float open, vec3 albedo) {
-  vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
-  return irradiance(n_world) * max(vec3(open), ((open * a + b) * open + c) * open);
-}
 
 // The curve of IEC 61966-2-1 by roots, fitted to within 0.1/255 on [0.0031, 1]: three powers would cost 25 ns more per
 // pixel.

@@ -1,8 +1,7 @@
 // Cloth and solid surfaces: direct light with soft shadows, ambient light, and the sheen or gloss of the material.
 #include "shading.glsl"
 #include "highlight.glsl"
-#include "soft_look_up.glsl"
-#include "bounced_light.glsl"
+#include "traced_light.glsl"
 #ifdef CLOTH
 #include "weave.glsl"
 #ifdef TRIMMED
@@ -38,7 +37,6 @@ float thread_highlight(vec3 n, vec3 t, vec3 b, vec3 v, vec3 l) {
 // Surface data that the lights need.
 struct Point {
   vec3 position_world, n, n_smooth, v;
-  float rise;        // geometry.frag
   float shine, alpha, f0;
   vec3 weft, warp;   // unit vectors in the surface
   vec4 finish;       // cloth: column 3 of `materials`; METAL: x: coat, y: metal fraction
@@ -67,23 +65,10 @@ vec3 scattered_cosine(float cosine, float skin) {
 #endif
 const float kCoat = 0.04, kCoatAlpha = 0.02;  // clear coat: reflectance at normal incidence, as of glass, and roughness squared
 
-void add_light(inout LightSums sums, int i, Point at, Softness soft) {
+void add_light(inout LightSums sums, int i, Point at, float lit) {
   float cone;
   vec3 l = toward_light(i, at.position_world, cone);
   float side = dot(at.n_smooth, l);
-  // Solid surfaces receive no light from behind; cloth transmits some.
-#ifdef CLOTH
-  const bool kIsSolid = false;
-  bool wanted = cone > 0.0;
-#else
-  const bool kIsSolid = true;
-  float least_side = 0.0;
-#ifdef SKIN
-  least_side = -kPastTerminator.r * at.skin;
-#endif
-  bool wanted = cone > 0.0 && side > least_side;
-#endif
-  float lit = share_of_light(i, soft, shadow_point(at.position_world, at.n_smooth, l, at.rise, kIsSolid), wanted);
   vec3 strength = lights[i].color.rgb * (cone * lit);
 #ifdef SKIN
   sums.diffuse += lights[i].color.rgb * cone * scattered(lit, at.skin) * scattered_cosine(side, at.skin);
@@ -126,7 +111,6 @@ void main() {
   at.v = -normalize(offset_world);
   // Near outlines, a smooth normal may point away from the eye: bend it back to the horizon.
   vec3 n_seen = normalize(normal_heat.xyz);
-  at.rise = length(normal_heat.xyz) - 1.0;
   at.n = at.n_smooth = normalize(n_seen + at.v * max(0.02 - dot(n_seen, at.v), 0.0));
   float roughness = front_roughness.w;
   at.alpha = max(roughness * roughness, 0.02);
@@ -191,21 +175,21 @@ void main() {
   at.colored_f0 = mix(vec3(at.f0), albedo, at.finish.y);
 #endif
 
-  Softness soft = look_up_softness(distance_view, surface);
-  vec4 bounced_here = bounced_light(at.position_world, at.n_smooth);
-  soft.open = min(soft.open, open_at_most(bounced_here.w));
-  vec3 around_light = ambient_light(at.n, soft.open, albedo);
-  around_light = max(around_light + bounced_here.rgb, 0.1 * around_light);
+  vec4 lit = texelFetch(lamps_lit, pixel, 0), from_surfaces = texelFetch(surface_light, pixel, 0);
+  float open = from_surfaces.w;
+  // Light that shaded floor lacks may exceed what is open.
+  vec3 around_light = irradiance(at.n) * open;
+  around_light = max(around_light + from_surfaces.rgb, 0.1 * around_light);
   LightSums light = LightSums(around_light, vec3(0.0), vec3(0.0));
-  add_light(light, 0, at, soft);
+  add_light(light, 0, at, lit.x);
 #if LIGHTS > 1
-  add_light(light, 1, at, soft);
+  add_light(light, 1, at, lit.y);
 #endif
 #if LIGHTS > 2
-  add_light(light, 2, at, soft);
+  add_light(light, 2, at, lit.z);
 #endif
 #if LIGHTS > 3
-  add_light(light, 3, at, soft);
+  add_light(light, 3, at, lit.w);
 #endif
 
   float edge = 1.0 - max(dot(at.n_smooth, at.v), 0.0), rim = edge * edge * edge * edge;
@@ -213,21 +197,22 @@ void main() {
   // Fibres that stand out catch light at grazing angles: a soft sheen in a paler tone of the cloth.
   vec3 pale = mix(albedo, vec3(0.6), 0.35);
   vec3 sheen = pale * light.diffuse * (at.finish.z * edge * edge * edge);
-  vec3 through = irradiance(-at.n_smooth) * soft.open + light.through;
+  vec3 through = irradiance(-at.n_smooth) * open + light.through;
   vec3 around = vec3(0.0);
 #ifdef GLOSSY
   // Surroundings reflected by the threads.
-  around = surroundings(reflect(-at.v, at.n), 0.4) * (at.finish.x * soft.open * (0.04 + 0.3 * rim));
+  around = surroundings(reflect(-at.v, at.n), 0.4) * (at.finish.x * open * (0.04 + 0.3 * rim));
 #endif
   vec3 linear = albedo * (light.diffuse * (1.0 - 0.4 * max(at.finish.w - 0.3, 0.0)) + at.finish.w * behind * through) + sheen +
                 light.gloss + around;
 #elif defined(METAL)
   // Nearby surfaces in the mirrored direction hide the surroundings and show their own light; shaded floor subtracts.
   vec3 mirrored = reflect(-at.v, at.n);
-  vec4 near_by = bounced_light(at.position_world, mirrored);
-  float open = soft.open * (1.0 - clamp(1.5 * near_by.w - 0.5, 0.0, 1.0));
+  vec4 near_by = texelFetch(mirrored_surfaces, pixel, 0);
+  // Rays go out from metal and coats only.
+  float past = at.finish.x + at.finish.y > 0.0 ? 1.0 - near_by.w : open;
   vec3 share = at.colored_f0 + (1.0 - at.colored_f0) * rim * (1.0 - roughness);
-  vec3 around = surroundings(mirrored, at.alpha) * open, above = surroundings(mirrored, kCoatAlpha) * open;
+  vec3 around = surroundings(mirrored, at.alpha) * past, above = surroundings(mirrored, kCoatAlpha) * past;
   around = max(around + near_by.rgb, 0.1 * around);
   above = max(above + near_by.rgb, 0.1 * above);
   float coat = at.finish.x * (kCoat + (1.0 - kCoat) * rim * edge);
@@ -238,7 +223,7 @@ void main() {
   // Fine hairs catch light at grazing angles.
   light.diffuse *= 1.0 + 0.35 * at.skin * edge * edge * edge;
 #endif
-  float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * soft.open;
+  float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * open;
   vec3 around = surroundings(reflect(-at.v, at.n), at.alpha);
   vec3 linear = albedo * light.diffuse * (1.0 - mirror) + around * mirror + light.gloss;
 #endif

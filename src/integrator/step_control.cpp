@@ -35,7 +35,8 @@ void StepControl::record_accepted_step(double h, double error) {
         std::pow(ratio, kExponentNow / order_plus_one_) * std::pow(last_ratio_, kExponentBefore / order_plus_one_);
     // A step may be shorter than wanted to end with its frame; growth continues from the wanted length.
     const double max_step = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
-    wanted_ = std::clamp(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least, max_step);
+    // Unsolved steps may be shorter than `least`.
+    wanted_ = std::min(std::max(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least), max_step);
   }
   last_ratio_ = ratio;
   after_failure_ = false;

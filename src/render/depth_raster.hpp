@@ -1,5 +1,4 @@
-// Rasterises triangles into depth maps on the CPU. For triangles about as small as texels, this takes a third to a
-// tenth of llvmpipe's time.
+// Rasterises triangles on the CPU.
 #pragma once
 
 #include <algorithm>

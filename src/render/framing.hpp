@@ -17,8 +17,8 @@ bool is_subject(const frame::Surface& surface);
 /// Smallest box around all subjects [m]; a metre around the origin if there are none.
 Box3 subject_bounds(const frame::FrameSnapshot& snapshot);
 
-/// Box around all places that the subjects reach during the run [m]; the same in all frames. Backdrop, floor and the
-/// grid of bounced light depend on it. If the snapshot does not store it, the box around the subjects.
+/// Box around all places that the subjects reach during the run [m]; the same in all frames. Backdrop and floor
+/// depend on it. If the snapshot does not store it, the box around the subjects.
 Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot);
 
 /// The camera for scenes that name none: it shows the whole run.

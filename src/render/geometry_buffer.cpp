@@ -226,4 +226,10 @@ void GeometryBuffer::read_seen(std::vector<Seen>& seen) const {
   gl_->GetTextureImage(seen_.name(), 0, GL_RG, GL_FLOAT, static_cast<GLsizei>(seen.size() * sizeof(Seen)), seen.data());
 }
 
+void GeometryBuffer::read_normals(std::vector<Eigen::Vector4f>& normals) const {
+  normals.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  gl_->GetTextureImage(normal_heat_.name(), 0, GL_RGBA, GL_FLOAT,
+                       static_cast<GLsizei>(normals.size() * sizeof(Eigen::Vector4f)), normals.data());
+}
+
 }  // namespace weft::render

@@ -40,6 +40,8 @@ class GeometryBuffer {
 
   /// Reads back what each pixel shows, lowest row first.
   void read_seen(std::vector<Seen>& seen) const;
+  /// World normal of each pixel that shows a surface, times 1 + `rise` (geometry.frag); w: heat.
+  void read_normals(std::vector<Eigen::Vector4f>& normals) const;
 
   /// Distance and surface of each pixel, as Seen.
   const Texture& seen() const { return seen_; }

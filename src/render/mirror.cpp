@@ -7,8 +7,10 @@ namespace {
 
 constexpr int kDivisor = 2;
 
+/// Reflections are blurred.
 QualitySettings plainer(QualitySettings quality) {
-  quality.crisp_shadows = false;
+  quality.shadow_divisor *= kDivisor;
+  quality.ambient_divisor *= kDivisor;
   return quality;
 }
 
@@ -32,8 +34,8 @@ Mirror::Mirror(const Gl& gl, const QualitySettings& quality, int width, int heig
       width_((width + kDivisor - 1) / kDivisor),
       height_((height + kDivisor - 1) / kDivisor),
       geometry_(gl, width_, height_),
-      soft_light_(gl, quality, width_, height_),
-      shading_(gl, plainer(quality), width_, height_, geometry_),
+      traced_light_(gl, plainer(quality), width_, height_),
+      shading_(gl, quality, width_, height_, geometry_),
       frame_block_(gl),
       picture_(gl, GLenum{GL_TEXTURE_2D}) {
   const int levels = std::bit_width(static_cast<unsigned>(std::max(width_, height_)));
@@ -51,7 +53,7 @@ void Mirror::draw(const View& view, const FrameUniform& block, const Subjects& s
   gl_->Enable(GL_CLIP_DISTANCE0);
   geometry_.draw(subjects.surfaces, {}, nullptr, view.eye, view.far);
   gl_->Disable(GL_CLIP_DISTANCE0);
-  soft_light_.draw(subjects.meshes, subjects.above, lights);
+  traced_light_.draw(subjects.light, geometry_, subjects.traced, view, std::nullopt);
   const Shading::Features features{
       .lights = lights, .painted = subjects.painted && geometry_.painted(), .trimmed = geometry_.trimmed()};
   shading_.draw(subjects.materials, subjects.heat_scale, features, {0, 0, width_, height_}, {});

@@ -5,7 +5,7 @@
 
 #include "render/geometry_buffer.hpp"
 #include "render/shading.hpp"
-#include "render/soft_light.hpp"
+#include "render/traced_light.hpp"
 
 namespace weft::render {
 
@@ -20,13 +20,13 @@ class Mirror {
   /// What is drawn besides the view, in the form of the main passes.
   struct Subjects {
     std::span<const SurfaceBuffers> surfaces;
-    std::span<const DrawnMesh> meshes;
     std::span<const Shading::Material> materials;
-    const SkyView& above;
+    std::span<const TracedLight::Surface> traced;
+    const ReflectedLight& light;
     double heat_scale;
     bool painted;  ///< whether pictures on surfaces are shown
   };
-  /// Light blocks and shadow maps must be bound. Binds the reflection to unit 13 and its distances to 14. Other units
+  /// The light block must be bound. Binds the reflection to unit 13 and its distances to 14. Other units
   /// and the frame block stay bound to this pass.
   void draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights);
 
@@ -37,7 +37,7 @@ class Mirror {
   const Gl* gl_;
   int width_, height_;
   GeometryBuffer geometry_;
-  SoftLight soft_light_;
+  TracedLight traced_light_;
   Shading shading_;
   Buffer frame_block_;
   Texture picture_;  // with mip levels, for blurred reflections

@@ -7,20 +7,20 @@
 
 #include "core/error.hpp"
 #include "frame/cords.hpp"
-#include "render/bounced_light.hpp"
+#include "image/color.hpp"
 #include "render/data_passes.hpp"
 #include "render/drawing_time.hpp"
 #include "render/edges.hpp"
 #include "render/framing.hpp"
-#include "render/in_view.hpp"
 #include "render/instants.hpp"
 #include "render/mirror.hpp"
 #include "render/outlines.hpp"
 #include "render/pixels.hpp"
+#include "render/reflected_light.hpp"
 #include "render/shading.hpp"
 #include "render/shadow_catcher.hpp"
 #include "render/smear.hpp"
-#include "render/soft_light.hpp"
+#include "render/traced_light.hpp"
 #include "render/view.hpp"
 
 namespace weft::render {
@@ -54,18 +54,7 @@ struct Plan {
   View view;
   std::vector<frame::Light> lights;
   Lighting lighting;
-  std::vector<Vec3> caster_positions;
 };
-
-std::vector<Vec3> subject_positions(const frame::FrameSnapshot& snapshot) {
-  std::vector<Vec3> all;
-  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
-    if (!is_subject(*snapshot.surfaces[i])) continue;
-    const auto& positions = snapshot.states[i].positions;
-    all.insert(all.end(), positions.begin(), positions.end());
-  }
-  return all;
-}
 
 Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Stage& stage, const frame::Camera& camera,
                double aspect) {
@@ -79,7 +68,6 @@ Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Stage& stage, 
   plan.view = make_view(camera, plan.up, aspect, plan.subjects, plan.floor);
   plan.lights = effective_lights(snapshot, plan.stage.look, plan.view.axes, plan.up);
   plan.lighting = make_lighting(plan.stage, plan.up, plan.floor, plan.lights);
-  plan.caster_positions = subject_positions(snapshot);
   return plan;
 }
 
@@ -96,25 +84,24 @@ struct Renderer::Impl {
 
   // GL objects; created and deleted with the context current.
   struct Passes {
-    ShadowMaps shadows;
-    BouncedLight bounced;
-    SoftLight soft_light;
+    RayScene rays;
+    TracedLight traced;
     GeometryBuffer geometry;
     Shading shading;
     FloorBuffers floor;
-    Buffer frame_block;
+    Buffer frame_block, light_block;
     std::vector<SurfaceBuffers> surfaces;
 
     Passes(const Gl& gl, const QualitySettings& quality, const Settings& settings)
-        : shadows(gl, quality),
-          bounced(gl, quality.bounce_cells),
-          soft_light(gl, quality, settings.width, settings.height),
+        : traced(gl, quality, settings.width, settings.height),
           geometry(gl, settings.width, settings.height),
           shading(gl, quality, settings.width, settings.height, geometry),
           floor(gl),
-          frame_block(gl) {}
+          frame_block(gl),
+          light_block(gl) {}
   };
   std::optional<Passes> passes;
+  MeanColors colors;
   std::optional<Mirror> mirror;  // made once a floor is glossy
   std::optional<Outlines> outlines;
   std::optional<DataPasses> data;
@@ -137,9 +124,10 @@ struct Renderer::Impl {
   bool reflects(const Plan& plan) const {
     return quality.mirrors && floor_roughness(plan.lighting.style, plan.floor) < kMirrorsSubjects;
   }
-  void draw_bounced_light(const Plan& plan, std::span<const DrawnMesh> meshes, double heat);
+  ReflectedLight reflected_light(const Plan& plan, double heat);
+  std::vector<TracedLight::Surface> traced_surfaces(const Plan& plan) const;
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
-  void blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
+  void blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
                                std::span<const DrawnMesh> opaque, const PixelArea& area);
   Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const;
   void draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan);
@@ -223,8 +211,8 @@ void Renderer::Impl::update_floor(const Plan& plan) {
 }
 
 void Renderer::Impl::upload_frame(const Plan& plan) {
-  const FrameUniform block = pack_frame(plan.view, plan.lighting, plan.subjects, plan.surroundings, plan.floor,
-                                        settings.width, settings.height);
+  const FrameUniform block =
+      pack_frame(plan.view, plan.lighting, plan.surroundings, plan.floor, settings.width, settings.height);
   gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
 }
@@ -233,7 +221,6 @@ Shading::Features Renderer::Impl::features(const Plan& plan) const {
   return {.lights = light_set(plan.lights),
           .checker = plan.floor && plan.floor->look.checker,
           .tiled = plan.floor && plan.floor->look.paint.texture && !plan.lighting.style.plain,
-          .level = plan.floor && plan.floor->normal.cwiseAbs().maxCoeff() > 1 - 1e-9,
           .painted = passes->geometry.painted() && !plan.lighting.style.plain,
           .trimmed = passes->geometry.trimmed(),
           .shiny = floor_roughness(plan.lighting.style, plan.floor) < kMirrorsLamps,
@@ -247,25 +234,44 @@ std::vector<Shading::Material> Renderer::Impl::materials(const Plan& plan) const
   return list;
 }
 
-void Renderer::Impl::draw_bounced_light(const Plan& plan, std::span<const DrawnMesh> meshes, double heat) {
-  const std::vector<Shading::Material> looks = materials(plan);
-  std::vector<BouncingSurface> surfaces;
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    if (heat > 0 && looks[i].cloth) continue;  // heat colours reflect no coloured light
-    surfaces.push_back({&passes->surfaces[i], &looks[i].appearance, plan.lighting.style.plain, meshes[i].opacity});
+/// Uploads the lights, and collects what rays need to know of them and of the surfaces.
+ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
+  std::vector<Lamp> lamps;
+  LightsUniform block{};
+  for (const frame::Light& light : plan.lights) {
+    lamps.push_back(make_lamp(light, plan.lighting.exposure.direct));
+    block.lights[lamps.size() - 1] = lamps.back().packed;
   }
-  passes->bounced.draw(surfaces, plan.floor, plan.lighting.style.floor_tint, irradiance_of(plan.lighting.around),
-                       plan.surroundings, passes->shadows);
+  gl.NamedBufferData(passes->light_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
+  gl.BindBufferBase(GL_UNIFORM_BUFFER, 1, passes->light_block.name());
+
+  std::vector<ReflectingSurface> surfaces;
+  const std::vector<Shading::Material> looks = materials(plan);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const bool hot = heat > 0 && looks[i].cloth;  // heat colours reflect no coloured light
+    surfaces.push_back(
+        reflecting_surface(passes->surfaces[i], looks[i].appearance, plan.lighting.style.plain, hot, colors));
+  }
+  Eigen::Vector3f floor_color = Eigen::Vector3f::Zero();
+  if (plan.floor)
+    floor_color = (plan.lighting.style.floor_tint * image::linear_from_srgb(plan.floor->look.color)).cast<float>();
+  return {passes->rays, std::move(surfaces), std::move(lamps), irradiance_of(plan.lighting.around),
+          plan.floor,   floor_color};
+}
+
+std::vector<TracedLight::Surface> Renderer::Impl::traced_surfaces(const Plan& plan) const {
+  std::vector<TracedLight::Surface> list;
+  for (const Shading::Material& material : materials(plan))
+    list.push_back(TracedLight::Surface::of(material.appearance, material.cloth));
+  return list;
 }
 
 void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
-  // With more lights than kSoftLights, the soft light buffer does not contain all shadows: all floor counts as shaded.
-  std::vector<PixelArea> shaded_floor{{0, 0, settings.width, settings.height}};
-  if (plan.lights.size() <= kSoftLights) shaded_floor = passes->soft_light.shaded_floor();
+  const std::vector<PixelArea> shaded_floor = passes->traced.shaded_floor();
   passes->shading.draw(materials(plan), heat, features(plan), subjects, shaded_floor);
 }
 
-/// Draws shadow maps and bounced light, the geometry buffer, soft light at reduced size, colours, then smooth outlines.
+/// Draws the geometry buffer, traces light, then draws colours and smooth outlines.
 void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan) {
   update_surfaces(snapshot, plan.view);
   update_floor(plan);
@@ -290,24 +296,22 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
     if (sheer[i] != 0) opaque[i] = {};
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
-  const std::optional<InView> in_view = parts_in_view(plan.view, meshes, plan.floor);
-  passes->shadows.draw(plan.lights, plan.caster_positions, meshes, in_view ? &*in_view : nullptr, plan.up,
-                       plan.lighting.exposure.direct);
+  passes->rays.build(meshes);
   const double heat = heat_scale(snapshot, plan.stage);
-  draw_bounced_light(plan, meshes, heat);
-  const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
+  const ReflectedLight light = reflected_light(plan, heat);
+  const std::vector<TracedLight::Surface> traced = traced_surfaces(plan);
   if (reflects(plan)) {
     if (!mirror) mirror.emplace(gl, quality, settings.width, settings.height);
     const View view = mirrored(plan.view, *plan.floor);
-    const FrameUniform block = pack_frame(view, plan.lighting, plan.subjects, plan.surroundings, plan.floor,
-                                          mirror->width(), mirror->height());
+    const FrameUniform block =
+        pack_frame(view, plan.lighting, plan.surroundings, plan.floor, mirror->width(), mirror->height());
     const std::vector<Shading::Material> looks = materials(plan);
-    mirror->draw(view, block, {passes->surfaces, opaque, looks, above, heat, !plan.lighting.style.plain},
+    mirror->draw(view, block, {passes->surfaces, looks, traced, light, heat, !plan.lighting.style.plain},
                  light_set(plan.lights));
   }
   upload_frame(plan);
   passes->geometry.draw(passes->surfaces, sheer, floor, plan.view.eye, plan.view.far);
-  passes->soft_light.draw(opaque, above, light_set(plan.lights));
+  passes->traced.draw(light, passes->geometry, traced, plan.view, plan.floor);
   std::vector<Vec3> drawn;
   for (const DrawnMesh& mesh : meshes) drawn.insert(drawn.end(), mesh.positions.begin(), mesh.positions.end());
   const PixelArea area = visible_area(plan.view, drawn, settings.width, settings.height);
@@ -315,7 +319,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   passes->shading.read(rgba);
   if (!outlines && !plan.lighting.style.edges) return;
   passes->geometry.read_seen(seen);
-  if (!sheer.empty()) blend_translucent_cloth(plan, sheer, above, opaque, area);
+  if (!sheer.empty()) blend_translucent_cloth(plan, sheer, light, opaque, area);
   if (data) {
     unsmoothed = rgba;
     if (plan.floor && sheer.empty()) {
@@ -331,13 +335,14 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
 
 /// Blends translucent cloth over the picture of everything else by depth peeling, nearest layer first (Everitt,
 /// "Interactive Order-Independent Transparency", 2001). `seen` then contains the nearest surfaces of all.
-void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
+void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
                                              std::span<const DrawnMesh> opaque, const PixelArea& area) {
   std::vector<std::uint64_t> behind = rgba;
   outlines->smooth(seen, opaque, plan.floor, plan.view, area, behind);
   const auto of_sheer = [&](const Seen& at) {
     return at.surface >= kFirstSurface && sheer[static_cast<std::size_t>(at.surface) - kFirstSurface] != 0;
   };
+  const std::vector<TracedLight::Surface> traced = traced_surfaces(plan);
   struct Layer {
     std::vector<std::uint64_t> rgba;
     std::vector<Seen> seen;
@@ -348,7 +353,7 @@ void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const c
     Layer layer;
     passes->geometry.read_seen(layer.seen);
     if (std::ranges::none_of(layer.seen, of_sheer)) break;
-    passes->soft_light.draw(opaque, above, light_set(plan.lights));
+    passes->traced.draw(light, passes->geometry, traced, plan.view, plan.floor);
     passes->shading.draw_layer(features(plan), area);
     passes->shading.read(layer.rgba);
     peeled.push_back(std::move(layer));
@@ -356,13 +361,13 @@ void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const c
   if (peeled.empty()) return;
   for (std::size_t i = 0; i < rgba.size(); ++i) {
     if (!of_sheer(peeled.front().seen[i])) continue;
-    Eigen::Vector3f light = linear_of(behind[i]);
+    Eigen::Vector3f blended = linear_of(behind[i]);
     for (auto layer = peeled.rbegin(); layer != peeled.rend(); ++layer) {
       if (!of_sheer(layer->seen[i])) continue;
       const float opacity = static_cast<float>(layer->rgba[i] >> 48) / 65535.0f;
-      light += opacity * (linear_of(layer->rgba[i]) - light);
+      blended += opacity * (linear_of(layer->rgba[i]) - blended);
     }
-    rgba[i] = encoded(light);
+    rgba[i] = encoded(blended);
     seen[i] = peeled.front().seen[i];
   }
 }

@@ -4,16 +4,13 @@
 
 #include "core/error.hpp"
 #include "image/color.hpp"
-#include "render/soft_light.hpp"
 
 namespace weft::render {
 namespace {
 
-std::vector<std::string> shading_defines(const QualitySettings& quality, const LightSet& lights, bool full_shadows,
-                                         const std::vector<const char*>& more = {}) {
-  std::vector<std::string> defines = ShadowMaps::defines(quality, lights);
-  defines.push_back("REDUCTION " + std::to_string(quality.soft_divisor));
-  if (full_shadows) defines.push_back("FULL_SHADOWS");
+std::vector<std::string> shading_defines(const LightSet& lights, const std::vector<const char*>& more = {}) {
+  std::vector<std::string> defines{"LIGHTS " + std::to_string(lights.count)};
+  if (lights.spots) defines.push_back("SPOTS");
   defines.insert(defines.end(), more.begin(), more.end());
   return defines;
 }
@@ -112,7 +109,7 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
       width_(width),
       height_(height),
       quality_(quality),
-      backdrop_(gl, "backdrop.vert", "grid.frag", shading_defines(quality, {}, false)),
+      backdrop_(gl, "backdrop.vert", "grid.frag", shading_defines({})),
       areas_(gl, "areas.vert", ""),
       picture_(make_texture(gl, GL_RGBA16, width, height, GL_NEAREST)),
       heat_colors_(make_heat_colors(gl)),
@@ -141,7 +138,6 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
     : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.tiled &&
                     !features.reflecting) {
   const LightSet& lights = features.lights;
-  const bool many = lights.count > kSoftLights, crisp = quality.crisp_shadows || many;
   const std::vector<const char*> paint(features.painted ? 1 : 0, "PAINTED");
   std::vector<const char*> of_cloth = paint;
   if (features.glossy) of_cloth.push_back("GLOSSY");
@@ -149,23 +145,21 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
   of_cloth.push_back("CLOTH");
   if (features.trimmed) of_cloth.push_back("TRIMMED");
   if (features.sheer) of_cloth.push_back("SHEER");
-  cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, of_cloth));
+  cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(lights, of_cloth));
   if (features.sheer) return;
   std::vector<const char*> of_solid = paint;
   if (features.metal) of_solid.push_back("METAL");
   if (features.skin && features.painted) of_solid.push_back("SKIN");
-  solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, of_solid));
+  solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(lights, of_solid));
   std::vector<const char*> floor{features.checker ? "CHECKER" : "PLAIN"};
-  if (features.level) floor.push_back("LEVEL");
   const std::vector<const char*> shiny(features.shiny ? 1 : 0, "SHINY");
   floor.insert(floor.end(), shiny.begin(), shiny.end());
   if (features.reflecting) floor.push_back("REFLECTING");
   if (features.tiled) floor.push_back("TILED");
-  shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, crisp, floor));
+  shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(lights, floor));
   floor.push_back("OPEN");
-  open_floor = floor_on_grid
-                   ? Program(gl, "open_floor.vert", "grid.frag", shading_defines(quality, lights, false, shiny))
-                   : Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, false, floor));
+  open_floor = floor_on_grid ? Program(gl, "open_floor.vert", "grid.frag", shading_defines(lights, shiny))
+                             : Program(gl, "fullscreen.vert", "floor.frag", shading_defines(lights, floor));
 }
 
 const Shading::Programs& Shading::programs(Features features) {

@@ -8,9 +8,9 @@
 
 #include "render/geometry_buffer.hpp"
 #include "render/gl/program.hpp"
+#include "render/lighting.hpp"
 #include "render/paints.hpp"
 #include "render/quality.hpp"
-#include "render/shadow_maps.hpp"
 #include "render/view.hpp"
 
 namespace weft::render {
@@ -30,7 +30,6 @@ class Shading {
     LightSet lights;
     bool checker = false;     ///< checkered floor
     bool tiled = false;       ///< the floor shows the picture of set_floor()
-    bool level = false;       ///< the floor's normal is a coordinate axis
     bool painted = false;     ///< the geometry buffer has colours
     bool trimmed = false;     ///< the geometry buffer has hems
     bool shiny = false;       ///< the floor mirrors lamps
@@ -46,7 +45,7 @@ class Shading {
   void set_floor(const std::optional<Floor>& floor, double tint);
   /// `materials`: in the order of the surfaces. `heat_scale`: 1 / hottest value, 0 for the surfaces' own colours; only
   /// cloth shows heat. `subjects`: area that contains all surfaces. Outside `shaded_floor`, floor is fully lit and open
-  /// to the sky. Frame and light blocks, shadow maps, soft light and geometry must be bound.
+  /// to the sky. Frame and light blocks, traced light and geometry must be bound.
   void draw(std::span<const Material> materials, double heat_scale, const Features& features, const PixelArea& subjects,
             std::span<const PixelArea> shaded_floor);
   /// Draws all floor without shadows or occlusion. Call after draw() of the same picture.

@@ -32,23 +32,4 @@ Mat4 perspective(double tan_half_width, double tan_half_height, double near, dou
   return clip;
 }
 
-Mat4 orthographic(const Box3& bounds_view) {
-  const Vec3 size = bounds_view.sizes(), center = bounds_view.center();
-  Mat4 clip = Mat4::Identity();
-  clip(0, 0) = 2 / size.x();
-  clip(1, 1) = 2 / size.y();
-  clip(2, 2) = -2 / size.z();
-  clip(0, 3) = -center.x() * clip(0, 0);
-  clip(1, 3) = -center.y() * clip(1, 1);
-  clip(2, 3) = -center.z() * clip(2, 2);
-  return clip;
-}
-
-Mat4 texture_from_clip() {
-  Mat4 texture = 0.5 * Mat4::Identity();
-  texture.block<3, 1>(0, 3).setConstant(0.5);
-  texture(3, 3) = 1;
-  return texture;
-}
-
 }  // namespace weft::render

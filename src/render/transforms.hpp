@@ -27,10 +27,4 @@ Mat4 look_along(const Vec3& eye, const ViewAxes& axes);
 /// clip_from_view of a perspective picture; the tangents are those of half the field of view; distances in metres.
 Mat4 perspective(double tan_half_width, double tan_half_height, double near, double far);
 
-/// clip_from_view of a parallel projection of the box `bounds_view`; its z points backward, as in view space.
-Mat4 orthographic(const Box3& bounds_view);
-
-/// Maps clip space to texture coordinates and depth, each 0 to 1.
-Mat4 texture_from_clip();
-
 }  // namespace weft::render

@@ -98,10 +98,6 @@ PixelArea visible_area(const View& view, std::span<const Vec3> points, int width
   return area;
 }
 
-double sky_reach(const Box3& subjects) {
-  return 0.4 * subjects.diagonal().norm();
-}
-
 Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights) {
   const double share = 1 - style.sky_intensity;
   const Vec3 sky = style.sky_intensity * style.sky_color;
@@ -129,7 +125,7 @@ Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::opt
   lighting.style = style_of(stage);
   lighting.exposure = expose(lighting.style, floor, lights);
   lighting.gain = std::exp2(stage.exposure);
-  // Light of open floor; the deficit of shaded floor is subtracted locally (bounced_light.hpp).
+  // Light of open floor; rays subtract what shaded floor lacks (reflected_light.hpp).
   const Vec3 ground =
       floor && !stage.ground_color
           ? Vec3(kGroundLight * lighting.style.floor_tint * lighting.exposure.floor)
@@ -145,7 +141,7 @@ double floor_roughness(const Style& style, const std::optional<Floor>& floor) {
   return std::min(floor->look.roughness, style.floor_roughness);
 }
 
-FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects, const Box3& surroundings,
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& surroundings,
                         const std::optional<Floor>& floor, int width, int height) {
   const auto four = [](const Vec3& v, double w) {
     return Eigen::Vector4f(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
@@ -153,8 +149,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   };
   const Style& style = lighting.style;
   const Surroundings& around = lighting.around;
-  const double radius = 0.5 * surroundings.diagonal().norm(), reach = sky_reach(subjects);
-  const SkyView above = fit_sky(subjects, around.up, reach);
+  const double radius = 0.5 * surroundings.diagonal().norm();
   const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
   const Vec3 shown = style.floor_tint * lighting.exposure.floor;
   // A sky has its own colour, a backdrop that of the floor.
@@ -167,9 +162,9 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   frame.center_world = four(surroundings.center(), floor_roughness(style, floor));
   frame.up_world = four(around.up, 0);
   frame.right_world = four(view.axes.right, 0);
-  frame.sky = four(around.sky, reach);
+  frame.sky = four(around.sky, 0);
   frame.horizon = four(around.horizon, style.toe);
-  frame.ground = four(kReflectedGround * around.ground, above.depth_metres);
+  frame.ground = four(kReflectedGround * around.ground, 0);
   frame.backdrop = four(behind(style.horizon), style.glow);
   frame.backdrop_top = four(behind(style.zenith), 0);
   frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
@@ -189,7 +184,6 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   }
   const Irradiance irradiance = irradiance_of(around);
   for (std::size_t i = 0; i < irradiance.size(); ++i) frame.irradiance[i] = four(irradiance[i], 0);
-  frame.above_from_world = (texture_from_clip() * above.clip_from_world).cast<float>();
   return frame;
 }
 

@@ -48,16 +48,13 @@ PixelArea visible_area(const View& view, std::span<const Vec3> points, int width
 /// Frame block, std140.
 struct FrameUniform {
   // Matrices first: Eigen aligns them to 16 or 32 bytes, depending on the CPU level; std140 aligns to 16.
-  Eigen::Matrix4f clip_from_world, view_from_world, above_from_world;
+  Eigen::Matrix4f clip_from_world, view_from_world;
   Eigen::Vector4f eye_world, center_world, up_world, right_world;
   Eigen::Vector4f sky, horizon, ground, backdrop, backdrop_top, viewport, frustum, floor_plane_world, floor_look;
   std::array<Eigen::Vector4f, Surroundings::kBoxes> box_axes, box_lights;
   std::array<Eigen::Vector4f, 9> irradiance;
 };
-static_assert(offsetof(FrameUniform, eye_world) == 3 * 64 && offsetof(FrameUniform, box_axes) == 3 * 64 + 13 * 16);
-
-/// Range within which overhead objects occlude the sky [m].
-double sky_reach(const Box3& subjects);
+static_assert(offsetof(FrameUniform, eye_world) == 2 * 64 && offsetof(FrameUniform, box_axes) == 2 * 64 + 13 * 16);
 
 /// Strength of the direct light, and the light that open floor shows.
 struct Exposure {
@@ -86,7 +83,7 @@ double floor_roughness(const Style& style, const std::optional<Floor>& floor);
 inline constexpr double kMirrorsLamps = 0.6, kMirrorsSubjects = 0.5;
 
 /// `surroundings`: surroundings_bounds() of the run.
-FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects, const Box3& surroundings,
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& surroundings,
                         const std::optional<Floor>& floor, int width, int height);
 
 }  // namespace weft::render

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "image/color.hpp"
-#include "render/bounced_light.hpp"
 #include "render/renderer.hpp"
 #include "render/snapshots.hpp"
 
@@ -77,8 +76,8 @@ std::vector<int> left_border(double height) {
       Box3(Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 2));
   snapshot.cameras = {camera_at(Vec3(0, -8, 1.5), Vec3(0, 0, 0.8), 40)};
   Settings settings;
-  settings.width = 160;
-  settings.height = 100;
+  settings.width = 640;  // open floor is interpolated between every 16 pixels, too coarse for smaller pictures
+  settings.height = 400;
   const image::Image image = Renderer(settings).draw(snapshot);
   std::vector<int> bytes;
   for (int y = 0; y < settings.height; ++y) bytes.push_back(image.pixel(0, y)[1]);
@@ -86,7 +85,9 @@ std::vector<int> left_border(double height) {
 }
 
 TEST(Surroundings, AreThoseOfTheRunWhileASheetFalls) {
-  EXPECT_EQ(left_border(2), left_border(0.2));
+  const std::vector<int> high = left_border(2), low = left_border(0.2);
+  // Farther away by the sheet's width, it hides less than a 255th of the sky.
+  for (std::size_t y = 0; y < high.size(); ++y) EXPECT_NEAR(high[y], low[y], 1) << y;
 }
 
 // A mirror shows the middle of a box at its own brightness, a rough surface dimmer and wider; the sum is kept.
@@ -110,43 +111,6 @@ TEST(Surroundings, BlurKeepsTheLightOfABox) {
   EXPECT_NEAR(whole(0.05), 2 / (2 * 40.0), 1e-3);
   EXPECT_NEAR(whole(0.9), 2 / (2 * 40.0), 1e-3);
   EXPECT_LT(around.light(Vec3(0.6, 0, 0.8), 0.9).x(), 0.5);
-}
-
-/// Fraction of a cosine lobe over a hemisphere that a rectangle of 2a x 2b at a distance c covers, seen from below its
-/// middle: four times that of a corner (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-4).
-double form_factor(double a, double b, double c) {
-  const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
-  return 4 / (2 * std::numbers::pi) * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
-}
-
-// Pieces are treated as discs: an error of a few percent at twice their width.
-TEST(BouncedLight, OfARectangleIsItsFormFactor) {
-  BounceGrid grid(Box3(Vec3(-1, -1, 0), Vec3(1, 1, 1)), 5000);
-  const Eigen::Array3i place = grid.counts / 2;
-  const Eigen::Vector3f from = grid.middle(place, {});
-  for (const double height : {0.2, 0.5, 2.0}) {
-    constexpr int kPieces = 10;
-    std::vector<LitPatch> patches;
-    for (int i = 0; i < kPieces; ++i)
-      for (int j = 0; j < kPieces; ++j)
-        patches.push_back(
-            {from + Eigen::Vector3f((i + 0.5f) * 0.1f - 0.5f, (j + 0.5f) * 0.06f - 0.3f, static_cast<float>(height)),
-             -Eigen::Vector3f::UnitZ(),
-             0.006f,
-             {1, 0.5f, -0.25f},
-             Eigen::Vector3f::Ones()});
-    const std::vector<Eigen::Vector4f> light = gather(grid, patches, {}, [](const auto&, const auto&) { return 1.0f; });
-    const auto at = [&](int side) {
-      return light[static_cast<std::size_t>(
-          ((side * grid.counts.z() + place.z()) * grid.counts.y() + place.y()) * grid.counts.x() + place.x())];
-    };
-    const double expected = form_factor(0.5, 0.3, height);
-    EXPECT_NEAR(at(4).x(), expected, 0.05 * expected) << height;
-    EXPECT_NEAR(at(4).y(), 0.5 * expected, 0.025 * expected) << height;
-    EXPECT_NEAR(at(4).z(), -0.25 * expected, 0.0125 * expected) << height;
-    EXPECT_EQ(at(5).x(), 0);
-    EXPECT_NEAR(at(0).x(), at(1).x(), 1e-4) << height;
-  }
 }
 
 /// White floor in front of a wall 0.6 m wide and high with its lower edge at `height`, and optionally a black shelf
@@ -173,15 +137,20 @@ image::Image wall(double height, bool shelf) {
   return Renderer(settings).draw(snapshot);
 }
 
-/// Light in the middle of the picture, which shows the floor 0.3 m in front of the wall.
+/// Light in the middle of the picture, which shows the floor 0.3 m in front of the wall: mean over 14 cm along the
+/// wall.
 Vec3 light_on_floor(const image::Image& image) {
-  const std::uint8_t* pixel = image.pixel(80, 50);
-  return image::linear_from_srgb(Vec3(pixel[0], pixel[1], pixel[2]) / 255);
+  Vec3 sum = Vec3::Zero();
+  for (int x = 60; x < 100; ++x) {
+    const std::uint8_t* pixel = image.pixel(x, 50);
+    sum += image::linear_from_srgb(Vec3(pixel[0], pixel[1], pixel[2]) / 255);
+  }
+  return sum / 40;
 }
 
 // Floor without direct light receives the light that a lit wall reflects, within a tenth of the form factor, summed
-// over the wall here. Measured: 1.08 to 1.09 of it where the wall stands on the floor, because pieces of wall lie in
-// the middle of cells of 14 cm; 0.99 to 1.00 where it hangs. A shelf in between leaves less than a third.
+// over the wall here: noise of some hundred points with four rays each. As open floor is dark, the picture is exposed
+// with direct light at its limit of 1.8. A shelf in between leaves less than a third.
 TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
   for (const double height : {0.0, 0.4}) {
     double factor = 0;
@@ -194,7 +163,7 @@ TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
       }
     }
     const Vec3 light = light_on_floor(wall(height, false)),
-               expected = factor * image::linear_from_srgb(Vec3(0.9, 0.3, 0.3));
+               expected = 1.8 * factor * image::linear_from_srgb(Vec3(0.9, 0.3, 0.3));
     EXPECT_NEAR(light.x() / expected.x(), 1, 0.1) << height;
     EXPECT_NEAR(light.y() / expected.y(), 1, 0.1) << height;
     if (height == 0) continue;

@@ -38,13 +38,6 @@ Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum 
   return texture;
 }
 
-Texture make_texture_array(const Gl& gl, GLenum format, int width, int height, int layers, GLenum filter) {
-  Texture texture(gl, GLenum{GL_TEXTURE_2D_ARRAY});
-  gl.TextureStorage3D(texture.name(), 1, format, width, height, layers);
-  set_sampling(gl, texture, filter);
-  return texture;
-}
-
 void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what) {
   const GLenum status = gl.CheckNamedFramebufferStatus(framebuffer.name(), GL_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE) {

@@ -59,14 +59,6 @@ struct TextureKind {
   }
   static void destroy(const Gl& gl, GLuint name) { gl.DeleteTextures(1, &name); }
 };
-struct SamplerKind {
-  static GLuint create(const Gl& gl) {
-    GLuint name = 0;
-    gl.CreateSamplers(1, &name);
-    return name;
-  }
-  static void destroy(const Gl& gl, GLuint name) { gl.DeleteSamplers(1, &name); }
-};
 struct FramebufferKind {
   static GLuint create(const Gl& gl) {
     GLuint name = 0;
@@ -83,14 +75,11 @@ struct ProgramKind {
 using Buffer = GlObject<BufferKind>;
 using VertexArray = GlObject<VertexArrayKind>;
 using Texture = GlObject<TextureKind>;
-using Sampler = GlObject<SamplerKind>;
 using Framebuffer = GlObject<FramebufferKind>;
 using ProgramName = GlObject<ProgramKind>;
 
 /// A texture of one mip level; sampled with `filter` (GL_NEAREST or GL_LINEAR), clamped to its edge.
 Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum filter);
-/// The same with `layers` layers (GL_TEXTURE_2D_ARRAY).
-Texture make_texture_array(const Gl& gl, GLenum format, int width, int height, int layers, GLenum filter);
 
 /// Throws Error(internal) that names `what` if the framebuffer is incomplete.
 void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what);

@@ -1,0 +1,280 @@
+// Light by rays: what they meet, what that reflects, and how the noise of few rays is removed.
+#include "render/traced_light.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "image/color.hpp"
+#include "render/joint_filter.hpp"
+#include "render/renderer.hpp"
+#include "render/snapshots.hpp"
+
+namespace weft::render {
+namespace {
+
+using Eigen::Vector3f;
+
+/// A mesh of its own vertices and triangles.
+struct Mesh {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  DrawnMesh drawn(float opacity = 1) const { return {positions, triangles, nullptr, opacity}; }
+};
+
+/// A level rectangle of 2a x 2b at height c, facing down.
+Mesh rectangle(double a, double b, double c) {
+  return {{Vec3(-a, -b, c), Vec3(-a, b, c), Vec3(a, b, c), Vec3(a, -b, c)}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+/// Distance to the nearest triangle along a ray, in lengths of `way`; infinity if there is none (Moeller and Trumbore,
+/// "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
+double nearest_by_brute_force(const Mesh& mesh, const Vec3& start, const Vec3& way) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 u = mesh.positions[b] - mesh.positions[a], v = mesh.positions[c] - mesh.positions[a], p = way.cross(v);
+    const Vec3 from = start - mesh.positions[a], q = from.cross(u);
+    const double det = u.dot(p), to_b = from.dot(p) / det, to_c = way.dot(q) / det, t = v.dot(q) / det;
+    if (to_b >= 0 && to_c >= 0 && to_b + to_c <= 1 && t > 0) nearest = std::min(nearest, t);
+  }
+  return nearest;
+}
+
+TEST(RayScene, FindsWhatBruteForceFinds) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-1, 1);
+  const auto anywhere = [&] { return Vec3(place(random), place(random), place(random)); };
+  Mesh mesh;
+  for (Index t = 0; t < 200; ++t) {
+    const Vec3 corner = anywhere();
+    for (int k = 0; k < 3; ++k) mesh.positions.emplace_back(corner + 0.2 * anywhere());
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  RayScene scene;
+  const DrawnMesh drawn = mesh.drawn();
+  scene.build({&drawn, 1});
+  int met = 0;
+  for (int packet = 0; packet < 100; ++packet) {
+    Rays rays;
+    rays.wanted = Mask::Constant(-1);
+    rays.wanted[3] = 0;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      rays.origin.set(lane, anywhere().cast<float>());
+      rays.direction.set(lane, anywhere().cast<float>());
+    }
+    const Hits hits = scene.nearest(rays);
+    const Lanes blocked = scene.blocked(rays);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (lane == 3) {
+        EXPECT_EQ(hits.mesh[lane], Hits::kNone);
+        EXPECT_EQ(blocked[lane], 0);
+        continue;
+      }
+      const double expected =
+          nearest_by_brute_force(mesh, rays.origin.at(lane).cast<double>(), rays.direction.at(lane).cast<double>());
+      ASSERT_EQ(hits.mesh[lane] == 0, std::isfinite(expected)) << packet << ", " << lane;
+      EXPECT_EQ(blocked[lane], std::isfinite(expected) ? 1 : 0);
+      if (!std::isfinite(expected)) continue;
+      EXPECT_NEAR(hits.distance[lane], expected, 1e-4 * (1 + expected));
+      ++met;
+    }
+  }
+  EXPECT_GT(met, 100);
+}
+
+TEST(RayScene, TranslucentClothStopsItsFractionOfRays) {
+  const Mesh mesh = rectangle(1, 1, 1);
+  const DrawnMesh drawn = mesh.drawn(0.3f);
+  RayScene scene;
+  scene.build({&drawn, 1});
+  double blocked = 0;
+  constexpr int kPackets = 2000;
+  for (int packet = 0; packet < kPackets; ++packet) {
+    Rays rays;
+    rays.wanted = Mask::Constant(-1);
+    rays.direction.z.setOnes();
+    rays.origin.x.setConstant(0.3f);  // not on the edge that two triangles share
+    rays.seed = static_cast<unsigned>(packet);
+    blocked += scene.blocked(rays).sum();
+  }
+  // Four standard deviations of 16,000 rays.
+  EXPECT_NEAR(blocked / (kLanes * kPackets), 0.3, 4 * std::sqrt(0.3 * 0.7 / (kLanes * kPackets)));
+}
+
+/// Fraction of a cosine lobe over a hemisphere that a rectangle of 2a x 2b at a distance c covers, seen from below its
+/// middle: four times that of a corner (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-4).
+double form_factor(double a, double b, double c) {
+  const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+  return 4 / (2 * std::numbers::pi) * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
+}
+
+Irradiance no_light() {
+  Irradiance irradiance;
+  irradiance.fill(Vec3::Zero());
+  return irradiance;
+}
+
+/// The mean over `count` rays from the origin, about +z with a density of their cosine.
+ReflectedLight::Arriving mean_arriving(const ReflectedLight& light, int count) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  float open = 0;
+  Vector3f sum = Vector3f::Zero();
+  for (int packet = 0; packet < count / kLanes; ++packet) {
+    Rays rays;
+    rays.wanted = Mask::Constant(-1);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const float r = std::sqrt(uniform(random)), turn = 2 * std::numbers::pi_v<float> * uniform(random);
+      rays.direction.set(lane, {r * std::cos(turn), r * std::sin(turn), std::sqrt(1 - r * r)});
+    }
+    const ReflectedLight::Arriving arriving = light.arriving(rays);
+    open += arriving.open.sum();
+    for (int lane = 0; lane < kLanes; ++lane) sum += arriving.light.at(lane);
+  }
+  ReflectedLight::Arriving mean;
+  mean.open[0] = open / static_cast<float>(count);
+  mean.light.set(0, sum / static_cast<float>(count));
+  return mean;
+}
+
+TEST(ReflectedLight, OfARectangleIsItsFormFactor) {
+  constexpr int kRays = 80000;
+  // A sun from below lights the rectangle fully.
+  frame::Light sun;
+  sun.direction = Vec3(0, 0, 1);
+  for (const double height : {0.2, 0.5, 2.0}) {
+    const Mesh mesh = rectangle(0.5, 0.3, height);
+    const DrawnMesh drawn = mesh.drawn();
+    RayScene scene;
+    scene.build({&drawn, 1});
+    const ReflectedLight light(scene, {{{{2, Vector3f(1, 0.5f, 0), Vector3f::Zero()}}}}, {make_lamp(sun, Vec3::Ones())},
+                               no_light(), {}, Vector3f::Zero());
+    const ReflectedLight::Arriving found = mean_arriving(light, kRays);
+    const double expected = form_factor(0.5, 0.3, height);
+    const double noise = 4 * std::sqrt(expected * (1 - expected) / kRays);
+    EXPECT_NEAR(1 - found.open[0], expected, noise) << height;
+    EXPECT_NEAR(found.light.at(0).x(), expected, noise) << height;
+    EXPECT_NEAR(found.light.at(0).y(), 0.5 * expected, noise) << height;
+  }
+}
+
+TEST(ReflectedLight, SurfacesAreShadedByOthers) {
+  // A plate between the sun and the lit rectangle.
+  std::vector<Mesh> meshes{rectangle(0.5, 0.5, 1), rectangle(1, 1, -1)};
+  std::vector<DrawnMesh> drawn;
+  for (const Mesh& mesh : meshes) drawn.push_back(mesh.drawn());
+  RayScene scene;
+  scene.build(drawn);
+  frame::Light sun;
+  sun.direction = Vec3(0, 0, 1);
+  const ReflectingSurface white{{{2, Vector3f::Ones(), Vector3f::Ones()}}};
+  const ReflectedLight light(scene, {white, white}, {make_lamp(sun, Vec3::Ones())}, no_light(), {}, Vector3f::Zero());
+  EXPECT_EQ(mean_arriving(light, 8000).light.at(0), Vector3f::Zero());
+}
+
+/// Points that show a plane in one half of the picture and another, 0.1 m behind it, in the other.
+struct TwoPlanes {
+  static constexpr int kWidth = 40, kHeight = 24;
+  std::vector<Seen> seen;
+  std::vector<Eigen::Vector4f> normals;
+  View view;
+
+  TwoPlanes() {
+    view.tan_half_width = view.tan_half_height = 0.5;
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      const bool left = i % kWidth < kWidth / 2;
+      seen.push_back({left ? 1.0f : 1.1f, static_cast<float>(left ? kFirstSurface : kFirstSurface + 1)});
+      normals.emplace_back(0, 0, 1, 0);
+    }
+  }
+  PixelPoints points(int divisor) const {
+    PixelPoints result(kWidth, kHeight, divisor);
+    const PixelPoints::Kind kinds[] = {PixelPoints::Kind::solid, PixelPoints::Kind::solid};
+    result.read(seen, normals, kinds, view, {});
+    return result;
+  }
+};
+
+TEST(JointFilter, AveragesNoiseButNotTwoSurfaces) {
+  const PixelPoints points = TwoPlanes().points(1);
+  std::vector<Plane> planes(1, Plane(points.width(), points.height(), 0)), scratch = planes;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> noise(-0.1f, 0.1f);
+  const auto level = [&](int x) { return x < points.width() / 2 ? 0.2f : 0.8f; };
+  for (int y = 0; y < points.height(); ++y)
+    for (int x = 0; x < points.width(); ++x) planes[0].row(y)[x] = level(x) + noise(random);
+  for (const int step : {1, 2}) smooth(planes, scratch, points, step);
+  for (int y = 0; y < points.height(); ++y)
+    for (int x = 0; x < points.width(); ++x)
+      // Noise of 0.058 rms; at least 9 of 25 points in the corners, at most four of its deviations.
+      EXPECT_NEAR(planes[0].row(y)[x], level(x), 4 * 0.058 / 3) << x << ", " << y;
+}
+
+TEST(JointFilter, InterpolationKeepsSurfacesApartAndFollowsSlopes) {
+  const TwoPlanes picture;
+  for (const int divisor : {2, 4}) {
+    const PixelPoints few = picture.points(divisor), many = picture.points(1);
+    const auto value = [&](float pixel, bool left) { return left ? 0.01f * pixel : 5.0f; };
+    std::vector<Eigen::Vector4f> values, results(picture.seen.size());
+    for (int y = 0; y < few.height(); ++y)
+      for (int x = 0; x < few.width(); ++x) {
+        const int pixel = x * divisor + divisor / 2;
+        values.push_back(Eigen::Vector4f::Constant(value(static_cast<float>(pixel), pixel < TwoPlanes::kWidth / 2)));
+      }
+    interpolate(values, few, many, 0, many.height(), results);
+    for (int y = 0; y < many.height(); ++y)
+      for (int x = 0; x < many.width(); ++x) {
+        const bool left = x < TwoPlanes::kWidth / 2;
+        // At borders of surfaces and the picture, the nearest point of the surface counts.
+        EXPECT_NEAR(results[static_cast<std::size_t>(y) * many.width() + x][0], value(static_cast<float>(x), left),
+                    left ? 0.01 * divisor : 1e-3)
+            << divisor << ": " << x << ", " << y;
+      }
+  }
+}
+
+/// Fraction of a disc of radius 1 on one side of a line at distance d from its centre, negative beyond it.
+double beyond_line(double d) {
+  if (d <= -1) return 1;
+  if (d >= 1) return 0;
+  return (std::acos(d) - d * std::sqrt(1 - d * d)) / std::numbers::pi;
+}
+
+TEST(TracedLight, PenumbraOfAnEdgeIsThatOfTheSunsDisc) {
+  // A plate 1 m above the floor ends at x = 0; the sun is overhead and 8 degrees wide.
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  add_floor(snapshot).appearance.color = Vec3::Constant(0.5);
+  add_square(snapshot, frame::ObjectKind::obstacle, Vec3(-1.5, 0, 1), Vec3::UnitZ(), Vec3::UnitX(), 1.5)
+      .appearance.color = Vec3::Zero();
+  snapshot.lights = {sun(Vec3(0, 0, -1))};
+  snapshot.lights[0].softness = 8;
+  constexpr int kPixels = 200, kRows = 20;
+  const Vec3 eye(0, -1.2, 0.6);
+  snapshot.cameras = {camera_at(eye, Vec3::Zero(), 12)};
+  const double tangent = std::tan(6 * std::numbers::pi / 180), radius = std::tan(4 * std::numbers::pi / 180);
+  const Vec3 forward = -eye.normalized(), up = Vec3::UnitX().cross(forward);
+  const double lit = image::linear_from_srgb(Vec3::Constant(0.5)).x();
+  for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
+    Settings settings;
+    settings.width = settings.height = kPixels;
+    settings.quality = quality;
+    const image::Image image = Renderer(settings).draw(snapshot);
+    for (int x = 0; x < kPixels; ++x) {
+      double found = 0, expected = 0;
+      for (int y = kPixels / 2 - kRows / 2; y < kPixels / 2 + kRows / 2; ++y) {
+        const Vec3 ray = forward + tangent * (1 - 2 * (y + 0.5) / kPixels) * up;
+        const double place = eye.z() / -ray.z() * tangent * (2 * (x + 0.5) / kPixels - 1);
+        found += image::linear_from_srgb(Vec3::Constant(image.pixel(x, y)[1] / 255.0)).x() / lit / kRows;
+        expected += beyond_line(-place / radius) / kRows;
+      }
+      // The filter spans at most 25 of some 100 pixels; 4 rays for each of 400 pixels leave a noise below 0.01.
+      EXPECT_NEAR(found, expected, 0.03) << static_cast<int>(quality) << ": " << x;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::render
