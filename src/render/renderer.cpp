@@ -45,6 +45,12 @@ void check_states(const frame::FrameSnapshot& snapshot) {
   }
 }
 
+std::vector<TracedLight::Surface> traced_surfaces(std::span<const Shading::Material> materials) {
+  std::vector<TracedLight::Surface> list;
+  for (const auto& each : materials) list.push_back(TracedLight::Surface::of(each.appearance, each.cloth));
+  return list;
+}
+
 /// One snapshot prepared for the passes.
 struct Plan {
   frame::Stage stage;
@@ -125,7 +131,6 @@ struct Renderer::Impl {
     return quality.mirrors && floor_roughness(plan.lighting.style, plan.floor) < kMirrorsSubjects;
   }
   ReflectedLight reflected_light(const Plan& plan, double heat);
-  std::vector<TracedLight::Surface> traced_surfaces(const Plan& plan) const;
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
   void blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
                                std::span<const DrawnMesh> opaque, const PixelArea& area);
@@ -247,23 +252,14 @@ ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
 
   std::vector<ReflectingSurface> surfaces;
   const std::vector<Shading::Material> looks = materials(plan);
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    const bool hot = heat > 0 && looks[i].cloth;  // heat colours reflect no coloured light
-    surfaces.push_back(
-        reflecting_surface(passes->surfaces[i], looks[i].appearance, plan.lighting.style.plain, hot, colors));
-  }
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    surfaces.push_back(reflecting_surface(passes->surfaces[i], looks[i].appearance, plan.lighting.style.plain,
+                                          heat > 0 && looks[i].cloth, colors));  // heat colours reflect nothing
   Eigen::Vector3f floor_color = Eigen::Vector3f::Zero();
   if (plan.floor)
     floor_color = (plan.lighting.style.floor_tint * image::linear_from_srgb(plan.floor->look.color)).cast<float>();
   return {passes->rays, std::move(surfaces), std::move(lamps), irradiance_of(plan.lighting.around),
           plan.floor,   floor_color};
-}
-
-std::vector<TracedLight::Surface> Renderer::Impl::traced_surfaces(const Plan& plan) const {
-  std::vector<TracedLight::Surface> list;
-  for (const Shading::Material& material : materials(plan))
-    list.push_back(TracedLight::Surface::of(material.appearance, material.cloth));
-  return list;
 }
 
 void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
@@ -299,7 +295,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   passes->rays.build(meshes);
   const double heat = heat_scale(snapshot, plan.stage);
   const ReflectedLight light = reflected_light(plan, heat);
-  const std::vector<TracedLight::Surface> traced = traced_surfaces(plan);
+  const std::vector<TracedLight::Surface> traced = traced_surfaces(materials(plan));
   if (reflects(plan)) {
     if (!mirror) mirror.emplace(gl, quality, settings.width, settings.height);
     const View view = mirrored(plan.view, *plan.floor);
@@ -342,7 +338,7 @@ void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const c
   const auto of_sheer = [&](const Seen& at) {
     return at.surface >= kFirstSurface && sheer[static_cast<std::size_t>(at.surface) - kFirstSurface] != 0;
   };
-  const std::vector<TracedLight::Surface> traced = traced_surfaces(plan);
+  const std::vector<TracedLight::Surface> traced = traced_surfaces(materials(plan));
   struct Layer {
     std::vector<std::uint64_t> rgba;
     std::vector<Seen> seen;

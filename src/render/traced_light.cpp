@@ -79,7 +79,8 @@ int spread_number(int x, int y) {
 }
 Vector2f spread(int number) {
   const int a = number % 5, b = number / 5 % 5;
-  const auto shift = static_cast<float>(number / 25);
+  const int block = number / 25;
+  const auto shift = static_cast<float>(block);
   const Vector2f at((static_cast<float>(5 * a + b) + 0.5f) / 25 + 0.7548777f * shift,
                     (static_cast<float>(5 * b + a) + 0.5f) / 25 + 0.5698403f * shift);
   return at - Vector2f(at.array().floor());
@@ -188,7 +189,6 @@ TracedLight::TracedLight(const Gl& gl, const QualitySettings& quality, int width
   const Plane plane(lit_points().width(), lit_points().height(), 1);
   lit_.assign(kMaxLights, plane);
   scratch_.fill(plane);
-  spare_ = plane;
 }
 
 void TracedLight::draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Surface> surfaces,
@@ -236,7 +236,7 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
       places.emplace_back(center + radius * (at.x() * first + at.y() * second));
     }
   }
-  auto& [known, wanted, smoothed, scratch] = scratch_;
+  Plane &known = scratch_[0], &wanted = scratch_[1], &smoothed = scratch_[2], &scratch = scratch_[3];
   known.fill(0);
   wanted.fill(1);
   const auto trace = [&](int first_ray, int last_ray) {
@@ -278,7 +278,7 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
   find_penumbrae(lit, known, points, wanted);
   smoothed = wanted;
   trace(kFirstRays, rays / 2);
-  keep_mixed(lit, known, points, wanted, scratch, spare_);
+  keep_mixed(lit, known, points, wanted, scratch, scratch_[4]);
   trace(rays / 2, rays);
   smooth_where(lit, scratch, smoothed, known, points, 1);
   smooth_where(lit, scratch, wanted, known, points, 2);

@@ -51,8 +51,7 @@ class TracedLight {
   std::vector<Plane> lit_;                             // per lamp
   std::vector<Plane> open_, open_scratch_, mirrored_;  // red, green, blue, fraction
   std::vector<Eigen::Vector3f> directions_;            // of the rays to the surroundings
-  std::array<Plane, 4> scratch_;
-  Plane spare_;
+  std::array<Plane, 5> scratch_;                       // of the size of lit_
   Texture lit_texture_, open_texture_;
   std::optional<Texture> mirrored_texture_;
   std::vector<Seen> seen_;
