@@ -18,6 +18,20 @@ double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
 
+// Limits a contact to what it may open by in a step, from `gap` [m].
+void limit_opening(Contact& contact, double gap, double h) {
+  const double range = std::min(contact.range, gap + contact.full_range * h / numerics.contact.opening_time);
+  contact.depth -= contact.range - range;
+  contact.range = range;
+}
+
+// Distance along the normal at the start of the step; 0 if it is negative.
+double gap_at_start(const FeaturePair& pair, const StepMotion& motion) {
+  double gap = 0;
+  for (std::size_t k = 0; k < 4; ++k) gap += pair.weights[k] * pair.normal.dot(motion.x_t0[pair.vertices[k]]);
+  return std::max(gap, 0.0);
+}
+
 // Pairs one corner of a triangle with the closest point of the other triangle.
 FeaturePair pair_with_corner(Index corner, const Triangle& corners, const FeaturePair& closest) {
   FeaturePair result = closest;
@@ -73,8 +87,10 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
     for (const Proximity& proximity : proximities.subspan(begin, end - begin)) {
       const bool with_cloth = std::ranges::any_of(proximity.vertices, [&](Index v) { return is_cloth(v); });
       const double fraction = stiffness_fraction(proximity, with_cloth);
-      if (fraction > 0 && !pinched.are_pinched(proximity.vertices))
-        list.push_back({&proximity, fraction, build(proximity, fraction, kNoLimit, motion)});
+      if (!(fraction > 0) || pinched.are_pinched(proximity.vertices)) continue;
+      auto contact = build(proximity, fraction, kNoLimit, motion);
+      if (contact) limit_opening(*contact, gap_at_start(proximity, motion), motion.h);
+      list.push_back({&proximity, fraction, contact});
     }
   });
   for (const auto& [proximity, fraction, contact] : all) {
@@ -86,9 +102,9 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
 void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotion& motion,
                                  ContactResponse& response) const {
   const double fraction = push.is_exit_clear ? 1 : numerics.contact.depenetration_stiffness;
-  auto contact = build(push.exit_pair, fraction,
-                       push.exit_pair.distance + numerics.contact.depenetration_velocity * motion.h, motion);
+  auto contact = build(push.exit_pair, fraction, kNoLimit, motion);
   if (!contact) return;
+  limit_opening(*contact, push.exit_pair.distance, motion.h);
   contact->full_range = kNoLimit;  // keep the stiffness constant with depth
   contact->friction = contact->static_friction = 0;
   response.add(*contact, motion.x_t0);
@@ -106,9 +122,10 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& 
     add_walls(pair, closest, motion, response);
     return is_new;
   }
-  const double range = motion.is_straight() ? distance : kNoLimit;
-  if (is_new)
-    if (const auto contact = build(closest, 1, range, motion)) response.add(*contact, motion.x_t0);
+  if (auto contact = is_new ? build(closest, 1, motion.is_straight() ? distance : kNoLimit, motion) : std::nullopt) {
+    limit_opening(*contact, distance, motion.h);
+    response.add(*contact, motion.x_t0);
+  }
   if (!motion.is_straight()) add_corners(pair, closest, motion, response);
   return is_new;
 }

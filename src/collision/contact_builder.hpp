@@ -61,13 +61,13 @@ class ContactBuilder {
            ContactResponse& response);
 
   /// Adds the contact that pushes pinched cloth back to its own side of the obstacle, without friction and no faster
-  /// than the maximum depenetration speed. If the exit is blocked, the stiffness is reduced, so that two obstacles do
-  /// not clamp the cloth.
+  /// than contacts open (`Contact::opening_time`). If the exit is blocked, the stiffness is reduced, so that two
+  /// obstacles do not clamp the cloth.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts between the closest features of two triangles without a separating plane; returns false if these
   /// features have full stiffness already. Before Engine::continue_from the contact only prevents a pair inside the
-  /// activation distance from coming closer. After it, the contact restores the full activation distance, and further
+  /// activation distance from coming closer. After it, the contact restores the activation distance, and further
   /// contacts keep each corner on its side of the plane between the triangles, because other features could slide past
   /// the closest ones and meet there. With velocity constraints, the corners of cloth near an obstacle get walls
   /// instead. `features`: the closest features at x_from.
