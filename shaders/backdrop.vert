@@ -1,4 +1,4 @@
-// Backdrop behind everything, computed at the corners of a grid as open floor is.
+// Backdrop behind everything. Like open floor, it is computed at the corners of a grid.
 #include "shading.glsl"
 #include "stage.glsl"
 layout(location = 0) in vec2 corner_clip;

@@ -1,5 +1,5 @@
-// Infinite floor: lit as a matte surface near the subjects, in the backdrop's colour far away. OPEN: for most floor,
-// on which no light is missing.
+// Infinite floor: near the subjects it is lit as a matte surface; far away it has the backdrop's colour. OPEN: variant
+// for floor without shadow or occlusion, which is most of it.
 #include "shading.glsl"
 #include "traced_light.glsl"
 #include "open_floor.glsl"
@@ -13,8 +13,8 @@ uniform vec4 picture_across, picture_up;  // maps from (x, y, z, 1) in the world
 uniform float tint;
 #endif
 
-// Tiles of 0.5 m as a faint two-tone pattern, averaged over the pixel (box filter of a triangle wave, as in Quilez,
-// "Filtering the checkerboard").
+// Checkerboard, from 0 to 1, averaged over the pixel (box filter of a triangle wave, as in Quilez, "Filtering the
+// checkerboard"). `at`: position [tiles].
 float tiles(vec2 at) {
   vec2 w = max(max(abs(dFdx(at)), abs(dFdy(at))), 1e-4);
   vec2 i = 2.0 * (abs(fract((at - 0.5 * w) * 0.5) - 0.5) - abs(fract((at + 0.5 * w) * 0.5) - 0.5)) / w;
@@ -55,7 +55,7 @@ void main() {
 #endif
   color = vec4(encode(linear), 1.0);
 #ifdef REFLECTING
-  // Schlick's approximation of Fresnel's law; a rough floor reflects less at grazing angles (Lagarde 2011).
+  // Schlick's approximation of Fresnel's equations; a rough floor reflects less at grazing angles (Lagarde 2011).
   float roughness = frame.center_world.w, edge = 1.0 - max(-dot(normalize(ray_world), n), 0.0);
   float share = 0.04 + max(0.96 - roughness, 0.0) * edge * edge * edge * edge * edge;
   share *= 1.0 - away_from_subjects(position_world);

@@ -3,14 +3,14 @@ layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;
   mat4 view_from_world;
   vec4 eye_world;          // w: radius of the surroundings [m]
-  vec4 center_world;       // of the surroundings; w: roughness of the floor
+  vec4 center_world;       // centre of the surroundings; w: roughness of the floor
   vec4 up_world;
   vec4 right_world;        // right axis of the camera
   vec4 sky;                // linear light from above
-  vec4 horizon;            // from the sides; w: linear light below which the look darkens tones
-  vec4 ground;             // from below
-  vec4 backdrop;           // linear colour at the horizon; w: fraction that it loses far from the subjects
-  vec4 backdrop_top;       // straight above
+  vec4 horizon;            // linear light from the sides; w: linear light below which the look darkens tones
+  vec4 ground;             // linear light from below
+  vec4 backdrop;           // linear colour at the horizon; w: fraction by which it is darker far from the subjects
+  vec4 backdrop_top;       // linear colour straight above
   vec4 viewport;           // width, height [pixels], and their reciprocals
   vec4 frustum;            // tangents of half the field of view, near, far [m]
   vec4 floor_plane_world;  // unit normal, upward; w: height of the eye above it [m]
@@ -24,7 +24,7 @@ layout(std140, binding = 0) uniform Frame {
 const float kNothing = 0.0, kFloor = 1.0, kFirstSurface = 2.0;
 const float kSolid = -1e6;  // heat value of surfaces other than cloth
 
-// View-space position at `uv` (0 to 1 across the picture), `distance` metres away along the view axis.
+// View-space position at `uv` (0 to 1 across the picture), at `distance` along the view axis [m].
 vec3 position_view(vec2 uv, float distance) {
   return vec3((uv * 2.0 - 1.0) * frame.frustum.xy * distance, -distance);
 }
@@ -35,8 +35,8 @@ vec3 world_from_view(vec3 direction_view) { return transpose(mat3(frame.view_fro
 float pixel_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
 
 // Points evenly spread over a disc of radius 1 (Vogel 1979): point k of n is sqrt((k + 1/2) / n) times a direction that
-// turns by the golden angle each time. Computed incrementally, because a sine and cosine per point would cost more than
-// the lookup. `turn` in [0,1) sets the first direction.
+// turns by the golden angle from point to point. Directions are computed incrementally, because a sine and cosine per
+// point would cost more than a texture lookup. `turn` in [0,1) sets the first direction.
 vec2 first_direction(float turn) {
   vec2 corner = vec2(abs(4.0 * turn - 2.0) - 1.0, abs(4.0 * fract(turn + 0.25) - 2.0) - 1.0);
   return normalize(corner);

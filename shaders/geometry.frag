@@ -1,7 +1,8 @@
-// Surface data of each pixel for deferred shading: llvmpipe shades whole 4x4 blocks for every triangle that touches
-// them, about eight times the visible pixels for the small triangles of cloth. The floor writes `seen` only.
+// Surface data of each pixel for deferred shading. Without it, llvmpipe would shade whole 4x4 blocks for every triangle
+// that touches them: for the small triangles of cloth, about eight times the visible pixels. The floor writes only
+// distance_surface.
 #include "frame.glsl"
-const float kMostRise = 0.02;  // limit of rise() [m]: invalid where normals of both sides of a fold meet
+const float kMostRise = 0.02;  // limit of rise() [m], for triangles at folds, whose corner normals differ too much
 in vec3 surface_normal_world;
 in vec2 surface_uv;
 in float surface_heat;
@@ -11,8 +12,8 @@ layout(location = 0) out vec4 normal_heat;       // world, towards the viewer; l
 layout(location = 1) out vec2 rest_uv;
 layout(location = 2) out vec2 distance_surface;  // frame.glsl
 #ifdef PAINTED
-// If the picture contains paint: w above 0.5 where painted, below 1 where a picture over a colour is transparent; xyz:
-// square root of linear colour, which suits 8 bits.
+// Output for the paint of a pixel. xyz: square root of the linear colour, which needs only 8 bits. w: above 0.5 if the
+// pixel is painted; below 1 if its picture lies over a colour and is transparent there.
 #ifdef PICTURED
 in vec2 place;
 layout(binding = 10) uniform sampler2D picture;  // linear, premultiplied
@@ -30,8 +31,8 @@ layout(location = 4) out vec4 trims;  // trim.glsl
 layout(binding = 12) uniform sampler2D peeled;  // distances up to which layers are already peeled
 #endif
 
-// Distance of the smooth surface outside its triangle, along the normal [m]: the mean of the tangent planes at the
-// corners, weighted by barycentric weights (Hanika, "Hacking the Shadow Terminator", 2021).
+// Height of the smooth surface above its triangle, along the normal [m]: the mean of the tangent planes at the corners,
+// with barycentric weights (Hanika, "Hacking the Shadow Terminator", 2021).
 float rise(vec3 n) {
   vec3 p = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, 1.0 / gl_FragCoord.w));
   vec3 products = normal_products.zxy * p.yzx + normal_products.yzx * p.zxy;

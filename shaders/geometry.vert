@@ -18,8 +18,8 @@ uniform float nearer;  // depth offset towards the viewer [m]
 out vec3 surface_normal_world;
 out vec2 surface_uv;
 out float surface_heat;
-// For rise() in geometry.frag: squares and products of the normal n; n times dot(n, p), with p the position from the
-// eye.
+// For rise() in geometry.frag: squares and products of the components of the normal n; n times dot(n, p), where p is
+// the position relative to the eye.
 out vec3 normal_squares, normal_products, plane;
 invariant gl_Position;
 out float gl_ClipDistance[1];  // height above the floor, for mirror.hpp
@@ -37,7 +37,7 @@ void main() {
   trim_distances = vertex_trim_distances;
   trim_places = vertex_trim_places;
 #endif
-  // llvmpipe clips here even if GL_CLIP_DISTANCE0 is off: without a millimetre of tolerance, rounding removes the floor
+  // llvmpipe clips at 0 even if GL_CLIP_DISTANCE0 is off: without a millimetre of tolerance, rounding removes the floor
   // itself.
   gl_ClipDistance[0] =
       dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w + 1e-3;

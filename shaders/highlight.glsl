@@ -9,12 +9,12 @@ float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
 }
 
 #ifdef METAL
-// The same with a reflectance per channel.
+// Same as highlight(), with a reflectance per channel.
 vec3 colored_highlight(vec3 n, vec3 v, vec3 l, float alpha, vec3 f0) {
   float grazing = 1.0 - max(dot(l, normalize(v + l)), 0.0);
   return highlight(n, v, l, alpha, 1.0) * (f0 + (1.0 - f0) * (grazing * grazing * grazing * grazing * grazing));
 }
 #endif
 
-// Reflectance at normal incidence: on rough surfaces, facets shadow each other.
+// Reflectance at normal incidence. It is smaller on rough surfaces, whose facets shadow each other.
 float head_on(float roughness) { return 0.04 * (1.0 - 0.9 * roughness * roughness); }

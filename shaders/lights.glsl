@@ -4,11 +4,11 @@ struct Light {
   vec4 position_world;            // w: cosine of half the cone angle
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
 };
-// LIGHTS of these are valid, at least one. Index by constants: llvmpipe reads a member at a variable index once per
-// pixel.
+// The first LIGHTS entries are valid, at least one. Index them by constants: with a variable index, llvmpipe reads a
+// member again for each pixel.
 layout(std140, binding = 1) uniform Lights { Light lights[4]; };
-// Unit vector towards light i. `cone`: its intensity at the point within its cone, 1 at the target, with inverse square
-// falloff.
+// Unit vector towards light i. `cone`: intensity of the light at the point: for a spot, inverse square falloff from 1
+// at the target, and 0 outside the cone.
 vec3 toward_light(int i, vec3 position_world, out float cone) {
   cone = 1.0;
 #ifdef SPOTS

@@ -5,12 +5,12 @@
 #include "highlight.glsl"
 #endif
 
-// Intersection of the ray of a pixel with the floor.
+// Intersection of the ray of a pixel with the floor. n: normal, v: direction towards the eye.
 struct FloorPoint {
   vec3 position_world, n, v, albedo;
 };
 
-// Light i as reflected by the floor. SHINY: with a highlight of the lamp.
+// Light i, reflected by the floor. SHINY: adds a highlight of the lamp.
 vec3 light_on_floor(int i, FloorPoint at) {
   float cone;
   vec3 l = toward_light(i, at.position_world, cone);
@@ -33,8 +33,8 @@ vec3 fade_out(vec3 color, vec3 position_world, vec3 ray_world) {
   return mix(color, backdrop_color(normalize(ray_world)), away_from_subjects(position_world));
 }
 
-// Distance along the view axis [m]; `ray_world` advances one metre along it. Rays to the floor go down; the bound
-// covers rays whose slope rounds to zero near the horizon, where all is backdrop.
+// Distance of the floor along the view axis [m]; `ray_world` advances one metre along this axis. The bound 1e-6 is for
+// rays near the horizon, whose slope rounds to zero; there, the floor has faded into the backdrop.
 float floor_distance(vec3 ray_world) {
   return frame.floor_plane_world.w / max(-dot(frame.floor_plane_world.xyz, ray_world), 1e-6);
 }

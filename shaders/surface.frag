@@ -11,9 +11,10 @@
 layout(binding = 4) uniform sampler2D normals_heat;
 layout(binding = 5) uniform sampler2D rest_uvs;
 layout(binding = 8) uniform sampler2D distances_surfaces;
-// One row per surface, by column: front colour, roughness; back colour, thread spacing; heat scale, hem [m], thickness
-// [m], distance of stitches from seams [m]; cloth: gloss, warp fraction, fuzz, sheer (else: coat, metal); opacity,
-// threads, skin.
+// One row per surface. Columns:
+// 0: front colour; roughness. 1: back colour; thread spacing [m].
+// 2: heat scale, width of hem [m], thickness [m], distance of stitches from seams [m].
+// 3: gloss, warp fraction, fuzz, sheer of cloth; coat, metal of other surfaces. 4: opacity, threads, skin.
 layout(binding = 7) uniform sampler2D materials;
 layout(binding = 6) uniform sampler2D heat_colors;
 #ifdef PAINTED
@@ -29,7 +30,7 @@ float thread_highlight(vec3 n, vec3 t, vec3 b, vec3 v, vec3 l) {
   vec3 h = normalize(v + l);
   float h_t = dot(h, t) / kAlong, h_b = dot(h, b) / kAcross, h_n = dot(h, n), d = h_t * h_t + h_b * h_b + h_n * h_n;
   float n_l = max(dot(n, l), 0.0), n_v = max(dot(n, v), 0.05);
-  d = max(d, 1.0);  // true for orthogonal t, b and n; derivatives across outlines violate it
+  d = max(d, 1.0);  // holds if t, b and n are orthogonal; derivatives across outlines can violate this
   return n_l / (kAlong * kAcross * d * d * 4.0 * (n_l + n_v - n_l * n_v));
 }
 #endif
@@ -55,7 +56,7 @@ const float kThreadShine = 0.14;  // reflectance factor of threads with full glo
 // Below skin, red light travels farthest and dominates where it emerges: beside the terminator and in penumbrae. Tuned
 // by eye, from profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
 const vec3 kScattered = vec3(0.50, 0.17, 0.06);
-const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // cosines up to which light emerges behind the terminator
+const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // light emerges behind the terminator up to minus this cosine
 vec3 scattered(float share, float skin) { return mix(vec3(share), vec3(share * (2.0 - share)), skin * kScattered); }
 // The clamped cosine with its kink at the terminator smoothed.
 vec3 scattered_cosine(float cosine, float skin) {
@@ -76,7 +77,7 @@ void add_light(inout LightSums sums, int i, Point at, float lit) {
   sums.diffuse += strength * (max(dot(at.n, l), 0.0) * smoothstep(0.0, 0.06, side));
 #endif
 #ifdef CLOTH
-  // Light from the far side passes between the threads.
+  // Light from the other side of the cloth passes between the threads.
   sums.through += strength * max(-side, 0.0);
   float shine = highlight(at.n, at.v, l, max(at.alpha, 0.2), at.f0);
 #ifdef GLOSSY
@@ -109,7 +110,8 @@ void main() {
   vec3 offset_world = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, distance_view));
   at.position_world = offset_world + frame.eye_world.xyz;
   at.v = -normalize(offset_world);
-  // Near outlines, a smooth normal may point away from the eye: bend it back to the horizon.
+  // Near outlines, the smooth normal may point away from the eye. Then it is tilted until it is nearly perpendicular to
+  // the line of sight.
   vec3 n_seen = normalize(normal_heat.xyz);
   at.n = at.n_smooth = normalize(n_seen + at.v * max(0.02 - dot(n_seen, at.v), 0.0));
   float roughness = front_roughness.w;
@@ -130,7 +132,7 @@ void main() {
   if (paint.w > 0.5) {
     albedo = paint.rgb * paint.rgb;
 #ifdef SKIN
-    // Only colours that skin can have; painted hair and shoes shine more.
+    // Only colours that skin can have are shaded as skin; painted hair and shoes are glossier.
     float bare = opacity_threads.z * clamp(2.5 * (1.0 - paint.w), 0.0, 1.0);
     at.skin = bare * smoothstep(0.01, 0.12, albedo.r - albedo.b);
     at.alpha = mix(at.alpha, min(at.alpha, 0.18), opacity_threads.z - bare);
@@ -142,8 +144,8 @@ void main() {
 #endif
 #ifdef CLOTH
   at.finish = texelFetch(materials, ivec2(3, row), 0);
-  at.finish.x *= at.finish.x * at.finish.x;  // the scale from cotton to satin spans two orders of magnitude
-  // Derivatives also read pixels beside cloth, where stale data of an earlier picture may remain.
+  at.finish.x *= at.finish.x * at.finish.x;  // cubed: highlights of cotton and satin differ a hundredfold
+  // Derivatives also use pixels beside cloth, whose rest coordinates may be left from an earlier picture.
   vec2 rest_uv = row < 0 ? vec2(0.0) : texelFetch(rest_uvs, pixel, 0).xy;
   int threads = int(opacity_threads.y);
   Weave woven = weave(rest_uv, row < 0 ? 0.0 : back_spacing.w, threads, at.finish.z, at.n, at.position_world);
@@ -177,7 +179,7 @@ void main() {
 
   vec4 lit = texelFetch(lamps_lit, pixel, 0), from_surfaces = texelFetch(surface_light, pixel, 0);
   float open = from_surfaces.w;
-  // Light that shaded floor lacks may exceed what is open.
+  // `from_surfaces` is negative near shaded floor and may exceed the open light, hence the lower bound.
   vec3 around_light = irradiance(at.n) * open;
   around_light = max(around_light + from_surfaces.rgb, 0.1 * around_light);
   LightSums light = LightSums(around_light, vec3(0.0), vec3(0.0));
@@ -194,7 +196,7 @@ void main() {
 
   float edge = 1.0 - max(dot(at.n_smooth, at.v), 0.0), rim = edge * edge * edge * edge;
 #ifdef CLOTH
-  // Fibres that stand out catch light at grazing angles: a soft sheen in a paler tone of the cloth.
+  // Protruding fibres scatter light at grazing angles: a soft sheen in a paler tone of the cloth.
   vec3 pale = mix(albedo, vec3(0.6), 0.35);
   vec3 sheen = pale * light.diffuse * (at.finish.z * edge * edge * edge);
   vec3 through = irradiance(-at.n_smooth) * open + light.through;
@@ -206,10 +208,10 @@ void main() {
   vec3 linear = albedo * (light.diffuse * (1.0 - 0.4 * max(at.finish.w - 0.3, 0.0)) + at.finish.w * behind * through) + sheen +
                 light.gloss + around;
 #elif defined(METAL)
-  // Nearby surfaces in the mirrored direction hide the surroundings and show their own light; shaded floor subtracts.
+  // Nearby surfaces in the mirrored direction cover the surroundings and add their own light; shaded floor subtracts.
   vec3 mirrored = reflect(-at.v, at.n);
   vec4 near_by = texelFetch(mirrored_surfaces, pixel, 0);
-  // Rays go out from metal and coats only.
+  // Mirror rays exist only for metal and coats; other surfaces use the open fraction of the surroundings.
   float past = at.finish.x + at.finish.y > 0.0 ? 1.0 - near_by.w : open;
   vec3 share = at.colored_f0 + (1.0 - at.colored_f0) * rim * (1.0 - roughness);
   vec3 around = surroundings(mirrored, at.alpha) * past, above = surroundings(mirrored, kCoatAlpha) * past;
@@ -220,7 +222,7 @@ void main() {
   vec3 linear = mix(base, above, coat) + light.gloss;
 #else
 #ifdef SKIN
-  // Fine hairs catch light at grazing angles.
+  // Fine hairs scatter light at grazing angles.
   light.diffuse *= 1.0 + 0.35 * at.skin * edge * edge * edge;
 #endif
   float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * open;

@@ -2,7 +2,7 @@
 // contribute by their coverage, which avoids moiré and shimmer. Include after weave.glsl.
 layout(binding = 11) uniform sampler2D trims;  // distances from border and seam, position along the nearer one [m]
 
-// All [m]. Stitches pull a groove into the cloth.
+// Lengths in [m]. Stitches pull a groove into the cloth.
 const float kStitchFromFold = 0.002;  // distance of a hem's stitches from its inner edge
 const float kGroove = 0.0011, kThread = 0.00028;  // half widths
 const float kStitch = 0.0032;  // stitch pitch
@@ -24,12 +24,13 @@ float on_top(float along, float width) {
   return sum * kStitch / width;
 }
 
-// Tone of a stitch line at `center`: the thread is paler, its holes are dark, the groove is shaded.
+// Factor on the colour at a stitch line at `center`: thread on top is paler, where it is below the cloth there is a
+// dark hole, and the groove is shaded.
 float stitches(float at, float width, float center, float shown) {
   return 1.0 - 0.16 * band(at, width, center, kGroove) + band(at, width, center, kThread) * mix(-0.5, 0.16, shown);
 }
 
-// Stitches of one thread or two, the second at distance `beside` from the first.
+// A stitch line or, in knits and denim, two, the second at distance `beside` from the first.
 struct Rows {
   float tone, thread;  // thread: fraction of the pixel that it covers
 };
@@ -42,7 +43,7 @@ Rows rows(float at, float width, float center, float beside, float shown, int th
   return result;
 }
 
-// Slope of cloth with the distance from a stitch line.
+// Slope of the cloth in the groove of a stitch line.
 float groove(float at, float width, float center) {
   return band(at, width, center, kGroove) * 0.55 * clamp((at - center) / kGroove, -1.0, 1.0) * step(width, kGroove);
 }
@@ -54,15 +55,16 @@ struct Trimmed {
   float thread;  // fraction of the pixel that shows stitches of another colour
 };
 
-// `look`: width of the hem, thickness of the cloth, distance of stitches from seams (0: none) [m]. `pixel_width`: of a
-// pixel at normal incidence [m].
+// `look`: width of the hem, thickness of the cloth, distance of stitches from seams (0: none) [m]. `pixel_width`: width
+// of a pixel on a surface at normal incidence [m].
 Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front, int threads, Weave woven, vec3 n_world) {
   vec3 at = texelFetch(trims, pixel, 0).xyz;
   vec3 right = dFdx(at), up = dFdy(at), width = clamp(abs(right) + abs(up), 1e-6, 1.0);
   // Directions of increasing distance from border and seam, in the surface.
   vec2 u_right = dFdx(rest_uv), u_up = dFdy(rest_uv);
   float area = u_right.x * u_up.y - u_right.y * u_up.x, sense = area < 0.0 ? -1.0 : 1.0;
-  // On the seam itself, neighbours on both sides have equal distances, and derivatives would give a zero width.
+  // On the seam itself, neighbouring pixels on both sides have equal distances. Their derivative, the pixel's width
+  // across the seam, would be zero.
   width.xy = max(width.xy, 0.7 * min(sqrt(abs(area)), 1.0));
   if (woven.at_outline) width = vec3(pixel_width);
   float hem = look.x, thickness = max(look.y, 1e-5), shown = on_top(at.z, width.z);
@@ -71,7 +73,7 @@ Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front
   inward *= inversesqrt(max(dot(inward, inward), 1e-20));
   aside *= inversesqrt(max(dot(aside, aside), 1e-20));
 
-  // The edge is rounded. A hem ends in a step on the back, slightly visible on the front.
+  // The edge of the cloth is rounded. A hem ends in a step on the back, which is slightly visible on the front.
   float fold = hem > 0.0 ? 2.0 * thickness : 0.5 * thickness;
   float rise = band(at.x, width.x, 0.5 * fold, 0.5 * fold) * 0.8, tone = 1.0, thread = 0.0;
   if (hem > 0.0) {

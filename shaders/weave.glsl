@@ -1,12 +1,12 @@
-// Threads drawn in rest coordinates: plain weave, 3/1 twill, face side of a jersey, or loose fibres; each yarn slightly
-// different in tone. Every feature fades to its mean before it becomes smaller than two pixels, so that nothing
+// Threads drawn in rest coordinates: plain weave, 3/1 twill, face side of a jersey, or loose fibres. Yarns differ
+// slightly in tone. Every feature fades to its mean before it becomes smaller than two pixels, so that nothing
 // shimmers.
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
-const float kUneven = 0.15;  // maximum relative deviation of a yarn's tone; times 0.7 for each threefold size
+const float kUneven = 0.15;  // maximum relative deviation of a yarn's tone; each threefold size has 0.7 of it
 
 float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
-// From -1 to 1, with opposite contributions to neighbouring threads: without slow variation, no bands remain visible
-// where the threads themselves have faded.
+// Random number from -1 to 1 for a thread. Neighbouring threads have opposite contributions: there is no slow
+// variation, which would be visible as bands after the threads themselves have faded.
 float thread_noise(float thread) { return noise(thread + 1.0) - noise(thread); }
 
 // Random value from -0.5 to 0.5 for each cell.
@@ -29,18 +29,18 @@ struct Weave {
   vec3 normal_world;
   float tone;   // factor on the colour
   float shine;  // factor on the highlight
-  float weft;   // visible fraction of weft, for weft with its own colour
+  float weft;   // visible fraction of weft, for cloth whose weft has another colour (denim)
   vec3 weft_world, warp_world;  // directions of the threads
-  bool at_outline;              // derivatives cross an outline and are invalid
+  bool at_outline;              // derivatives cross an outline and are therefore invalid
 };
 
-// 1 while a feature of `size` is well above the pixel's footprint, 0 when it is below two pixels.
+// 1 if `size` of a feature is well above the pixel's footprint, 0 if it is below two pixels.
 float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.22, 0.5, footprint / size); }
 
 // The yarn on top at one point.
 struct Top {
   float height;  // minus its mean
-  vec2 tilt;     // of the normal along weft and warp
+  vec2 tilt;     // tilt of the normal along weft and warp
   float yarn;    // random seed, different for each thread
   bool weft;
 };
@@ -74,9 +74,9 @@ Top knit_top(vec2 thread) {
   return Top(height - 0.717, tilt, floor(thread.x) + 37.0, false);
 }
 
-// Tone variation along yarns, at three sizes, each some threads wide and eight times as long; sizes that the pixel
-// cannot resolve fade. The warp of denim is dyed unevenly, and fibres that stand out vary in tone. `footprint`: of a
-// pixel along weft and warp; at oblique view, the yarns of one direction may still be resolved.
+// Tone variation along yarns, at three sizes: each is some threads wide and eight times as long. Sizes below the
+// pixel's resolution fade. The warp of denim is dyed unevenly, and protruding fibres vary in tone. `footprint`: size of
+// the pixel along weft and warp [threads]; at oblique view, the yarns of one direction may still be resolved.
 float uneven_tone(vec2 thread, vec2 footprint, int threads, float fuzz) {
   vec2 share = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
   float length_share = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;
@@ -92,17 +92,18 @@ float uneven_tone(vec2 thread, vec2 footprint, int threads, float fuzz) {
                        seen.y * share.y * unevenness(at.yx * vec2(length_share, 1.0) + 71.0));
   }
   float seen = visible_feature(max(footprint.x, footprint.y), 1.0) * fibres;
-  // Pressed fibres lie in all directions, spun fibres along their yarns.
+  // Fibres of felt lie in all directions, spun fibres along their yarns.
   mat2 lie = threads == kNone ? mat2(0.9, 0.5, -0.5, 0.9) : mat2(1.3, 0.0, 0.0, 0.4);
   if (seen > 0.0) tone *= 1.0 + 0.5 * seen * (unevenness(lie * thread) + unevenness(lie * thread.yx + 31.0));
   return tone;
 }
 
 Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, vec3 p_world) {
-  // Derivatives may include pixels of other surfaces, which have no spacing; cloth without threads has a grain.
+  // If the spacing is 0, a tiny one keeps the directions of weft and warp defined. It is 0 for cloth without drawn
+  // threads, and for pixels of other surfaces, which derivatives may include.
   vec2 thread = rest_uv / max(spacing, 1e-6);
   vec2 across = dFdx(thread), down = dFdy(thread);
-  // Pixel footprint: along each thread direction, the maximum of both, and across the lines of a twill.
+  // Pixel footprint [threads]: along each thread direction, the larger of both, and across the lines of a twill.
   vec2 along_axes = vec2(length(vec2(across.x, down.x)), length(vec2(across.y, down.y)));
   float footprint = max(length(across), length(down)), across_lines = length(vec2(across.y - across.x, down.y - down.x));
   // Gradients of weft and warp in the surface, from screen derivatives.
@@ -111,7 +112,8 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   float area = across.x * down.y - across.y * down.x;
   weft *= sign(area) * inversesqrt(max(dot(weft, weft), 1e-20));
   warp *= sign(area) * inversesqrt(max(dot(warp, warp), 1e-20));
-  // Threads hardly stretch: if rest coordinates and positions change by very different amounts, there is an outline.
+  // Threads hardly stretch. If rest coordinates and positions change by very different amounts, the pixel is therefore
+  // at an outline.
   float along_threads = spacing * spacing * max(dot(across, across), dot(down, down)),
         in_space = max(dot(p_dx, p_dx), dot(p_dy, p_dy));
   bool at_outline = spacing > 0.0 && (along_threads > 4.0 * in_space || in_space > 4.0 * along_threads);
@@ -136,7 +138,7 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   if (fine > 0.0 && threads != kNone) {
     Top top = threads == kPlain ? plain_top(thread) : threads == kKnit ? knit_top(thread) : twill_top(thread);
     result.normal_world = normalize(n_world + 0.75 * fine * (top.tilt.x * weft + top.tilt.y * warp));
-    // Height minus its mean, so that the tone stays the same when threads fade.
+    // top.height has mean 0, so that the tone stays the same when threads fade.
     result.tone *= 1.0 + fine * (0.85 * top.height + 0.07 * thread_noise(top.yarn));
     result.shine = 1.0 + fine * top.height;
     result.weft = mix(result.weft, top.weft ? 1.0 : 0.0, fine);
@@ -144,8 +146,8 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   return result;
 }
 
-// Colour of denim with the fraction `weft` of undyed weft on top; `cloth` is the mean colour, at a fraction of a
-// quarter.
+// Colour of denim if the fraction `weft` of what is on top is undyed weft. `cloth`: the mean colour, where this
+// fraction is a quarter.
 vec3 denim_color(vec3 cloth, float weft) {
   const float kPaler = 2.2, kDye = 0.35;
   vec3 undyed = kPaler * mix(vec3(dot(cloth, vec3(0.2126, 0.7152, 0.0722))), cloth, kDye);

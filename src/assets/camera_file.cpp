@@ -18,8 +18,8 @@
 namespace weft::assets {
 namespace {
 
-/// Maximum time between samples of the motion [s]: a camera that circles its target by 90 degrees in a second is then
-/// off by 0.0001 of the distance.
+/// Maximum time between samples of the motion [s]. Linear interpolation then has an error of 0.0001 of the distance,
+/// for a camera that circles its target by 90 degrees in a second.
 constexpr double kMaxSampleInterval = 0.02;
 
 /// Longer shots are treated as damaged [s].
@@ -27,7 +27,7 @@ constexpr double kMaxShotLength = 3600;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// Value of a channel at a time [ticks]; before the first key its value, after the last key that of the last.
+/// Value of a channel at a time [ticks]; constant before the first and after the last key.
 template <class Key, class Between>
 auto value_at(std::span<const Key> keys, double ticks, const Between& between) {
   const auto next = std::ranges::find_if(keys, [&](const Key& key) { return key.mTime > ticks; });
@@ -80,7 +80,8 @@ aiMatrix4x4 world_at(const aiNode& node, const aiAnimation* animation, double ti
   return world;
 }
 
-/// All key times of the nodes from the camera to the root, refined in between [s].
+/// All key times of the nodes from the camera to the root [s], with further times in between, at most
+/// kMaxSampleInterval apart.
 std::vector<double> times_of(const aiNode& node, const aiAnimation& animation) {
   const double rate = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 1;
   std::set<double> keys;
@@ -120,7 +121,7 @@ void add_view(LoadedCamera& camera, const aiCamera& from, const aiMatrix4x4& wor
   camera.times.push_back(time);
   camera.positions.push_back(position);
   camera.forward.push_back(forward);
-  // The side vector of an untilted camera is horizontal.
+  // The side vector of a camera without roll is horizontal.
   camera.roll = std::max(camera.roll, kDegrees * std::asin(std::min(1.0, std::abs(forward.cross(up).y()))));
 }
 
@@ -146,7 +147,7 @@ LoadedCamera read_camera(const std::filesystem::path& file, const std::string& o
   for (const aiAnimation* each : std::span(scene.mAnimations, scene.mNumAnimations))
     if (animation == nullptr && moves(*each, *node)) animation = each;
   LoadedCamera camera;
-  // The vertical angle: assimp 5.2 multiplies it by the aspect ratio if the file has one.
+  // glTF gives the vertical angle; assimp 5.2 multiplies it by the aspect ratio if the file has one.
   camera.field_of_view = kDegrees * from.mHorizontalFOV / (from.mAspect > 0 ? from.mAspect : 1);
   const double rate = animation != nullptr && animation->mTicksPerSecond > 0 ? animation->mTicksPerSecond : 1;
   for (const double time : animation != nullptr ? times_of(*node, *animation) : std::vector<double>{0})

@@ -38,7 +38,7 @@ void serialize(Archive& archive, character::Coloring& coloring) {
   serialize_plain(archive, coloring.uv);
 }
 
-/// Writing and reading use the same list of members, so that they cannot differ.
+/// Lists the members for both writing and reading, so that these cannot differ.
 template <class Archive>
 void serialize(Archive& archive, ReadCharacter& read) {
   character::Character& character = read.character;

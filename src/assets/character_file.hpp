@@ -22,16 +22,16 @@ struct FileAxes {
 struct LoadedCharacter {
   character::Character character;     ///< in metres and the axes of the scene
   std::vector<std::string> warnings;  ///< each names scene entry, file, and mesh, bone or clip
-  double scale = 1;                   ///< metres per unit of the file that was applied
+  double scale = 1;                   ///< applied metres per unit of the file
 };
 
-/// Reads hierarchy, skin, morph targets and clips of glTF, FBX, Collada, X, B3D, BVH and other formats of assimp, in a
-/// child process. A skeleton without a mesh gets a mesh of sticks. `where` names the scene entry. Throws
+/// Reads hierarchy, skin, morph targets and clips in a child process. Formats: glTF, FBX, Collada, X, B3D, BVH and
+/// others of assimp. A skeleton without a mesh gets a mesh of sticks. `where` names the scene entry. Throws
 /// Error(asset_unreadable) with `where`, the file, and the mesh, bone or clip.
 LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
                                const MeshChoice& choice = {});
 
-/// Reads only skeleton and clips (at least one), without the mesh.
+/// Reads only the skeleton and the clips, of which there must be one. Arguments and exceptions as for load_character().
 LoadedCharacter load_motion(const std::filesystem::path& file, const FileAxes& axes, const std::string& where);
 
 /// Whether the extension of a file is .bvh, in upper or lower case.
@@ -40,7 +40,7 @@ bool is_bvh(const std::filesystem::path& file);
 /// Scales every length of a character by `scale` and rotates every direction by `axes`, a signed permutation.
 void transform(character::Character& character, double scale, const Mat3& axes);
 
-/// The rotation from an up axis (0 x, 1 y, 2 z) to that of the scene.
+/// The rotation from axes with the up axis `up` (0 x, 1 y, 2 z) to the axes of the scene.
 Mat3 turn_up(int up, scene::UpAxis scene_up);
 
 }  // namespace weft::assets

@@ -26,10 +26,11 @@ using character::Affine;
 /// Maximum number of vertices of all parts with all copies, before merging: far more than collision can handle.
 constexpr std::size_t kMaxVertices = 4'000'000;
 
-/// Largest distance without a warning between skin in the rest pose of the nodes and in its bind pose [m].
+/// If the skin in the rest pose of the nodes is farther than this from its bind pose, there is a warning [m].
 constexpr double kMaxBindError = 0.05;
 
-/// Maximum error of the sum of weights without a warning: rounding, and the few bits that some formats store.
+/// If the sum of weights differs from 1 by more than this, there is a warning. Smaller errors come from rounding, and
+/// from formats that store few bits.
 constexpr double kWeightSlack = 0.02;
 
 Affine to_affine(const aiMatrix4x4& m) {
@@ -46,8 +47,8 @@ bool invertible(const Affine& map) {
 /// A node, and the index of its parent in the same list.
 using NodeWithParent = std::pair<const aiNode*, Index>;
 
-/// All nodes, parents first. Assimp 5.2 lists the bones of Half-Life models as children of one node and stores their
-/// parents only in mParent; mParent is therefore used, unless nodes would be lost.
+/// All nodes, parents first, by mParent: assimp 5.2 lists the bones of Half-Life models as children of one node and
+/// stores their parents only in mParent. If mParent does not lead to all nodes, the lists of children are used.
 std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
   using Children = std::unordered_map<const aiNode*, std::vector<const aiNode*>>;
   // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
@@ -60,7 +61,7 @@ std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
       nodes.push_back(next);
       const auto children = children_of(*next.first);
       for (std::size_t c = children.size(); c-- > 0;)
-        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);  // null in RAW files
+        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);  // see soup.cpp
     }
     return nodes;
   };
@@ -144,7 +145,7 @@ class CharacterReader {
     const bool faces = std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
                                    [](const aiFace& face) { return face.mNumIndices >= 3; });
     if (!faces) return;
-    // A skinned mesh is placed by its bones and read once, whichever nodes show it.
+    // A skinned mesh is placed by its bones. It is read only once, even if several nodes show it.
     if (mesh.mNumBones > 0 && !skinned_.insert(&mesh).second) return;
     const std::size_t base = soup_.positions.size();
     if (base + mesh.mNumVertices > kMaxVertices)
@@ -167,9 +168,9 @@ class CharacterReader {
     read_morphs(mesh, node, base, placing);
   }
 
-  /// The weights of each vertex of a mesh. For a skinned mesh, `placing` becomes the map from the mesh to the rest
-  /// position given by the bone with the largest sum of weights. The bones' offsets then refer to that position, so
-  /// that all meshes share one space.
+  /// The weights of each vertex of a mesh. For a skinned mesh, `placing` becomes the transform from mesh to world in
+  /// the rest pose: (bone's node to world) × (bone offset) of the bone with the largest sum of weights. The stored bone
+  /// offsets apply to vertices after this transform, so that all meshes share one space.
   std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& placing) {
     std::vector<Weights> weights(mesh.mNumVertices);
     std::vector<std::pair<Index, Affine>> bones;  // node and offset of bones with weights
@@ -216,8 +217,9 @@ class CharacterReader {
     return weight.mWeight;
   }
 
-  /// Warns if the rest pose of the nodes moves skin off its bind pose, for example because of pivots that assimp
-  /// ignores. FBX binds a mesh at its node; other formats define only the bones relative to each other.
+  /// Warns if the rest pose of the nodes moves skin away from its bind pose, for example because of pivots that assimp
+  /// ignores. FBX binds a mesh at its node. Other formats define only the bones relative to each other; there,
+  /// `placing` gives the bind pose.
   void check_bind(const aiMesh& mesh, const Affine& placing, const std::vector<Weights>& weights, Index node) {
     if (mesh.mNumBones == 0) return;
     const std::optional<double> metres = metres_per_unit(scene_);
@@ -291,7 +293,7 @@ class CharacterReader {
                                                mesh.mName.C_Str(), mesh.mNumVertices, v));
         corners.push_back(static_cast<Index>(base + v));
       }
-      // A mirroring transform reverses faces; reverse them again to keep their outside.
+      // A mirroring transform turns faces inside out; reversing the order of corners corrects this.
       if (mirrored) std::reverse(corners.begin(), corners.end());
       append_face(soup_, corners);
     }
@@ -359,7 +361,7 @@ class CharacterReader {
     soup_.positions = std::move(positions);
   }
 
-  /// All data that determine the motion of a vertex, as bytes.
+  /// Writes all data that determine the motion of a vertex to `key`, as bytes.
   void write_key(std::size_t v, std::string& key) const {
     const auto append_number = [&](double number) {
       number += 0.0;  // 0 and -0 are equal
@@ -392,8 +394,8 @@ class CharacterReader {
     return uv.allFinite() ? uv : Vec2(Vec2::Zero());
   }
 
-  /// Copies materials and texture coordinates from the faces before vertices are merged: merging does not change the
-  /// list of triangles.
+  /// Copies materials and texture coordinates from the soup before its vertices were merged. The list of triangles is
+  /// the same before and after merging.
   void color_faces(const Soup& unjoined) {
     if (file_.empty() || scene_.mNumMaterials == 0 || std::ranges::find(materials_, -1) != materials_.end()) return;
     character::Coloring& coloring = character_.coloring;
@@ -412,7 +414,8 @@ class CharacterReader {
       if (character_.clips[c].name.empty()) character_.clips[c].name = std::to_string(c + 1);
   }
 
-  /// FBX states its unit; the readers of other formats convert to y up, and to metres if they know the unit.
+  /// FBX states its unit and up axis. For other formats, assimp itself converts to y up, and to metres if it knows the
+  /// unit.
   void read_units() {
     read_.metres_per_unit = metres_per_unit(scene_);
     std::int32_t up = 0;
@@ -438,7 +441,7 @@ class CharacterReader {
   ReadCharacter read_;
   character::Character& character_ = read_.character;
   std::vector<const aiNode*> nodes_;
-  std::vector<Affine> globals_;  // of the nodes, at rest
+  std::vector<Affine> globals_;  // per node: transform to world at rest
   Soup soup_;
   std::vector<Weights> weights_;  // per vertex of the soup
   std::vector<Index> materials_;  // per vertex of the soup; -1 if the file has none

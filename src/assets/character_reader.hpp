@@ -25,13 +25,13 @@ struct ReadCharacter {
 struct MeshChoice {
   std::vector<std::string> only;       ///< empty: all
   std::vector<std::string> without;    ///< meshes to leave out
-  std::vector<std::string> elsewhere;  ///< meshes used by cloths; left out too, but may not exist
+  std::vector<std::string> elsewhere;  ///< meshes used by cloths: left out too; names that do not exist are allowed
 };
 
-/// Converts nodes, meshes with their weights and morph targets, and animations. Lists the bones of all meshes together;
-/// a mesh without bones is bound to a bone at its own node, once for each node that shows it. Pictures are searched
-/// beside `file`; none are read if `file` is empty. Throws std::runtime_error naming the unusable part: indices out of
-/// range, non-finite numbers, bones without a node, key times that run backwards, unknown names in `choice`.
+/// Converts nodes, meshes with their weights and morph targets, and animations. All meshes share one list of bones. A
+/// mesh without bones is copied for each node that shows it, and bound to a bone at that node. Pictures are searched
+/// beside `file`; none are read if `file` is empty. Throws std::runtime_error that names the unusable part: indices out
+/// of range, non-finite numbers, bones without a node, key times that run backwards, unknown names in `choice`.
 ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice = {});
 
 /// Serialises a character for transfer between two processes of the same program, and back.

@@ -11,13 +11,13 @@
 namespace weft::assets {
 namespace {
 
-/// Tick rate of files that do not state one, as in assimp's documentation [1/s].
+/// Ticks per second of files that do not state this rate; value of assimp's documentation.
 constexpr double kDefaultTicksPerSecond = 25;
 
 /// Longer clips are treated as damaged [s].
 constexpr double kMaxClipLength = 86400;
 
-/// Keys past the end by less than this fraction of the clip are rounding errors.
+/// Keys past the end by less than this fraction of the clip's length are rounding errors, without a warning.
 constexpr double kEndSlack = 1e-4;
 
 Vec3 to_value(const aiVector3D& v) {
@@ -115,8 +115,8 @@ struct ClipReader {
   }
 };
 
-/// Assimp splits some FBX nodes into a chain of parent helpers named after them. If a channel nevertheless has the
-/// whole transform of such a node, its helpers get identity channels in the clip.
+/// For some FBX nodes, assimp inserts a chain of helper nodes above them, named after the node. If a channel
+/// nevertheless has the whole transform of such a node, the helpers get identity channels in the clip.
 void add_identity_channels(const aiNodeAnim& from, const ClipTargets& targets, std::set<Index>& moved,
                            character::Clip& clip) {
   if (from.mNumPositionKeys == 0 || from.mNumRotationKeys == 0) return;
@@ -128,7 +128,7 @@ void add_identity_channels(const aiNodeAnim& from, const ClipTargets& targets, s
           {helper->second, {{0}, {Vec3::Zero()}}, {{0}, {Quat::Identity()}}, {{0}, {Vec3::Ones()}}});
 }
 
-/// assimp appends "*0" and the like to names of meshes that several parts share.
+/// Removes the suffix ("*0", "*1") that assimp appends to the name of a mesh that it splits into parts.
 std::string plain_name(const std::string& name) {
   return name.substr(0, name.find('*'));
 }

@@ -22,7 +22,7 @@
 namespace weft::assets {
 namespace {
 
-/// Opens only regular files, including those that a file refers to (materials, buffers): pipes and devices may never
+/// Opens only regular files, also for files that a file refers to (materials, buffers): pipes and devices may never
 /// end.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
@@ -35,9 +35,8 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   }
 };
 
-/// Assimp 5.2 mistakes a line feed at the start of binary PLY data, a byte of a number, for the end of the header and
-/// drops it. Returns the bytes of such a file with an additional line feed for assimp to drop; nullopt for all other
-/// files.
+/// If binary PLY data start with a byte of the value of a line feed, assimp 5.2 takes it for a part of the header and
+/// drops it. Returns the bytes of such a file with an additional line feed to be dropped; nullopt for all other files.
 std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 1 << 16;
   constexpr std::string_view kBinary = "\nformat binary_", kEnd = "\nend_header\n";
@@ -71,8 +70,8 @@ std::string gltf_text(const std::filesystem::path& file) {
   return file.extension() == ".gltf" ? bytes : std::string();
 }
 
-/// The compression that a glTF file requires; empty for all other files. The packaged assimp 5.2 supports none and
-/// reads the compressed data as vertices.
+/// Name of the compression that a glTF file requires; empty for all other files. The packaged assimp 5.2 does not
+/// support compression: it would read compressed data as vertices.
 std::string_view compression_of(std::string_view gltf) {
   const std::size_t begin = gltf.find("\"extensionsRequired\"");
   if (begin == std::string_view::npos) return {};

@@ -16,11 +16,11 @@ namespace weft::assets {
 /// run_isolated.
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps);
 
-/// The unit that an FBX file states [m]. Readers of other formats convert to metres themselves if they know the unit.
+/// The unit that an FBX file states [m]. For other formats, assimp itself converts to metres if it knows the unit.
 std::optional<double> metres_per_unit(const aiScene& scene);
 
-/// The up axis (0 x, 1 y, 2 z) that the file (FBX) or its format states: glTF, and Collada after rotation by its
-/// reader. nullopt for other formats.
+/// The up axis (0 x, 1 y, 2 z): as an FBX file states it; y for glTF and for Collada, which assimp rotates; nullopt for
+/// other formats.
 std::optional<int> up_axis(const Assimp::Importer& importer, const aiScene& scene);
 
 }  // namespace weft::assets

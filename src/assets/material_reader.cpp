@@ -66,8 +66,8 @@ std::vector<fs::path> picture_folders(const fs::path& file) {
   return folders;
 }
 
-/// Finds a picture file. FBX and Collada store paths of the machine that wrote them: tries the path as given, then its
-/// file name beside the file and in the usual picture folders.
+/// Finds a picture file: tries the path as given, then its file name beside `file` and in the usual picture folders,
+/// because FBX and Collada store paths of the machine that wrote them.
 std::optional<fs::path> find_file(const std::string& named, const fs::path& file) {
   std::string plain = named.starts_with("file://") ? named.substr(7) : named;
   std::ranges::replace(plain, '\\', '/');
@@ -127,7 +127,7 @@ Vec3 base_color(const aiMaterial& material) {
   return rgb.allFinite() ? Vec3(rgb.cwiseMax(0).cwiseMin(1)) : Vec3(Vec3::Constant(0.6));
 }
 
-/// Whether transparent parts are holes: as the file states, else whether it has an opacity picture.
+/// Whether transparent parts are holes: as glTF states; in other formats, if the material has an opacity picture.
 bool is_cutout(const aiMaterial& material) {
   aiString mode;
   if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS) return std::string_view(mode.C_Str()) != "OPAQUE";
@@ -137,10 +137,10 @@ bool is_cutout(const aiMaterial& material) {
 /// Pictures that were skipped for the same reason.
 struct LeftOut {
   std::string reason;
-  std::vector<std::string> materials, pictures;  // pictures may be nameless
+  std::vector<std::string> materials, pictures;  // names; those of pictures may be empty
 };
 
-/// The first three, quoted, and the number of others.
+/// Text of the first three names, quoted, and of the number of others.
 std::string quote_some(const std::vector<std::string>& names) {
   constexpr std::size_t kMaxQuotedNames = 3;
   std::string text;

@@ -11,9 +11,9 @@
 
 namespace weft::assets {
 
-/// Base colour and picture of each material. Pictures are embedded, or files, looked up at the stored path, beside
-/// `file`, and in picture folders (such as `textures`) beside it or one folder above. Unusable pictures are skipped
-/// with a warning.
+/// Base colour and picture of each material. A picture is embedded, or it is a file: searched at the stored path,
+/// beside `file`, and in picture folders (such as `textures`) beside `file` or one folder above. Unusable pictures are
+/// skipped with a warning.
 std::vector<character::Material> read_materials(const aiScene& scene, const std::filesystem::path& file,
                                                 std::vector<std::string>& warnings);
 

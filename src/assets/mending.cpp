@@ -18,13 +18,13 @@
 namespace weft::assets {
 namespace {
 
-/// Detached pieces with a smaller fraction of the area are removed [1].
+/// Detached pieces with a smaller fraction of the whole area are removed.
 constexpr double kMaxSmallPieceArea = 0.02;
-/// Detached vertices move toward the mean middle of their triangles by this fraction of the distance [1].
+/// Detached vertices move toward the mean of their triangles' centroids, by this fraction of the distance.
 constexpr double kCutGap = 0.2;
-/// Maximum length of a collapsed edge, as a multiple of the minimum height of triangles [1].
+/// Maximum length of a collapsed edge / minimum height of triangles.
 constexpr double kMaxCollapseRatio = 8;
-/// Factor on the required height of triangles, since UVs differ from the mesh [1].
+/// Factor on the required height of triangles: margin for the rest shape, which UVs can give and which differs.
 constexpr double kHeightMargin = 1.1;
 constexpr int kMaxCollapseRounds = 8;
 
@@ -53,7 +53,8 @@ void keep_triangles(LoadedMesh& loaded, const std::vector<std::uint8_t>& kept) {
   if (!loaded.uv.empty()) loaded.uv.resize(to);
 }
 
-/// Keeps the vertices that triangles use, in that order. `from`: for each current vertex, the vertex that it copies.
+/// Keeps only the vertices that triangles use, in the order of use. `from`: for each current vertex, the vertex of the
+/// loaded mesh that it copies.
 void keep_vertices(LoadedMesh& loaded, const std::vector<Index>& from) {
   std::vector<Index> renamed(loaded.mesh.positions.size(), -1), kept;
   for (Triangle& t : loaded.mesh.topology.triangles)
@@ -97,7 +98,7 @@ struct Joint {
   }
 };
 
-/// The flattest pairs of triangles at each edge; each triangle is in at most one pair per edge.
+/// Pairs the triangles at each edge, the most nearly coplanar first; each triangle is in at most one pair per edge.
 std::vector<Joint> joints_of(const LoadedMesh& loaded) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const std::vector<Vec3>& x = loaded.mesh.positions;
@@ -130,7 +131,8 @@ std::vector<Joint> joints_of(const LoadedMesh& loaded) {
   return joints;
 }
 
-/// Orients the triangles of each connected piece as most of its area faces. Returns the number of flipped triangles.
+/// Orients the triangles of each connected piece like the majority of its area. Returns the number of flipped
+/// triangles.
 std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   // Neighbours of each triangle, and whether they face the same way.
@@ -165,7 +167,8 @@ std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) 
   return turned;
 }
 
-/// Detaches unjoined triangles: at edges that are not manifold, gives them vertices of their own and moves these away.
+/// Detaches triangles that `joints` do not join at edges of more than two triangles, or of two that face opposite ways:
+/// gives them vertices of their own, and moves these away.
 void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& mended) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
@@ -205,7 +208,8 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
     areas[piece_of[at(cut_triangles[t][0])]] += area(loaded, t);
     whole += area(loaded, t);
   }
-  // Of the copies of a vertex, that of the largest piece stays in place; within one piece, that with the most corners.
+  // Of the copies of a vertex, one stays in place: that of the largest piece or, within a piece, that with the most
+  // corners.
   std::map<Index, std::pair<double, Index>> kept_copies;
   std::vector<int> use_count(from.size(), 0);
   for (const Triangle& t : cut_triangles)
@@ -238,7 +242,8 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
   keep_vertices(loaded, from);
 }
 
-/// Removes the third triangles at edges that cut() cannot detach, as other triangles connect them to the joined two.
+/// Removes third triangles that cut() cannot detach from an edge, because other triangles connect them to the joined
+/// two.
 void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   double whole = 0;
@@ -317,8 +322,8 @@ class EdgeCollapser {
     return all;
   }
 
-  /// Merges vertex b into a and removes the triangles between them. Returns false if this would change the border, join
-  /// separate parts, or leave a triangle without its UVs.
+  /// Merges vertex b into a and removes the triangles that contain both. Does nothing and returns false if this would
+  /// change the border, join separate parts, or leave a triangle without its UVs.
   bool collapse(Index a, Index b, std::vector<std::uint8_t>& kept) {
     const bool border_edge = on_border_.contains(std::minmax(a, b));
     if (is_on_border(b) && !border_edge) return false;
@@ -328,7 +333,7 @@ class EdgeCollapser {
     const std::set<Index> of_a = neighbours(a), of_b = neighbours(b);
     const auto common = std::ranges::count_if(of_a, [&](Index v) { return of_b.contains(v); });
     if (between.size() != (border_edge ? 1U : 2U) || static_cast<std::size_t>(common) != between.size()) return false;
-    std::vector<Vec2> uv;  // of the corners at b
+    std::vector<Vec2> uv;  // UVs of the corners at b
     for (const std::size_t t : moved) {
       if (would_flip(t, b, a)) return false;
       if (loaded_.uv.empty()) continue;
@@ -355,8 +360,8 @@ class EdgeCollapser {
     return true;
   }
 
-  /// Flips the longest edge of a flat triangle if the UVs are continuous across it and the lower one of its two
-  /// triangles becomes higher.
+  /// Flips the longest edge of a flat triangle if the UVs are continuous across it, and if the smaller height of its
+  /// two triangles increases.
   bool flip(std::size_t t) {
     std::size_t k = 0;
     for (std::size_t i = 1; i < 3; ++i)

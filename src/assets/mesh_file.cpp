@@ -81,7 +81,7 @@ void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, Loade
   }
 }
 
-/// UVs of the triangles of make_topology(). Merging of vertices does not change these triangles.
+/// UVs of the triangles of make_topology(). `soup`: before vertices are merged, which keeps the list of triangles.
 std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   std::vector<std::array<Vec2, 3>> corners;
   if (std::ranges::none_of(soup.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;
@@ -113,7 +113,7 @@ std::vector<BorderVertex> border_of(const mesh::Mesh& mesh, double ratio) {
 Welded weld_borders(LoadedMesh& loaded, double ratio) {
   const std::vector<Vec3>& x = loaded.mesh.positions;
   std::vector<BorderVertex> border = border_of(loaded.mesh, ratio);
-  // Sort along x, so that only neighbours in this order are compared.
+  // Sorts along x, so that only vertices near each other in this order are compared.
   std::ranges::stable_sort(border, {}, [&](const BorderVertex& b) { return x[at(b.vertex)].x(); });
   DisjointSets sets(x.size());
   Welded welded;
@@ -174,7 +174,7 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   if (up != scene::FileUp::as_file) turn = turn_up(static_cast<int>(up) - 1, axes.scene_up);
   for (Vec3& x : soup.positions) {
     x = axes.scale * (turn * x);
-    // Products of squared lengths must stay finite too.
+    // Smaller coordinates also keep products of squared lengths finite.
     if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
       source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(),
                               x.z()));

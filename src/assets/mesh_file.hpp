@@ -29,8 +29,8 @@ struct LoadedMesh {
   std::size_t joined_vertices = 0;    ///< copies at the same position, made for different UVs or normals
 };
 
-/// Interpretation of the lengths and axes of a mesh file. The mesh is rotated upright if the file (glTF, FBX, Collada)
-/// or the scene states the up axis; other files use the axes of the scene.
+/// Interpretation of the lengths and axes of a mesh file. If the file (glTF, FBX, Collada) or the scene states the up
+/// axis of the file, the mesh is rotated to the axes of the scene; else `default_up` decides.
 struct MeshAxes {
   double scale = 1;  ///< factor on all lengths
   scene::FileUp up = scene::FileUp::as_file;
@@ -39,11 +39,11 @@ struct MeshAxes {
       scene::FileUp::as_file;  ///< up axis of files that do not state it; as_file: that of the scene
 };
 
-/// Reads all surfaces of a file, or those named `object` (OBJ, PLY, STL, glTF and other formats of assimp), merged with
-/// the transforms of their nodes, in the bind pose if the file is animated. Positions are in metres if the file states
-/// its unit (FBX, Collada). Ignores points and lines. Merges equal positions, so that a closed body is watertight.
-/// `where` names the scene entry, such as "scenes/a.toml:12:8: obstacle.chair". Throws Error(asset_unreadable) with
-/// `where`, the file and assimp's own message.
+/// Reads all surfaces of a file (OBJ, PLY, STL, glTF and other formats of assimp), or those named `object`, as one
+/// mesh. Applies the transforms of their nodes; an animated file is in its bind pose. Positions are in metres if the
+/// file states its unit (FBX, Collada). Ignores points and lines. Merges equal positions, so that a closed body is
+/// watertight. `where` names the scene entry, such as "scenes/a.toml:12:8: obstacle.chair". Throws
+/// Error(asset_unreadable) with `where`, the file and assimp's own message.
 LoadedMesh load_mesh(const std::filesystem::path& file, const MeshAxes& axes, const std::string& where,
                      const std::string& object = {});
 
@@ -53,9 +53,9 @@ struct Welded {
   double widest = 0;         ///< largest distance between merged vertices [m]
 };
 
-/// Welds nearly coincident border vertices, as in files that keep panels separate: pairs nearer to each other than
-/// `ratio` times the shortest border edge at either vertex are merged at their mean. Changes nothing at all if this
-/// would create an edge of three triangles, or of two that face opposite ways.
+/// Welds nearly coincident border vertices, as in files that keep panels separate. Vertices are merged at their mean if
+/// their distance is below `ratio` times the shortest border edge at either of them. If this would create an edge of
+/// three triangles, or of two that face opposite ways, nothing at all is changed.
 Welded weld_borders(LoadedMesh& loaded, double ratio);
 
 }  // namespace weft::assets

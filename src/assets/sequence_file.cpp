@@ -18,8 +18,8 @@ namespace {
 /// Maximum size of the positions of all files [bytes]: far more than is practical.
 constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 
-/// The vertex indices of the faces of an OBJ file as text, since assimp gives each corner a vertex of its own. Empty
-/// for other files.
+/// The vertex indices of the faces of an OBJ file as text; empty for other files. The file itself is read, because
+/// assimp gives each corner a vertex of its own.
 std::string face_numbers(const std::filesystem::path& file) {
   std::string numbers;
   if (file.extension() != ".obj" && file.extension() != ".OBJ") return numbers;
@@ -48,7 +48,7 @@ void check_same_faces(const Source& source, const std::filesystem::path& first_f
     source.fail("expected faces over the same vertices as in the first file of the sequence, got others");
 }
 
-/// Splits groups of coincident vertices if a file has them at different positions.
+/// Splits groups of coincident vertices where this file has vertices of a group at different positions.
 void split_groups(const std::vector<Vec3>& positions, std::vector<Index>& groups) {
   std::map<std::pair<Index, std::array<double, 3>>, Index> known;
   for (std::size_t v = 0; v < groups.size(); ++v) {

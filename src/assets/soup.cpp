@@ -25,8 +25,8 @@ namespace {
 
 using Transform = Eigen::Matrix4d;
 
-/// Triangles flatter than this (area / longest side squared) count as having no area: their normal is rounding noise of
-/// assimp's single precision.
+/// Triangles with a smaller ratio area / (longest side)² count as having no area: their normal only reflects rounding
+/// errors of assimp's single precision.
 constexpr double kMinFaceArea = 1e-7;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -56,7 +56,7 @@ void append_groups(Soup& soup, const aiMesh& part, std::size_t base) {
   }
 }
 
-/// Appends one mesh with the transform of its node.
+/// Appends one mesh, transformed to the world.
 void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
   const std::size_t base = soup.positions.size();
   if (base + part.mNumVertices > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
@@ -72,7 +72,7 @@ void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
       soup.colors.back() = {part.mColors[0][v].r, part.mColors[0][v].g, part.mColors[0][v].b};
   }
   append_groups(soup, part, base);
-  // A mirroring transform reverses faces; reverse them again to keep their outside.
+  // A mirroring transform turns faces inside out; reversing the order of corners corrects this.
   const bool mirrored = to_world.topLeftCorner<3, 3>().determinant() < 0;
   std::vector<Index> corners;
   for (const aiFace& face : std::span(part.mFaces, part.mNumFaces)) {
@@ -102,15 +102,16 @@ std::vector<PlacedNode> placed_nodes(const aiNode& root) {
     nodes.emplace_back(node, to_world);
     for (unsigned c = node->mNumChildren; c-- > 0;) {
       const aiNode* child = node->mChildren[c];
-      // Children can be null in RAW files.
+      // assimp's importer of RAW files (lists of triangles) leaves some child pointers null.
       if (child != nullptr) stack.emplace_back(child, to_world * to_eigen(child->mTransformation));
     }
   }
   return nodes;
 }
 
-/// Placement of a mesh: its node or, with bones, the rest position given by the bone with the largest sum of weights,
-/// as for characters (character_reader.cpp). glTF places skinned meshes by their bones, whichever node refers to them.
+/// Transform from mesh to world. Without bones: that of its node. With bones: (bone's node to world) × (bone offset) of
+/// the bone with the largest sum of weights; bones with a nearly singular transform are ignored. Characters use the
+/// same rule (character_reader.cpp), because glTF places skinned meshes by their bones, whichever node refers to them.
 Transform placement_of(const aiMesh& part, const Transform& of_node,
                        const std::unordered_map<std::string, Transform>& placed) {
   Transform placing = of_node;
@@ -122,7 +123,7 @@ Transform placement_of(const aiMesh& part, const Transform& of_node,
     if (!(total > most) || found == placed.end()) continue;
     const Transform held = found->second * to_eigen(bone->mOffsetMatrix);
     const double size = held.topLeftCorner<3, 3>().norm();
-    constexpr double kMinVolumeRatio = 1e-9;  // relative to a map that keeps volume; flatter maps are ignored
+    constexpr double kMinVolumeRatio = 1e-9;  // minimum |det M| / ‖M‖³; nearly singular transforms are ignored
     if (!held.allFinite() ||
         !(std::abs(held.topLeftCorner<3, 3>().determinant()) > kMinVolumeRatio * size * size * size))
       continue;
@@ -166,7 +167,7 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   Soup soup;
   std::set<std::string> names;
   const std::vector<PlacedNode> nodes = placed_nodes(*scene->mRootNode);
-  std::unordered_map<std::string, Transform> placed;  // by name; the first of each counts
+  std::unordered_map<std::string, Transform> placed;  // by name; of nodes with the same name, the first
   for (const auto& [node, to_world] : nodes) placed.emplace(node->mName.C_Str(), to_world);
   for (const auto& [node, to_world] : nodes)
     for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) {

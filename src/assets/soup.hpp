@@ -13,7 +13,7 @@
 
 namespace weft::assets {
 
-/// Triangles and quads; vertices may repeat, all indices are in range.
+/// Triangles and quads. Several vertices may have the same position; all indices are in range.
 struct Soup {
   std::vector<Vec3> positions;  ///< in metres if the file states its unit
   std::vector<Vec2> uv;         ///< per position, v upward; NaN if its mesh has none
@@ -30,17 +30,17 @@ struct Soup {
   std::vector<int> up;  ///< up axis of the file or its format, 0 x, 1 y, 2 z; empty: not stated
 };
 
-/// Reads the meshes of a file with the transforms of their nodes: those whose name or node's name is `object`, or all
-/// if `object` is empty. Triangulates larger polygons, ignores points and lines. Throws std::runtime_error with
-/// assimp's message, or with the existing names. Damaged files can crash assimp or block it for ever: call it through
-/// run_isolated.
+/// Reads the meshes whose name or whose node's name is `object` (empty: all), transformed to the world. Triangulates
+/// polygons with more than four corners; ignores points and lines. Throws std::runtime_error with assimp's message, or
+/// with the existing names if there is no such object. Damaged files can crash assimp or block it for ever: call this
+/// function through run_isolated.
 Soup read_soup(const std::filesystem::path& file, const std::string& object = {});
 
 /// Appends a polygon; one with more than four corners is triangulated.
 void append_face(Soup& soup, std::span<const Index> corners);
 
-/// The surface of a soup as quads if the soup contains only quads and both halves of each have an area, else as
-/// triangles. Triangles without area (a repeated corner, or all corners on a line) are left out and counted.
+/// The surface of a soup: quads if the soup contains only quads and both halves of each have an area, else triangles.
+/// Triangles without area (a repeated corner, or all corners on a line) are left out and counted.
 mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles);
 
 /// Serialises a soup for transfer between two processes of the same program, and back.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kMaxAddressSpace = std::uint64_t{16} << 30;  // address space limit for reading [bytes]
 
-/// A PLY header without an end blocks assimp 5.2 for ever; refusing it here avoids the wait for the time limit.
+/// Refuses a PLY header without an end: it blocks assimp 5.2 until the time limit.
 void check_ply_header(const Source& source) {
   constexpr std::size_t kHeaderBytes = 1 << 16;  // a hundred times the size of real headers
   const std::string start = read_start(source.file, kHeaderBytes);
@@ -23,13 +23,13 @@ void check_ply_header(const Source& source) {
     source.fail("expected a line end_header in the first 64 kB of a PLY file, got none");
 }
 
-/// CPU time limit for reading [s]: many times what assimp needs for its slowest text formats (about 10 MB/s), so that
-/// only files that block it for ever are stopped.
+/// CPU time limit for reading [s]: many times what assimp needs for its slowest text formats (about 10 MB/s). Thus only
+/// files that block it for ever exceed the limit.
 unsigned time_limit(std::uintmax_t bytes) {
   return 5 + static_cast<unsigned>(bytes >> 20);
 }
 
-/// Ratio of the wall time limit to the CPU time limit, for machines that many processes share.
+/// Wall time limit / CPU time limit; large, since many processes can share a machine.
 constexpr unsigned kWallFactor = 20;
 
 }  // namespace

@@ -14,10 +14,10 @@ namespace weft::assets {
 /// Maximum file size: larger files are scans, too detailed for collision in every frame.
 inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
 
-/// Coordinates from this size on count as damage [m]: no scene is a thousand kilometres wide.
+/// A file with a coordinate of at least this size counts as damaged [m]: no scene is a thousand kilometres wide.
 inline constexpr double kMaxCoordinate = 1e6;
 
-/// A file, with all that a message about it needs.
+/// A file, with what messages about it contain.
 struct Source {
   std::filesystem::path file;
   std::string where;          ///< scene entry that names it, such as "scenes/a.toml:12:8: obstacle.chair"
@@ -30,7 +30,7 @@ struct Source {
 
   /// Throws for files that are missing, empty, too large, or known to block the reader for ever.
   void check() const;
-  /// Calls `read` in a child process and returns its bytes; throws like fail() with the reason of the child.
+  /// Calls `read` in a child process and returns its result. If the child fails, throws like fail() with its reason.
   std::string read(const std::function<std::string()>& read) const;
   /// Returns the result of `work`. Any exception that is not an Error becomes fail(), since it is caused by the file.
   template <class Work>

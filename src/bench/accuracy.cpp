@@ -38,8 +38,9 @@ constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
 constexpr double kStartShift = 1e-6;
 // Runs shorter than this [s] are timed twice.
 constexpr double kShortRun = 0.3;
-// A run is stopped after this multiple of its expected number of steps, or of that of the shortest step if larger. With
-// a tolerance, the limit is this multiple of the steps at the shortest step, or the number of steps of the reference if
+// A run with fixed steps is stopped after this multiple of its expected number of steps, or of the number of steps of
+// the run with the shortest step, whichever is larger. A run with time.tolerance is stopped after this multiple of the
+// number of steps of the run with the shortest step, or after the number of steps of the reference, whichever is
 // smaller.
 constexpr int kMaxStepRatio = 3;
 
@@ -174,7 +175,7 @@ double Campaign::work_of(const Setting& setting) const {
   return result_.frames / (scene_.time.fps * step) * setting.refinement * setting.refinement;
 }
 
-// Throws if one of the runs fails.
+// Runs a setting from all starts. Throws if one of the runs fails.
 Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
   const FollowLimits limits{.steps = setting.tolerance
                                          ? std::min(kMaxStepRatio, reference_step_divisor()) * steps_of(finest_)
@@ -197,7 +198,8 @@ Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
   return sample;
 }
 
-// Measures a setting into `run`. If it fails, returns nullptr and stores the reason in `run`.
+// Runs the setting of `run`, and stores cost and errors against `against` in `run`. If it fails, returns nullptr and
+// stores the reason in `run`.
 Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std::vector<std::size_t>& same) {
   SamplePtr made;
   try {
@@ -226,9 +228,9 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
   return sample;
 }
 
-// Divides newton_tolerance, at twice the step of a reference, by ten until a division changes less than a tenth of what
-// halving the step is expected to change, or less than the starts differ, or until a run fails. `coarse` becomes the
-// last successful run. Returns the last change.
+// Divides newton_tolerance, at twice the step of a reference, by ten repeatedly. Stops if a division changes the result
+// by less than a tenth of what halving the step is expected to change, or by less than the starts differ, or if a run
+// fails. `coarse` becomes the last successful run. Returns the last change.
 Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
   const double order = expected_order({.setting = twice});
@@ -250,7 +252,7 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   }
 }
 
-// newton_tolerance is chosen at twice the step of the reference.
+// Runs a reference and estimates its errors. Chooses newton_tolerance at twice the step, where runs take half the time.
 Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
   try {
     Setting twice = candidate.setting;
@@ -327,8 +329,8 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   return exact;
 }
 
-// Measures all fixed steps. The shortest step checks the reference; the difference to the step before gives the
-// uncertainty of this check.
+// Measures all fixed steps. The run with the shortest step checks the reference. The uncertainty of this check follows
+// from the difference to the next longer step.
 void Campaign::measure_steps(Integrator integrator) {
   SamplePtr before, last;
   double step_before = 0, step_last = 0;
@@ -347,7 +349,8 @@ void Campaign::measure_steps(Integrator integrator) {
   result_.cross_checks.push_back(check);
 }
 
-// As planned, or half a decade apart; includes the scene's own tolerance.
+// Values of time.tolerance: the planned ones, or else values half a decade apart. For the scene's integrator, also the
+// scene's own tolerance.
 std::vector<double> Campaign::tolerances_of(Integrator integrator) const {
   std::set<double, std::greater<>> tolerances;
   for (int k = 0; !plan_.tolerances && k < (result_.contact ? kTolerancesWithContact : kTolerances); ++k)
@@ -377,7 +380,7 @@ void Campaign::measure_linear() {
   }
 }
 
-// Runs meshes from fine to coarse and compares each with that of twice the cells along each side. Results are listed
+// Runs meshes from fine to coarse and compares each with the mesh of twice the cells along each side. Lists the results
 // from coarse to fine.
 void Campaign::measure_meshes() {
   std::map<double, SamplePtr> by_refinement;  // factors are multiples of an eighth, exact in binary
@@ -407,8 +410,8 @@ void Campaign::measure_meshes() {
 }
 
 Accuracy Campaign::measure() {
-  // Rough estimate: three values of newton_tolerance for each step, half as much for the other axes, and as much as
-  // three runs at its step for each reference.
+  // Rough estimate of the work: three values of newton_tolerance for each step, half as much for the other axes, and
+  // for each reference as much as three runs at its step.
   constexpr double kRunsOfAStep = 3, kRunsOfAReference = 3;
   for (const double step : steps_)
     work_ += static_cast<double>(integrators_.size()) * kRunsOfAStep * work_of(as_in_scene(best_, step));

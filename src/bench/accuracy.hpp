@@ -38,13 +38,14 @@ struct Run {
   Axis axis = Axis::grid;
   Setting setting;
   std::string failure = {};  ///< why the run did not reach the end; empty if it did
-  Errors errors{};           ///< with contact: of the median over the starts, see measure_accuracy()
+  Errors errors{};           ///< difference to the reference, or for Axis::mesh to the finer mesh
   Errors spread{};           ///< largest difference of a start to the median (without contact: to the first start)
   /// Only for Axis::grid, in the deciding quantity; otherwise NaN. `change`: difference to the run with a tenth of this
   /// newton_tolerance. `left`: difference to the most exactly solved run with the same step.
   double change = std::numeric_limits<double>::quiet_NaN(), left = change;
-  /// Only for Axis::grid: `change` is at most a tenth of the error of the run with a tenth of this newton_tolerance, or
-  /// at most that error's uncertainty, so that the step and not the solver determines the error ("the step decides").
+  /// Only for Axis::grid: whether the step, not the solver, determines the error ("the step decides"). This holds if
+  /// `change` is at most a tenth of the error of the run with a tenth of this newton_tolerance, or at most the
+  /// uncertainty of that error.
   bool step_decides = false;
   Work work = {};  ///< CPU time is the minimum over all starts; a short single run is timed twice
   int particles = 0;
@@ -57,8 +58,8 @@ inline double error_of(const Run& run, Quantity quantity) {
   return at(run.errors, quantity);
 }
 
-/// The parameter that varies along the axis of a run: step [s], time.tolerance [m], linear_tolerance or relative cell
-/// size.
+/// Value of the parameter that varies along the axis of the run: step [s], time.tolerance [m], linear_tolerance, or
+/// cell size relative to the scene.
 double control_of(const Run& run);
 /// Expected order of the error in control_of(run); for meshes a lower bound, for Axis::linear 0 (unknown).
 double expected_order(const Run& run);
@@ -67,8 +68,8 @@ double expected_order(const Run& run);
 struct Candidate {
   Setting setting;
   std::string failure = {};
-  Errors step{};    ///< error of its step, extrapolated from the difference to twice the step
-  Errors solver{};  ///< change by a tenfold newton_tolerance, at twice the step
+  Errors step{};    ///< error due to its step, extrapolated from the difference to the run with twice the step
+  Errors solver{};  ///< change that a tenfold newton_tolerance causes, measured at twice the step
   Errors spread{};  ///< as Run::spread
   double energies_in_play = 0;
 
@@ -76,12 +77,13 @@ struct Candidate {
   Errors doubt() const;
 };
 
-/// The run of an integrator with the shortest step, if the step decides there. It checks the error of the reference.
+/// Check of the reference by the run of an integrator with the shortest measured step. The check is made only if the
+/// step decides in that run.
 struct CrossCheck {
   Setting setting;
   Errors apart{};  ///< difference to the reference
-  Errors doubt{};  ///< its own uncertainty: difference to the next longer step, extrapolated with half of the order,
-                   ///< plus the spread over its starts
+  Errors doubt{};  ///< uncertainty of this run: difference to the next longer step, extrapolated with half of the
+                   ///< order, plus the spread over the starts
 };
 
 struct Accuracy {
@@ -93,7 +95,7 @@ struct Accuracy {
   double largest_energy = 0;    ///< energies in play of the reference [J]; see Functionals::energies_in_play
   Candidate reference, second;  ///< `reference` is the more certain one, `second` checks it
   Errors apart{};               ///< difference between these two; 0 if the second failed
-  Errors uncertainty{};  ///< of the reference: its doubt(), raised where the second or the cross checks show more
+  Errors uncertainty{};         ///< of the reference: its doubt(), raised if `second` or a cross check differs by more
   std::vector<CrossCheck> cross_checks;
   Setting of_scene;       ///< settings of the scene, with the step shortened so that it divides a frame evenly
   std::vector<Run> runs;  ///< each series (one axis and integrator) is contiguous and runs from coarse to fine
@@ -112,10 +114,9 @@ struct Accuracy {
   std::vector<const Run*> decided(scene::Integrator integrator) const;
 };
 
-/// The quantities that are reported: without contact position, velocity and some functionals, with contact only
-/// functionals.
+/// The reported quantities. Without contact: position, velocity and some functionals; with contact: only functionals.
 std::vector<Quantity> quantities_of(const Accuracy& accuracy);
-/// The quantity that settings are judged by: position, or with contact the centre of mass.
+/// The quantity by which settings are compared: position, or with contact the centre of mass.
 Quantity deciding_quantity(const Accuracy& accuracy);
 
 /// The scene that is measured if the user names none, as TOML.
@@ -128,11 +129,12 @@ using EachRun = std::function<void(const Run& run, double done)>;
 void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross_checks);
 
 /// Runs the scene some hundred times. With contact, each setting runs from several starts that differ by micrometres,
-/// and their median counts. Two references are computed independently: midpoint and BDF2; with contact BDF2 and Euler,
-/// as midpoint does not damp contact. Their steps are an eighth (with contact half) of the shortest measured step, and
-/// newton_tolerance is lowered until a tenfold decrease changes less than a tenth of what the step does, or less than
-/// the starts differ. The more certain reference is used, and checked against the finest run of each integrator. Throws
-/// Error(simulation_failed) if both references fail, and Error(usage) if the plan does not suit the scene.
+/// and their median counts. Two references are computed independently: with midpoint and BDF2, or with contact with
+/// BDF2 and Euler, as midpoint does not damp contact. Their steps are an eighth (with contact half) of the shortest
+/// measured step. Their newton_tolerance is lowered until a tenfold decrease changes the result by less than a tenth of
+/// the step error, or by less than the starts differ. The more certain one becomes the reference, and is checked by the
+/// run of each integrator with the shortest step. Throws Error(simulation_failed) if both references fail, and
+/// Error(usage) if the plan does not suit the scene.
 Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each = {}, const AccuracyPlan& plan = {});
 
 }  // namespace weft::bench

@@ -1,4 +1,4 @@
-// User's choices for a measurement of error against run time.
+// The user's choices for a measurement of error against run time.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ struct AccuracyPlan {
   std::optional<std::vector<double>> steps;       ///< relative to the scene's time.step
   std::optional<std::vector<double>> tolerances;  ///< time.tolerance [m]
   std::optional<std::vector<double>> meshes;      ///< number of cells along each side, relative to the scene
-  std::optional<int> starts;  ///< each start is moved by one micrometre more; default 1, or 3 with contact
+  std::optional<int> starts;  ///< number of starts, each displaced by one micrometre more; default 1, or 3 with contact
 };
 /// Smallest number of starts for which a median is more reliable than a single run.
 inline constexpr int kMinStartsWithContact = 3;

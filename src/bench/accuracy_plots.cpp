@@ -14,7 +14,7 @@ struct Style {
   const char *name, *color;
 };
 Style style_of(Integrator integrator) {
-  // Distinguishable in print and with red-green blindness (palette of Okabe and Ito).
+  // The colours differ in print and with red-green blindness (palette of Okabe and Ito).
   switch (integrator) {
     case Integrator::implicit_euler:
       return {"Euler", "#d55e00"};

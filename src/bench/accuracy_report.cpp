@@ -69,7 +69,7 @@ Table runs_table(const Accuracy& accuracy, const std::vector<const Run*>& runs, 
   return table;
 }
 
-// One row per step, one column per newton_tolerance: error and CPU time; * marks runs in which the step decides.
+// Errors and CPU times: one row per step, one column per newton_tolerance. * marks runs in which the step decides.
 Table grid_table(const Accuracy& accuracy, Integrator integrator) {
   const auto runs = accuracy.series(Axis::grid, integrator);
   std::set<double, std::greater<>> steps, tolerances;
@@ -170,7 +170,7 @@ std::string failures_text(const Accuracy& accuracy) {
   return table.size() > 1 ? fmt::format("## Runs that failed\n\n{}\n", markdown(table)) : std::string();
 }
 
-// Empty if the value is not finite.
+// The value as text; empty if it is not finite.
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
 }

@@ -9,8 +9,8 @@
 
 namespace weft::bench {
 
-/// Runs of all integrators. runs_of_axis: of one axis. deciding: of Axis::grid where the step decides.
-/// with_solver_of_scene: of Axis::grid with the solver settings of the scene.
+/// Runs of all integrators. runs_of_axis: all runs of one axis. deciding: the runs of Axis::grid in which the step
+/// decides. with_solver_of_scene: the runs of Axis::grid with the solver settings of the scene.
 std::vector<const Run*> runs_of_axis(const Accuracy& accuracy, Axis axis);
 std::vector<const Run*> deciding(const Accuracy& accuracy);
 std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy);
@@ -23,13 +23,14 @@ std::string work_svg(const std::string& title, const Accuracy& accuracy);
 /// Errors against step, solver tolerance and mesh.
 std::string settings_svg(const std::string& title, const Accuracy& accuracy);
 
-/// The run with the least CPU time whose error is certain to be at most `target`. All runs that are solved more exactly
-/// along the same axis must reach the target too. nullptr if there is none.
+/// The run with the least CPU time whose error is certainly at most `target`, and so is that of all runs of the same
+/// axis that are solved more exactly; nullptr if there is none.
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target);
 /// The Pareto front: runs for which no other run is both cheaper and more exact, cheapest first.
 std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity);
 
-/// One line: which setting to use, its cost, and that of the scene's. The target error is 1 % of the cloth's size.
+/// One line: which setting to use, its cost, and the cost of the scene's setting. The target error is 1 % of the
+/// cloth's size.
 std::string recommendation(const Accuracy& accuracy);
 
 /// Three sentences computed from the runs: the cheapest setting for each accuracy, the cost of one more digit, and the

@@ -1,4 +1,4 @@
-// Properties of runs, series and references of bench/accuracy.
+// Properties of runs, series and references; see accuracy.hpp.
 #include <algorithm>
 #include <cmath>
 

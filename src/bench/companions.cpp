@@ -17,12 +17,12 @@ constexpr double kChaosRatio = 0.3;
 // It is also chaotic if the displacement grows more than a thousandfold, however large those errors are.
 constexpr double kMaxAmplification = 1e3;
 constexpr double kCompanionToleranceRatio = 0.1;  // newton_tolerance of the companion, relative to the run's
-// Observed orders are limited to the range from this fraction of the expected order to all of it. Stiff waves and
-// borders lower the order. Below the range, differences hardly fall with step or spacing.
+// Observed orders are clamped to between this fraction of the expected order and the expected order. Stiff waves and
+// borders lower the order; below the range, differences hardly fall with step or spacing.
 constexpr double kMinOrderRatio = 0.5;
 // Fraction of the expected order that is assumed if there is only one companion.
 constexpr double kAssumedOrderRatio = 0.75;
-// Minimum number of cells along each side for which a coarse mesh shows an order.
+// Minimum number of cells along each side of the coarsest mesh; with fewer cells, no order is observed.
 constexpr int kMinCellsForOrder = 4;
 // Bending and stretch converge with second order in the spacing.
 constexpr double kMeshOrder = 2;
@@ -41,9 +41,9 @@ struct Change {
   Errors errors;
 };
 
-// Order p in [least, most] for which an error C h^p explains both changes C h^p |r^p - 1|, where h is the step or
-// spacing of the run and r the ratio of the companion. `quotient`: change of the coarser companion / change of the
-// finer one, which grows with p.
+// Order p in [least, most] for which an error C h^p explains both changes, C h^p |r^p - 1|. h is the step or spacing of
+// the run, r the ratio of the companion. `quotient`: change of the coarser companion / change of the finer one; it
+// grows with p.
 double observed_order(double coarse_ratio, double fine_ratio, double quotient, double least, double most) {
   constexpr int kHalvings = 30;
   const auto expected = [&](double p) {
@@ -56,7 +56,8 @@ double observed_order(double coarse_ratio, double fine_ratio, double quotient, d
   return 0.5 * (least + most);
 }
 
-// Error of a run, from the change to one companion and, if given, to a coarser one. `order`: the expected order.
+// Error of a run, extrapolated from its difference to one companion and, if given, to a coarser one. `order`: the
+// expected order.
 Errors richardson(double order, const Change& change, const std::optional<Change>& coarser) {
   Errors errors{};
   for (std::size_t q = 0; q < kQuantities; ++q) {
@@ -116,7 +117,8 @@ ErrorPart Companions::part(ErrorSource source, const std::function<Errors()>& me
   return part;
 }
 
-// Uses the shortest step that is at least `ratio` times that of the run and divides a frame evenly.
+// Difference to a companion with the shortest step that is at least `ratio` times the step of the run and divides a
+// frame evenly.
 Change Companions::change_with_step(double ratio) {
   scene::Scene companion = scene_;
   if (scene_.time.tolerance) {
@@ -146,7 +148,7 @@ Errors Companions::measure_step_error() {
   return richardson(order, half, twice);
 }
 
-// Assumes that the error of the solver is proportional to the tolerance.
+// Assumes that the error of the solver is proportional to newton_tolerance.
 Errors Companions::measure_solver_error() {
   scene::Scene companion = scene_;
   companion.solver.newton_tolerance *= kCompanionToleranceRatio;

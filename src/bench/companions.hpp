@@ -23,11 +23,12 @@ struct ErrorPart {
 };
 
 struct ErrorEstimate {
-  /// Random offsets of the particles at the start, of up to a micrometre, change the run by more than 0.3 of the step
-  /// and solver errors (this limit is at least 10 µm and at most a millimetre), or this companion fails.
+  /// The motion is chaotic: random offsets of the particles at the start, of up to 1 µm, change positions by more than
+  /// 0.3 of the step and solver errors. This limit is clamped to 10 µm to 1 mm. Also true if the run with these offsets
+  /// fails.
   bool start_matters = false;
-  /// Doubling the step fails, or changes the run too little compared with halving it: the error does not follow the
-  /// order of the method.
+  /// The error does not follow the order of the method: the run with twice the step fails, or differs too little from
+  /// the run, compared with the run with half the step.
   bool steps_irregular = false;
   std::vector<ErrorPart> parts;
   Errors all{};      ///< root of the sum of squares of the parts

@@ -52,13 +52,13 @@ bool certainly_reaches(const Accuracy& accuracy, const Run& run, Quantity quanti
          });
 }
 
-// Rounds up to four digits: if the step were rounded down, a frame would need one more step.
+// The step [s], rounded up to four digits: if it were rounded down, a frame would need one more step.
 double shown_step(double step) {
   const double scale = std::pow(10, 3 - std::floor(std::log10(step)));
   return std::ceil(step * scale - 1e-6) / scale;
 }
 
-// In the syntax of scene files.
+// The setting in the syntax of scene files.
 std::string keys_text(const Setting& s) {
   return fmt::format("`time.integrator = \"{}\"`, `{}`, `solver.newton_tolerance = {:.3g}`", name_of(s.integrator),
                      s.tolerance ? fmt::format("time.tolerance = {:.3g}", *s.tolerance)
@@ -123,7 +123,7 @@ class Line {
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
 };
 
-// cost_of_a_digit() of the finest resolved runs of a series.
+// Factor of CPU time for a tenth of the error, as text, fitted to the finest resolved runs of a series.
 std::string digit_of_series(const Accuracy& accuracy, const std::vector<const Run*>& series, Quantity quantity) {
   Line line;
   std::size_t used = 0;

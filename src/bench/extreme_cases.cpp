@@ -31,7 +31,8 @@ std::string above_floor(const std::string& cloth, const std::string& time) {
       cloth);
 }
 
-/// A sheet that falls on an obstacle (by default a ball) and rests there or slides off; `top` adds tables.
+/// A sheet that falls on an obstacle (by default a ball) and rests there or slides off. `top`: further tables of the
+/// scene.
 std::string falling(const std::string& cloth, const std::string& top = {},
                     const std::string& obstacle = "shape = \"sphere\"\nradius = 0.15\n") {
   return fmt::format(
@@ -114,7 +115,8 @@ std::vector<ExtremeCase> make_cases() {
       free_sheet("\n[[cloth.pin]]\nlow = [1, 1]\ninterpolation = \"linear\"\n"
                  "keys = [ { time = 0.2 }, { time = 0.24, position = [10, 0, 0] } ]\n"),
       25,
-      // ½ m v² of the whole sheet at the speed of the pin, times three, as stretched threads accelerate it further.
+      // Allowed gain [J]: ½ m v² of the whole sheet at the speed of the pin, times three, as stretched threads
+      // accelerate the sheet further.
       3 * 0.5 * 0.05 * 250 * 250);
   add("no_stiffness", "no stiffness at all",
       hanging("material = { stretch = 0, shear = 0, bend = 0, stretch_viscosity = 0, shear_viscosity = 0, "

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kGravity = 9.81;  // [m/s²]
 
-// A level rectangle of quads without air and contact.
+// A scene with one level rectangle of quads, without air and contact.
 scene::Scene sheet_alone(const Vec2& size, int particles_weft, int particles_warp, const scene::Material& material) {
   scene::Scene scene;
   scene.physics.air_density = 0;

@@ -20,9 +20,9 @@ struct Specimen {
   std::vector<std::size_t> held;  ///< indices of the particles between the plates
 };
 
-/// A disc of concentric rings of triangles; ring k has 6 k vertices, and `free` rings lie outside the plates. Vertices
-/// of the free rings are displaced by up to 0.15 of the spacing (on the border: only along it), so that no direction is
-/// preferred; `seed` selects the displacements. The last held ring is the edge of the plates.
+/// A disc of concentric rings of triangles. Ring k has 6 k vertices; `free` rings lie outside the plates, and the last
+/// held ring lies on the edge of the plates. Vertices of the free rings are displaced by up to 0.15 of the spacing (on
+/// the border only along it), so that no direction is preferred. `seed` selects the displacements.
 Specimen rings(int free, int seed);
 
 /// A scene that contains only the specimen, which is written to `file` (OBJ) and read from there.
@@ -38,8 +38,8 @@ struct Drape {
   double cpu_s = 0;
 };
 
-/// Bending friction holds cloth where it first comes to rest, so that the solver's residual affects the drape.
-/// `exactly`: with a newton_tolerance so small that a third of it changes the drape by at most 0.3 percentage points.
+/// Accuracy of the solver. It affects the drape, since bending friction holds cloth where it first comes to rest.
+/// `exactly`: newton_tolerance is so small that a third of it changes the drape by at most 0.3 percentage points.
 enum class Solved { exactly, with_default_tolerance };
 
 /// Simulates the fall of the level specimen for 1.5 s, within which it comes to rest. Throws Error(simulation_failed).
@@ -47,13 +47,14 @@ Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, So
 
 }  // namespace cusick
 
-/// The cantilever test (ASTM D1388, option A): a strip of 25 mm is pushed over an edge until the line from the edge to
-/// its tip is 41.5° below the horizontal.
+/// The cantilever test (ASTM D1388, option A): a strip 25 mm wide is pushed over an edge until the line from the edge
+/// to the tip of the strip is 41.5° below the horizontal.
 struct Cantilever {
   double bending_length = 0;  ///< half of the overhang [m]
   double rigidity = 0;        ///< density · 9.81 m/s² · bending_length³ [N·m]
 };
-/// Repeats the test with different overhangs; each starts level and hangs for 8 s. Throws Error(simulation_failed).
+/// Simulates strips with different overhangs; each strip starts level and hangs for 8 s. Throws
+/// Error(simulation_failed).
 Cantilever cantilever(const scene::Material& material);
 
 enum class Direction { weft, warp };

@@ -11,7 +11,7 @@
 
 namespace weft::bench {
 
-/// Loads at which extension is measured [N/m]: the three of FAST and that of KES.
+/// Loads at which extension is measured [N/m]: the three of the FAST system and that of the KES system.
 inline constexpr std::array kLoads{4.9, 19.6, 98.07, scene::kExtensionLoad};
 
 struct FabricRun {

@@ -30,7 +30,8 @@ class Tally {
 };
 
 Table map_table(const std::vector<MapCell>& cells);
-/// The stability map as SVG: one panel per integrator, stiffness upward, step to the right, coloured by verdict.
+/// The stability map as SVG: one panel per integrator; stiffness increases upward, the step to the right; cells are
+/// coloured by verdict.
 std::string map_svg(const std::vector<MapCell>& cells);
 
 }  // namespace weft::bench

@@ -59,7 +59,7 @@ bool scale_mesh(scene::Scene& scene, double factor) {
   return true;
 }
 
-// Whether the scene has a value of this parameter at all, and the factor changes the simulation.
+// Whether the factor changes the simulation. It does not if the scene's values of this parameter are 0 or have no use.
 bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   scene::Scene varied = scene;
   Factors factors{1, 1, 1, 1, 1, 1};
@@ -81,7 +81,7 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
                    &Material::bend_friction, &Material::drag);
     case VariedParameter::friction:
       return !same(&Material::friction) && (scene.contact.self || scene.contact.obstacles);
-    // Steps are never longer than a frame.
+    // A step is never longer than a frame, so a larger time.step has no effect beyond that.
     case VariedParameter::step:
       return scene.time.tolerance || scene.time.step * (factor > 1 ? 0.5 * factor : factor) < 1 / scene.time.fps;
     case VariedParameter::mesh:
@@ -167,7 +167,7 @@ Trial try_factors(const scene::Scene& scene, const Factors& factors, double max_
   return trial;
 }
 
-// Factors of single parameters first, then the map.
+// The factors of all trials: first those that change a single parameter, then those of the map.
 std::vector<Factors> plan_trials(const scene::Scene& scene) {
   std::vector<Factors> plan;
   const auto add = [&](const Factors& factors) {
@@ -241,7 +241,7 @@ SceneStability measure_scene_stability(const scene::Scene& scene,
   const auto report_trial = [&](const Trial& trial) {
     if (each) each(trial, static_cast<double>(result.trials.size() + 1) / static_cast<double>(plan.size() + 1));
   };
-  // If the scene cannot be built at all, throws its error.
+  // Throws the error of the scene if it cannot be built at all.
   { const simulation::Simulation whole(scene); }
   result.as_is = try_factors(scene, {1, 1, 1, 1, 1, 1}, std::numeric_limits<double>::infinity(), {}, stop);
   report_trial(result.as_is);

@@ -25,10 +25,10 @@ std::string_view name_of(VariedParameter axis);
 
 using Factors = std::array<double, kVariedValues>;
 
-/// A trial breaks if surfaces pass through each other, cloth exceeds `max_stretch` or is caught in an obstacle, a pin
-/// is held back, energy appears, or the solver leaves forces.
+/// A trial breaks if surfaces pass through each other, cloth exceeds `max_stretch` or is pinched by an obstacle, pinned
+/// particles lag behind their targets, energy appears from nothing, or the solver leaves unbalanced forces.
 enum class TrialVerdict {
-  holds,       ///< ran to the end, and nothing broke that does not break in the unchanged scene
+  holds,       ///< ran to the end, and nothing broke except what breaks in the unchanged scene too
   warned,      ///< ran to the end, but something broke on the way
   refused,     ///< the simulation ended with an error
   not_finite,  ///< a position is not finite
@@ -43,7 +43,7 @@ struct Trial {
   TrialVerdict verdict = TrialVerdict::holds;
   /// What broke here but not in the unchanged scene; for the unchanged scene: everything that broke.
   std::vector<std::string> broken = {};
-  bool mends = false;       ///< nothing breaks, not even what breaks in the unchanged scene
+  bool mends = false;       ///< nothing breaks in this trial, not even what breaks in the unchanged scene
   std::string reason = {};  ///< error message if refused or impossible
   double step = 0;          ///< time step [s]; 0 if time.tolerance chooses it
   int frames = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
@@ -78,7 +78,7 @@ SceneStability measure_scene_stability(
 /// The range of a parameter, on one side of the scene's own value, in which the scene holds.
 struct Margin {
   VariedParameter axis;
-  double holds = 1;               ///< last factor before the first that breaks, going away from 1; 1: none holds
+  double holds = 1;               ///< last factor, going away from 1, before the first that breaks; 1: none holds
   const Trial* breaks = nullptr;  ///< the trial at that first factor; nullptr if no trial breaks
 };
 /// One margin below and one above 1 for each parameter that could be varied.

@@ -8,8 +8,8 @@
 
 namespace weft::bench {
 
-/// One sentence: the limit nearest to the scene's values; if the scene itself breaks, the smallest change that mends
-/// it.
+/// One sentence: the limit nearest to the scene's values, or, if the unchanged scene breaks, the smallest change with
+/// which nothing breaks.
 std::string margin_sentence(const SceneStability& stability);
 /// For each parameter, the first factors below and above 1 at which the scene breaks, and what breaks.
 Table margin_table(const SceneStability& stability);

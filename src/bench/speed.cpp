@@ -15,15 +15,15 @@ namespace {
 
 // Lower bound on the bytes moved by one linear iteration, in single precision. Full block: nine numbers and a column
 // index. Isotropic block (multiple of the identity): one number and a column index. Particle: its preconditioner block
-// (three padded vectors) and padded vectors of conjugate gradients (direction p, product q, solution x, residual r,
-// preconditioned residual z): the product reads p and writes q; the update of x and r reads p and q, and reads and
-// writes x and r; the preconditioner reads r and writes z; the new direction reads z, and reads and writes p.
+// (three padded vectors), and padded vectors of conjugate gradients: direction p, product q, solution x, residual r,
+// preconditioned residual z. The product reads p and writes q. The update of x and r reads p and q, and reads and
+// writes x and r. The preconditioner reads r and writes z. The new direction reads z, and reads and writes p.
 constexpr double kPaddedVec3Bytes = 16;
 constexpr double kFullBlock = 9 * 4 + 4, kIsotropicBlock = 4 + 4,
                  kParticle = 3 * kPaddedVec3Bytes + (2 + 6 + 2 + 3) * kPaddedVec3Bytes;
-// A linearisation reads or clears the matrix, writes it in double precision, reads it, and writes a copy in
-// single precision. Positions, velocities and forces are moved in each of three evaluations: linearisation, line
-// search, residual after it. Data of the elements are not counted.
+// The same for one Newton iteration. The linearisation reads or clears the matrix, writes it in double precision, reads
+// it, and writes a copy in single precision. Positions, velocities and forces are moved in each of three evaluations:
+// linearisation, line search, and residual after the line search. Data of the elements are not counted.
 constexpr double kFullBlockAssembled = 9 * (8 + 8 + 8 + 4), kIsotropicBlockAssembled = 8 + 8 + 8 + 4,
                  kParticleEvaluated = 3 * 3 * 24;
 

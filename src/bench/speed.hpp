@@ -52,9 +52,10 @@ struct SpeedRun {
   /// Sum over all stages.
   StageTime all() const;
   double bytes_a_particle() const;
-  /// Fraction of the wall time in which further threads would have nothing to do. Only of runs with one thread.
+  /// Fraction of the wall time in which further threads would have nothing to do. Only for runs with one thread, as is
+  /// largest_gain().
   double serial_fraction() const;
-  /// How many times as fast the run would be on each number of LoopCounts::kThreads, if threads cost nothing.
+  /// How many times as fast the run would be on LoopCounts::kThreads[number] threads, if threads cost nothing.
   double largest_gain(std::size_t number) const;
 };
 
@@ -65,7 +66,8 @@ struct SpeedFrames {
 
 /// Runs the scene with the given settings and returns its cost. Call it in a process of its own: it measures the memory
 /// of the process, and assigns the CPU time of all its threads to stages. If `open_drawing` is given, it is called
-/// after the preroll, and its result for frame 0 and each measured frame. Throws what a simulation throws.
+/// after the preroll; the function that it returns then draws frame 0 and each measured frame. Throws what a simulation
+/// throws.
 using Drawing = std::function<void(const frame::FrameSnapshot&)>;
 SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, const SpeedFrames& frames,
                        const std::function<Drawing()>& open_drawing = {});
@@ -74,15 +76,16 @@ SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, c
 template <class Archive>
 void serialize(Archive& archive, SpeedRun& run);
 
-/// Lower bound on the bytes that one iteration must move through memory if each number is read and written once per
-/// purpose. A Newton iteration is counted without its linear iterations.
+/// Lower bound on the bytes that one iteration moves through memory: each operation reads its inputs and writes its
+/// results once. A Newton iteration is counted without its linear iterations.
 double bytes_of_linear_iteration(const SpeedRun& run);
 double bytes_of_newton_iteration(const SpeedRun& run);
-/// Time of forces, preconditioner and linear solver if memory bandwidth were the only limit [s]; 0: bandwidth unknown.
+/// Time that forces, preconditioner and linear solver would take if memory bandwidth were the only limit [s]; 0 if the
+/// bandwidth is unknown.
 double memory_bound_s(const SpeedRun& run);
 
-/// Speed at which thread_count() threads read `bytes` of memory repeatedly [bytes/s]: that of the smallest cache level,
-/// or memory, that holds these bytes.
+/// Speed at which thread_count() threads read the same `bytes` bytes repeatedly [bytes/s]. It is the speed of the
+/// smallest cache level that holds these bytes, or of memory.
 double read_bandwidth(double bytes);
 
 /// The settings of all runs: every size with every number of threads; and every step at the size nearest to the

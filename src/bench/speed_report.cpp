@@ -11,7 +11,7 @@
 namespace weft::bench {
 namespace {
 
-// Distinguishable in print and with red-green blindness (palette of Okabe and Ito).
+// Colours of the stages; they differ in print and with red-green blindness (palette of Okabe and Ito).
 constexpr const char* kColors[kSpeedStages] = {"#d55e00", "#e69f00", "#0072b2", "#009e73", "#999999", "#cc79a7"};
 
 double frames_of(const SpeedRun& run) {
@@ -64,7 +64,7 @@ std::vector<const SpeedRun*> select(const std::vector<SpeedRun>& runs, const Con
   return selected;
 }
 
-// With digit grouping, such as 4,096.
+// The number with digit grouping, such as 4,096.
 std::string grouped(std::int64_t number) {
   std::string text = std::to_string(number);
   for (auto place = static_cast<std::ptrdiff_t>(text.size()) - 3; place > 0; place -= 3)
@@ -72,7 +72,7 @@ std::string grouped(std::int64_t number) {
   return text;
 }
 
-// Three significant digits below 1 s, whole milliseconds above.
+// Milliseconds with three significant digits below 1 s, whole milliseconds above.
 std::string milliseconds(double ms) {
   return ms < 1000 ? fmt::format("{:.3g}", ms) : grouped(std::lround(ms));
 }
@@ -129,7 +129,7 @@ std::string how_far_from_the_bound(const std::vector<const SpeedRun*>& sizes) {
       100 * bound / takes);
 }
 
-// Appends the exponent of growth over particles since the row above, in parentheses.
+// Appends, in parentheses, the exponent with which the value grows with the number of particles since the row above.
 std::string with_exponent(std::string text, const SpeedRun* before, const SpeedRun& run, double was, double is) {
   if (const auto power = before ? exponent(*before, run, was, is) : std::nullopt)
     text += fmt::format(" ({:.2f})", *power);

@@ -19,9 +19,9 @@ struct SpeedReport {
 /// One row per run, for other programs. Times are milliseconds per frame; an unknown value is an empty field.
 Table speed_table(const std::vector<SpeedRun>& runs);
 
-/// Successful runs that differ in one setting. over_sizes: ascending, with the smallest number of threads and the
-/// scene's step. over_threads: ascending, at this size and the scene's step. over_steps: from the longest step to the
-/// shortest.
+/// Successful runs that differ in one setting. over_sizes: ascending sizes, with the smallest number of threads and the
+/// scene's step. over_threads: ascending numbers of threads, at this size and the scene's step. over_steps: from the
+/// longest step to the shortest.
 std::vector<const SpeedRun*> over_sizes(const std::vector<SpeedRun>& runs);
 std::vector<const SpeedRun*> over_threads(const std::vector<SpeedRun>& runs, double size);
 std::vector<const SpeedRun*> over_steps(const std::vector<SpeedRun>& runs);

@@ -11,7 +11,7 @@
 namespace weft::bench {
 namespace {
 
-// Allowed energy gain: this fraction of the energies in play for solver tolerances, plus [J] for rounding errors.
+// Allowed energy gain: kSolverEnergyRatio times the energies in play, for solver tolerances, plus kEnergyRounding [J].
 constexpr double kSolverEnergyRatio = 0.1, kEnergyRounding = 1e-9;
 
 double mechanical_energy(const simulation::FrameReport& report) {
@@ -159,7 +159,7 @@ double stiffest_period(double stiffness) {
 
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each) {
   constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2};
-  // Long enough for an instability to show.
+  // Two swings are long enough for an instability to show.
   constexpr double kSwings = 2;
   constexpr int kDecades = 10, kMaxMapSteps = 25'000;
   std::vector<MapCell> cells;

@@ -1,4 +1,4 @@
-// Behaviour of the engine on stiff and extreme scenes: solved, refused with a reason, or wrong.
+// Tests how the engine handles stiff and extreme scenes: it solves them, refuses them with a reason, or is wrong.
 #pragma once
 
 #include <functional>
@@ -24,14 +24,14 @@ struct Outcome {
   std::string reason;  ///< error message of a refusal
   int frames = 0;      ///< number of finished frames after the start
   int steps = 0, rejected_steps = 0, newton_iterations = 0;
-  double energy_gain = 0;  ///< largest mechanical energy above that of the start, relative to what is allowed
+  double energy_gain = 0;  ///< largest increase of mechanical energy since the start, relative to the allowed one
   double max_speed = 0;    ///< largest speed of a particle between two frames [m/s]
   double max_strain = 0;   ///< in the last frame
   double cpu_s = 0;
 };
 
-/// Largest energy that a scene may gain from driven pins and bodies [J], in addition to a fixed fraction of the
-/// energies in play for solver tolerances.
+/// Largest increase of energy that is allowed because pins and bodies are driven [J]. A fixed fraction of the energies
+/// in play is allowed in addition, for solver tolerances.
 struct EnergyLimit {
   double driven = 0;
 };
@@ -64,9 +64,9 @@ struct MapCell {
 double swing_period();
 double stiffest_period(double stiffness);
 
-/// A sheet of 11 × 11 particles, held at two corners, swings down: eleven powers of ten of stiffness [N/m], seven steps
-/// from 1e-5 to 0.2 s, three integrators. Each cell runs two swings or 25,000 steps, whichever is shorter. Calls `each`
-/// after each cell.
+/// Simulates a sheet of 11 × 11 particles, held at two corners, that swings down, for each combination of eleven powers
+/// of ten of stiffness [N/m], seven steps from 1e-5 to 0.2 s, and three integrators. Each cell runs for two swings or
+/// 25,000 steps, whichever is shorter. Calls `each` after each cell.
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each = {});
 
 }  // namespace weft::bench

@@ -18,8 +18,8 @@ namespace weft::bench {
 enum class Quantity : std::size_t {
   position,     ///< mass-weighted root mean square, largest over all frames [m]
   velocity,     ///< likewise [m/s]
-  energy,       ///< kinetic + elastic + gravitational, largest over all frames, relative to energies_in_play
-  drift,        ///< the same energy in the last frame, likewise relative
+  energy,       ///< kinetic + elastic + gravitational, largest error over all frames, relative to energies_in_play
+  drift,        ///< error of the same energy in the last frame, likewise relative
   centre,       ///< centre of mass in the last frame [m]
   top,          ///< height of the highest particle in the last frame [m]
   shadow,       ///< sum of all cloths' areas as seen from above in the last frame, relative to the area at the start
@@ -57,7 +57,7 @@ struct Work {
 /// Record of a run, without frame 0.
 struct Trajectory {
   struct Frame {
-    std::vector<Vec3> x, v;  ///< of all cloths; `v` is empty if only snapshots of the run exist
+    std::vector<Vec3> x, v;  ///< of all cloths [m, m/s]; `v` is empty if only snapshots of the run exist
   };
   std::vector<Frame> frames;
   std::vector<double> masses;
@@ -70,9 +70,9 @@ class Recorder {
  public:
   /// `start` and `report` are those of frame 0.
   Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const frame::FrameReport& report);
-  /// Adds the next frame, in order; `velocities` of all particles, or none.
+  /// Adds the next frame, in order. `velocities`: those of all particles, or empty.
   void see(const frame::SnapshotPtr& snapshot, const frame::FrameReport& report, std::span<const Vec3> velocities = {});
-  /// Returns the trajectory; `masses` of all particles [kg].
+  /// Returns the trajectory. `masses`: those of all particles [kg].
   Trajectory finish(std::span<const double> masses);
 
  private:

@@ -33,11 +33,12 @@ void serialize_flag(Archive& archive, bool& flag) {
   serialize_byte(archive, flag, true);
 }
 
-// Limit on coordinates, in metres: products of four of them are finite in single precision, in which pictures are
-// drawn. For comparison, an object that falls for an hour is 6.4e7 m away.
+// Limit on coordinates [m]. Pictures are drawn in single precision, in which products of four coordinates must be
+// finite. For comparison, an object that falls for an hour is 6.4e7 m away.
 constexpr double kFarthest = 1e9;
 
-// The same limit for the other numbers except those of the report: angles, fractions, intensities.
+// Throws if a number exceeds the same limit. Used for all numbers (angles, fractions, intensities) except those of the
+// report.
 void check_finite(double number) {
   if (!(std::abs(number) <= kFarthest))
     throw std::runtime_error(fmt::format("a number is not finite, or beyond {:g}", kFarthest));
@@ -144,7 +145,7 @@ void serialize(Archive& archive, Textures& textures) {
                            texture.height < kMaxTextureSide;
         if (!sized || texture.rgba.size() != 4 * static_cast<std::size_t>(texture.width) * texture.height)
           throw std::runtime_error("a picture has the wrong number of bytes");
-        // When writing, the pointer stays: paints are matched to textures by pointer.
+        // The pointer changes only when reading: paints find their textures by pointer.
         if constexpr (kReading<Archive>) pointer = std::make_shared<const frame::Texture>(std::move(texture));
       },
       kMinTextureBytes);
@@ -238,8 +239,8 @@ void serialize(Archive& archive, frame::Light& light) {
   serialize_finite(archive, light.softness);
 }
 
-// Frame and time are those of the snapshot. All members are named, so that a new one causes a compile error here:
-// serialise it and raise kFormatVersion.
+// The frame and time of the report are not stored here, since the snapshot has them. All members are named, so that a
+// new member causes a compile error: then serialise it and raise kFormatVersion.
 template <class Archive>
 void serialize(Archive& archive, frame::FrameReport& report) {
   auto& [frame, time, simulate, collide, forces, preconditioner, linear, steps, rejected_steps, inexact_steps,

@@ -1,15 +1,15 @@
-// Payloads of the files of a frame cache. A list is its length (u64), then its entries; a text is a list of bytes;
-// enumerations and booleans take one byte; all numbers are little endian. Integers have the size of their C++ type;
-// other numbers are f64 unless noted otherwise.
+// Payloads of the files of a frame cache. A list is stored as its length (u64), then its entries; a text is a list of
+// bytes; enumerations and booleans take one byte. All numbers are little endian. Integers have the size of their C++
+// type; other numbers are f64 unless noted otherwise.
 //
 //   surfaces  the stage (surroundings); list of textures; list of surfaces; for each surface the positions in frame 0
 //             (count u64, then planes)
-//   frame     time; list of cameras; list of lights; the report; for each surface a byte: 0 as in frame 0, 1 positions
-//             follow (planes); and a byte: 0 no heat, 1 heat follows (planes of f32)
+//   frame     time; list of cameras; list of lights; the report; for each surface two bytes. First byte: 0 positions
+//             as in frame 0, 1 positions follow (planes). Second byte: 0 no heat, 1 heat follows (planes of f32)
 //   state     bytes of Simulation::save
 //
 // The members of each part, and their order, are those of the serialize() functions in codec.cpp. An optional value is
-// a byte, 0 or 1, and the value if it is 1.
+// stored as a byte, 0 or 1, followed by the value if the byte is 1.
 //
 // Planes: the first byte of every entry, then the second byte of every entry, and so on (24 planes for positions of 3 ×
 // f64, 4 for heat). Neighbours have similar signs and exponents, so that planes compress well.

@@ -19,7 +19,8 @@ static_assert(std::endian::native == std::endian::little && sizeof(std::size_t) 
               "plain values are written as they are in memory");
 
 constexpr std::size_t kCheckedSize = 48, kHeaderSize = 56;
-// The last mantissa bits of positions do not compress at any level; levels 3 and above take longer without gain.
+// Compression level. The last mantissa bits of positions do not compress at any level; levels 3 and above take longer
+// without gain.
 constexpr int kLevel = 1;
 // A block of Zstandard holds at most 128 KiB and takes at least 4 bytes; only damaged files claim a higher ratio.
 constexpr std::uint64_t kMaxCompressionRatio = 32768;

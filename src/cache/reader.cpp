@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Throws without reading the whole file if its start is not kMagic, as any other file may be large.
+// Reads a file. Throws before reading the whole file if it does not begin with kMagic, as any other file may be large.
 std::string read_container(const fs::path& file) {
   const std::string start = read_start(file, kMagic.size());
   if (start.size() == kMagic.size() && start != kMagic) throw std::runtime_error("it is no file of a frame cache");

@@ -18,8 +18,8 @@ struct SolverState {
   std::string bytes;
 };
 
-/// Accepted looks (colours, cameras, lights) of frames: only those of the scene, or also those of former scenes, whose
-/// frames a --resume has not yet replaced.
+/// Which looks (colours, cameras, lights) of frames the reader accepts: only those of the scene, or also those of
+/// former scenes. Frames with former looks exist until a run with --resume replaces them.
 enum class Looks { of_scene, any };
 
 /// All functions are thread-safe, and throw Error(asset_unreadable) with the file name and the defect.
@@ -33,7 +33,7 @@ class Reader {
   /// The effective scene as TOML, for people.
   std::string scene_text() const;
 
-  /// Frames whose files exist now, ascending; looked up at each call.
+  /// Frames whose files exist now, ascending. Each call reads the folder again.
   std::vector<int> frames() const;
   bool has(int frame) const;
 

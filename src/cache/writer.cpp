@@ -37,7 +37,8 @@ std::optional<std::string_view> beginning_of(std::string_view name) {
   return std::nullopt;
 }
 
-/// Also accepts a start of zero bytes: the machine may have crashed before the content was on disk.
+/// Whether a file begins as Weft writes it. Zero bytes count too: the machine may have crashed before the content was
+/// on disk.
 bool begins_as_written(const fs::path& file) {
   const auto beginning = beginning_of(file.filename().string());
   if (!beginning) return false;
@@ -45,8 +46,8 @@ bool begins_as_written(const fs::path& file) {
   return start == *beginning || (!start.empty() && start.find_first_not_of('\0') == std::string::npos);
 }
 
-/// Whether Weft has written the file of this name, by its first bytes; for the scene, by those of the files beside it.
-/// Empty files count as well, as nothing is lost with them.
+/// Whether Weft has written the file of this name, judged by its first bytes. The scene is judged by the first bytes of
+/// the files beside it. Empty files count too, as nothing is lost with them.
 bool is_ours(const fs::path& folder, const std::string& name) {
   const std::string_view kept = final_name_of(name);
   if (!kept.empty()) return is_name_of_cache(kept);
@@ -119,7 +120,7 @@ bool Lock::empty() const {
 }
 
 void Lock::clear() const {
-  // The scene first, as the files beside it identify it; then the manifest, without which the rest is no cache.
+  // Removes the scene first, as the files beside it identify it; then the manifest, without which the rest is no cache.
   for (const char* name : {kSceneFile, kManifestFile})
     if (is_ours(folder_, name)) ::unlink((folder_ / name).c_str());
   for (const std::string& name : names_in(folder_))
@@ -151,7 +152,7 @@ void Writer::add(const frame::FrameSnapshot& snapshot, const frame::FrameReport&
   }
   const std::string content =
       pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_));
-  // If the file appeared meanwhile, another program made it: the folder is locked against other processes of Weft.
+  // A file that has appeared meanwhile was made by another program: the folder is locked against other Weft processes.
   if (own_frames_.insert(snapshot.frame).second) keep_if_made_meanwhile(folder_ / frame_file(snapshot.frame));
   write(frame_file(snapshot.frame), content);
   bytes_added_ += content.size();

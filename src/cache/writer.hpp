@@ -25,8 +25,8 @@ class Lock {
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Removes all files of a cache except the lock, the manifest before the frames, so that no cache remains if this is
-  /// interrupted.
+  /// Removes all files of a cache except the lock. It removes the manifest before the frames, so that an interrupted
+  /// call leaves no cache.
   void clear() const;
   /// Removes all files of a cache and the folder.
   void remove() const;
@@ -44,8 +44,8 @@ class Writer {
   /// Writes the manifest and the scene. The folder must be empty, or a cache of the same simulation.
   Writer(const Lock& lock, Manifest manifest, std::string_view scene_text);
 
-  /// Frame 0 must come first, unless the folder already has it. Replaces a frame that existed when the writer was
-  /// created; keeps one that another program has created since, and throws Error(output_failed).
+  /// Adds a frame. Frame 0 must come first, unless the folder already has it. A file of this frame that existed when
+  /// the writer was created is replaced. If another program has created the file since, throws Error(output_failed).
   void add(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report);
 
   /// Replaces the stored state by that of `frame`. All frames up to it must have been added.

@@ -19,8 +19,8 @@ constexpr double kNegligibleLength = 1e-9;
 /// hinge is the squared sine of its angle, so elbows bent by 13° need no guess.
 constexpr double kMinDeterminedWeight = 0.05;
 
-/// Width of the weight for the lean of a standing trunk (people lean by 2 to 5° in walking, by more than 15° if they
-/// stoop), and of its single bones [radians].
+/// Widths of the weights (see falloff) with which a trunk counts as standing: by its lean as a whole and by that of its
+/// single bones [radians]. People lean by 2 to 5° in walking, by more than 15° if they stoop.
 constexpr double kStandingLean = 5 * kDegree, kStandingBoneLean = 20 * kDegree;
 
 Vec3 unit(const Vec3& v) {
@@ -58,7 +58,8 @@ class AnatomyFinder {
   AnatomyFinder(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const Flat> flat, const Vec3& up)
       : skeleton_(skeleton), postures_(postures), flat_(flat), up_(up) {
     own_.fill(Quat::Identity());
-    // If left and right are not known, both skeletons use the same world axis.
+    // This axis replaces the vector to the left if left and right are unknown. It depends on `up` only, so that two
+    // skeletons get the same axis.
     level_ = up.unitOrthogonal();
   }
 
@@ -105,7 +106,7 @@ class AnatomyFinder {
     });
   }
 
-  /// An axis of a body part in each posture.
+  /// The axis `of` of a body part in the world, as a function of the posture.
   auto axis_of(Joint joint, const Vec3& of) const {
     return [this, joint, of](const Posture& p, std::size_t) { return axis(p, joint, of); };
   }
@@ -140,7 +141,8 @@ class AnatomyFinder {
     const auto bone = [&](const Posture& p, std::size_t) {
       const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
       if (joint == Joint::head) return unit(p.places[place_of(joint)] - p.places[place_of(below)]);
-      // Nodes that control a rig may lie above the joint that they move.
+      // Control nodes of a rig may lie above the joint that they move, so that their bone points down. The direction of
+      // the trunk then replaces it.
       const Vec3 up_the_bone = along(p, joint), up_the_trunk = unit(skeleton_.trunk(p));
       return up_the_bone.dot(up_the_trunk) < 0 ? up_the_trunk : up_the_bone;
     };

@@ -11,7 +11,7 @@
 
 namespace weft::character {
 
-/// A skeleton, with its node for each of joint_names(); -1 if it has none.
+/// A skeleton. `joints`: for each of joint_names(), the node with that role; -1 if there is none.
 struct Rig {
   const Character& character;
   std::span<const Index> joints;
@@ -57,7 +57,7 @@ class Skeleton {
   std::array<std::array<Index, 2>, 2> fingers_{};  // nodes of index and little finger, left and right; -1: unknown
 };
 
-/// Weight 0 to 1 with which the left and the right foot stand flat on the floor in a posture.
+/// How far the left and the right foot stand flat on the floor in a posture: weights from 0 (not) to 1 (fully).
 using Flat = std::array<double, 2>;
 
 /// Finds, for each joint, the rotation from the axes of its body part to the joint's own axes. Axes of body parts:

@@ -20,7 +20,7 @@ struct Node {
   Affine local = Affine::Identity();  ///< node to parent, at rest
 };
 
-/// Moves vertices: in any pose it maps a vertex to global transform of the node · offset · vertex.
+/// Moves vertices. In any pose, it moves a vertex to G · offset · vertex, where G is the global transform of the node.
 struct Bone {
   Index node = 0;
   Affine offset = Affine::Identity();  ///< mesh to node, in the pose in which the skin is bound
@@ -72,7 +72,7 @@ struct Material {
   Vec3 color{0.8, 0.8, 0.8};         ///< linear; multiplies the picture
   std::string picture;               ///< content of a PNG, JPEG or TGA file; empty: none
   int width = 0, height = 0;         ///< size of `pixels`
-  std::vector<std::uint8_t> pixels;  ///< a picture without a file: R G B A, sRGB, rows from the top; empty: none
+  std::vector<std::uint8_t> pixels;  ///< used if `picture` is empty: R G B A, sRGB, top row first; empty: none
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   bool cutout = false;  ///< transparent parts of the picture are holes
 };
@@ -82,7 +82,7 @@ struct Coloring {
   std::vector<Material> materials;
   std::vector<Index> material_of_triangle;  ///< per triangle; empty if the file has no colours
   std::vector<std::array<Vec2, 3>> uv;      ///< per triangle: (u, v) of its corners, from the lower left of the picture
-  bool covers_look = false;                 ///< pictures lie over the colour of the scene, where they are opaque
+  bool covers_look = false;                 ///< the scene's colour stays visible where pictures are transparent
 };
 
 /// Lengths in metres; up axis as in the scene.

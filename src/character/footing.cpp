@@ -20,8 +20,8 @@ constexpr double kSpeedWindow = 1.0 / 30;
 constexpr double kMinContactTime = 0.08;
 /// Movement of the ball that ends a contact and begins the next one, as in a shuffle [leg lengths].
 constexpr double kMaxBallMotion = 0.08;
-/// The floor is the lowest height whose number of slow feet is at least this fraction of that at the most frequent
-/// height. Initial poses of recordings and outliers lie below the floor, steps and chairs above.
+/// The floor is the lowest height at which the number of slow feet is at least this fraction of the number at the most
+/// frequent height. Initial poses of recordings and outliers lie below the floor, steps and chairs above.
 constexpr double kMinFrequencyRatio = 0.5;
 /// Time in which feet blend from a contact into their own motion [s]; a step takes 0.4 s or more.
 constexpr double kFootBlendTime = 0.15;

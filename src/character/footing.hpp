@@ -10,7 +10,7 @@
 
 namespace weft::character {
 
-/// Keys `first` to `last`, both included, in which the ball of a foot stays in place.
+/// A range of keys, `first` and `last` included, in which the ball of a foot stays in place.
 struct Contact {
   std::size_t first = 0, last = 0;
 };
@@ -27,7 +27,7 @@ struct Footsteps {
 Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
                          const Vec3& up);
 
-/// A leg at one key. reach() also accepts an arm, with shoulder, elbow, wrist and hinge.
+/// A leg at one key. reach() also accepts an arm: `hip`, `knee` and `ankle` are then its shoulder, elbow and wrist.
 struct Leg {
   Vec3 hip, knee, ankle;
   Vec3 ball, heel;  ///< points of the sole, below the toe joint and below the ankle
@@ -37,7 +37,7 @@ struct Leg {
 /// The left and the right leg.
 using Legs = std::array<Leg, 2>;
 
-/// Corrections at one key that keep feet in contact in place.
+/// Corrections at one key. They keep feet that are in contact in place.
 struct Stance {
   double rise = 0;                                          ///< of the hips [m]
   std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< of the feet, relative to the motion [m]
@@ -50,8 +50,8 @@ struct Stance {
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up);
 
-/// World rotations, from the present pose, of upper and lower leg that bring the ankle to a position, or as near as the
-/// leg reaches. The knee bends in the plane of the leg.
+/// Rotations of the upper and the lower leg from the present pose, in world axes. They bring the ankle to a given
+/// position, or as near to it as the leg reaches. The knee bends in the plane of the leg.
 struct LegTurns {
   Quat upper, lower;
 };

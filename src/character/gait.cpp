@@ -11,13 +11,13 @@
 namespace weft::character {
 namespace {
 
-constexpr double kHipSwing = 1.6;       ///< factor on the recorded pelvis yaw: longer legs, and a catwalk
+constexpr double kHipSwing = 1.6;       ///< factor on the recorded pelvis yaw, for longer legs and a catwalk gait
 constexpr double kShoulderSwing = 1.5;  ///< factor on the chest yaw, which is opposite to that of the pelvis
 constexpr double kChestNod = 0.8, kHeadNod = -0.4,
                  kHeadRoll = -0.4;           ///< factors on the pelvis pitch and the chest roll
 constexpr double kShoulderTurnRatio = 0.12;  ///< rotation of a shoulder / rotation of its arm
-// Hanging arms have bent elbows, and forearms hang more steeply than upper arms, which the chest holds off; less so if
-// the arms are held out for wide skirts [degrees].
+// Hanging arms have bent elbows. The chest holds the upper arms off; the forearms hang more steeply, by a fraction of
+// that angle, up to a maximum. Angles in degrees.
 constexpr double kElbowAtRest = 14, kElbowRatio = 0.75, kForearmTurnRatio = 0.75, kMaxForearmTurn = 4.5;
 constexpr double kHandClearance =
     8;  ///< from the skin of the hips to a hanging hand's middle [cm, for a height of 175]

@@ -16,12 +16,13 @@ struct HarmonicCurve {
 
 /// Fitted to subject 12, trial 1 of the CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu, created with
 /// funding from NSF EIA-0196217; free for use in research and commercial projects worldwide): 4.4 s of straight walking
-/// at 120 Hz, two strides of the left foot and three of the right. A heel strikes where its ankle is farthest in front
+/// at 120 Hz, two strides of the left foot and three of the right. A heel strikes when its ankle is farthest in front
 /// of the hips (Zeni et al., "Two simple methods for determining gait events", 2008); the phase is linear between
-/// strikes. Least squares over all frames between the first and the last strike. Curves of one side are fitted to both
-/// sides, with the right side half a stride later. Yaw and roll have odd harmonics only, pitch has even ones. A fifth
-/// harmonic of 0.6° of the pelvis yaw is left out, since it shakes cloth on the hips. Degrees. Root mean square
-/// residual: 2.5° of foot pitch, 3.4° and 2.9° of arm and elbow, below 1.7° of all other angles.
+/// strikes. The harmonics are a least-squares fit to all frames between the first and the last strike. Curves of one
+/// side are fitted to both sides, with the right side half a stride later. Yaw and roll have odd harmonics only, pitch
+/// has even ones. A fifth harmonic of 0.6° of the pelvis yaw is left out, since it shakes cloth on the hips. All angles
+/// are in degrees. Root mean square residual: 2.5° of foot pitch, 3.4° and 2.9° of arm and elbow, below 1.7° of all
+/// other angles.
 namespace walking {
 
 constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording [m/s], [s]
@@ -38,16 +39,16 @@ constexpr HarmonicCurve head_yaw{0, {1.09, 0, 0.14, 0, 0.04, 0}, {-0.84, 0, -0.2
 // Left side. Pitch of the line from the ankle to the ball of the foot, + toes up.
 constexpr HarmonicCurve foot_pitch{
     -22.00, {12.48, 20.97, -0.12, -0.43, 3.08, 0.53}, {25.19, -5.71, -7.76, 2.40, 0.46, -0.92}};
-// Upper arm: angle forward of the vertical, then outward from it; then bend of the elbow.
+// `arm_forward`, `arm_out`: angle of the upper arm from the vertical, forward and outward. `elbow`: its bend.
 constexpr HarmonicCurve arm_forward{
     -5.20, {-7.63, 0.35, -0.26, 0.18, 0.06, 0.09}, {3.37, -0.02, -0.39, -0.03, -0.26, -0.05}};
 constexpr HarmonicCurve arm_out{1.47, {-3.60, 0, 0.02, 0.12, 0.01, -0.02}, {0.91, -0.09, 0.10, 0.05, 0.04, 0.04}};
 constexpr HarmonicCurve elbow{23.61, {-5.76, 4.14, -0.20, -0.05, 0.08, -0.17}, {2.17, -3.43, 0.02, 0.28, 0.23, 0.02}};
 
 /// Knee flexion: 5° at contact, 18° in loading response, 5.5° in terminal stance, 39° at toe-off and 60° in initial
-/// swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). In between, a spline drawn by eye,
-/// which these harmonics approximate within 0.6°. Knees of the recording are not used: they are bent by 20° more in
-/// stance, and clipped at 0.
+/// swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). A spline drawn by eye connects these
+/// values; the harmonics approximate it within 0.6°. The knees of the recording are not used: they are bent by 20° more
+/// in stance, and clipped at 0.
 constexpr HarmonicCurve knee{22.99, {-3.24, -13.50, -0.53, -0.87, 0.13, -0.21}, {-20.21, 8.12, 3.68, 0.64, 0.49, 0.02}};
 
 }  // namespace walking

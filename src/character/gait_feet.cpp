@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kStandingKnee = 6;        ///< [degrees]; a straighter leg looks stiff and could not reach its foothold
 constexpr double kPitchRatio = 0.79;       ///< factor on the recorded foot pitch, which is too large for a mannequin
-constexpr double kReleaseFraction = 0.17;  ///< of a stride before a strike; until then the trailing leg sets the height
-constexpr double kTakeoverFraction = 0.13;  ///< of a stride after a strike; from then the leading leg sets it
+constexpr double kReleaseFraction = 0.17;  ///< [strides] before a strike; until then the trailing leg sets the height
+constexpr double kTakeoverFraction = 0.13;  ///< [strides] after a strike; from then on the leading leg sets it
 constexpr double kLateKneeRatio = 0.75;     ///< factor on the knee curve before toe-off
 constexpr double kHeelRiseLength = 0.002;   ///< length over which a heel begins to rise [m]
 constexpr double kSwingKneeShift = 13;      ///< knee bend that is moved from before toe-off into the swing [degrees]
@@ -60,7 +60,8 @@ double late_bump(double s) {
   return 28.9 * s * s * s * (1 - s) * (1 - s);
 }
 
-/// Additional knee bend in swing, relative to the quintic between the ends of its curve [degrees].
+/// Knee bend in swing that is added to a quintic interpolation between the ends of the swing [degrees]. `s`: fraction
+/// of the swing.
 double knee_in_the_air(double s) {
   constexpr int fine = 1000;  // samples per stride
   const auto curve = [](int at) { return walking::knee.at(static_cast<double>(at) / fine); };
@@ -104,7 +105,7 @@ Vec3 Feet::hip(int side, int key) const {
 }
 
 /// Knee bend of a stance leg [degrees]: a blend of the curve after the strike and the curve before toe-off, each scaled
-/// by the size of its step. The two weights sum to 1 in even walking.
+/// by the size of its step. The two weights sum to 1 in steady walking.
 double Feet::knee(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double since = plan_.strides_since_strike(here, key), until = plan_.until_off(here, key);
@@ -137,7 +138,8 @@ double Feet::toe_pitch(double pitch) {
   return -kToePitchRatio * (beyond < round ? beyond * beyond / (2 * round) : beyond - round / 2);
 }
 
-/// Ankle of a foot that rolls over the heel (the contact point moves back), or over the toe tips and bends at the ball.
+/// Position of the ankle of a foot that rolls over the heel (the contact point moves back), or over the toe tips and
+/// bends at the ball.
 Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
   const auto turned = [](double forward, double up, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -164,7 +166,7 @@ double Feet::standing_pitch(int side, std::size_t number, int key) const {
   const Vec3 from = hip(side, key);
   const double flat = (from - rolling_ankle(here, 0)).norm(), excess = flat - leg_extent(knee(side, number, key));
   const double wanted = flat - 0.5 * (excess + std::sqrt(excess * excess + kHeelRiseLength * kHeelRiseLength));
-  // The distance to the hip decreases as the heel rises: bisection.
+  // Bisection: the distance from ankle to hip decreases as the heel rises.
   double low = -kMaxToePitch * kDegree, high = 0;
   for (int k = 0; k < 50; ++k) {
     const double middle = 0.5 * (low + high);

@@ -11,7 +11,7 @@ namespace {
 constexpr double kKeysPerSecond = 60;
 constexpr double kHalfTrack = 0.048;     ///< ankle to midline / height; recorded: 0.038, but thighs would touch
 constexpr double kOutwardDetour = 0.07;  ///< outward detour of a foot that turns with the body [m]
-constexpr double kFirstStepRatio = 0.65, kLastStepRatio = 0.75;  ///< first and last step / even step
+constexpr double kFirstStepRatio = 0.65, kLastStepRatio = 0.75;  ///< first and last step / steady step
 constexpr double kWeightShiftFraction = 0.45;  ///< time to shift the weight before the first step [strides]
 
 /// Turn of the body per step on the small arc of a turn, toward the side of the foot that takes the first step of the
@@ -26,7 +26,7 @@ Vec2 left_of(double yaw) {
   return {std::cos(yaw), std::sin(yaw)};
 }
 
-/// Size of even steps relative to the recorded ones.
+/// Size of steady steps relative to the recorded ones.
 double step_size(const Physique& body, const Pace& pace) {
   const double recorded = walking::kSpeed * walking::kPeriod / 2 * body.leg() / walking::kLegLength;
   return std::clamp(pace.step_length / recorded, 0.5, 1.2);

@@ -17,8 +17,9 @@ struct BodyPart {
   std::vector<std::string> aliases;
 };
 
-// Mixamo, Rokoko and MotionBuilder; Rigify; Character Creator; Unreal; Unity, VRM and Bandai; SMPL; CMU as BVH and as
-// Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman; our mannequin.
+// Names in the rigs of Mixamo, Rokoko and MotionBuilder; Rigify; Character Creator; Unreal; Unity, VRM and Bandai;
+// SMPL; CMU as BVH and as Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman; our
+// mannequin.
 const std::vector<BodyPart> kMiddle = {
     {"Hips", {"hips", "pelvis", "hip"}},
     {"Spine",
@@ -140,7 +141,7 @@ bool has_all_limbs(const std::vector<Index>& joints) {
       [&](Joint left) { return joints[place_of(left)] >= 0 && joints[place_of(on_side(left, true))] >= 0; });
 }
 
-/// Minimum number of nodes that share an affix that counts as the name of a rig: the size of a minimal skeleton.
+/// An affix counts as the name of a rig if at least this number of nodes share it: the size of a minimal skeleton.
 constexpr std::size_t kMinRigNodes = 15;
 
 /// Minimum length of a prefix without a separator; shorter ones are shared by chance, or name the sides of a body.

@@ -51,8 +51,8 @@ std::string_view name(Joint joint);
 /// The parent joint; for the hips, the hips.
 Joint parent(Joint joint);
 
-/// Hips, Spine, Chest, Neck, Head, then for Left and Right: Shoulder, UpperArm, LowerArm, Hand, UpperLeg, LowerLeg,
-/// Foot, Toes.
+/// Names in the order of Joint: Hips, Spine, Chest, Neck, Head, then for Left and Right: Shoulder, UpperArm, LowerArm,
+/// Hand, UpperLeg, LowerLeg, Foot, Toes.
 const std::vector<std::string>& joint_names();
 
 /// Index of a name in joint_names(); -1 for other names.
@@ -63,8 +63,8 @@ Index joint_number(const std::string& name);
 /// hips, spine and chest.
 std::vector<Index> find_named_joints(std::span<const Node> nodes);
 
-/// The same, but also handles rigs whose node names share a prefix or suffix with the name of the rig. If upper or
-/// lower arms or legs are not found by name, the tree determines the joints (nameless.hpp).
+/// Like find_named_joints(), but also handles rigs whose node names share a prefix or suffix with the name of the rig.
+/// If upper or lower arms or legs are not found by name, the tree determines the joints (nameless.hpp).
 std::vector<Index> find_joints(const Character& character);
 
 }  // namespace weft::character

@@ -27,8 +27,8 @@ struct LoftFrame {
   Vec3 along = Vec3::UnitZ(), u = Vec3::UnitX(), v = -Vec3::UnitY();
 };
 
-/// Sections joined by cubic splines (twice continuously differentiable, zero slope at both ends) and closed by half
-/// ellipsoids. A single section makes an ellipsoid.
+/// A surface through sections: cubic splines (twice continuously differentiable, zero slope at both ends) join the
+/// sections, and half ellipsoids close the ends. A single section makes an ellipsoid.
 class Loft {
  public:
   /// `sections` in ascending order. Caps: lengths > 0 beyond the first and the last section [m].

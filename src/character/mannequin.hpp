@@ -19,8 +19,8 @@ struct MannequinBuild {
 /// Positions of the joints at rest [m]: arms 45° from the body, legs slightly apart.
 std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build);
 
-/// Makes the body: closed, symmetric to the bit, at most four influences per vertex. Nodes and bones are the joints in
-/// their order; at rest all of them have the axes of the world. Deterministic.
+/// Makes the body: closed, symmetric in every bit, with at most four influences per vertex. Nodes and bones are the
+/// joints in their order; at rest all of them have the axes of the world. Deterministic.
 Character make_mannequin(const MannequinBuild& build);
 
 }  // namespace weft::character

@@ -18,7 +18,7 @@ constexpr Finger kRelaxedFingers[] = {
     {66.3, -2.35, 3.8, 3.5, 0.82, 19, 28},
 };
 constexpr double kPlateRoot = 16,
-                 kPlateTip = 41;  ///< bends of the plates between the fingers, as the fingers' mean bends [degrees]
+                 kPlateTip = 41;  ///< bends of the plates between the fingers: the mean bends of the fingers [degrees]
 constexpr double kClosing =
     0.040;  ///< convergence of fingers per distance from the middle [1/cm]: they touch up to the tips
 

@@ -30,8 +30,8 @@ void add_head(BlendedBody& body, const Scale& scale);
 /// Adds the hand of an arm with the frame `arm`, whose origin is the shoulder.
 void add_hand(BlendedBody& body, const Scale& scale, const LoftFrame& arm);
 
-/// Distance from the hairline [cm], negative inside the hair, for a height of kTableHeight. The hairline is the same on
-/// both sides. `backward`: y.
+/// Distance from the hairline [cm], negative inside the hair, on a body of height kTableHeight. The hairline is the
+/// same on both sides. `backward`: the y coordinate.
 double hairline_distance(double backward, double up);
 
 /// Centre of the knot of hair (backward, up) and its approximate radius [cm].

@@ -74,7 +74,7 @@ class WeightBlender {
     const double behind = smooth_ramp(-forward_, -4, 6);
     const double fold = 86.5 + 0.3 * (x_ - 9) - 2 * behind, half = 7.5 + 2 * behind;
     const double leg = smooth_ramp(fold - up_, -half, half);
-    // Vertices between the legs are weighted by both.
+    // Vertices between the legs have weight on both legs.
     const double bridge = 0.6 + 3.5 * smooth_ramp(up_, 71, 80);
     const double left = smooth_ramp(x_, -bridge, bridge);
     const double share = weight_[z(Joint::hips)] * leg;
@@ -84,7 +84,7 @@ class WeightBlender {
 
     const double knee = at(Joint::left_lower_leg).z() / cm_;
     transfer(Joint::left_upper_leg, Joint::left_lower_leg, smooth_ramp(-up_, -knee - 7, -knee + 7));
-    // The back of the foot follows the foot up to its joint.
+    // The instep follows the foot up to the ankle joint.
     const double foot = up_ - 0.8 * positive_part(forward_ + 1.3, 2);
     transfer(Joint::left_lower_leg, Joint::left_foot, smooth_ramp(-foot, -12.5, -4.5));
     const Vec3 axis = (at(Joint::left_toes) - at(Joint::left_foot)).cwiseProduct(Vec3(1, 1, 0));

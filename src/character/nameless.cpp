@@ -18,14 +18,15 @@ constexpr double kMaxChainDifference = 0.1;
 constexpr int kComparedBones = 3;
 /// Minimum number of chains that branch at a hand.
 constexpr int kMinFingers = 3;
-/// Of two candidates for the elbow, the outer one counts if its shorter bone is longer than this fraction of that of
-/// the inner candidate. Some recordings have collarbones of 13 cm and forearms of 9 cm; hands up to the fingers are
-/// shorter than half a forearm.
+/// Of two candidates for the elbow, the outer one is chosen if the shorter of its two bones is longer than this
+/// fraction of the shorter bone of the inner candidate. Some recordings have collarbones of 13 cm and forearms of 9 cm;
+/// hands up to the fingers are shorter than half a forearm.
 constexpr double kMinOuterElbowRatio = 0.6;
 /// Maximum relative difference of two halves of a bone, and ratio of upper and lower bones of limbs (1.0 to 1.3 in
 /// adults).
 constexpr double kMaxHalfDifference = 0.01, kMaxLimbBoneRatio = 1.5;
-/// Rigid neck bones are shorter than this fraction of a leg; longer ones are heads.
+/// If a node above the arms is inactive, its bone belongs to the neck if it is shorter than this fraction of a leg. A
+/// longer bone is the head itself.
 constexpr double kMaxNeckBone = 0.17;
 /// Number of samples of a clip that determine the posture.
 constexpr int kPostureSamples = 32;

@@ -11,10 +11,10 @@
 
 namespace weft::character {
 
-/// 1 for each vertex that belongs to a part, else 0.
+/// Per vertex: 1 if it belongs to a part, else 0.
 using VertexMask = std::vector<std::uint8_t>;
 
-/// hands, feet, arms, legs, head and torso, then the names of joints.
+/// Names of parts: hands, feet, arms, legs, head and torso, then the names of joints.
 const std::vector<std::string>& part_names();
 
 /// The joints that a part of part_names() consists of, as indices into joint_names(); empty for other names. Case and
@@ -35,8 +35,8 @@ VertexMask vertices_below(const Character& character, Index node);
 /// The vertices of a material of the file.
 VertexMask vertices_of_material(const Character& character, Index material);
 
-/// Appends vertices without faces at these positions [m], given for the current pose of the character. They move with a
-/// mean of the weights of the nearby skin of the part; its radius grows with the distance from the skin.
+/// Appends vertices without faces at these positions [m], given for the current pose of the character. Their bone
+/// weights are means over the nearby skin of the part, within a radius that grows with their distance from the skin.
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places);
 
 /// Whether three or more chains of nodes below a hand influence skin: thumb and fingers that move separately.

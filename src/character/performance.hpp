@@ -10,9 +10,9 @@ namespace weft::character {
 
 /// Timing of a clip in the scene.
 struct Timing {
-  double dressing = 0;  ///< time before it moves [s]
-  double blend = 0;     ///< time in which it then accelerates to its speed [s]
-  double start = 0;     ///< time of the clip at which it begins [s]
+  double dressing = 0;  ///< time of the scene before which the clip does not move [s]
+  double blend = 0;     ///< time in which it then accelerates to `speed` [s]
+  double start = 0;     ///< time of the clip at which it begins to play [s]
   double speed = 1;
 };
 
@@ -52,7 +52,7 @@ class Performance {
   Index root_ = -1;                        // uppermost node that the clip translates; -1: none
   Mat3 root_to_world_ = Mat3::Identity();  // axes of the root's parent, in the world
   double period_ = 0;                      // of a round [s]
-  Vec3 travel_{0, 0, 0}, shift_{0, 0, 0};  // per round; of all poses of the clip [m]
+  Vec3 travel_{0, 0, 0}, shift_{0, 0, 0};  // travel per round, shift of all poses of the clip [m]
 };
 
 /// Keys per second of the channel with the most keys; 0 for a clip that does not move.

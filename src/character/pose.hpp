@@ -32,7 +32,7 @@ struct Pose {
 /// Decomposes an affine map without loss, up to rounding errors; shear is part of the stretch.
 Placement to_placement(const Affine& map);
 
-/// The pose without a clip.
+/// The pose at rest.
 Pose rest_pose(const Character& character);
 
 /// The pose of a clip at time t [s] after its start; outside the clip, that of the nearer end.

@@ -36,7 +36,7 @@ constexpr double kMaxToeTurn = 150 * kDegree;
 /// Soles that are farther from the floor in a contact cause a warning [m].
 constexpr double kMaxFloorError = 0.05;
 
-/// Rounds of moving hands to what they touch: the other hand and its elbow move as well.
+/// Number of rounds that move hands to what they touch: several, since the other hand and its elbow move as well.
 constexpr int kTouchingRounds = 3;
 /// Hands with a smaller error are not moved [m].
 constexpr double kMinPull = 1e-4;

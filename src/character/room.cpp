@@ -219,7 +219,8 @@ Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
   std::vector<double> lengths;
   for (const auto& [a, b] : edges_) lengths.push_back((original[a] - original[b]).norm());
   std::vector<double> remaining(touched_.size(), 1);
-  std::vector<double> max_given(touched_.size(), 0);  // maximum move of each vertex, except along with others [m]
+  // Largest move of each vertex on its own account [m]; smoothing may move it farther, along with its neighbours.
+  std::vector<double> max_given(touched_.size(), 0);
   std::vector<float> near = near_;
   std::vector<Index> other(touched_.size(), -1);
   std::vector<Missing> missing(touched_.size());

@@ -9,7 +9,8 @@ namespace {
 
 // Distances of the wrist, in arm lengths (0.55 m in an adult), up to which a hand counts as touching; at twice these
 // distances it does not. Wrists of joined hands are 5 to 12 cm apart, so half of that from their midpoint; a hand that
-// holds an elbow has its wrist 8 to 13 cm from the joint, one on a hip 17 to 22 cm from between the hips.
+// holds an elbow has its wrist 8 to 13 cm from the joint, a hand on a hip has it 17 to 22 cm from the midpoint between
+// the hip joints.
 constexpr double kHandsDistance = 0.12, kElbowDistance = 0.2, kHipsDistance = 0.4;
 // Arms bent by less than the first angle hang, by more than the second reach for something [radians].
 constexpr double kHangingBend = 40 * std::numbers::pi / 180, kReachingBend = 70 * std::numbers::pi / 180;
@@ -74,7 +75,7 @@ std::vector<std::array<double, 2>> find_resting_hands(std::span<const Posture> p
                                                       double arm) {
   std::vector<std::array<double, 2>> rests(postures.size());
   for (const bool right : {false, true}) {
-    // In the axes of the hips, since resting hands move with the hips.
+    // Offsets are in the axes of the hips, since resting hands move with the hips.
     std::vector<Vec3> offsets;
     for (const Posture& p : postures)
       offsets.push_back(p.rotations[0].conjugate() *

@@ -17,13 +17,13 @@ struct Proportions {
   double their_arm = 0;
 };
 
-/// Displacements of the left and the right hand that give them the same position, relative to the other hand, the other
-/// elbow and the hips, as in the motion, scaled to the body. They apply fully up to a distance of 7 to 22 cm
-/// (touching.cpp), then fade, and vanish at twice that distance. They are continuous in all positions, so contact
+/// Displacements of the left and the right hand [m]. They give each hand the position that it has in the motion, scaled
+/// to the body, relative to the other hand, the other elbow and the hips. They apply fully up to a distance of 7 to 22
+/// cm (touching.cpp), then fade, and vanish at twice that distance. They are continuous in all positions, so contact
 /// intervals need not be detected. The hips count only for hands that rest on them and arms that are bent, not for
-/// hanging arms. `theirs`: joints of the motion, rotated to the heading of the body. `both`: joints that both have; an
-/// arm moves only if its hand, elbow and shoulder are among them. `rests`: weight 0 to 1 of each hand resting on the
-/// hips.
+/// hanging arms. `theirs`: joints of the motion, rotated to the heading of the body. `both`: joints that both skeletons
+/// have; an arm moves only if its hand, elbow and shoulder are among them. `rests`: weight 0 to 1 of each hand resting
+/// on the hips.
 std::array<Vec3, 2> displace_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
                                    const Proportions& proportions, const std::array<double, 2>& rests);
 

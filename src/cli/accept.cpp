@@ -28,7 +28,7 @@ bool is_blank(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; });
 }
 
-// References without a counterpart are listed but never removed.
+// Lists references without a counterpart. They are never removed.
 void report_unmatched_references(const fs::path& references, const fs::path& test,
                                  const std::vector<std::string>& names) {
   if (!fs::is_directory(references)) return;

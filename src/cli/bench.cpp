@@ -89,7 +89,7 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
 }
 
-/// The scene of the options, or else the built-in `text` under this name; `more`: additional overrides.
+/// The scene that the options name, or else the built-in scene `text` under this name. `more`: additional overrides.
 scene::Scene scene_of(const BenchOptions& options, const char* text, const char* name,
                       const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = options.overrides;
@@ -132,7 +132,7 @@ class RunProgress {
   RemainingTime remaining_{{kUnits, 0, 0}};
 };
 
-// For example "friction 2, step 0.5"; lists only what differs from the scene.
+// The factors that are not 1, for example "friction 2, step 0.5".
 std::string describe(const bench::Factors& factors) {
   std::string text;
   for (std::size_t a = 0; a < bench::kVariedValues; ++a)
@@ -287,7 +287,7 @@ ExitCode bench_speed(const BenchOptions& options, const std::filesystem::path& f
     } catch (const Error&) {
       break;  // interrupted
     }
-    // Written after each run, so that an interruption loses nothing.
+    // The table is written after each run, so that an interruption loses no run.
     write_file(folder / (name + ".csv"), bench::csv(bench::speed_table(report.runs)));
     done += bench::expected_work(run.setting);
     progress(done / all_work, describe(report.runs.back()));

@@ -35,7 +35,7 @@ std::string plan_table(const scene::Scene& scene) {
   return format_table(rows, "lll", 2);
 }
 
-/// Everything that is wrong with one scene: exit code and messages.
+/// All mistakes of one scene: exit code and messages.
 struct Mistakes {
   ExitCode code = ExitCode::ok;
   std::string lines;

@@ -16,16 +16,16 @@
 namespace weft::cli {
 namespace {
 
-/// Output descriptors of a child; -1: those of its parent.
+/// Output descriptors of a child process; -1: the child uses that of its parent.
 struct Outputs {
   int out = -1, err = -1;
 };
 
-/// Runs in the child: executes the program, or returns with the reason in errno. Calls only async-signal-safe
-/// functions, since another thread of the parent may have held a lock at the fork.
+/// Executes the program, in the child process. If this fails, returns with the reason in errno. Calls only
+/// async-signal-safe functions, since another thread of the parent may have held a lock at the fork.
 void become(const std::vector<char*>& arguments, Outputs outputs, pid_t parent) {
-  // If the parent is killed, the child must end too; otherwise a resumed command and the child would write the same
-  // run. posix_spawn has no such option.
+  // If the parent is killed, the child must end too: otherwise a resumed command and this child would write the same
+  // files. posix_spawn has no such option.
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
   if (::getppid() != parent) ::_exit(127);  // the parent has died before prctl()
   int input[2];  // a closed pipe as empty input, since a container may lack /dev/null; exec closes the write end

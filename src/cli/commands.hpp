@@ -6,7 +6,8 @@
 
 namespace weft::cli {
 
-/// Simulates, draws and writes concurrently. On SIGINT, SIGTERM or a failure it ends early and keeps what is finished.
+/// Simulates, draws and writes a film concurrently. On SIGINT, SIGTERM or a failure it ends early and keeps the
+/// finished frames.
 ExitCode run(const RunOptions& options);
 
 /// Simulates into a frame cache.
@@ -31,7 +32,7 @@ ExitCode join(const JoinOptions& options);
 /// failed.
 ExitCode sweep(const SweepOptions& options);
 
-/// Submits runs and sweeps to a Slurm cluster, reports their progress, cancels them.
+/// Submits runs and sweeps to a Slurm cluster, reports their progress, or cancels them.
 ExitCode farm(const FarmOptions& options);
 
 /// Writes a template scene.

@@ -89,7 +89,8 @@ std::vector<Pair> all_pairs(const DiffOptions& options) {
   return {{test.filename(), options.reference, test}};
 }
 
-// Exit code of the whole comparison: unreadable files first, then differences, then missing references.
+// Exit code of the whole comparison. Unreadable files take precedence over differences, and these over missing
+// references.
 ExitCode exit_code(const std::vector<FileComparison>& results) {
   ExitCode code = ExitCode::ok;
   for (const FileComparison& result : results) {
@@ -108,7 +109,8 @@ std::string summary(const std::vector<FileComparison>& results) {
   return fmt::format("{} of {} match their references", good, results.size());
 }
 
-// GitHub Actions reads annotations from standard output, and sets this variable for every step.
+// Whether annotations are printed. GitHub Actions reads them from standard output, and sets GITHUB_ACTIONS for every
+// step.
 bool is_annotated(const DiffOptions& options) {
   const char* actions = std::getenv("GITHUB_ACTIONS");
   return options.annotations || (actions != nullptr && std::string_view(actions) == "true");

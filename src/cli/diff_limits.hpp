@@ -25,8 +25,8 @@ class DiffLimits {
 
   /// The rules of a picture; later tables take precedence over earlier ones.
   Rules of(const std::string& name) const;
-  /// Throws Error(asset_unreadable) with line and column if a table matches none of these pictures, since its limit
-  /// would silently have no effect.
+  /// Throws Error(asset_unreadable) with line and column if a table matches none of these pictures: its limits would
+  /// have no effect, and nobody would notice.
   void check_used(const std::vector<std::string>& names) const;
 
  private:

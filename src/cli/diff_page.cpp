@@ -17,10 +17,12 @@ namespace {
 
 using compare::FileComparison;
 
-// A browser opens a page of this size in some seconds. Later pairs are shown without pictures.
+// Limit on the pictures of a page: a browser opens a page of this size in some seconds. Further pairs are shown without
+// pictures.
 constexpr std::size_t kMaxPagePictureBytes = 100'000'000;
 
-// Radio buttons select a view of a pair; arrow keys switch between reference and test in the same place.
+// Radio buttons select the view of a pair. The views are in the same place, so that arrow keys switch between reference
+// and test without moving the picture.
 constexpr const char* kStyle = R"(
 :root { color-scheme: light dark; --text: #1b2227; --ground: #f4f6f7; --panel: #fff; --muted: #56626b; --line: #d9dfe3; --accent: #0b6579; }
 @media (prefers-color-scheme: dark) { :root { --text: #e2e8ec; --ground: #12161a; --panel: #1a2025; --muted: #9aa8b2; --line: #2d363d; --accent: #63c3d8; } }

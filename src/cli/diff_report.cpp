@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using compare::FileComparison;
 using Outcome = FileComparison::Outcome;
 
-// Figures of the comparison; marks each one that exceeds its limit.
+// The figures of the comparison as text; each figure that exceeds its limit is marked.
 std::string describe_figures(const FileComparison& result, const compare::Limits& limits) {
   const compare::Figures& f = result.worst.figures;
   const auto limit = [](double figure, double most) {

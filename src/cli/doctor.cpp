@@ -57,7 +57,7 @@ std::string libraries() {
       NLOHMANN_JSON_VERSION_PATCH);
 }
 
-// The x86-64 psABI level of the processor and that of this build. Tests features of each level, since clang before 16
+// The x86-64 psABI levels of the processor and of this build. Tests the features of each level, since clang before 16
 // does not know the levels by name.
 std::string cpu_level() {
 #if defined(__x86_64__)

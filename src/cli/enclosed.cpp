@@ -11,7 +11,7 @@ namespace weft::cli {
 namespace {
 
 /// Winding number of a surface around p: sum of the solid angles of its triangles (Van Oosterom and Strackee, 1983, eq.
-/// 8) over 4π. ±1 inside a closed surface, 0 outside, a fraction if the surface is open.
+/// 8), divided by 4π. It is ±1 inside a closed surface, 0 outside, and a fraction if the surface is open.
 double winding_number(const frame::Surface& surface, const std::vector<Vec3>& positions, const Vec3& p) {
   double sum = 0;
   for (const auto& triangle : surface.triangles) {
@@ -24,8 +24,8 @@ double winding_number(const frame::Surface& surface, const std::vector<Vec3>& po
   return sum / (4 * std::numbers::pi);
 }
 
-/// Tests three particles only: cloth that is partly inside crosses the surface, and such crossings are detected
-/// elsewhere.
+/// Whether the cloth is inside the surface. Tests only three particles: cloth that is partly inside crosses the
+/// surface, and the simulation refuses such a start.
 bool is_inside(const std::vector<Vec3>& cloth, const frame::Surface& surface, const std::vector<Vec3>& positions) {
   constexpr double kSlack = 1e-6;  // rounding error of the sum over a million triangles
   const std::size_t last = cloth.size() - 1;

@@ -1,4 +1,5 @@
-// Detection of cloth that starts wholly inside a body: it touches nothing, and contact keeps it inside.
+// Detection of cloth that starts wholly inside a body. Such cloth touches nothing, so that the start is accepted, but
+// contact then keeps the cloth inside.
 #pragma once
 
 #include <string>

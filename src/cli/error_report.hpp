@@ -8,7 +8,8 @@
 
 namespace weft::cli {
 
-/// One line per source of error, one for their sum, and their cost; no line feed at the end.
+/// One line per source of error, one for all of them (root of the sum of squares), and one with the CPU time of the
+/// companion runs; no line feed at the end.
 std::string error_summary(const bench::ErrorEstimate& estimate);
 
 /// One sentence: the error of positions, its main source, and how to reduce it. `cloth_size` [m]; 0: not known.
@@ -17,7 +18,8 @@ std::string error_sentence(const bench::ErrorEstimate& estimate, double cloth_si
 /// A length [m] in mm and relative to the size of the cloth [m]: "1.2 mm (0.12 % of the cloth's size)".
 std::string relative_length(double length, double cloth_size);
 
-/// The same in SI units: {"comparable", "parts": {"time_steps": {"position_m", ...}, ...}, "all", "advice", "cpu_s"}.
+/// The estimate in SI units: {"comparable", "parts": {"time_steps": {"position_m", ...}, ...}, "all", "advice",
+/// "cpu_s"}.
 nlohmann::ordered_json error_json(const bench::ErrorEstimate& estimate);
 
 }  // namespace weft::cli

@@ -22,8 +22,9 @@ struct Estimate {
   double draw_total() const { return draw * drawn; }
 };
 
-/// Simulates frames for `seconds`, 1 to kMaxTrialFrames, and draws one. Cloth before its first contact is faster than
-/// later: the true cost may be two to three times the estimate. Throws as a run does.
+/// Simulates frames for `seconds` [s of wall time], but at least one and at most kMaxTrialFrames, and draws one. Frames
+/// before the first contact take less time than later ones: the true cost may be two to three times the estimate.
+/// Throws what a run throws.
 Estimate estimate_run(const scene::Scene& scene, const render::Settings& settings, double seconds = 5);
 
 /// One line, for people.

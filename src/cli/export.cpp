@@ -19,7 +19,7 @@ namespace weft::cli {
 
 namespace {
 
-/// Removes files of a longer film with the same names.
+/// Removes files of an earlier, longer film whose names have the same form.
 void remove_stale(const exporter::Request& request, const cache::Manifest& scene, const FrameRange& frames) {
   if (request.format != exporter::Format::ply && request.format != exporter::Format::obj) return;
   const char* ending = request.format == exporter::Format::ply ? ".ply" : ".obj";
@@ -33,7 +33,7 @@ bool places_cameras(exporter::Format format) {
          format == exporter::Format::blender;
 }
 
-/// All cameras of a scene, the one of the pictures first. If the scene has none, the computed one.
+/// All cameras of a scene; the camera of the pictures is the first. If the scene has none: the computed camera.
 class Cameras {
  public:
   Cameras(const cache::Reader& reader, const frame::FrameSnapshot& first) {

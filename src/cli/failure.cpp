@@ -14,7 +14,8 @@
 namespace weft::cli {
 namespace {
 
-// A word that is longer than any path comes from an argument or a file; messages show only its beginning.
+// A word longer than kMaxWordBytes cannot be a path; it comes from an argument or a file. Messages show only its first
+// kShownWordBytes bytes.
 constexpr std::size_t kMaxWordBytes = 4096, kShownWordBytes = 200;
 
 std::string shorten_words(std::string_view text) {
@@ -45,7 +46,7 @@ Failure describe_failure(const std::exception_ptr& exception) {
   } catch (const std::bad_alloc&) {
     return {ExitCode::internal, "out of memory; a smaller scene or picture may fit"};
   } catch (const std::filesystem::filesystem_error& error) {
-    // A path that was not checked beforehand: no such folder, name too long, no permission.
+    // The path was not checked beforehand. Possible causes: no such folder, name too long, no permission.
     const bool too_long = error.code() == std::errc::filename_too_long;
     return {too_long ? ExitCode::usage : ExitCode::output_failed,
             fmt::format("{}: cannot be used: {}", error.path1().string().substr(0, 200), error.code().message())};

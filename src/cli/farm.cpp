@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Requested resources / those of a trial. Frames with contact take longer than the first ones. A task that exceeds its
-// time is resumed later; one that exceeds its memory is killed.
+// Requested time and memory, relative to those of a trial. Frames with contact take longer than the first ones. A task
+// that exceeds its time is resumed later; a task that exceeds its memory is killed.
 constexpr double kTimeFactor = 4, kMemoryFactor = 1.5;
 constexpr int kMinTaskMinutes = 10, kExtraMemory = 256;  // [min], [MB]
 
@@ -49,7 +49,7 @@ std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folde
   return jobs;
 }
 
-/// Numbers of the waiting or running jobs of this folder; also counts their tasks by state.
+/// Numbers of the waiting or running jobs of this folder. Also counts their tasks by state, in `states`.
 std::vector<std::string> active_jobs(const fs::path& folder, std::map<std::string, int>& states) {
   std::vector<std::string> numbers;
   for (const auto& [number, name] : read_jobs(folder)) numbers.push_back(number);
@@ -247,7 +247,7 @@ class Farm {
     write_file(folder_ / "farm/jobs", "");
   }
 
-  // Skips an archive that exists or that a task has already unpacked.
+  // Writes the program archive, unless the file exists already or a task has already unpacked it.
   void write_program() {
     plan_.archive = program_->fingerprint();
     const fs::path tar = folder_ / program_tar(plan_.archive);

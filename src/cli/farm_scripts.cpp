@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Default array size of Slurm (MaxArraySize, minus one).
+// Maximum number of tasks in an array: the default MaxArraySize of Slurm, minus one.
 constexpr std::size_t kArray = 1000;
 
 // Quotes a text as one word of the shell.
@@ -49,7 +49,7 @@ std::vector<std::string> chosen(const std::vector<std::string>& passed_on, std::
   return words;
 }
 
-// Arguments that run the same sweep with --report, to gather the results of the tasks.
+// Arguments of the command that gathers the results of the tasks: the same sweep with --report.
 std::vector<std::string> report_words(const SweepOptions& sweep) {
   std::vector<std::string> words{"sweep", fs::absolute(sweep.scene).string()};
   for (const Axis& axis : sweep.axes)
@@ -103,7 +103,7 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
     return words;
   };
   const std::string threads = std::to_string(options.threads);
-  // Size and camera are stored in the cache.
+  // Simulating gets size and camera too, as the cache stores them.
   define("simulate", with({"simulate", fs::absolute(sweep.scene).string(), "--threads", threads},
                           chosen(passed_on, {"--size", "--camera", "--error"})));
   define("draw", with({"render", "--threads", threads}, chosen(passed_on, {"--size", "--camera", "--quality"})));
@@ -142,7 +142,7 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
     fmt::format_to(out, "hand_in unpack unpack --time={}\nunpack=$job\n", plan.needs.draw_minutes);
     after = " --dependency=\"afterok:$unpack\"";
   }
-  // The simulations of an array are one job; the drawing of each run waits only for its own array element.
+  // The simulations of up to kArray runs form one job, an array. The drawing of a run waits only for its own element.
   for (std::size_t at = 0; at < plan.submitted.size();) {
     const std::size_t base = plan.submitted[at];
     std::vector<std::size_t> offsets;

@@ -22,15 +22,15 @@ struct FarmPlan {
   std::vector<SweepJob> jobs;          ///< all runs
   std::vector<FrameRange> frames;      ///< frames drawn, per job
   std::vector<std::size_t> submitted;  ///< indices of the jobs to do, ascending
-  int part = 50;                       ///< frames per drawing task
+  int part = 50;                       ///< number of frames per drawing task
   std::string archive;  ///< fingerprint of the program archive that tasks unpack; empty: tasks run this program
   Needs needs;
 
   int parts(std::size_t job) const { return (frames[job].count() + part - 1) / part; }
 };
 
-/// File name of the program archive in the folder of the runs. Without the extension, it is the folder where tasks
-/// unpack the archive.
+/// Path of the program archive, relative to the folder of the runs. The same path without the extension is the folder
+/// into which tasks unpack the archive.
 std::string program_tar(const std::string& archive);
 
 /// `farm/task.sh`; its paths are valid on all machines that share the folder.

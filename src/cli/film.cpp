@@ -14,7 +14,8 @@
 namespace weft::cli {
 namespace {
 
-// Lets a stage continue while another one processes a slow frame; a picture of 1280×720 takes 2.7 MB.
+// Maximum number of frames in a queue. It lets a stage continue while another one processes a slow frame. A picture of
+// 1280×720 takes 2.7 MB.
 constexpr std::size_t kQueueLength = 4;
 
 struct MadePair {
@@ -75,7 +76,7 @@ class Film {
     }
   }
 
-  /// Passes wanted frames on to drawing, or with `only_show` all frames to the camera.
+  /// Makes frames, and passes the wanted ones on to drawing. With `only_show`, passes all frames to the camera instead.
   void make_frames(FrameSource& source, bool only_show) {
     const int last = only_show ? made_.last() : wanted_.last();
     // The first frame is made even after a stop request: it costs little, and gives the run a picture.
@@ -103,7 +104,8 @@ class Film {
     if (parts_.store) parts_.store->keep_last_state();
   }
 
-  /// Pushes a frame, with the previous one if motion blur needs it. Returns false if drawing has ended.
+  /// Passes a frame to drawing, with the previous wanted frame if motion blur needs it. Returns false if drawing has
+  /// ended.
   bool hand_on(const frame::SnapshotPtr& snapshot, const FrameSource* source) {
     const int frame = snapshot->frame - wanted_.step;
     if (parts_.motion && !before_ && frame >= 0)
@@ -111,7 +113,8 @@ class Film {
     return snapshots_.push({snapshot, before_});
   }
 
-  /// Passes all frames to the camera first, then draws from the store. If making fails, draws the frames made so far.
+  /// Makes all frames and passes them to the camera, then passes the wanted ones from the store on to drawing. If
+  /// making fails, passes on the frames made so far.
   void make_then_hand_on(FrameSource& source) {
     std::exception_ptr failure;
     try {
@@ -188,7 +191,8 @@ class Film {
     return source;
   }
 
-  // If an earlier stage failed, stores the failure and ends normally, so that the frames before it are finished.
+  // The next drawn frame; nullopt after the last one. If an earlier stage failed, stores the failure and returns
+  // nullopt, so that the output is finished with the earlier frames.
   std::optional<DrawnFrame> next_picture() {
     try {
       return pictures_.pop();

@@ -1,5 +1,5 @@
-// The pipeline of a frame: make, store, draw, write, report. Three threads run concurrently; bounded queues between
-// them limit memory.
+// The pipeline of a film. Three threads run concurrently: one makes and stores frames, one draws them, one writes and
+// reports them. Bounded queues between the threads limit memory.
 #pragma once
 
 #include <atomic>
@@ -30,13 +30,13 @@ struct FilmParts {
   std::function<std::unique_ptr<FrameWriter>(const std::string& painter_description)> open_writer;  ///< empty: nothing
                                                                                                     ///< is written
   Store* store = nullptr;  ///< keeps simulated frames
-  /// The camera path, to be computed from all frames if the scene does not place the camera. Frames are then drawn from
-  /// the store after the last one is made.
+  /// Set if the scene does not place the camera: the camera path is then computed from all frames. Unless the source
+  /// can show all frames beforehand, drawing waits until the last frame is made, and then reads frames from the store.
   std::optional<render::CameraPath> camera = std::nullopt;
   std::filesystem::path meshes;      ///< folder; empty: none
   std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn already
-  bool keeps_partial_output = true;  ///< if the source or the painter fails, finish and keep the earlier frames
-  bool motion = false;               ///< whether the painter also needs the previous frame
+  bool keeps_partial_output = true;  ///< if source or painter fails, the output is finished with the earlier frames
+  bool motion = false;               ///< whether the painter also needs the previous frame, for motion blur
   std::function<void(const MadeFrame&)> on_frame = {};  ///< called after each frame is made, in order; may be empty
 };
 
@@ -48,13 +48,14 @@ struct FilmResult {
   double cloth_size = 0;         ///< longest side of the box around the largest cloth, in the first frame [m]
   bool interrupted = false;      ///< stopped by request before the last wanted frame
   std::string painter = "none";  ///< its description
-  std::exception_ptr failure;    ///< of the stage nearest to the output, if any failed
-  bool finished_output = false;  ///< the output is complete, under its final name
+  std::exception_ptr failure;    ///< of the failed stage nearest to the output; null if none failed
+  bool finished_output = false;  ///< the output has its final name; it may have fewer frames than wanted
 };
 
-/// Processes the frames of the source until the last of `wanted` (or of `made` if a camera path must be found), `stop`,
-/// or a failure. `made` must contain all of `wanted`. In each case, written frames are finished and kept unless the
-/// writer itself fails. Does not throw if a stage fails; see `failure`.
+/// Makes the frames `made` and draws and writes the frames `wanted`, a subset of them. Ends with the last frame of
+/// `wanted` (of `made` if the camera path is computed from them), or earlier at `stop` or a failure. The output is then
+/// completed with the frames written so far, unless the writer fails, or another stage fails and `keeps_partial_output`
+/// is false. Does not throw if a stage fails; see `failure`.
 FilmResult make_film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted,
                      const std::atomic<bool>& stop, Progress& progress, EventLog& log);
 

@@ -22,10 +22,11 @@ class FrameSource {
   virtual ~FrameSource() = default;
   /// Throws if the next frame cannot be made or read.
   virtual MadeFrame next() = 0;
-  /// Passes all frames of the run to the camera, not only those of next(). Returns false if they must be made first.
+  /// Passes all frames of the run to the camera, not only those that next() yields. Returns false if frames must still
+  /// be made.
   virtual bool show_all(render::CameraPath&) const { return false; }
   virtual std::vector<frame::ObjectInfo> objects() const { return {}; }
-  /// A frame before those that next() yields; null if it is not available.
+  /// A frame that next() does not yield, such as one before the first; null if it is not available.
   virtual frame::SnapshotPtr earlier(int) const { return nullptr; }
 };
 

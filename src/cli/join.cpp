@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 struct Piece {
   fs::path file;
   std::vector<int> frames = {};  ///< frame numbers, ascending
-  int step = 1;                  ///< between frames
+  int step = 1;                  ///< distance between frame numbers
   int width = 0, height = 0;
   Metadata film = {};   ///< metadata that all pieces of a film share
   std::string gl = {};  ///< OpenGL description of the drawing machine
@@ -55,8 +55,7 @@ Number number(const fs::path& file, const Metadata& metadata, const std::string&
   return value;
 }
 
-// Checks that frame k is at k / fps. The tolerance covers broadcast rates, which differ from their decimals by up to
-// 1.1e-6.
+// Checks a time or a rate. The tolerance covers broadcast rates, which differ from their decimals by up to 1.1e-6.
 void check_time(const fs::path& file, double found, double expected, const char* what) {
   if (std::abs(found - expected) <= 1e-5 * std::max(1.0, expected)) return;
   throw Error(ExitCode::usage, "{}: expected {} {:g}, got {:g}", file.string(), what, expected, found);
@@ -74,7 +73,7 @@ Piece read_picture(const fs::path& file) {
   return piece;
 }
 
-// Decodes the whole video: frames that cannot be decoded count as missing.
+// Decodes the whole video, so that frames that cannot be decoded count as missing.
 Piece read_video(const fs::path& file) {
   video::Decoder decoder(file);
   Piece piece{.file = file, .width = decoder.width(), .height = decoder.height(), .film = decoder.metadata()};
@@ -90,7 +89,7 @@ Piece read_video(const fs::path& file) {
 Piece read_piece(const fs::path& file) {
   Piece piece = is_video(file) ? read_video(file) : read_picture(file);
   piece.gl = piece.film["gl"];
-  // Removes metadata of a single piece or of its file format.
+  // Removes the metadata that belong to a single piece or to its file format.
   for (const char* own : {"gl", "frame", "time_s", "frames", "major_brand", "minor_version", "compatible_brands",
                           "encoder", "creation_time"})
     piece.film.erase(own);
@@ -123,8 +122,8 @@ class Film {
   const Piece& first() const { return pieces_.front(); }
   bool of_videos() const { return is_video(first().file); }
 
-  /// The requested frames, or with `partial` those before the first missing one. Throws Error(frames_missing), which
-  /// names the missing frames.
+  /// The requested frames, or with `partial` those before the first missing one. Throws Error(frames_missing) with the
+  /// numbers of the missing frames.
   FrameRange frames(const JoinOptions& options) const;
 
  private:

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestIgnoreFile = 1 << 20;  // [bytes]
 
-// Name of the template that a file belongs to: its stem, or its folder.
+// Name of the template to which a file belongs: the stem of the file, or the name of its folder.
 std::string template_of(const EmbeddedFile& file) {
   return (*fs::path(file.name).begin()).stem().string();
 }
@@ -79,7 +79,7 @@ std::vector<std::string> template_names() {
 }
 
 ExitCode make_new(const NewOptions& options) {
-  // The first line of a scene names the schema, from which editors know all keys.
+  // The first line of a scene names the schema. From the schema, editors know all keys.
   std::vector<std::pair<fs::path, std::string>> files;
   fs::path scene = options.name;
   bool is_folder = false;

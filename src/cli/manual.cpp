@@ -24,7 +24,7 @@ bool is_word(const std::string& text) {
          std::ranges::all_of(text, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-// The choices in `draft|preview|final`; empty if one part is a placeholder such as FILE.
+// The choices in a text such as `draft|preview|final`; empty if one part is a placeholder such as FILE.
 std::vector<std::string> choices_of(const std::string& value) {
   std::vector<std::string> choices;
   std::istringstream parts(value);
@@ -103,7 +103,7 @@ std::string bash_completion(const CLI::App& app) {
   return fmt::format(
       "# bash completion for weft: source <(weft completion bash)\n_weft() {{\n"
       "  local current=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} words=\n  COMPREPLY=()\n"
-      // --quality=draft is three words to bash.
+      // Bash splits --quality=draft into three words.
       "  if [ \"$current\" = = ]; then current=; elif [ \"$before\" = = ]; then before=${{COMP_WORDS[COMP_CWORD - "
       "2]}}; "
       "fi\n"
@@ -190,7 +190,7 @@ std::string roff(const std::string& text) {
   return result;
 }
 
-// The text below the options, such as examples, with its layout.
+// The text below the options of --help, such as examples; its line breaks are kept.
 std::string footer(const CLI::App& command) {
   const std::string text = command.get_footer();
   if (text.empty()) return "";

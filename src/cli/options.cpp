@@ -42,7 +42,7 @@ void check_command_name(const Parser& parser, const std::vector<std::string>& ar
   throw Error(ExitCode::usage, "unknown command {}{}; the commands are {}", first, did_you_mean(first, known), list);
 }
 
-// Hint for an argument that may be a file whose name looks like an option; empty if it is not.
+// Hint for an argument that looks like an option but may be the name of a file; empty if it cannot be one.
 std::string as_file(const std::string& argument) {
   const std::filesystem::path file = argument;
   std::error_code none;
@@ -92,7 +92,7 @@ BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options
 }
 
 SweepOptions checked(SweepOptions sweep) {
-  // A farm also reports a single scene without changes.
+  // A sweep without changes is allowed with --report, since a farm may run a single unchanged scene.
   if (sweep.axes.empty() && sweep.list.empty() && !sweep.gather)
     throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
   return sweep;

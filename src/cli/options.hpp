@@ -75,7 +75,7 @@ struct ThumbnailOptions {
   /// A picture, or without an extension a folder that gets <scene>.png for each; empty: output/<scene>.png.
   std::filesystem::path output;
   std::optional<int> frame;  ///< default: the most informative one
-  bool start = false;        ///< draw the start instead of a frame, even if the simulation refuses it
+  bool start = false;        ///< draw the start of the scene instead of a frame, even if the simulation refuses it
 };
 
 struct SheetOptions {
@@ -114,7 +114,7 @@ struct FarmOptions {
   FrameSelection frames;
   int part = 50;                           ///< frames per drawing task
   int threads = 1;                         ///< per task
-  int retries = 3;                         ///< for a task that was killed or found no disk space
+  int retries = 3;                         ///< of a task that was killed or found no disk space
   std::optional<int> memory, minutes;      ///< per task [MB, min]; default: from a trial
   std::vector<std::string> for_scheduler;  ///< options of sbatch
   std::filesystem::path program;  ///< program archive that tasks unpack and run; empty: this program at its own path

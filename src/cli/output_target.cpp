@@ -32,7 +32,7 @@ int parse_digits(std::string_view field, std::string_view text) {
 }  // namespace
 
 FramePattern::FramePattern(std::string_view text) {
-  // Other braces are part of the name, for example of a folder.
+  // Braces other than {frame...} are part of the name, for example of a folder.
   const std::size_t open = text.find(kFrame), close = text.find('}', std::min(open, text.size()));
   if (open == std::string_view::npos || close == std::string_view::npos) bad_pattern(text);
   before_ = text.substr(0, open);

@@ -35,7 +35,8 @@ class FramePattern {
 
   std::filesystem::path name(int frame) const;
   std::vector<std::filesystem::path> names(const FrameRange& frames) const;
-  /// Removes files named like a frame that is not in `frames`, if `is_own` accepts them as outputs of an earlier run.
+  /// Removes files whose name fits this pattern with a frame outside of `frames`, if `is_own` accepts them as outputs
+  /// of an earlier run.
   void remove_others(const FrameRange& frames,
                      const std::function<bool(const std::filesystem::path&, int frame)>& is_own) const;
 

@@ -1,4 +1,4 @@
-// Commands for authors of scenes.
+// Options of the commands for authors of scenes.
 #include "cli/commands.hpp"
 #include "cli/option_groups.hpp"
 #include "cli/parser.hpp"

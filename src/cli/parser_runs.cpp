@@ -1,4 +1,4 @@
-// Commands that start many runs.
+// Options of the commands that start many runs.
 #include "cli/option_groups.hpp"
 #include "cli/parser.hpp"
 #include "core/error.hpp"

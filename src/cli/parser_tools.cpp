@@ -1,4 +1,4 @@
-// Commands that make no films: checks, measurements, comparison, exports.
+// Options of the commands that make no films: checks, measurements, comparison, exports.
 #include "cli/option_groups.hpp"
 #include "cli/parser.hpp"
 #include "core/error.hpp"

@@ -77,7 +77,7 @@ void PathLedger::add_output(const std::string& option, const fs::path& path) {
 
 void PathLedger::writes(const std::string& option, const fs::path& place, const std::vector<fs::path>& files) {
   for (const fs::path& file : files) add_output(option, file);
-  // Registered after all were checked, so that files of one output do not conflict with each other.
+  // The files are registered after all are checked, so that files of one output do not conflict with each other.
   for (const fs::path& file : files) places_.emplace(resolved(file), Place{"what " + option + " writes"});
   outputs_.push_back({option + " " + resolved(place), files, {}});
 }
@@ -97,7 +97,7 @@ void PathLedger::check_absent(bool overwrite, const std::set<std::string>& own,
   for (const Output& output : outputs_) {
     const bool is_gone_on_with = own.contains(output.name);
     for (const fs::path& file : output.files) {
-      std::error_code ignored;  // an inaccessible path fails when it is written
+      std::error_code ignored;  // writing an inaccessible path will report the error
       if (fs::is_directory(file, ignored))
         throw Error(ExitCode::output_failed, "{}: is a folder, expected a file name", file.string());
       // A link counts as existing, even if it is dangling.

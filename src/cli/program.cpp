@@ -72,11 +72,12 @@ ExitCode become_tools(const Command& /*command*/, char** argv) {
 
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {
   try {
-    // A closed pipe or a file beyond its size limit must be an error of the write, not a signal that kills the process
-    // and leaves half a file.
+    // If a pipe is closed or a file exceeds its size limit, the write must return an error. By default, a signal would
+    // kill the process and leave half a file.
     ::signal(SIGPIPE, SIG_IGN);
     ::signal(SIGXFSZ, SIG_IGN);
-    // The loader starts a program from an archive; without this call, the process would have the loader's name.
+    // A program from an archive is started by the dynamic loader. Without this call, the process would have the name of
+    // the loader.
     if (const Installation own = own_installation(); !own.libraries.empty())
       ::prctl(PR_SET_NAME, own.code.filename().c_str());
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);

@@ -60,7 +60,7 @@ class TarHeaders {
     return text.substr(0, text.find('\0'));
   }
 
-  // Offsets and lengths of fields: POSIX.1-2017, pax, "ustar Interchange Format".
+  // Reads a complete header. Offsets and lengths of its fields: POSIX.1-2017, pax, "ustar Interchange Format".
   void read_header() {
     if (header_.find_first_not_of('\0') == std::string::npos) {
       ended_ = true;

@@ -6,8 +6,8 @@
 
 namespace weft::cli {
 
-/// A program archive, read and checked completely, so that a truncated download or the archive of another program is
-/// found before any task starts.
+/// A program archive. The constructor reads and checks it completely, so that a truncated download or the archive of
+/// another program is found before any task starts.
 class ProgramArchive {
  public:
   /// Throws Error(asset_unreadable) with what was expected.
@@ -15,7 +15,7 @@ class ProgramArchive {
 
   /// Hash of the content; 16 hexadecimal digits.
   const std::string& fingerprint() const { return fingerprint_; }
-  /// Writes it as an uncompressed archive, which any tar program reads. Throws Error(output_failed).
+  /// Writes the archive uncompressed, so that any tar program can read it. Throws Error(output_failed).
   void write_tar(const std::filesystem::path& tar) const;
 
  private:

@@ -29,14 +29,14 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = OutputTarget::Kind;
 
-/// What a command makes and where it goes.
+/// What a command makes, and where the output goes.
 struct FilmPlan {
   cache::Manifest scene;
   std::string scene_text;     ///< the effective scene
-  FrameRange made;            ///< made by the source
+  FrameRange made;            ///< frames that the source makes or reads
   FrameRange wanted;          ///< subset of `made` that is drawn or written as meshes
   int simulated = 0;          ///< number of simulated frames, including those before frame 0; 0 if frames are only read
-  bool whole_film = true;     ///< otherwise other commands may write other frames to the same place
+  bool whole_film = true;     ///< false: other commands may write other frames of the film to the same place
   bool finds_camera = false;  ///< the camera is computed from all frames before the first one is drawn
   OutputTarget target;
   render::Settings settings;
@@ -47,7 +47,7 @@ struct FilmPlan {
 
   bool draws() const { return target.kind != Kind::none; }
 
-  /// Makes all frames, not only wanted ones, so that the computed camera does not depend on the range of frames.
+  /// Plans to make all frames, not only the wanted ones, so that the computed camera does not depend on their range.
   void make_all(const scene::Scene& of) {
     made = {0, of.frame_count(), 1};
     simulated = of.preroll_frames() + made.count();
@@ -142,7 +142,7 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
   if (!options.log_json.empty() && options.log_json != "-") paths.writes("--log-json", options.log_json);
 }
 
-/// Removes files of a longer run with the same names.
+/// Removes files of an earlier, longer run whose names have the same form.
 void remove_stale(const FilmPlan& plan, const RunOptions& options) {
   if (!options.common.overwrite || !plan.whole_film) return;
   const auto is_picture = [&](const fs::path& file, int frame) { return is_picture_of(file, plan.scene.scene, frame); };
@@ -161,10 +161,10 @@ class Session {
   bool wants_error() const { return options_.error || options_.mesh_error; }
   Progress& progress() { return *progress_; }
 
-  /// Call it after all checks that may refuse the command.
+  /// Starts the work. Call it after all checks that may refuse the command.
   void begin(const FilmPlan& plan);
   void make(const FilmPlan& plan, FilmParts parts);
-  /// Simulates companion runs, which measure the error, if the run is complete.
+  /// If the run is complete, simulates companion runs, from which the error is estimated.
   void estimate_error(const scene::Scene& scene, bench::Recorder& recorder);
   /// Writes all reports; after an early end, also prints how to continue. Returns the exit code.
   ExitCode end(const FilmPlan& plan, const Store* store);
@@ -256,7 +256,7 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
   }
   if (result.failure) {
     Failure failure = describe_failure(result.failure);
-    // If frames are only read, a failure in drawing them means that the cache is broken.
+    // If frames are only read, an internal error in drawing them means that the cache is broken.
     if (report_.replayed && failure.code == ExitCode::internal)
       failure = {ExitCode::asset_unreadable,
                  fmt::format("{}: broken: {}", options_.common.scene.string(), failure.text)};
@@ -281,13 +281,14 @@ void Session::end_early(const FilmPlan& plan, const Store* store) {
     report_.message += fmt::format("; {} frame{} kept in {}", kept, kept == 1 ? " is" : "s are", report_.output);
   else
     report_.message += written > 0 ? "; no frame is kept" : "; no frame was written";
-  // A failed simulation would fail again.
+  // If the simulation failed, it would fail again at the same frame, so --resume is not suggested.
   if (store != nullptr && store->can_resume() && report_.exit_code != ExitCode::simulation_failed &&
       fs::exists(store->folder(), ignored))
     report_.message += "; the same command with --resume continues from there";
 }
 
-// Writes side files first, since their failures affect the exit code, and prints the message last, where it is visible.
+// Writes side files first, since a failure to write them affects the exit code. Prints the message last, where users
+// see it.
 ExitCode Session::end(const FilmPlan& plan, const Store* store) {
   if (report_.exit_code != ExitCode::ok) end_early(plan, store);
   if (store != nullptr) {
@@ -331,8 +332,8 @@ void Session::try_side_file(const Write& write) {
   }
 }
 
-// A hidden folder beside the output: `output/.falling_band.weft-cache`. For pictures it is named after the scene, so a
-// folder of pictures can be the output of one run per scene at a time.
+// A hidden folder beside the output: `output/.falling_band.weft-cache`. For pictures, the folder is named after the
+// scene, so that runs of different scenes can write to one folder of pictures at the same time.
 fs::path working_cache(const OutputTarget& target, const std::string& scene) {
   const fs::path file = target.file(0);
   const std::string name = target.kind == Kind::video ? file.stem().string() : scene;

@@ -17,7 +17,7 @@ namespace weft::cli {
 /// The outcome of one frame.
 struct FrameRecord {
   simulation::FrameReport report;
-  bool written = false;  ///< drawn and written; false outside the wanted frames or after a failure
+  bool written = false;  ///< whether it is drawn and written; false for frames that are not wanted or after a failure
   StageTime render, encode, meshes;
 };
 
@@ -62,7 +62,7 @@ StageTotals total_times(const std::vector<FrameRecord>& frames);
 
 struct StepTotals {
   long long accepted = 0, rejected = 0;
-  long long inexact = 0;      ///< of the accepted ones, those with an error above the tolerance
+  long long inexact = 0;      ///< accepted steps with an error above the tolerance
   double error_estimate = 0;  ///< of the time steps [m]
   double solver_error = 0;    ///< residual error of the solver [m]
 };

@@ -8,7 +8,7 @@
 
 namespace weft::cli {
 
-using KeyedValues = std::map<std::string, std::string>;  ///< by key, as text
+using KeyedValues = std::map<std::string, std::string>;  ///< values as text, by key
 
 /// "wind: [8, 2, 0] -> [8, 3, 0]" for each key that differs, in key order; a missing value is "none".
 std::vector<std::string> list_changes(const KeyedValues& before, const KeyedValues& after);

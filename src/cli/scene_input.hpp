@@ -26,7 +26,7 @@ std::string mistakes_text(const scene::LoadResult& loaded);
 /// Throws Error(usage) with the most similar name if `camera` is not in `names`.
 void check_camera(const std::vector<std::string>& names, const std::string& camera);
 
-/// `size` and `camera` are used if the options do not set others.
+/// The settings for drawing. `size` and `camera` are used if the options set no others.
 render::Settings render_settings(const PictureSize& size, const std::string& camera, const SceneOptions& options);
 render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options);
 

@@ -22,7 +22,7 @@ std::string_view g_promise;  // set before any handler is installed
 std::array<struct sigaction, kSignals.size()> g_previous;
 
 void say(std::string_view text) {
-  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // standard error is closed: nothing can be done
+  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // standard error may be closed: no remedy
 }
 
 // Makes only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.

@@ -52,7 +52,7 @@ class GlPainter : public FramePainter {
   bool deep_ = false, warned_ = false;
 };
 
-// Adds the names of the objects for the numbers in the layer id.object.
+// Adds the name of each object under its number in the layer id.object.
 Metadata name_objects(Metadata metadata, const frame::FrameSnapshot& snapshot) {
   int number = render::kFirstSurface;
   for (const auto& surface : snapshot.surfaces)

@@ -37,7 +37,7 @@ class FramePainter {
   virtual std::string description() const = 0;
 };
 
-/// Writes pictures. If finish() is not called, no incomplete file may remain.
+/// Writes pictures. If it is destroyed without finish(), no incomplete file may remain.
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;

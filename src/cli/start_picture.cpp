@@ -33,7 +33,7 @@ Vec3 up_of(const frame::FrameSnapshot& snapshot) {
 }
 
 // Fraction of the picture in which the triangles of a place are visible. The triangles are rendered as the only cloth,
-// first in the list, so that they hide the coinciding original surface.
+// and first, so that they hide the original surface, which is in the same place.
 double visible_fraction(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                         const frame::Camera& camera, double aspect) {
   auto marks = std::make_shared<frame::Surface>();
@@ -56,8 +56,8 @@ double visible_fraction(const frame::FrameSnapshot& snapshot, const Intersection
   return render::saliency_of(marked, nullptr, 0, "", aspect).coverage;
 }
 
-// Best of 32 camera directions for a place. Earlier directions, from the front and from above, are preferred by
-// kMinVisibilityGain.
+// Of 32 cameras around a place, the one that shows most of it. A later camera must show more by the factor
+// kMinVisibilityGain, so that views from the front and from above are preferred.
 frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                                    double aspect) {
   const Vec3 up = up_of(snapshot), right = Vec3::UnitX(), front = right.cross(up);
@@ -84,7 +84,7 @@ frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const I
 }
 
 void draw_line(image::Image& image, const Vec2& from, const Vec2& to, int width) {
-  // Skips longer lines: they end far outside the picture.
+  // Skips very long lines: they end far outside the picture.
   const double length = (to - from).norm();
   if (!(length < 4.0 * (image.width + image.height))) return;
   const int steps = std::max(1, static_cast<int>(std::ceil(length)));

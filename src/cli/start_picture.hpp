@@ -10,9 +10,9 @@
 
 namespace weft::cli {
 
-/// Draws the whole scene (from its camera, or framed automatically) and close-ups of the places with the most pairs.
-/// Touching or crossing triangles are outlined in red, also if hidden. `painter` must use the first camera of each
-/// snapshot.
+/// Draws the whole scene (from its camera, or framed automatically), and close-ups of the places with the most pairs of
+/// touching or crossing triangles. These triangles are outlined in red, also if they are hidden. `painter` must use the
+/// first camera of each snapshot.
 std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, const render::Settings& settings,
                                             FramePainter& painter);
 

@@ -55,7 +55,7 @@ class SceneStills : public Stills {
 
   const scene::Scene input_;
   std::optional<simulation::Simulation> simulation_;
-  int frame_ = 0;  // of the simulation
+  int frame_ = 0;  // current frame of the simulation
 };
 
 class CacheStills : public Stills {

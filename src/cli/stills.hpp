@@ -30,7 +30,7 @@ class Stills {
   virtual void add_inputs(PathLedger& paths) const = 0;
   /// Number of frames to simulate until frame `last` is available.
   virtual int cost(int last) const = 0;
-  /// Call with ascending frame numbers. Throws Error(interrupted) after SIGINT or a similar signal.
+  /// Returns a frame. Call it with ascending frame numbers. Throws Error(interrupted) after SIGINT or a similar signal.
   virtual frame::SnapshotPtr at(int frame, Progress& progress) = 0;
   /// The camera path, found from the frames of the cache or from those simulated so far. Call it after all wanted
   /// frames were requested.
@@ -48,7 +48,7 @@ class Stills {
   cache::Manifest scene_;
   render::Settings settings_;
   std::vector<int> frames_;
-  std::optional<render::CameraPath> camera_;  // if it must be found
+  std::optional<render::CameraPath> camera_;  // set if the camera must be computed
 };
 
 /// Opens `options.scene`: a scene, or the folder of a cache. Throws as load_scene() and cache::Reader do.

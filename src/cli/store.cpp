@@ -13,8 +13,8 @@
 namespace weft::cli {
 namespace {
 
-// Limit on the time of a save, relative to the simulation time since the last save. A state is several times as large
-// as a frame, and most states are never read.
+// Limit on the time that a save takes, relative to the time since the last save. A state is several times as large as a
+// frame, and most states are never read.
 constexpr double kMaxSaveTimeRatio = 0.01;
 
 }  // namespace
@@ -66,7 +66,7 @@ void Store::find_start() {
   }
 }
 
-// Stored frames keep the looks of their former scene until they are read and get the current looks.
+// Lists the former scenes in the manifest: stored frames keep their looks until the run reads and stores them again.
 void Store::note_former_looks(const cache::Manifest& found) {
   std::set<std::uint64_t> former(found.former_hashes.begin(), found.former_hashes.end());
   former.insert(found.scene_hash);
@@ -98,7 +98,7 @@ void Store::note_outputs(std::set<std::string> outputs) const {
   }
 }
 
-// Keeps stored frames: if the output fails for the same reason, no other result of the run exists.
+// Ends storing, but keeps the stored frames: if the output fails for the same reason, they are the only result.
 void Store::give_up(const std::string& reason) {
   log::warn(reason + "; the run continues, but if it is interrupted, frames from here on must be simulated again");
   writer_.reset();

@@ -20,8 +20,8 @@ namespace weft::cli {
 struct MadeFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  bool fresh = false;                                  ///< not yet in the cache, or in it with other looks
-  const simulation::Simulation* simulation = nullptr;  ///< its state is that of this frame; null if the frame was read
+  bool fresh = false;                                  ///< not yet in the cache, or there with former looks
+  const simulation::Simulation* simulation = nullptr;  ///< in the state of this frame; null if the frame was read
 };
 
 class Store {
@@ -57,9 +57,9 @@ class Store {
 
   /// The cache of the earlier run; only if resumes().
   const cache::Reader& earlier() const { return *reader_; }
-  /// Whether the cache has this and all earlier frames, with the current looks; only if resumes().
+  /// Whether the cache has this frame and all earlier ones, with the current looks; call it only if resumes().
   bool holds(int frame) const;
-  /// The state of the last frame that need not be simulated again; only if resumes().
+  /// The stored state, from which the simulation continues; call it only if resumes().
   const cache::SolverState& start() const { return start_; }
 
   /// Only the simulating thread may call the functions from here on.
@@ -101,7 +101,7 @@ class Store {
   WallTimer since_save_;
   double save_seconds_ = 0;  // of the last save
   std::optional<int> saved_frame_;
-  const simulation::Simulation* simulation_ = nullptr;  // its state is that of frame last_
+  const simulation::Simulation* simulation_ = nullptr;  // in the state of frame last_
   int last_ = 0;
   StageTime time_;
 };

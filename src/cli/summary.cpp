@@ -41,7 +41,7 @@ Row stage_row(const char* name, const StageTime& time, int frames) {
 
 std::string times_table(const RunReport& report) {
   const StageTotals totals = total_times(report.frames);
-  // Frame 0 is the given start, not a computed frame.
+  // Frame 0 is not simulated: it is the given start.
   const int simulated = std::max(0, static_cast<int>(report.frames.size()) - 1);
   std::vector<Row> rows{{"", "wall", "CPU", "CPU a frame"},
                         stage_row("set up", report.setup, 0),
@@ -71,8 +71,8 @@ std::string joule(double energy) {
   return fmt::format("{:.3g} J", std::abs(energy) < 1e-12 ? 0.0 : energy);
 }
 
-// One sentence: the error of positions, its main source, and how to reduce it. Errors of single frames may cancel or
-// grow, so without --error only the worst frame is reported.
+// One sentence: the error of positions, its main source, and how to reduce it. Without --error, it reports only the
+// frame with the largest error, since the errors of frames may cancel or grow later.
 std::string error_text(const RunReport& report) {
   if (report.error) return error_sentence(*report.error, report.cloth_size);
   const auto of_frame = [](const FrameRecord& record) {

@@ -6,8 +6,8 @@
 
 namespace weft::cli {
 
-/// Result and cost of a run, for people: several lines, without a line feed at the end. Warnings derived from the
-/// figures come last.
+/// Result and cost of a run, for people: several lines, without a line feed at the end. The last lines are warnings
+/// about suspicious figures.
 std::string summary(const RunReport& report);
 
 /// Warnings about suspicious figures: strain, rejected steps, touching surfaces.

@@ -95,7 +95,8 @@ class Sweep {
     while (next < jobs_.size() || !running.empty()) {
       if (stop_.requested()) {
         next = jobs_.size();
-        // A terminal sends signals to the whole process group; a signal to this process alone must be passed on.
+        // A terminal signals the whole process group. Other senders may signal this process alone, so it passes the
+        // signal on.
         if (!std::exchange(told, true))
           for (const Job* job : running) ::kill(job->process, SIGTERM);
       }
@@ -156,7 +157,7 @@ class Sweep {
                             results.size()));
       return ExitCode::interrupted;
     }
-    std::vector<std::string> made;  // there is no sheet if no run has a picture
+    std::vector<std::string> made;  // the sheet may be absent: no run has a picture
     for (const char* file : {"sheet.png", "table.md", "table.csv", "page/index.html"})
       if (fs::exists(options_.output / file)) made.emplace_back(file);
     log::info(fmt::format("{}: {}", options_.output.string(), fmt::join(made, ", ")));

@@ -22,7 +22,7 @@ struct SweepJob {
   std::filesystem::path folder = {};
   std::string scene = {};       ///< its name
   int frame_count = 1;          ///< of the scene
-  bool may_find_camera = true;  ///< a camera of the scene is computed, from all of its frames
+  bool may_find_camera = true;  ///< the scene has no camera, or one computed from frames: all frames are needed
 
   std::filesystem::path video() const { return folder / (scene + ".mp4"); }
   std::filesystem::path stats() const { return folder / (scene + ".json"); }
@@ -32,8 +32,9 @@ struct SweepJob {
   bool is_done() const;
 };
 
-/// Reads all scenes; a mistake in one of them prevents all runs. Throws Error (usage, scene_invalid, asset_unreadable)
-/// with all mistakes of all scenes. Registers the list and the files of the first scene in `paths`.
+/// Reads the scenes of all runs. A mistake in one scene prevents all runs: throws Error(scene_invalid) with all
+/// mistakes of all scenes. Also throws Error(usage) and Error(asset_unreadable). Registers in `paths` the file with the
+/// list of runs, if there is one, and the input files of the first run's scene.
 std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths);
 
 /// Throws Error(output_failed) unless the folder is new, empty, or of the same sweep.

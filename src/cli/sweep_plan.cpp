@@ -57,7 +57,7 @@ std::string without_byte_order_mark(const fs::path& file, const std::string& tex
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
 
-// Fields of one line; quoted fields may contain commas, and doubled quotes (RFC 4180).
+// Fields of one line. Quoted fields may contain commas; a doubled quote in them is a quote (RFC 4180).
 std::vector<std::string> csv_fields(const std::string& line) {
   std::vector<std::string> fields(1);
   bool quoted = false;

@@ -10,7 +10,7 @@
 
 namespace weft::cli {
 
-/// Limit against mistakes; that many runs of ten seconds take a day.
+/// Maximum number of runs, so that a mistake does not start too many: 10,000 runs of ten seconds take a day.
 inline constexpr std::size_t kMaxRuns = 10'000;
 
 /// A key of the scene, and its values as the text that --set expects.

@@ -47,15 +47,15 @@ std::string largest(const Json& stats, const char* key) {
   return most ? fmt::format("{:.4g}", *most) : "";
 }
 
-/// Text: whether the error is comparable with that of another run; empty without --error.
+/// Whether the error is comparable with that of another run: "yes" or "no"; empty without --error.
 std::string comparable_of(const Json& stats) {
   const Json comparable = at(stats, {"error", "comparable"});
   if (!comparable.is_boolean()) return "";
   return comparable.get<bool>() ? "yes" : "no";
 }
 
-/// Newton iterations, rejected steps, largest strain, energy at the end, error, and whether it is comparable; empty
-/// texts if there is no frame.
+/// Newton iterations, rejected steps, largest strain, energy at the end, error, and whether the error is comparable.
+/// The texts are empty if there is no frame.
 std::vector<std::string> figures_of(const Json& stats) {
   const Json& frames = frames_of(stats);
   if (frames.empty()) return std::vector<std::string>(6);
@@ -87,12 +87,12 @@ std::optional<image::Image> picture_of(const std::filesystem::path& file, std::o
     if (picture) picture = image::shrink(*picture, kPictureWidth);
     return picture;
   } catch (const Error&) {
-    return std::nullopt;  // a run that failed before its first picture
+    return std::nullopt;  // the run failed before its first picture
   }
 }
 
-/// Number of columns of the sheet. Runs that share the values of the first keys form a row if they are at most
-/// kMaxSheetColumns; the last keys then vary along the row.
+/// Number of columns of the sheet. Runs with the same values of the first keys form a row, along which the last keys
+/// vary, if such a row has at most kMaxSheetColumns runs.
 int columns_of(const std::vector<SweepResult>& results) {
   const Changes& first = results.front().run.difference;
   for (std::size_t keys = 1; keys < first.size(); ++keys) {

@@ -24,9 +24,9 @@ struct SweepResult {
 /// statistics are empty.
 bench::Table sweep_table(const std::vector<SweepResult>& results);
 
-/// Writes one picture per run with its values and the CPU time of simulation and drawing; grey if the run has no
-/// picture. Shows the last available frame, or the drawn frame with index `frame`. Writes nothing if no run has a
-/// picture.
+/// Writes a sheet with one picture per run, its values, and the CPU time of simulation and drawing. The picture is the
+/// drawn frame with index `frame`, or the last one (by default, or if there are fewer). It is grey if the run has no
+/// picture. Writes nothing if no run has a picture.
 void write_sweep_sheet(const std::filesystem::path& file, const std::vector<SweepResult>& results,
                        const std::string& heading, std::optional<int> frame);
 

@@ -34,7 +34,7 @@ struct Still {
   render::Saliency saliency;
 };
 
-/// The frame with the highest saliency; the first one of equals.
+/// The frame with the highest saliency; of several, the first.
 Still most_salient(Stills& stills, const std::vector<int>& frames, Progress& progress) {
   const render::Settings& settings = stills.settings();
   Still best;
@@ -69,13 +69,13 @@ bool is_folder(const ThumbnailOptions& options) {
   return !options.output.empty() && (!options.output.has_extension() || may_exist);
 }
 
-/// With several scenes, throws if a signal arrived while this one was drawn.
+/// With several scenes, throws Error(interrupted) if a signal arrived while this scene was drawn.
 void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
   if (stills.is_stopped() && options.scenes.size() > 1)
     throw Error(ExitCode::interrupted, "interrupted after {}", options.common.scene.string());
 }
 
-// Draws the given start without simulating, even if a run would refuse it.
+// Draws the start of the scene without simulating, even if a run would refuse it.
 void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   if (options.frame || std::filesystem::is_directory(options.common.scene))
     throw Error(ExitCode::usage, "--start: expected a scene and no --frame, got {}",

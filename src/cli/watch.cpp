@@ -39,7 +39,7 @@ Stamps stamps_of(const std::vector<fs::path>& files) {
 class Watch {
  public:
   explicit Watch(const WatchOptions& options) : options_(options) {
-    // A drawing may replace only earlier drawings of the scene.
+    // Checks that the file that drawings will replace is an earlier drawing of the scene.
     const auto option = std::ranges::find(options.passed_on, "--output");
     const std::string scene = options.scene.stem().string();
     const fs::path output = option != options.passed_on.end()
@@ -83,7 +83,7 @@ class Watch {
     int status = 0;
     while (::waitpid(process, &status, WNOHANG) == 0) {
       if (!is_killed && (stop_.requested() || changed())) {
-        ::kill(process, SIGKILL);  // no partial file remains, as outputs get their names only when complete
+        ::kill(process, SIGKILL);  // no partial file gets a final name, as outputs are renamed when complete
         is_killed = true;
       }
       ::usleep(kFilePollPause);

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether an output has the expected metadata, apart from the OpenGL implementation.
+// Whether an output has the expected metadata. The OpenGL implementation may differ.
 bool agrees(const Metadata& found, Metadata expected) {
   expected.erase("gl");
   return std::ranges::all_of(expected, [&](const auto& entry) {

@@ -17,7 +17,7 @@ bool is_whole(const OutputTarget& target, const FrameRange& frames, const render
               const cache::Manifest& scene, const std::filesystem::path& meshes,
               const std::vector<std::string>& objects);
 
-/// Remains of an earlier drawing of the same film.
+/// What an earlier run has drawn of the same film.
 struct Drawn {
   std::set<int> frames;                 ///< complete frames, with their meshes
   std::set<std::filesystem::path> own;  ///< files of this film that may be replaced

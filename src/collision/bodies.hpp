@@ -69,8 +69,8 @@ class Bodies {
   const std::vector<ContactMaterial>& materials() const { return materials_; }
   std::size_t material_of(Index vertex) const { return material_of_[vertex]; }
 
-  /// Number, within its body, of the first triangle that has these corners in any order. An edge repeats its second end
-  /// and gives the first triangle at that edge.
+  /// Number, within its body, of the first triangle that has these corners in any order. For an edge, repeat its second
+  /// end: the result is the first triangle at that edge.
   Index triangle_of(const Triangle& corners) const;
 
   /// The section of a global array that belongs to this body.

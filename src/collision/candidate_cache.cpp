@@ -81,7 +81,8 @@ void CandidateCache::cover(const Motion& motion, double margin) {
   margin_ = margin;
 }
 
-// Compares bounding boxes. The clearance of two detection distances allows for the margins of both sides.
+// Finds the obstacles that an axis-aligned plane separates from all cloth, by bounding boxes. The clearance of two
+// detection distances allows for the margins of both sides.
 void CandidateCache::find_clear_bodies(const Motion& motion) {
   const auto extend = [&](std::size_t body, Box3& box) {
     for (std::span<const Vec3> x : {motion.x_t0, motion.low_t1, motion.high_t1})
@@ -130,7 +131,8 @@ bool CandidateCache::is_kept_clear(std::size_t vertex, const Vec3& x) const {
 // Whether x is within the margin of the box of the vertex's collected end, or in the half-space of its obstacle.
 bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin) const {
   const Vec3 beyond = (x - high_end()[vertex]).cwiseMax(low_[vertex] - x);
-  // Boxes grow by the margin along each axis; bounds with more directions hold only what is that close.
+  // Boxes grow by the margin along each axis; bounds with more directions are sure to contain only points within that
+  // distance.
   const bool boxes = parameters_.broad_phase.directions == 6;
   const double distance = boxes ? beyond.maxCoeff() : beyond.cwiseMax(0).norm();
   return distance <= margin || is_kept_clear(vertex, x);

@@ -23,15 +23,15 @@ struct SearchParameters {
 
 /// Collects candidate pairs for the trajectories of all vertices from x_t0 to x_t1, with bounds enlarged by a margin at
 /// both ends. The pairs stay valid for all trajectories whose ends lie inside these bounds. The margin is half the
-/// detection distance plus a Verlet margin, if the step is slow: no vertex moves farther than that along an axis. While
-/// each vertex is within the Verlet margin of where it was when the pairs were collected, all features that are near
-/// now were within radius() of each other then. Cloth at rest is searched once.
+/// detection distance. In a slow step, a Verlet margin is added; a step is slow if no vertex moves farther than the
+/// Verlet margin along an axis. While each vertex is within the Verlet margin of where it was when the pairs were
+/// collected, all features that are near now were within radius() of each other then. Cloth at rest is searched once.
 ///
 /// An obstacle that an axis-aligned plane separates from all cloth may move on its side of that plane without
 /// invalidating the pairs.
 ///
-/// Bounds at the start and at the end are compared separately, so surfaces that move together are not listed (measured:
-/// 4 instead of 70 pairs per particle in sphere_drape at 256²).
+/// Bounds at the start and at the end are compared separately, so surfaces that move together with a gap between them
+/// are not listed (measured: 4 instead of 70 pairs per particle in sphere_drape at 256²).
 class CandidateCache {
  public:
   /// `bodies` must outlive it. `x`: all vertices at the start [m]. `detection_distance` [m]: closer features are near.
@@ -42,8 +42,9 @@ class CandidateCache {
   /// sets the bounds that covers_start() and covers_end() test. The caller may remove pairs from the list.
   CandidatePairs& collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Collects again after pushing apart has moved vertices to x_t1. If a vertex has left the bounds of its end, they
-  /// grow to contain its start and x_t1, because it may be backtracked. `all`: the bounds of every vertex grow.
+  /// Collects again after pushing apart has moved vertices to x_t1. If a vertex has left the bounds of its end, these
+  /// bounds grow to contain its start and its x_t1, because the vertex may be backtracked. `all`: the bounds of every
+  /// vertex grow.
   CandidatePairs& collect_more(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, bool all);
 
   /// As the first collect(), with the end of each vertex anywhere in the box between `low_t1` and `high_t1`.
@@ -56,10 +57,10 @@ class CandidateCache {
   double radius() const { return 2 * margin_; }
   double detection_distance() const { return detection_distance_; }
 
-  /// Whether each vertex is within the Verlet margin of where it was when the pairs were collected (see radius()).
+  /// Whether each vertex is within the Verlet margin of its collected start (see radius()), or is_kept_clear().
   bool covers_start(std::span<const Vec3> x) const;
-  /// Whether x is inside the bounds of the end. The pairs then include all that can meet on the way from a covered
-  /// start.
+  /// Whether each vertex at x is inside the bounds of its end, or is_kept_clear(). If so, the pairs include all that
+  /// can meet on the way from a covered start.
   bool covers_end(std::span<const Vec3> x) const;
 
   /// True only if all features within the detection distance at x, an end of the trajectory, are listed.
@@ -86,7 +87,7 @@ class CandidateCache {
   /// Invalidates the pairs: nothing is covered from now on.
   void drop() { margin_ = -1; }
 
-  /// Drops, between two steps, state that only speeds up the search and does not follow from positions.
+  /// Call between two steps. Drops the state that only speeds up the search and does not follow from positions.
   void forget();
 
   /// The starts, and the boxes of the ends, that the pairs were collected for. Collecting for them again gives the same

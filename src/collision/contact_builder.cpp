@@ -18,14 +18,15 @@ double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
 
-// Limits a contact to what it may open by in a step, from `gap` [m].
+// Reduces the activation distance, so that in a step over h the contact opens from `gap` [m] by no more than its
+// opening time allows.
 void limit_opening(Contact& contact, double gap, double h) {
   const double range = std::min(contact.range, gap + contact.full_range * h / numerics.contact.opening_time);
   contact.depth -= contact.range - range;
   contact.range = range;
 }
 
-// Distance along the normal at the start of the step; 0 if it is negative.
+// Distance along the normal at the start of the step [m]; 0 if it is negative.
 double gap_at_start(const FeaturePair& pair, const StepMotion& motion) {
   double gap = 0;
   for (std::size_t k = 0; k < 4; ++k) gap += pair.weights[k] * pair.normal.dot(motion.x_t0[pair.vertices[k]]);
@@ -139,8 +140,8 @@ void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closes
       response.add_wall(*contact, motion.x_t0);
 }
 
-// The activation distance of a corner contact is at most its present distance, so it exerts no force now. It has no
-// friction, because the contact of the closest features has it.
+// The activation distance of a corner contact is at most its present distance, so it exerts no force now. A corner
+// contact has no friction, because the contact of the closest features has friction.
 void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                  ContactResponse& response) const {
   for (const Triangle& corners : {pair.a, pair.b}) {
@@ -159,7 +160,7 @@ void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& clos
   }
 }
 
-// Returns nullopt if neither side has a particle.
+// Returns nullopt if neither side has a particle. `range_limit`: upper bound of the activation distance [m].
 std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double fraction, double range_limit,
                                              const StepMotion& motion) const {
   Contact contact;

@@ -26,7 +26,7 @@ struct PairFriction {
 };
 
 struct ContactParameters {
-  double stiffness = 100;                   ///< minimum stiffness of a contact, before stiffness_fraction() [N/m]
+  double stiffness = 100;                   ///< minimum stiffness, which stiffness_fraction() then multiplies [N/m]
   double step = 0.01;                       ///< time step for which contacts must be stiff enough [s]
   std::vector<PairFriction> friction = {};  ///< pairs with coefficients of their own
 };
@@ -38,13 +38,13 @@ struct StepMotion {
   bool is_straight() const { return x_t0.data() == x_from.data(); }
 };
 
-/// Fraction of the full stiffness that a near pair gets. Vertex-face pairs get 1. Edge pairs get 1 if the contact
-/// direction lies well inside the wedges (see Proximity) of both edges and the closest points lie well inside the
-/// edges, as for a box edge on smooth cloth or two crossed creases. The fraction fades to 0 as the surface becomes flat
-/// (vertices and faces then keep the layers apart), as the direction leaves a wedge (a neighbouring face is then
-/// closer), and towards the ends of an edge. So no contact switches on or off while cloth rests. Between two smooth
-/// layers a fifth of the contacts remain. Without cloth (two rigid bodies) the fraction fades only outside a wedge,
-/// because the rims of stacked boxes may cross where no vertex is near.
+/// Fraction of the full stiffness that a near pair gets: 1 for vertex-face pairs. For edge pairs it fades from 1 to 0
+///   - as both surfaces become flat at the edges: vertices and faces then keep the layers apart (one sharp edge
+///     suffices for 1, such as a box edge on smooth cloth);
+///   - as the contact direction leaves a wedge (see Proximity): a neighbouring face is then closer;
+///   - as a closest point approaches the end of an edge.
+/// Because it fades, no contact switches on or off while cloth rests. Without cloth (two rigid bodies) only the second
+/// condition counts, because the rims of stacked boxes may cross where no vertex is near.
 double stiffness_fraction(const Proximity& proximity, bool with_cloth = true);
 
 class ContactBuilder {
@@ -65,16 +65,16 @@ class ContactBuilder {
   /// obstacles do not clamp the cloth.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
-  /// Adds contacts between the closest features of two triangles without a separating plane; returns false if these
-  /// features have full stiffness already. Before Engine::continue_from the contact only prevents a pair inside the
-  /// activation distance from coming closer. After it, the contact restores the activation distance, and further
-  /// contacts keep each corner on its side of the plane between the triangles, because other features could slide past
-  /// the closest ones and meet there. With velocity constraints, the corners of cloth near an obstacle get walls
-  /// instead. `features`: the closest features at x_from.
+  /// Adds contacts for a failing pair: two triangles without a separating plane. `features`: their closest features at
+  /// x_from. If motion.is_straight(), adds one contact of these features, which only prevents them from coming closer.
+  /// In a continued step, that contact restores the activation distance. Further contacts then keep each corner on its
+  /// side of the plane between the triangles, because other features could slide past the closest ones. With velocity
+  /// constraints, a pair of cloth and obstacle gets walls (see VelocityConstraints) for the corners of the cloth
+  /// instead. Returns false if the features had a contact of full stiffness before.
   bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
                    ContactResponse& response);
 
-  /// Coefficients for two contact materials, by number.
+  /// Friction coefficients of two contact materials, by number.
   const Friction& friction_of(std::size_t a, std::size_t b) const {
     return friction_[a * bodies_.materials().size() + b];
   }

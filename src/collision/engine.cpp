@@ -144,9 +144,9 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
 }
 
 // Pushes an estimate with intersections apart. Contacts found at intersecting positions would have meaningless
-// directions, and of several layers that push each other, only one would be found per iteration. Nothing is exempted
-// for an estimate, and for pairs of cloth no plane is sought for parts of the step (measured: two thirds of the
-// searches in the band were for parts, mostly in vain).
+// directions, and of several layers that push each other, only one would be found per iteration. An estimate exempts
+// nothing. For pairs of cloth, it seeks no planes for parts of the step (measured in falling_band: two thirds of the
+// searches were for parts, mostly in vain).
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || !find_failing(x_t0, x_t1, PlaneKinds::turning))
     return false;
@@ -158,9 +158,9 @@ bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, st
   return is_apart;
 }
 
-// Finds near pairs at the expected end of the step. On a curved surface, directions of the start would oppose sliding
-// and take energy. A pair that no plane separates on the trajectory is searched at the start, where its features are
-// still on their own sides.
+// Finds near pairs at the expected end of the step. On a curved surface, contact directions found at the start would
+// oppose sliding and take energy. A pair that no plane separates on the trajectory is searched at the start, where its
+// features are still on their own sides.
 void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<FeatureKey> failing;
   for (const auto& [a, b] : failing_)

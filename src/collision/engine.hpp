@@ -44,23 +44,24 @@ class Engine {
 
   /// Finds the contacts of a step over h [s] from x_t0. x_t1: expected end; exact for obstacles, an estimate for
   /// particles. `motions`: per body, its rigid motion, or the identity if it deforms; empty: no body moves rigidly.
-  /// x_t0 and x_t1 must outlive the step. With springs, if a pair has no separating plane on the way to x_t1, x_t1 is
-  /// pushed apart; `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns whether x_t1 has
-  /// changed.
+  /// x_t0 and x_t1 must outlive the step. With springs, pairs without a separating plane on the way to x_t1 are pushed
+  /// apart there, which changes x_t1. `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns
+  /// whether x_t1 has changed.
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {});
 
   /// Continues the step from x [m], which was reached without an intersection and has the obstacles at their end. Finds
-  /// contacts anew around x and adds those of all pairs that were pushed apart in this step. Friction still measures
-  /// slip from the start of the step. x replaces x_t0 in the calls that follow and must outlive the step.
+  /// contacts anew around x, and adds contacts for all pairs that were pushed apart in this step. Friction still
+  /// measures slip from the start of the step. x replaces x_t0 in the calls that follow and must outlive the step.
   void continue_from(std::span<const Vec3> x);
   /// Pairs for which is_separated() found no separating plane. Valid until the next call that tests or pushes apart.
   std::span<const CornerPair> failing() const { return failing_; }
 
-  /// Drops, between two steps, state that only speeds up the search and does not follow from positions.
+  /// Call between two steps. Drops the state that only speeds up the search and does not follow from positions.
   void forget();
 
-  /// State besides x [m] that the next step depends on. Throws std::runtime_error if it does not fit these bodies.
+  /// Saves or restores the state besides x [m] that the next step depends on. Throws std::runtime_error if it does not
+  /// fit these bodies.
   template <class Archive>
   void serialize(Archive& archive, std::span<const Vec3> x);
 
@@ -77,10 +78,10 @@ class Engine {
   /// Call when the step is accepted; see ContactResponse::accept().
   void accept() { response_.accept(); }
 
-  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. `may_pinch`: allows exempting
-  /// pinched cloth from an obstacle; otherwise only a cloth that this obstacle pinches already is exempted. If
-  /// `may_move_pins` is false and a pinned particle had to move, the result is not separated and nothing is exempted.
-  /// Only planes of the kinds `which` count.
+  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a pair is forced together,
+  /// pinched cloth may be exempted from the obstacle. Unless `may_pinch`, this applies only to cloth that this obstacle
+  /// pinches already. If `may_move_pins` is false and a pinned particle had to move, the result is not separated and
+  /// nothing is exempted. Only planes of the kinds `which` count.
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                               bool may_pinch = false, bool may_move_pins = true, PlaneKinds which = PlaneKinds::all);
 
@@ -95,8 +96,8 @@ class Engine {
   const PinchedPairs& exempted() const { return pinched_; }
   void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
 
-  /// Number of near pairs within the detection distance at the expected end of the last step. With velocity constraints
-  /// all pairs, else those without a separating plane, are searched at the start of the step instead.
+  /// Number of near pairs within the detection distance at the expected end of the last step. Some pairs are searched
+  /// at the start of the step instead: with springs, those without a separating plane; with velocity constraints, all.
   int proximities() const { return static_cast<int>(proximities_.size()); }
   /// Smallest distance of these pairs [m]; infinite if there are none.
   double min_distance() const;

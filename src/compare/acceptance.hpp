@@ -6,9 +6,9 @@
 
 namespace weft::compare {
 
-/// A reference that is about to be replaced.
+/// A planned replacement of a reference.
 struct Acceptance {
-  std::filesystem::path test, reference;  ///< `reference` is replaced by `test`; it may not exist yet
+  std::filesystem::path test, reference;  ///< `test` replaces `reference`, which may not exist yet
   std::filesystem::path log;              ///< accepted.md
   std::string reason, user;
 
@@ -18,9 +18,9 @@ struct Acceptance {
   static Acceptance plan(const std::filesystem::path& reference, const std::filesystem::path& test,
                          const std::string& name);
 
-  /// Adds a line to the log, then replaces the reference; each of both files is replaced atomically, and every replaced
-  /// reference has its line. Returns false without any change if both are equal in every pixel. Throws
-  /// Error(output_failed).
+  /// Adds a line to the log, then replaces the reference, so that every replaced reference has its line. Each of the
+  /// two files is replaced atomically. Returns false without any change if test and reference are equal in every pixel.
+  /// Throws Error(output_failed).
   bool carry_out() const;
 };
 

@@ -69,7 +69,7 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
     Comparison result = compare(reference, masked(reference, test, *mask), pixel_tolerance);
     result.figures.pixels = std::ranges::count_if(mask->values, [](std::uint8_t value) { return value != 0; });
     if (result.figures.pixels == 0) throw Error(ExitCode::internal, "expected a mask with pixels to compare");
-    // FLIP also shows a difference around the mask, which must not count.
+    // FLIP also spreads a difference to pixels outside the mask, where it must not count.
     for (std::size_t i = 0; i < mask->values.size(); ++i)
       if (mask->values[i] == 0) result.flip.values[i] = 0;
     result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
@@ -105,7 +105,8 @@ Limits for_size(Limits limits, const Figures& figures) {
 }
 
 double counted_pixels(const Figures& figures, const Limits& limits) {
-  // Allows twice the largest number measured between CPU types: 21 of 57,600 pixels (README, decisions).
+  // With this weight, the budget allows twice the largest number of edge pixels measured between CPU types: 21 of
+  // 57,600 (README, decisions).
   constexpr double kEdgePixelWeight = 1.0 / 40;
   const auto over = static_cast<double>(figures.pixels_over), at_edges = static_cast<double>(figures.pixels_at_edges);
   return has_default_budget(limits) ? (over - at_edges) + kEdgePixelWeight * at_edges : over;
@@ -123,8 +124,8 @@ Verdict verdict(const Figures& figures, const Limits& limits) {
 }
 
 bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits) {
-  // Measured: up to 1.3 times the limit, and 0.29 of the changed frame, in films of 96x64 pixels in which a square
-  // appears for one or two frames.
+  // Measured for spill in films of 96x64 pixels, in which a square appears for one or two frames: up to 1.3 times the
+  // limits, and mean FLIP up to 0.29 of that of the changed frame.
   constexpr std::size_t kFrames = 12;
   constexpr double kOverLimit = 2, kMaxFlipRatio = 1.0 / 3;
   Limits wider = limits;

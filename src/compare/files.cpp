@@ -37,7 +37,7 @@ Mask read_mask(const std::filesystem::path& file, int width, int height) {
   return mask;
 }
 
-// Compares two pictures or frames and adds the figures to the result, which stores the worst pair.
+// Compares two pictures or frames, returns the figures and updates the result, which stores the worst pair.
 Figures add_frame(FileComparison& result, image::Image&& reference, image::Image&& test, const Limits& limits,
                   const std::optional<Mask>& mask) {
   Comparison frame = compare(reference, test, limits.pixel_tolerance, mask ? &*mask : nullptr);
@@ -57,7 +57,7 @@ Figures add_frame(FileComparison& result, image::Image&& reference, image::Image
   return figures;
 }
 
-// Counts spilled frames separately from frames that differ.
+// Counts anew the frames that exceed a limit: frames of spill separately from others.
 void count_spill(FileComparison& result, std::span<const Figures> frames, const Limits& limits) {
   result.frames_differing = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -148,7 +148,7 @@ FileComparison compare_files(const std::filesystem::path& reference, const std::
   result.test = test;
   result.video = is_video(reference) && is_video(test);
   try {
-    // A video compared with a picture fails as an unreadable picture.
+    // If only one of the two files is a video, it counts as an unreadable picture.
     result.video ? compare_videos(result, limits, mask) : compare_pictures(result, limits, mask);
   } catch (const Error& error) {
     if (error.code() != ExitCode::asset_unreadable) throw;

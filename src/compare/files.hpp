@@ -8,7 +8,7 @@
 
 namespace weft::compare {
 
-/// By extension: .png is a picture; .mp4, .mov, .mkv, .webm and .avi are videos.
+/// Whether the file is a video, by its extension: .mp4, .mov, .mkv, .webm or .avi.
 bool is_video(const std::filesystem::path& file);
 /// Whether the file is a video whose encoder has changed the pictures; false if it cannot be read.
 bool is_lossy_video(const std::filesystem::path& file);
@@ -31,10 +31,10 @@ struct FileComparison {
   std::string problem;       ///< description, for the outcomes `size` and later ones
   bool video = false;        ///< else a picture, which counts as one frame
   int frames = 0;            ///< number of compared frames
-  int frames_differing = 0;  ///< frames that exceed a limit, without spill
+  int frames_differing = 0;  ///< frames that exceed a limit; spill does not count
   int frames_of_spill = 0;   ///< frames of a lossy video that differ by spill; see is_spill()
   int first_differing = 0;   ///< index of the first differing frame, from 0; undefined if there is none
-  int worst_frame = 0;       ///< from 0; frames that exceed a limit come first, then the largest mean of the FLIP map
+  int worst_frame = 0;       ///< from 0: largest mean FLIP of the frames that exceed a limit, else of all
   Comparison worst;          ///< of the worst frame; empty if none was compared
   /// The worst frame as read from both files; empty if none was compared.
   image::Image reference_picture, test_picture;
@@ -42,8 +42,8 @@ struct FileComparison {
   bool good() const { return outcome == Outcome::same || outcome == Outcome::within; }
 };
 
-/// Compares two existing files; a defect of one of them or of the mask is stored in the result. `mask`: a picture,
-/// white where the files are compared and black elsewhere; may be empty.
+/// Compares two existing files; a defect of one of them or of the mask is stored in the result. `mask`: file of a
+/// picture that is white where the files are compared and black elsewhere; may be empty.
 FileComparison compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
                              const Limits& limits, const std::filesystem::path& mask = {});
 

@@ -36,14 +36,15 @@ const Matrix& linear_from_relative_xyz() {
   return matrix;
 }
 
-// CIE 15:2004: cube root, and a straight line below (6/29)³.
+// Curve of L*a*b* (CIE 15:2004): cube root, and a straight line below (6/29)³.
 float lab_curve(float t) {
   constexpr float kEdge = 6.0f / 29;
   return t > kEdge * kEdge * kEdge ? std::cbrt(t) : t / (3 * kEdge * kEdge) + 4.0f / 29;
 }
 
-// a1 sqrt(pi/b1) exp(-pi² x²/b1) + a2 sqrt(pi/b2) exp(-pi² x²/b2), x in degrees. In one dimension this is the Fourier
-// transform of a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree. As in the paper, it is used in two dimensions.
+// Kernel a1 sqrt(pi/b1) exp(-pi² x²/b1) + a2 sqrt(pi/b2) exp(-pi² x²/b2), x in degrees. In one dimension, this is the
+// Fourier transform of a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree. Like the paper, uses it in two
+// dimensions.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
@@ -70,8 +71,8 @@ struct FeatureKernels {
   std::vector<float> smooth, edge, point;
 };
 
-// A Gaussian and its first two derivatives. As in the paper, the positive weights of a derivative sum to 1 and the
-// negative ones to -1, including the smoothing in the other direction.
+// A Gaussian and its first two derivatives. As in the paper, they are scaled so that in two dimensions (a derivative in
+// one direction, the Gaussian in the other) the positive weights sum to 1 and the negative ones to -1.
 FeatureKernels make_feature_kernels() {
   constexpr double kWidth = 0.082;  // [degrees], of the eye's edge detector (Section 4.2.1)
   const double sigma = 0.5 * kWidth * kPixelsPerDegree;
@@ -200,7 +201,7 @@ Plane<float> feature_difference(const Plane<float>& reference, const Plane<float
   Plane<float> edges = stronger(kernels.edge);
   const Plane<float> points = stronger(kernels.point);
   for (std::size_t i = 0; i < edges.values.size(); ++i) {
-    // The power 1/2 of the paper. The factor 1/√2 limits a corner, which is an edge in both directions, to 1.
+    // The power 1/2 is the paper's. The factor 1/√2 limits a corner, which is an edge in both directions, to 1.
     edges.values[i] = std::sqrt(std::max(edges.values[i], points.values[i]) / std::numbers::sqrt2_v<float>);
   }
   return edges;

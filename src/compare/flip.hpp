@@ -11,10 +11,10 @@
 
 namespace weft::compare {
 
-/// Pixels per degree of the field of view: the paper's 0.7 m distance from a display 0.7 m wide with 3840 pixels.
+/// Pixels per degree of the field of view, as in the paper: 0.7 m from a display 0.7 m wide with 3840 pixels.
 inline constexpr double kPixelsPerDegree = 67.02064327658226;
 
-/// Returns the map: per pixel, 0 (looks the same) to 1. Both images must have the same size.
+/// Returns the FLIP map: per pixel, 0 (looks the same) to 1. Both images must have the same size.
 Plane<float> flip_map(const image::Image& reference, const image::Image& test);
 
 namespace flip {
@@ -27,21 +27,21 @@ using Channels = std::array<Plane<float>, 3>;
 Color opponent_from_linear(const Color& linear);
 Color linear_from_opponent(const Color& opponent);
 
-/// Linear sRGB to L*a*b* with the white of sRGB; a* and b* are reduced for dark colours after Hunt, by the factor L* /
-/// 100 (Section 4.1.2).
+/// Linear sRGB to L*a*b* with the white of sRGB. After Hunt, a* and b* are multiplied by L* / 100, which reduces them
+/// for dark colours (Section 4.1.2).
 Color hunt_lab(const Color& linear);
 
 /// HyAB distance of two results of hunt_lab(): |ΔL*| + √(Δa*² + Δb*²) (Section 4.1.2; Abasi et al. 2020).
 float hyab(const Color& a, const Color& b);
 
-/// Maps a HyAB distance to [0, 1]: raises it to the power 0.7, divides it by the value of pure green against pure blue,
-/// and maps [0, 0.4] linearly to [0, 0.95] and the rest to [0.95, 1] (Section 4.1.3).
+/// Maps a HyAB distance to [0, 1] (Section 4.1.3): raises it to the power 0.7, divides it by the same power of the
+/// distance between pure green and pure blue, then maps [0, 0.4] linearly to [0, 0.95] and the rest to [0.95, 1].
 float remapped(float distance);
 
 /// Filters one channel (0 to 2) with the contrast sensitivity of the eye (Section 4.1.1, Table 1).
 Plane<float> as_seen(const Plane<float>& plane, int channel);
 
-/// Difference of edges and points, 0 to 1 (Section 4.2); the Y channels must be scaled to [0, 1].
+/// Difference of edges and points, 0 to 1 (Section 4.2). Arguments: Y channels, scaled to [0, 1].
 Plane<float> feature_difference(const Plane<float>& reference, const Plane<float>& test);
 
 }  // namespace flip

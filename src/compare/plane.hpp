@@ -35,7 +35,7 @@ void for_each_row(int height, const Body& body) {
 
 namespace detail {
 
-// Convolves each row with `kernel`, whose middle lies on the pixel.
+// Convolves each row with `kernel`, which is centred on the pixel.
 template <class T>
 Plane<T> convolve_rows(const Plane<T>& in, std::span<const T> kernel) {
   const int radius = static_cast<int>(kernel.size() / 2), width = in.width;

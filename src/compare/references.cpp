@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders that may contain references, most specific first.
+// Folders that may contain references, the most specific one first.
 std::vector<fs::path> places(const fs::path& folder, const std::string& machine) {
   std::vector<fs::path> found = {folder / "default", folder};
   if (!machine.empty()) found.insert(found.begin(), folder / machine);
@@ -47,7 +47,7 @@ std::string machine_class_of(const fs::path& file) {
     }
     return machine_class(metadata["gl"]);
   } catch (const Error&) {
-    return "";  // reported when the file is compared
+    return "";  // the comparison of the file reports the reason
   }
 }
 

@@ -6,7 +6,7 @@
 //     references/default/name.png            references of all other classes
 //     references/name.png                    used if there are no classes
 //
-// Below these folders, a name may have its own folders: references/default/front/name.png is that of front/name.png.
+// Names may contain folders: references/default/front/name.png is the reference of front/name.png.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@
 
 namespace weft::compare {
 
-/// The class of machines in an OpenGL description, as in the metadata of Weft's pictures: version of Mesa, and vector
-/// width of llvmpipe in bits. Empty if it has none.
+/// The class of machines, such as "mesa-22.3-256bit", from an OpenGL description as in the metadata of Weft's pictures:
+/// version of Mesa and, if given, vector width of llvmpipe. Empty without a version of Mesa.
 std::string machine_class(const std::string& gl);
 
 /// The class of the machine that drew a picture or video; empty for files of other programs and unreadable ones.

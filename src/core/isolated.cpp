@@ -83,7 +83,7 @@ void send(int descriptor, std::string_view bytes) {
   // Ctrl-C reaches all processes of the terminal; the parent decides about the child.
   for (const int request : {SIGINT, SIGHUP}) std::signal(request, SIG_IGN);
   limit(RLIMIT_CORE, 0, 0);
-  // SIGXCPU first, SIGKILL a second later.
+  // The soft limit sends SIGXCPU, the hard limit SIGKILL a second later.
   if (isolation.cpu_seconds > 0) limit(RLIMIT_CPU, isolation.cpu_seconds, isolation.cpu_seconds + 1);
 #ifndef __SANITIZE_ADDRESS__  // the sanitizer reserves terabytes
   if (isolation.addresses > 0) limit(RLIMIT_AS, isolation.addresses, isolation.addresses);

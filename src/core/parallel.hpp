@@ -19,12 +19,12 @@ namespace weft {
 void set_thread_count(int threads);
 int thread_count();
 
-/// What the loops below would gain from threads. Counted with one thread, on which a loop takes the time of all its
-/// chunks.
+/// Measures what the loops below would gain from threads. It counts on one thread, where a loop takes the time of all
+/// its chunks.
 struct LoopCounts {
   static constexpr std::array<std::size_t, 4> kThreads{2, 4, 8, 16};
 
-  std::int64_t loops = 0, chunks = 0;  ///< loops of several chunks, outside of others, and their chunks
+  std::int64_t loops = 0, chunks = 0;  ///< loops of several chunks, not inside other loops; their chunks
   double seconds = 0;                  ///< wall time of these loops
   /// Wall time of these loops on each number of kThreads, if chunks take equal times and threads start at once.
   std::array<double, kThreads.size()> seconds_on{};
@@ -81,7 +81,7 @@ void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
   }
 }
 
-/// Calls both, at the same time if there are threads; they must not depend on each other.
+/// Calls both functions, at the same time if there are several threads. They must not depend on each other.
 template <class One, class Other>
 void parallel_invoke(const One& one, const Other& other) {
   if (thread_count() == 1) {

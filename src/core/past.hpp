@@ -8,8 +8,8 @@
 namespace weft {
 
 /// Positions at an earlier time, and their weight. For entries k with positions xₖ and weights wₖ, v = rate (x − Σ wₖ
-/// xₖ), and the rate of any quantity q of the positions is rate (q(x) − Σ wₖ q(xₖ)). The rate of a length is then zero
-/// if a body turns rigidly, however large the angle per step; that of ∂q/∂x v is not.
+/// xₖ), and the rate of any quantity q of the positions is rate (q(x) − Σ wₖ q(xₖ)). If a body turns rigidly, this rate
+/// of a length is zero, however large the angle per step; ∂q/∂x v is not.
 struct Past {
   std::span<const Vec3> x;
   double weight = 0;

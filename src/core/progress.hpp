@@ -30,7 +30,7 @@ class RemainingTime {
   /// Records that `done` frames were finished `seconds` after the start. Times must not decrease.
   void sample(double seconds, const StageCounts& done);
 
-  /// Seconds left, those of the slowest stage, as stages overlap. Nothing until two samples show a pace.
+  /// Seconds left: those of the slowest stage, because stages overlap. Returns nothing until two samples show a pace.
   std::optional<double> seconds() const;
 
  private:

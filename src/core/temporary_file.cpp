@@ -235,7 +235,7 @@ void write_file(const fs::path& file, std::string_view content, Flush flush) {
   bool good = out && std::fwrite(content.data(), 1, content.size(), out.get()) == content.size();
   good = good && std::fflush(out.get()) == 0;
   if (!good) fail(file, "cannot be written", reason(errno));
-  // Machines that draw parts of one film write the same scene beside it.
+  // If several machines draw parts of one film, each writes the same scene file beside it.
   const auto is_there = [&] { return !may_replace(file) && holds(file, content); };
   if (is_there()) return;
   try {

@@ -12,14 +12,14 @@ enum class Flush { yes, no };
 
 /// A temporary name for a file or folder while it is written: `.<name>.weft-<process>.tmp` in the folder of the final
 /// name, so that the rename stays within one file system. The process keeps it locked (flock); the next process that
-/// writes into the folder removes temporary files without a lock. Process numbers do not suffice to tell whose process
-/// is alive, as containers that share a folder do not share them.
+/// writes into the folder removes temporary files without a lock. The lock shows whether a process is alive. Process
+/// numbers would not suffice: containers that share a folder do not share process numbers.
 class TemporaryName {
  public:
   enum class Kind { file, folder };
 
-  /// Creates missing folders, unless this process has used them before: then somebody has removed them on purpose.
-  /// Creates the file or folder itself, empty. Throws Error(output_failed) with the system's reason.
+  /// Creates missing folders. A folder that this process has used before is not created again: somebody has removed it
+  /// on purpose. Creates the file or folder itself, empty. Throws Error(output_failed) with the system's reason.
   TemporaryName(const std::filesystem::path& final_name, Kind kind);
   /// Removes what still exists under the temporary name.
   ~TemporaryName();

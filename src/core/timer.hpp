@@ -47,9 +47,9 @@ struct StageTime {
   }
 };
 
-/// Whether stages are charged with the CPU time of all threads, including those that help in parallel loops; correct
-/// only if the process runs nothing else. Otherwise they are charged with that of the calling thread, as other threads
-/// draw and encode beside a simulation. Set it before any stage runs.
+/// If true, a stage is charged with the CPU time of all threads, including helpers in parallel loops; this is correct
+/// only if the process runs nothing else. If false, only with that of the calling thread, because other threads draw
+/// and encode beside a simulation. Set it before any stage runs.
 inline bool charge_all_threads = false;
 
 /// Adds the wall and CPU time of a scope to those of a stage.

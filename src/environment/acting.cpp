@@ -410,7 +410,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   const character::Pose start = performance.at(begin_of(cast.scene));
   for (const FollowingPin& pin : following) add_following_pin(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
-  std::vector<Vec3> bones;  // positions on the bones from which vertices grow; without following pins
+  std::vector<Vec3> bones;  // points on the bones from which the body's vertices (not those of pins) grow
   if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
   const std::vector<character::Ground> grounds = grounds_below(cast);

@@ -51,10 +51,10 @@ struct Actor {
   std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if that has none
 };
 
-/// Reads the files of a character and computes its key frames, from the time at which it begins to grow or move until
-/// it stops growing or, if it moves, to the end of the scene; one key if it does neither. Moves its skin to leave space
-/// for the `cloths` on it. Throws Error(asset_unreadable, scene_invalid) that names scene line, file and the mesh, bone
-/// or clip.
+/// Reads the files of a character and computes its key frames. They begin when the character begins to grow or move.
+/// They end when it has grown or, if it moves, with the scene. A character that does neither has one key. Moves its
+/// skin to leave space for the `cloths` on it. Throws Error(asset_unreadable, scene_invalid) that names scene line,
+/// file and the mesh, bone or clip.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowingPin> following = {}, std::span<const ClothAtStart> cloths = {});
 
@@ -72,10 +72,10 @@ StandingBody make_standing_body(const scene::Scene& scene, const scene::Characte
 /// Size of the key frames of a character, which `weft check --plan` prints.
 struct KeyFrameCount {
   std::size_t keys = 0, vertices = 0, bytes = 0;
-  /// parts that do not collide, with their numbers of vertices
+  /// Parts that do not collide, with their numbers of vertices.
   std::vector<std::pair<std::string, std::size_t>> left_out = {};
 };
-/// Computes it without sampling the motion.
+/// Counts the key frames without sampling the motion.
 KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character);
 
 }  // namespace weft::environment

@@ -76,15 +76,15 @@ class ParticleFinder {
     multiply(on, fractions);
   }
 
-  // The particles nearest to both ends, and all particles between.
+  // Selects the particles nearest to both ends, and all particles between them.
   void along_rope(const Vec2& at, std::vector<double>& fractions) const {
     const auto pieces = static_cast<double>(object_.lengths.size());
     const auto nearest = [&](double fraction) { return static_cast<std::size_t>(std::lround(fraction * pieces)); };
     for (std::size_t i = nearest(at.x()); i <= nearest(at.y()); ++i) fractions[i % fractions.size()] = 1;
   }
 
-  // Particles of one panel within the bounds and the mask. If a vertex has several UVs, as at darts, the largest
-  // fraction counts.
+  // Selects the particles of one panel within the bounds and the mask. If a vertex has several UVs, as at darts, the
+  // largest fraction counts.
   void on_panel(const scene::ClothPart& part, const std::string& key, std::vector<double>& fractions) const {
     const auto found = std::ranges::find(object_.panels, part.panel);
     if (found == object_.panels.end()) refuse_name(part.panel, object_.panels, key, "panel", "a panel of its pattern");

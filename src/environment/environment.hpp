@@ -37,7 +37,7 @@ struct ClothObject {
   std::string name;
   mesh::Grid grid;    ///< of quads; of a rope: one row
   mesh::Sheet sheet;  ///< if it is made of triangles, in its own coordinates; else empty
-  mesh::Mesh mesh;    ///< rest shape, in the pose of the start in the world; uv: along weft and warp, from its corner
+  mesh::Mesh mesh;    ///< rest shape in the world, posed as at the start; uv: along weft and warp from a corner [m]
   std::vector<Vec2> fractions;  ///< position of each particle along weft and warp, in fractions of the rest size
   std::map<std::string, std::vector<Index>> edges;  ///< of a pattern: particles by "panel.edge"
   std::vector<std::string> panels;                  ///< of a pattern: names
@@ -75,8 +75,8 @@ struct BodyObject {
   std::vector<Part> parts;                              ///< of characters
   std::shared_ptr<const Dynamics> dynamics;             ///< of obstacles with a mass; else null
   std::vector<Index> limbs;  ///< of characters: limb of each vertex, from 0; limbs may intersect
-  /// A pin that follows a body with bones. Environment::vertex() has its particles from `first_vertex` on, after the
-  /// mesh.
+  /// A pin that follows a body with bones. For Environment::vertex(), its particles are numbered from `first_vertex`
+  /// on, after the vertices of the mesh.
   struct Follower {
     std::size_t cloth = 0, pin = 0, first_vertex = 0;
   };

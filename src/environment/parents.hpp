@@ -24,8 +24,8 @@ struct Parent {
 /// exact derivatives. `own` is the motion that the object has if the parent stays at `parent_start`.
 PoseSample compose(const PoseSample& parent, const scene::Pose& parent_start, const PoseSample& own);
 
-/// Distance of the other three points of a frame from its origin on the skin [m]: so small that all follow the same
-/// skin.
+/// Distance [m] from the origin of a frame, which lies on the skin, to each of its other three points. It is so small
+/// that all four follow the same skin.
 inline constexpr double kFrameAxis = 1e-3;
 
 /// Rigid motion closest to that of a frame (an origin and three points along the axes, from vertex `first` on), with

@@ -70,8 +70,8 @@ std::optional<std::string> warn_of_speed(const KeyFrames& keys, double begin, do
   return fmt::format("it moves at up to {:.3g} m/s; people who run reach {:g} m/s", fastest, kMaxSpeed);
 }
 
-// A body that jumps is above the floor only at times, so the minimum counts there; a body that rolls sinks into the
-// floor only at times, so the median counts there.
+// A body that jumps is above the floor only at times, so its minimum height counts. A body that rolls sinks into the
+// floor only at times, so for depths the median counts.
 std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone) {
   if (lowest.empty()) return std::nullopt;
   std::ranges::sort(lowest);

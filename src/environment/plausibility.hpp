@@ -12,14 +12,14 @@
 namespace weft::environment {
 
 /// Warns of an implausible height of a body along `up`. `x`: its vertices [m]; `scale`: metres per unit of its file;
-/// `said`: the scene sets the scale; then heights up to ten times beyond the limits are accepted.
+/// `said`: whether the scene sets the scale; if so, heights up to ten times beyond the limits are accepted.
 std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said);
 
 /// Warns of a body whose skin is all bound to one node, although the clip turns several others.
 std::optional<std::string> warn_of_missing_skin(const character::Character& body, const character::Clip& clip);
 
-/// Warns of an implausible speed of the mean of `vertices` points, over `count` key frames from `begin` [s] on, `rate`
-/// per second.
+/// Warns of an implausible speed of a body: of the mean position of its vertices. `vertices`: their number. The speed
+/// is measured over `count` key frames from `begin` [s] on, `rate` per second.
 std::optional<std::string> warn_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
                                          std::size_t vertices);
 

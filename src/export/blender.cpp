@@ -42,7 +42,7 @@ const char* extension(const Material& material) {
   return "REPEAT";
 }
 
-// Picture and mapping of each material, as MTL cannot express every mapping.
+// Picture and mapping of each material. The script sets them, as MTL cannot express every mapping.
 Json pictures_json(const frame::Surface& surface) {
   Json result = Json::object();
   const Materials materials = materials_of(surface);

@@ -10,7 +10,8 @@
 
 namespace weft::exporter {
 
-/// Data that the script sets in addition to the meshes, which it reads from files named after the objects.
+/// Collects the data that the script contains: cameras, lights, colours. The script reads the meshes from files that
+/// are named after the objects.
 class BlenderScript {
  public:
   /// `width`, `height`: of the rendered pictures [pixels].

@@ -41,7 +41,7 @@ Path gltf_file(const Request& request) {
 Path usd_file(const Request& request) {
   return request.folder / (request.name + (request.format == Format::usdz ? ".usdz" : ".usda"));
 }
-// Formats with materials and pictures beside the meshes.
+// Whether the format has materials and pictures in files beside the meshes.
 bool has_materials_beside(Format format) {
   return format == Format::obj || format == Format::pc2 || format == Format::blender;
 }
@@ -49,7 +49,7 @@ Path script_file(const Request& request) {
   return request.folder / (request.name + ".py");
 }
 
-// The axes that OBJ readers such as Blender assume by default: y up, front towards z.
+// Positions in the axes that OBJ readers such as Blender assume by default: y up, front towards z.
 std::vector<Vec3> with_y_up(const frame::FrameSnapshot& snapshot, std::size_t surface) {
   std::vector<Vec3> positions = snapshot.states[surface].positions;
   if (snapshot.stage->up.z() > 0.5)

@@ -34,7 +34,7 @@ struct Request {
   Lighting lighting = {};  ///< for blender
 };
 
-/// All files that will be written except shared_files(); `first` is the first requested frame.
+/// All files that write() will write, except shared_files(). `first`: the first requested frame.
 std::vector<std::filesystem::path> files(const Request& request, const frame::FrameSnapshot& first);
 
 /// A material file or a picture, the same for all parts of a film.
@@ -44,8 +44,9 @@ struct SharedFile {
 };
 std::vector<SharedFile> shared_files(const Request& request, const frame::FrameSnapshot& first);
 
-/// Reads each frame once, in order, and calls `stop` before each. Returns whether all frames were written. Each file
-/// gets its name only when it is complete. Throws Error(output_failed), and what `read` throws.
+/// Reads each frame once, in order, and writes it. Calls `stop` before each frame, and ends if it returns true. Returns
+/// whether all frames were written. Each file gets its name only when it is complete. Throws Error(output_failed), and
+/// what `read` throws.
 bool write(
     const Request& request, const std::function<frame::SnapshotPtr(int)>& read,
     const std::function<bool()>& stop = [] { return false; });

@@ -46,7 +46,7 @@ int wrap_number(frame::Paint::Wrap wrap) {
   return kRepeat;
 }
 
-// Duplicates places (seams.hpp) on creases, so that each has one normal group; returns the group of each place.
+// Duplicates places (seams.hpp) on creases, so that each place has one normal group. Returns the group of each place.
 std::vector<Index> cut_at_creases(CutSurface& cut, const NormalGroups& groups) {
   std::vector<Index> group_of(cut.vertex_of.size(), -1);
   std::map<std::pair<Index, Index>, Index> copies;  // by place and group
@@ -78,7 +78,7 @@ void append_number(std::string& bytes, std::uint32_t number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-// Chunks are padded to a multiple of four bytes.
+// Appends a chunk of the file, padded to a multiple of four bytes.
 void append_chunk(std::string& bytes, const char* kind, std::string_view content, char filler) {
   const std::size_t fillers = (4 - content.size() % 4) % 4;
   append_number(bytes, static_cast<std::uint32_t>(content.size() + fillers));
@@ -133,7 +133,7 @@ std::vector<float> GltfFile::normals(const Object& object, const frame::FrameSna
   return turned(of_place, places);
 }
 
-// Returns the index of the buffer view.
+// Appends bytes to the buffer. Returns the index of their buffer view.
 int GltfFile::append(const void* data, std::size_t size, int target) {
   json view{{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}};
   if (target != 0) view["target"] = target;
@@ -142,7 +142,7 @@ int GltfFile::append(const void* data, std::size_t size, int target) {
   return static_cast<int>(document_["bufferViews"].size()) - 1;
 }
 
-// Returns the index of the accessor, as add_values() and add_places() do.
+// These three functions append numbers and return the index of their accessor.
 int GltfFile::add_vectors(const std::vector<float>& vectors) {
   std::array<float, 3> low, high;
   low.fill(std::numeric_limits<float>::max());
@@ -278,7 +278,7 @@ void GltfFile::add_targets(Object& object, json& mesh) {
   mesh["extras"] = {{"targetNames", std::move(names)}};
 }
 
-// One sampler of times and weights for all moving objects.
+// The animation of all moving objects; they share one sampler of times and weights.
 json GltfFile::animation(const std::vector<int>& nodes) {
   json result{{"samplers", json::array()}, {"channels", json::array()}};
   if (nodes.empty()) return result;
@@ -301,7 +301,8 @@ void GltfFile::see(const std::vector<View>& views) {
     const Vec3 position = turned * views[c].world_from_view.topRightCorner<3, 1>();
     Eigen::Vector4f turn =
         Quat(Eigen::Matrix3d(turned * views[c].world_from_view.topLeftCorner<3, 3>())).coeffs().cast<float>();
-    // Chooses the sign of the quaternion nearest to the previous one, so that readers interpolate the shorter way.
+    // Of both signs of the quaternion, takes the one nearer to the previous frame, so that readers interpolate along
+    // the shorter way.
     if (!eye.turns.empty() && turn.dot(Eigen::Map<const Eigen::Vector4f>(&*(eye.turns.end() - 4))) < 0) turn = -turn;
     for (int axis = 0; axis < 3; ++axis) eye.positions.push_back(static_cast<float>(position[axis]));
     for (int part = 0; part < 4; ++part) eye.turns.push_back(turn[part]);

@@ -19,11 +19,11 @@ namespace weft::exporter {
 /// are interpolated linearly. Morph targets are the only way of the standard to move vertices independently; assimp,
 /// Blender and three.js read them. Objects that never move have no targets.
 ///
-/// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender reverses. Normals have targets
-/// as well, since those of the first frame would be wrong in all others. Texture coordinates are (weft, 1 − warp) [m],
-/// as v points down in glTF; vertices on a seam occur once for each panel. A second pair of coordinates maps pictures,
-/// which are embedded, if their mapping differs from the first pair. Parts with their own materials are separate
-/// primitives over the same vertices.
+/// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y); Blender reverses this. Normals have targets as
+/// well, since the normals of the first frame would be wrong in all others. Texture coordinates are (weft, 1 − warp)
+/// [m], as v points down in glTF; vertices on a seam occur once for each panel. Pictures are embedded. If their mapping
+/// differs from these coordinates, a second pair of coordinates maps them. Parts with their own materials are
+/// separate primitives over the same vertices.
 class GltfFile {
  public:
   /// Adds the visible objects of the first frame.
@@ -32,8 +32,8 @@ class GltfFile {
   /// Adds the next frame, at `time` [s] after the first.
   void add(const frame::FrameSnapshot& snapshot, double time);
 
-  /// Adds the cameras of the next frame, starting with the first. glTF cameras cannot change their field of view; that
-  /// of the first frame is used.
+  /// Adds the cameras of the next frame, starting with the first. glTF cameras cannot change their field of view, so
+  /// they keep that of the first frame.
   void see(const std::vector<View>& views);
 
   /// `aspect`: width over height of rendered pictures. Throws Error(output_failed), also if the file would exceed the

@@ -33,7 +33,7 @@ std::uint8_t byte_of(double share) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
 }
 
-// Colours are combined in linear space, as in the renderer.
+// Combines a texel with the surface's colour in linear space, as the renderer does.
 void lay_texel(const PictureFile& picture, const std::uint8_t* texel, std::uint8_t* laid) {
   const double opacity = texel[3] / 255.0;
   for (int c = 0; c < 3; ++c) {
@@ -59,7 +59,8 @@ std::size_t add_picture(std::vector<PictureFile>& pictures, PictureFile picture,
   return pictures.size() - 1;
 }
 
-// Along one axis: a picture that is laid once becomes a clamped one with a transparent rim.
+// A picture that is laid once along this axis becomes a clamped one with a transparent rim, which looks the same.
+// `row`: the row of Material::picture_from_uv for this axis.
 void widen(Wrap& wrap, bool& rim, int pixels, Eigen::Ref<Eigen::RowVector3d> row) {
   rim = wrap == Wrap::once;
   if (!rim) return;

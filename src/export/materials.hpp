@@ -10,15 +10,15 @@
 
 namespace weft::exporter {
 
-/// A picture beside or inside the exported files. Other programs show it unchanged, so its pixels include the effect of
-/// the surface's colour: as a factor, or visible through and around the picture.
+/// A picture beside or inside the exported files. Other programs show it unchanged, so its pixels include the surface's
+/// colour: as a factor, or where the colour is visible through and around the picture.
 struct PictureFile {
   std::string name;  ///< file name
   std::shared_ptr<const frame::Texture> texture;
   Vec3 color;  ///< linear colour of the surface
   frame::Paint::Alpha alpha = frame::Paint::Alpha::ignored;
   bool rim_u = false, rim_v = false;  ///< whether a transparent rim of one pixel is added at both ends of
-                                      ///< this axis, which readers continue beyond the edges
+                                      ///< this axis; readers continue the rim beyond the edges
 
   /// The bytes of the PNG file; it has alpha only if the picture cuts holes.
   std::string png() const;
@@ -56,7 +56,7 @@ struct MaterialGroup {
   std::vector<std::size_t> triangles;
 };
 
-/// Groups all triangles by look, in the order of the materials.
+/// Groups all triangles by look. The groups are in the order of the materials.
 std::vector<MaterialGroup> group_by_look(const frame::Surface& surface, const Materials& materials);
 
 /// `name` with every character except letters, digits and - replaced by _.

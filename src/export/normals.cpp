@@ -11,7 +11,7 @@
 namespace weft::exporter {
 namespace {
 
-// Normal with twice the area as its length.
+// Normal of a triangle; its length is twice the area.
 Vec3 front_of(const std::array<Index, 3>& t, const std::vector<Vec3>& x) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(t[k])]; };
   return (corner(1) - corner(0)).cross(corner(2) - corner(0));
@@ -32,7 +32,7 @@ NormalGroups group_normals(const frame::Surface& surface, const std::vector<Vec3
     std::iota(groups.vertex_of.begin(), groups.vertex_of.end(), 0);
     return groups;
   }
-  // Joins the corners at both ends of each smooth edge. A corner is 3 × triangle + k.
+  // For each smooth edge, joins the corners of both triangles at each end of the edge. A corner is 3 × triangle + k.
   DisjointSets corners(3 * triangles.size());
   const double min_cosine = std::cos(surface.crease_angle * std::numbers::pi / 180);
   std::map<std::pair<Index, Index>, std::size_t> edges;  // by directed edge: the corner at its start

@@ -23,7 +23,7 @@ constexpr double kMaxSpecularExponent = 1000;
 
 // A face, whose corners refer to corners of triangles.
 struct Face {
-  std::size_t material = 0;                                  // first one with the same look
+  std::size_t material = 0;                                  // index of the first material with the same look
   std::vector<std::pair<std::size_t, std::size_t>> corners;  // triangle, and corner in it
 };
 
@@ -78,7 +78,7 @@ void append_faces(const std::vector<Face>& faces, const Materials& materials, co
   }
 }
 
-// Options for offset and scale of a picture; nullopt if it is rotated, which MTL cannot express.
+// MTL options for the offset and scale of a picture; nullopt if the picture is rotated, which MTL cannot express.
 std::optional<std::string> map_options(const Material& material) {
   const auto& map = material.picture_from_uv;
   if (map(0, 1) != 0 || map(1, 0) != 0) return std::nullopt;

@@ -19,8 +19,8 @@
 
 namespace weft::exporter {
 
-/// Writes one sample per frame of the scene, linearly interpolated between the added frames, as Blender's modifier
-/// ignores the field "frames between samples".
+/// Writes one sample per frame of the scene, as Blender's modifier ignores the field "frames between samples". Samples
+/// between two added frames are interpolated linearly.
 class PointCache {
  public:
   /// `given`: number of frames that will be added, `step` apart. All functions throw Error(output_failed).

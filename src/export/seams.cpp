@@ -16,7 +16,7 @@ class Places {
  public:
   explicit Places(std::size_t vertices) : places_(vertices), next_(vertices, kNone), taken_(vertices, 0) {}
 
-  /// Returns the index of the place; appends its vertex to `vertex_of` if the place is an additional one.
+  /// Returns the index of the place. If the vertex gets an additional place, appends the vertex to `vertex_of`.
   Index of(Index vertex, const Place& place, std::vector<Index>& vertex_of) {
     Index at = vertex;
     if (taken_[index(at)] == 0) {
@@ -47,7 +47,7 @@ class Places {
   std::vector<char> taken_;  // whether the first place is set, per vertex
 };
 
-// Whether picture coordinates differ from `uv` for any material, and must be written separately.
+// Whether picture coordinates differ from `uv` for any material, so that they must be written separately.
 bool needs_own_coordinates(const Materials& materials) {
   return std::ranges::any_of(materials.all, [](const Material& material) {
     return material.has_picture() && material.picture_from_uv != Eigen::Matrix<double, 2, 3>::Identity();

@@ -22,7 +22,7 @@ struct CutSurface {
   bool is_cut(std::size_t vertices) const { return vertex_of.size() > vertices; }
 };
 
-/// Uses the texture coordinates of the triangle corners.
+/// Cuts a surface with this number of vertices, according to the texture coordinates of the triangle corners.
 CutSurface cut_at_seams(const frame::Surface& surface, const Materials& materials, std::size_t vertices);
 
 }  // namespace weft::exporter

@@ -21,8 +21,8 @@
 namespace weft::exporter {
 namespace {
 
-// Film width of a 35 mm camera in tenths of the stage's unit (metre), as USD prescribes; only its ratio to the focal
-// length matters.
+// Film width of a 35 mm camera. The unit is a tenth of the stage's unit (metre), as USD prescribes; only the ratio to
+// the focal length matters.
 constexpr double kFilmWidth = 0.36;
 
 // A valid name of a primitive: letters, digits and underscores, no leading digit.
@@ -33,7 +33,7 @@ std::string prim_name(const std::string& name) {
   return prim;
 }
 
-// Vectors in single precision, in the shortest exact form.
+// Vectors as text, in single precision and in the shortest form that reads back exactly.
 template <class Vectors>
 std::string tuples(const Vectors& vectors) {
   std::string text = "[";
@@ -47,7 +47,7 @@ std::string tuples(const Vectors& vectors) {
   return text += ']';
 }
 
-// Directions, exact to a thousandth of a degree.
+// Unit vectors as text, exact to a thousandth of a degree.
 std::string directions(const std::vector<Vec3>& vectors) {
   std::string text = "[";
   for (const Vec3& v : vectors)
@@ -154,7 +154,7 @@ bool UsdFile::Samples::add(int frame, std::string value) {
   const bool changed = value != last_;
   if (changed && text_.empty()) {
     text_ = fmt::format("            {}: {},\n", first_frame_, first_);
-    // The value was constant until now. Samples are interpolated linearly, so it is repeated at the previous frame.
+    // The value was constant until now. Readers interpolate samples linearly, so the previous frame repeats it.
     if (last_frame_ != first_frame_) text_ += fmt::format("            {}: {},\n", last_frame_, first_);
   }
   if (!text_.empty()) text_ += fmt::format("            {}: {},\n", frame, value);
@@ -235,7 +235,7 @@ void UsdFile::write_materials(std::ostream& out) const {
   out << "    }\n";
 }
 
-// Writes texture coordinates of pictures as `st`; a surface without them gets weft and warp as `st`.
+// Writes the texture coordinates of pictures as `st`. If the surface has none of its own, `st` is weft and warp.
 void UsdFile::write_places(std::ostream& out, const frame::Surface& surface, const Object& object) {
   const CutSurface cut = cut_at_seams(surface, object.materials, object.vertices);
   if (cut.uv.empty()) return;

@@ -30,7 +30,7 @@ std::uint32_t crc32(const std::string& bytes) {
   return ~av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), kAllBits, data, bytes.size());
 }
 
-// Fields shared by the local header of a file and the directory.
+// Fields that the local header of a file and its entry in the directory share.
 std::string entry_of(const StoredFile& file) {
   std::string entry;
   append(entry, kVersion, 2);
@@ -46,7 +46,7 @@ std::string entry_of(const StoredFile& file) {
 }
 
 void append_file(std::string& bytes, const StoredFile& file, const std::string& entry) {
-  // An extra field with a header of four bytes pads the content to the alignment.
+  // An extra field pads the header so that the content is aligned. The field has at least its own header of four bytes.
   std::size_t padding = (kAlignment - (bytes.size() + kLocalHeader + file.name.size()) % kAlignment) % kAlignment;
   if (padding > 0 && padding < 4) padding += kAlignment;
   bytes += "PK\x03\x04" + entry;

@@ -1,4 +1,4 @@
-// An archive of uncompressed files, as packed USD requires (Pixar, "Usdz File Format Specification").
+// A zip archive of uncompressed files, as packed USD requires (Pixar, "Usdz File Format Specification").
 #pragma once
 
 #include <filesystem>

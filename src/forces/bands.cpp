@@ -72,8 +72,8 @@ void Bands::add(const Evaluation& at) const {
   }
 }
 
-// Stiffness of a piece whose second particle is at `along` from the first. `lateral`: 1 − rest / length, or its
-// definite form.
+// Stiffness of a piece whose second particle is at `along` from the first. `lateral`: 1 − rest / length; at least 0 for
+// a positive semidefinite matrix.
 Mat3 Bands::stiffness(const Piece& piece, const Vec3& along, double lateral) {
   const Vec3 n = along.normalized();
   return piece.stiffness / piece.rest * ((1 - lateral) * n * n.transpose() + lateral * Mat3::Identity());

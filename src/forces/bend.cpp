@@ -32,7 +32,8 @@ void Bend::hold(std::span<const char> held) {
   create_differences(held);
 }
 
-// Creates differences of the same particles in the same order, whatever is held; weights and areas depend on it.
+// Creates differences of the same particles in the same order, whatever is held. Only weights and areas depend on
+// `held`.
 void Bend::create_differences(std::span<const char> held) {
   lines_.size = cells_.size = 0;
   const mesh::Grid& grid = grid_;
@@ -44,7 +45,7 @@ void Bend::create_differences(std::span<const char> held) {
         add_line({at(i - 1, j), at(i, j), at(i + 1, j)}, grid.du(i - 1), grid.du(i), grid.width_v(j), held);
       if (j > 0 && !last_j)
         add_line({at(i, j - 1), at(i, j), at(i, j + 1)}, grid.dv(j - 1), grid.dv(j), grid.width_u(i), held);
-      // 2 ‖s_uv‖²: twice the area.
+      // The energy contains 2 ‖s_uv‖², so the area counts twice.
       if (last_i || last_j) continue;
       const double cell = grid.du(i) * grid.dv(j), uv = 1 / cell;
       cells_.add({at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)}, {uv, -uv, -uv, uv}, 2 * cell);
@@ -115,8 +116,9 @@ void Bend::add(const Evaluation& at) const {
   cells_.ranges.for_each(at.range, cells_.packs.size(), [&](std::size_t p) { add(cells_.packs[p], at); });
 }
 
-// The definite form of damping would be a stiffness c cᵀ; ‖c‖² I is used instead. Along c, nearly the normal, both are
-// equal; across it the membrane is far stiffer. So all of bending needs scalars only, no 3×3 blocks.
+// The stiffness of damping is proportional to c cᵀ. The matrix contains ‖c‖² I instead, so that all of bending needs
+// scalars only, no 3×3 blocks. Along c, which is nearly the normal, both are equal; across c, the membrane is far
+// stiffer.
 template <std::size_t Count>
 void Bend::add(const Differences<Count>& d, const Evaluation& at) const {
   const VecLanes curvature = weighted_sum(d, at.x);

@@ -9,9 +9,9 @@
 
 namespace weft::forces {
 
-/// Seed "Elastic Model", bending f = −B Δ² s along the normal N (sign: restoring): a plate with rigidity B, ν = 0 and
-/// energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), by central differences on lines and in cells. The energy also
-/// determines the forces at free edges.
+/// Bending as in the seed ("Elastic Model"), f = −B Δ² s along the normal N (a restoring force): that of a plate with
+/// rigidity B, ν = 0 and energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), by central differences on lines and in
+/// cells. The energy also determines the forces at free edges.
 ///
 /// The full second differences are used, not their component along N. On an inextensible sheet both are equal, and the
 /// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,

@@ -25,10 +25,10 @@ struct BendParameters {
 ///
 /// c is κ at x̂ = x − v / rate (Evaluation), the start of the step (for BDF2 with constant steps a third of a step
 /// later), κ_f is kFlatCurvature, κ_r is residual_curvature_, ε is kStickRate. As c is constant during a step, the
-/// moment is the gradient of a convex function of κ̇. The direction of κ at the iterate would turn with every ripple of
-/// nearly flat cloth, and Newton's method would oscillate (measured: a strip pulled over a rod, at a tolerance of 0.01,
-/// took 6,650 iterations and 68 rejected steps instead of 631 and none). With c at the positions that constant velocity
-/// predicts, a draped sheet with steps of 40 ms trembles at 1 to 10 mm/s.
+/// moment is the gradient of a convex function of κ̇. If c were κ at the iterate, its direction would turn with every
+/// ripple of nearly flat cloth, and Newton's method would oscillate (measured: a strip pulled over a rod takes ten
+/// times the iterations). If c were κ at the positions that constant velocity predicts, a draped sheet with steps of 40
+/// ms would tremble at 1 to 10 mm/s.
 ///
 /// Damping fades out if the sheet is flat: viscosity below kFlatCurvature, friction below the larger of kFlatCurvature
 /// and the curvature τ / B that friction can hold against bending. A full moment about an axis that turns with every

@@ -31,7 +31,7 @@ std::array<std::size_t, 3> corners_of(std::size_t k) {
 // Weights of the corners in the twist; the middle has none.
 constexpr std::array<double, 5> kTwist{1, -1, 1, -1, 0};
 
-// Stiffness across a thread by tension: exact, and in a definite form; see Stretch.
+// Stiffness across a thread by tension: exact, and at least 0 for a positive semidefinite matrix; see Stretch.
 double exact_lateral(double length) {
   return 1 - 1 / length;
 }
@@ -91,7 +91,7 @@ CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const Five& p
   state.flat = positions;
   const auto& [a, b, c, d, middle] = state.flat;
   state.diagonals = {c - a, d - b};
-  // Of differences, so that only these are rounded, not the coordinates.
+  // Computed from differences, so that only these are rounded, not the coordinates.
   state.middle_offset = (middle - a) - 0.25 * ((b - a) + (c - a) + (d - a));
   const Vec3 product = state.diagonals[0].cross(state.diagonals[1]);
   const double size = product.norm(), min_size = cell.min_size;
@@ -231,9 +231,9 @@ Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& stat
   return {length.x(), length.y(), s.u.dot(s.v)};
 }
 
-// Sums stiffness (1 − lateral) ∂L ∂Lᵀ over the relative lengths L, and likewise for shear. Then adds the stiffness of
-// the stresses by the gradients of each triangle: across n with the flat cell's; along n with the middle at the mean of
-// the corners, and on the height; in all directions on the twist.
+// Sums stiffness (1 − lateral) ∂L ∂Lᵀ over the relative lengths L, and likewise for shear. Then adds the geometric
+// stiffness, that of the stresses. Across n, it uses the gradients of the flat cell. Along n, it uses those with the
+// middle at the mean of the corners, and adds a part on the height. In all directions, it adds a part on the twist.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];

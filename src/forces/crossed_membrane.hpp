@@ -5,10 +5,10 @@
 
 namespace weft::forces {
 
-/// TriangleMembrane without locking. If four triangles keep their lengths, the middle m of their cell stays in the
-/// plane of its corners a, b, c, d: cells stay flat, and kinks between cells replace bending. Here the height w of the
-/// middle above the mean of the corners, along the normal n of the diagonals, lengthens all four triangles equally,
-/// instead of each by its own inclination. With m' = m − w n instead of m,
+/// TriangleMembrane without membrane locking (spurious bending stiffness). If four triangles keep their lengths, the
+/// middle m of their cell stays in the plane of its corners a, b, c, d: cells stay flat, and kinks between cells
+/// replace bending. Here the height w of the middle above the mean of the corners, along the normal n of the diagonals,
+/// lengthens all four triangles equally, instead of each by its own inclination. With m' = m − w n instead of m,
 ///
 ///     ‖s_u‖² + θ w² ⟨g_u²⟩ + ‖n‖² ‖t‖² g_u² / 16   replaces ‖s_u‖²,   likewise along v,
 ///
@@ -17,8 +17,8 @@ namespace weft::forces {
 /// their lengths, but the thread halfway between them is the mean of both vectors: its square is exactly ‖t‖² / 4 less
 /// than the mean of theirs. Plane parallelograms have w = 0 and t = 0: nothing changes. n = D₁ × D₂ / S with the
 /// diagonals D₁ = c − a, D₂ = d − b and S = ‖D₁ × D₂‖; for folded cells with ‖D₁ × D₂‖ < S₀, S = (S₀ + ‖D₁ × D₂‖² / S₀)
-/// / 2, so that w and t count less, the more a cell is folded. (Averages against locking: Chen et al., "Locking-free
-/// Simulation of Isometric Thin Plates", 2019, for strains around vertices.)
+/// / 2, so that w and t count less, the more a cell is folded. (Chen et al., "Locking-free Simulation of Isometric Thin
+/// Plates", 2019, average strains around vertices against locking.)
 class CrossedMembrane final : public TriangleMembrane {
  public:
   /// The sheet's triangles must be cells of four: (a, b, m), (b, c, m), (c, d, m), (d, a, m).

@@ -14,7 +14,8 @@ namespace weft::forces {
 /// close its opening, so that the volume does not depend on the origin. Volumes of separate surfaces are added.
 ///
 /// V = 1/3 Σ x_i · ∂V/∂x_i and ∂V/∂x_i = 1/6 Σ x_j × x_k over the triangles (i, j, k) of the vertex star of i: a third
-/// of their area vectors. The derivative by a border's mean is divided among the border's particles.
+/// of their area vectors. The derivative with respect to a border's mean is divided equally among the border's
+/// particles.
 class EnclosedVolume {
  public:
   /// `triangles`: manifold, consistently oriented, over particles 0 to start.size() − 1. The sign is chosen so that the

@@ -15,7 +15,7 @@
 
 namespace weft::forces {
 
-/// The forces on particles [begin, end); forces that are added to others are ignored.
+/// The forces on particles [begin, end). Ignores forces that are added to other particles.
 class ForceRows {
  public:
   ForceRows(std::span<solver::PaddedVec3<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
@@ -56,9 +56,9 @@ struct Evaluation {
   /// Linearisation points of the locks of the threads; null: linearise at x.
   const LockLinearisation* locks = nullptr;
 
-  /// Rate of a quantity q of the positions, q(x) = `now`, q(earlier positions) = `of_places`; without past,
-  /// `by_velocity()`. Viscosity uses it: with ∂q/∂x v, implicit Euler sees an edge that turns by θ in a step lengthen
-  /// by the fraction 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step, and create
+  /// Rate of a quantity q of the positions. `now`: q(x); of_places(earlier positions): q there; by_velocity(): ∂q/∂x v,
+  /// used without past. With ∂q/∂x v and implicit Euler, an edge that turns by θ in a step would seem to lengthen by
+  /// the fraction 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step, and create
   /// energy.
   template <class Quantity, class OfPlaces, class ByVelocity>
   Quantity rate_of(const Quantity& now, const OfPlaces& of_places, const ByVelocity& by_velocity) const {

@@ -10,13 +10,13 @@
 namespace weft::forces {
 
 /// Keeps the distances of the four particles p_k of a rigid body (mesh::RigidFrame, with deviations s and corners t_k).
-/// B = ¼ Σ p_k t_kᵀ equals R diag(s) with a rotation R if the body is rigid. The energy is κ m / 8 ‖W Bᵀ B W − W⁻²‖², W
-/// = diag(s)^-½, m its mass: that of the strain AᵀA − I of an affine body, A = B diag(s)⁻¹ (Lan et al., "Affine Body
-/// Dynamics", 2022), scaled so that all stretches have the same angular frequency √κ and thin bodies are as rigid as
-/// round ones.
+/// B = ¼ Σ p_k t_kᵀ equals R diag(s) with a rotation R if the body is rigid. With the body's mass m and W = diag(s)^-½,
+/// the energy is κ m / 8 ‖W Bᵀ B W − W⁻²‖²: that of the strain AᵀA − I of an affine body, A = B diag(s)⁻¹ (Lan et al.,
+/// "Affine Body Dynamics", 2022), scaled so that all stretches have the same angular frequency √κ and thin bodies are
+/// as rigid as round ones.
 ///
-/// The strain is that of the end of the step; its force acts along the derivatives of the strain at the stage. Thus a
-/// body turns without resistance with the midpoint rule, and its strain is damped with every method.
+/// The force uses the strain at the end of the step, and the derivatives of the strain at the stage. Thus, with the
+/// midpoint rule, nothing resists the turning of a body; and every method damps the strain.
 class Rigidity final : public Force {
  public:
   /// `first`: the body's first particle; `mass`: of the body [kg]; `stiffness`: κ [1/s²].

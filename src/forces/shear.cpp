@@ -90,7 +90,8 @@ void Shear::add(const Evaluation& at) const {
       };
       stress += cells.viscosity * at.rate_of(c, strain_at, by_velocity);
     }
-    // stress × ∂c/∂x_k; opposite corners get opposite signs, so two vectors serve all four.
+    // Force = −stress × ∂c/∂x_k. `main` is stress × ∂c/∂x of corner 3, `cross` that of corner 1. The opposite corners 0
+    // and 2 get the opposite forces.
     const VecLanes u_part = stress * cells.half_u * s.sv, v_part = stress * cells.half_v * s.su;
     const VecLanes main = u_part + v_part, cross = u_part - v_part;
     forces::add(at.force, cells.corners[0], main);
@@ -101,12 +102,13 @@ void Shear::add(const Evaluation& at) const {
   });
 }
 
-// The second derivative of c is ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²); the definite form keeps the half whose sign agrees
-// with the stress. Opposite corners have opposite derivatives, so four blocks, with signs, serve all pairs.
+// The second derivative of c is ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²); to stay positive semidefinite, the matrix keeps
+// only one of these squares, the one with the sign of the elastic stress. Opposite corners have opposite derivatives,
+// so four blocks, with signs, serve all pairs.
 void Shear::add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at) {
   const Lanes sign = c < 0 ? lanes_of(-1) : lanes_of(1), curvature = 0.5 * cells.elasticity * abs(c);
   const Lanes size = cells.elasticity + at.rate * cells.viscosity;
-  // ∂c/∂x of corners 3 and 1; those of 0 and 2 are their negatives, also in the kept half.
+  // ∂c/∂x of corners 3 and 1; those of 0 and 2 are their negatives, also in the kept square.
   const VecLanes u_part = cells.half_u * s.sv, v_part = cells.half_v * s.su;
   const VecLanes main = u_part + v_part, cross = u_part - v_part;
   const Lanes main_half = cells.half_u + sign * cells.half_v, cross_half = cells.half_u - sign * cells.half_v;

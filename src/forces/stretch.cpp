@@ -72,8 +72,8 @@ void Stretch::add(const Evaluation& at) const {
     subtract(at.force, edges.j, pull);
     if (!at.assembly) return;
 
-    // Across the edge, tension adds stiffness. What compression subtracts is left out, so that the matrix stays
-    // definite.
+    // Across the edge, tension adds stiffness. Compression would subtract stiffness; this is omitted, so that the
+    // matrix stays positive semidefinite.
     const Lanes lateral = edges.elasticity * max(1 - edges.rest_length / length, lanes_of(0.0));
     const Lanes along = edges.elasticity + at.rate * edges.viscosity;
     forces::add(at.assembly, edges.block, outer((lateral - along) * n, n, -lateral));
@@ -81,8 +81,8 @@ void Stretch::add(const Evaluation& at) const {
 }
 
 // Includes d/dd of (n·w) n, where w is the relative velocity, because the direction n turns with the edge. This part is
-// unsymmetric and O(η‖w‖/l), so the definite form omits it. The residual stays exact; Newton's method converges only
-// linearly because of this part.
+// unsymmetric and O(η‖w‖/l), so add() omits it from the matrix. The forces stay exact, but Newton's method then
+// converges only linearly.
 void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                            solver::BlockMatrix& jacobian) const {
   for (const Edge& edge : edges_) {

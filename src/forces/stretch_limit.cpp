@@ -100,7 +100,8 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights,
   return solver::vec3_of(s);
 }
 
-// Calls body(piece, corner_forces, block_of) for each piece beyond its onset; block_of(a, b): a block of −∂f/∂x.
+// Calls body(piece, corner_forces, block_of) for each piece beyond its onset; block_of(a, b): block of −∂f/∂x for
+// corners a and b.
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
                                  const Body& body) const {
@@ -215,7 +216,7 @@ void StretchLimit::add_lag(std::span<const Vec3> x, const LockLinearisation& lag
   }
 }
 
-// As in Shear: the exact second derivative of |sine|, or the half whose sign agrees with the stress.
+// The second derivative of |sine| is exact, or only its positive square is kept, as in Shear.
 template <class Body>
 void StretchLimit::lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const {
   const Lock lock(shear_);

@@ -20,14 +20,13 @@ namespace weft::forces {
 /// returns from any strain in a few iterations.
 class Lock {
  public:
-  /// Strain from which threads lock, relative to the limit. Below it nothing is added, to the bit.
+  /// Strain at which threads begin to lock, relative to the limit. Below it, the stress is exactly 0.
   static constexpr double kOnset = 0.7;
   /// Stress at the limit [N/m]; at 1.1 times the limit it is 9,500. A ball at 100 m/s pulls with ρ v² / (2 √e), 3,500
   /// to 9,000 N/m in the fabrics of scene/fabrics.hpp (a transverse wave along a thread of strain e, with the density ρ
   /// per area and the speed v of the ball; Smith, McCrackin & Schiefer, "Stress-Strain Relationships in Yarns Subjected
-  /// to Rapid Impact Loading", 1958). Measured with 2e4 and stress linear from the limit on: Newton's method oscillates
-  /// at the kink, multi_sheet with a limit of 0.1 took 2,033 instead of 1,710 iterations (1,503 without limit), a ball
-  /// at 100 m/s 1,500 instead of 1,269 with the same strain.
+  /// to Rapid Impact Loading", 1958). Measured with 2e4 and a stress linear from the limit on: Newton's method
+  /// oscillates at the kink, and takes 1.2 times the iterations.
   static constexpr double kTension = 4e3;
   static constexpr double kStraight = 1.5;
 
@@ -86,7 +85,7 @@ class StretchLimit final : public Force {
   /// Adds the force linearised at `lag` minus the exact force, at any x.
   void add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
 
-  /// Copies the current rest shape of `membrane`, which must be that of the constructor.
+  /// Copies the current rest shape of the membrane. It must be the one that the constructor was given.
   void follow(const TriangleMembrane& membrane);
 
   /// The piece with the largest extension; zero if none is extended.

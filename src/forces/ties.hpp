@@ -1,4 +1,4 @@
-// Buttons, zips, and seams that tear: pairs of particles that pull together while a closure is closed.
+// Ties: pairs of particles that pull each other while a button, a zip, or a seam that can tear is closed.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,9 @@
 namespace weft::forces {
 
 /// The ties of a sheet. Both particles of a tie, at a distance l, pull each other with F min(l / r − 1, 1) if l > r =
-/// kRest. Below that distance they do not; contact keeps them apart. F is the strength [N]. It grows from zero during
-/// sewing, and after a tie closes. A tie of a seam that tears is torn for good when it pulls with F after it has held.
+/// kRest. At smaller distances they do not pull; contact keeps them apart. F is the strength [N]. It grows from zero
+/// during sewing, and after a tie closes. A tie of a tearable seam holds once it has full strength and pulls with less
+/// than F. If it pulls with F after that, it tears for good.
 class Ties final : public Force {
  public:
   /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press.
@@ -23,15 +24,15 @@ class Ties final : public Force {
   /// Updates strengths at time t [s] of the scene. `progress`: of sewing, 0 to 1.
   void use(double t, double progress);
 
-  /// Accepts the end of a step, with particles at x [m]: ties that tear begin to hold, or tear.
+  /// Accepts the end of a step, with particles at x [m]: ties of tearable seams begin to hold, or tear.
   void accept(std::span<const Vec3> x);
-  /// Pull of a seam that tears [N], and whether any of its ties is not torn yet.
+  /// Pull of a tearable seam [N], and whether any of its ties has a strength now: it is neither torn nor open.
   struct SeamLoad {
     double load = 0;
     bool holds = false;
   };
   std::vector<SeamLoad> measure_seams(std::span<const Vec3> x) const;
-  /// Which ties hold or are torn.
+  /// Copies from `there` which ties hold and which are torn.
   void copy_state_from(const Ties& there);
   template <class Archive>
   void serialize(Archive& archive);
@@ -45,7 +46,7 @@ class Ties final : public Force {
   double energy(std::span<const Vec3> x) const override;
 
  private:
-  enum class State : std::uint8_t { open, holds, torn };  // of a tie that tears
+  enum class State : std::uint8_t { open, holds, torn };  // of a tie of a tearable seam
   struct Piece {
     mesh::Tie tie;        // particles in the global numbering
     double strength = 0;  // current [N]

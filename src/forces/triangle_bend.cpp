@@ -225,12 +225,12 @@ void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std:
   }
 }
 
-// Forces and stiffness of the energy −B A n·m, m = Σ κ_ab s_ab = Σ_k rest_weight(k) x_k. Calls push(k, force) for
-// particles, corners repeatedly, and add_block(a, b, block) for all pairs with a corner.
+// Forces and stiffness of the energy −B A n·m, m = Σ κ_ab s_ab = Σ_k rest_weight(k) x_k. Calls push(k, force) for all
+// particles, more than once for corners, and add_block(a, b, block) for all pairs with a corner.
 //
 // With g_k the in-plane gradient of corner k's linear weight, δn = −Σ_k g_k (n·δx_k) and δg_k = −Σ_j g_j (g_k·δx_j) + n
-// Σ_j (g_k·g_j)(n·δx_j). The definite form adds what the Gauss-Newton matrix of ‖s_ab − κ_ab n‖² has beyond the
-// constant part; the sum of both is definite.
+// Σ_j (g_k·g_j)(n·δx_j). If `exact` is false, the blocks are the Gauss-Newton matrix of ‖s_ab − κ_ab n‖² without its
+// constant part; both together are positive semidefinite.
 template <class Push, class AddBlock>
 void TriangleBend::rest_moment(const Element& element, const Mat3& curved, const std::array<Vec3, 3>& corners,
                                bool exact, const Push& push, const AddBlock& add_block) const {

@@ -12,8 +12,8 @@ namespace weft::forces {
 /// rest curvature κ_ab, positive if the sheet bends toward its front. If the rest shape is curved, the in-plane
 /// components of its s_ab are subtracted along s_u and s_v, so that the rest shape has no energy.
 ///
-/// The part without κ_ab is quadratic with a constant, definite Jacobian, as for grids. Only for triangles with rest
-/// curvature, every evaluation adds another part, −B A Σ_ab κ_ab n·s_ab. For viscosity and friction see BendDamping.
+/// The part without κ_ab is quadratic with a constant, definite Jacobian, as for grids. Triangles with rest curvature
+/// have another part, −B A Σ_ab κ_ab n·s_ab, which every evaluation adds. For viscosity and friction see BendDamping.
 class TriangleBend final : public Force {
  public:
   /// `pinned`: per particle of all cloths, whether hold() may hold it; these particles start held. Empty: none.

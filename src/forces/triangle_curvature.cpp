@@ -19,7 +19,7 @@ constexpr int kMaxRings = 3;
 // Largest norm of the corrections of a slope's weights, relative to that of the uncorrected ones (across_opposite). A
 // larger one would make the slope a small difference of large numbers; another ring is better.
 constexpr double kMaxCorrection = 1;
-// Rounding of the moments of a stencil whose coordinates are about one.
+// Tolerance for rounding of the moments of a stencil whose coordinates are about one.
 constexpr double kMomentTolerance = 1e-9;
 
 /// Derivative of a function at the middle of an edge, along the outward normal of the edge's first triangle [1/m].
@@ -286,7 +286,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
       stencils[t].weights.push_back(weight);
     };
     for (Index corner : corners) append(corner, weights.at(corner));
-    // Weights that cancel by symmetry are only rounding; they stay if pins may change them.
+    // Weights that cancel by symmetry are only rounding, and are dropped unless pins may change them.
     for (const auto& [vertex, weight] : weights)
       if (std::find(corners.begin(), corners.end(), vertex) == corners.end() &&
           (near_pin || weight.norm() * area > kMomentTolerance))

@@ -98,7 +98,7 @@ void TriangleMembrane::attach(const solver::Assembly& assembly) {
     }
 }
 
-// Of differences to the first corner, so that only these are rounded, not the coordinates.
+// Computed from differences to the first corner, so that only these are rounded, not the coordinates.
 TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
   const auto& [a, b, c] = element.particles;
   const Vec3& origin = x[a];
@@ -152,8 +152,9 @@ void TriangleMembrane::add(const Evaluation& at) const {
 }
 
 // Blocks of the pairs (a, b): gradients[a] gradients[b] times the second derivatives of the energy by s_u and s_v.
-// Along and across a thread as in Stretch, with an edge of unit rest length. In shear as in Shear: of the second
-// derivative 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), the half whose sign agrees with the stress.
+// Along and across a thread as in Stretch, with an edge of unit rest length. In shear as in Shear: the second
+// derivative is 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), of which the matrix keeps the square with the
+// sign of the stress.
 void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s, const Lanes& length_u,
                                      const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
   const auto lateral_of = [](const Lanes& length) { return max(1 - 1 / length, lanes_of(0.0)); };

@@ -1,4 +1,4 @@
-// Makes what is drawn of ropes: tubes in place of the simulated chains of particles.
+// Makes the drawn surfaces of ropes: tubes in place of the simulated chains of particles.
 #pragma once
 
 #include <map>
@@ -14,7 +14,8 @@ inline bool is_chain(const Surface& surface) {
   return surface.kind == ObjectKind::rope && surface.appearance.thickness > 0;
 }
 
-/// Sweeps tubes along splines through the particles of chains; faces stay the same over a run. Not thread safe.
+/// Sweeps tubes along splines through the particles of chains. The faces of a tube stay the same over a run. Not thread
+/// safe.
 class Cords {
  public:
   /// The snapshot with tubes in place of chains; the same object if it has no chains.

@@ -1,4 +1,4 @@
-// What one frame shows: all that the renderer, the mesh writer and the frame cache ever see.
+// What one frame shows. The renderer, the mesh writer and the frame cache get nothing else from the simulation.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct Texture {
 
 /// A picture on a surface, and how it is mapped.
 struct Paint {
-  enum class Wrap { repeat, clamp, mirror, once };  ///< once: nothing beyond the edge
+  enum class Wrap { repeat, clamp, mirror, once };  ///< once: no picture beyond the edge
   enum class Alpha { ignored, over_color, cutout };
   std::shared_ptr<const Texture> texture;
   /// Maps (u, v, 1) of the surface to the picture: 0 to 1 from left to right and from bottom to top.
@@ -37,7 +37,7 @@ struct Paint {
 struct Finish {
   double gloss = 0.15;         ///< highlights of threads, wide across the threads and narrow along them
   double warp_fraction = 0.5;  ///< fraction of warp among the threads on top: 0.5 for a plain weave, more for satin
-  double fuzz = 0.4;           ///< fibres that stand out and catch light at grazing angles
+  double fuzz = 0.4;           ///< protruding fibres, which scatter light at grazing angles
   double sheer = 0.25;         ///< light transmitted from the other side
   Threads threads = Threads::plain;
 };
@@ -49,18 +49,18 @@ struct Appearance {
   double roughness = 0.6;          ///< 0 mirror-like to 1 matte
   double thread_spacing = 0;       ///< between drawn threads, or lay length of a rope [m]; 0: draws no threads
   Finish finish;                   ///< cloth only
-  double metal = 0;                ///< not for cloth: 1 if all light is reflected in `color`, none scattered
+  double metal = 0;                ///< not for cloth: 1: all light is reflected, in `color`; none is scattered
   double coat = 0;                 ///< not for cloth: strength of a clear coat, 1 as glass
-  double thickness = 0;            ///< of cloth, visible at its borders, or diameter of a rope [m]; 0: none
+  double thickness = 0;            ///< thickness of cloth, visible at its borders, or diameter of a rope [m]; 0: none
   double hem = 0;                  ///< width of borders of cloth that is folded back and sewn [m]; 0: borders are cut
   bool checker = false;            ///< faint grid of 0.5 m tiles on the floor, to give scale
-  Paint paint;                     ///< the picture is multiplied by `color`, except where `color` shows through it
-  /// Whether the back shows the picture too, paler by `back_paleness`; else it has back_color
+  Paint paint;                     ///< its picture is multiplied by `color`, or lies over `color` (Alpha::over_color)
+  /// true: the back shows the picture too, paler by `back_paleness`; false: the back has back_color
   bool back_painted = true;
   double back_paleness = 0;  ///< 0: as the front, 1: white
 };
 
-/// Triangles of a surface with an appearance of their own: a panel of a garment, a material of a character's file.
+/// A group of triangles of a surface with its own appearance: a panel of a garment, a material of a character's file.
 struct SurfacePart {
   std::string name;
   Appearance appearance;  ///< its roughness, threads and checker equal those of the surface
@@ -71,21 +71,21 @@ struct Surface {
   std::string name;
   ObjectKind kind = ObjectKind::cloth;
   bool visible = true;
-  bool infinite_floor = false;                  ///< a ground plane: drawn to the horizon, ignored by automatic framing
+  bool infinite_floor = false;                  ///< a ground plane: drawn to the horizon; computed cameras ignore it
   std::vector<std::array<Index, 3>> triangles;  ///< for drawing and collision; counter-clockwise seen from the front
   std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 if cloth passes through it; empty: none
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if they are quads; else empty
   std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
-  /// Bounding box in world space [m]: of a body from time 0 to the end of the scene, of a cloth at its start; absent:
-  /// unknown.
+  /// Bounding box in world space [m]: for a body, of its motion from time 0 to the end of the scene; for a cloth, of
+  /// its start. Absent: unknown.
   std::optional<Box3> run_bounds;
   /// Edges with a larger angle are drawn sharp [degrees] (180: all are smooth, as for cloth).
   double crease_angle = 30;
   Appearance appearance;
   std::vector<SurfacePart> parts;              ///< empty: all triangles have `appearance`
   std::vector<std::int32_t> part_of_triangle;  ///< per triangle: index into parts; empty if there are none
-  /// Per triangle: coordinates of its corners for the paints, such as metres along the grain of a panel. Empty: `uv` of
-  /// the vertices.
+  /// Per triangle: coordinates of its corners for the paints, such as metres along the grain of a panel. Empty: `uv`
+  /// applies.
   std::vector<std::array<Vec2, 3>> paint_uv;
 };
 
@@ -109,19 +109,19 @@ struct Camera {
   std::string name;
   Vec3 position{0, -3, 1.5};  ///< [m]
   Vec3 target{0, 0, 0.5};     ///< point in the middle of the picture [m]
-  double field_of_view = 35;  ///< vertical [degrees]; 0: found automatically
+  double field_of_view = 35;  ///< vertical [degrees]; 0: computed
   double aperture = 0;        ///< f-number for a film 24 mm high; 0: everything is sharp
-  double focus = 0;           ///< distance of the sharp plane along the axis [m]; 0: that of the target
+  double focus = 0;           ///< distance of the plane in focus along the view axis [m]; 0: that of the target
 
-  /// placed: as given above. The others are found from all frames of a run. whole: stands still, with everything in
-  /// view. follow, close: move along with the subjects, at one distance or as close as they allow. track: stands at
-  /// `position` and turns toward the subjects.
+  /// placed: as given above. Cameras of the other kinds are computed from all frames of a run. whole: stands still or
+  /// orbits, with everything in view. follow: moves along with the subjects at a constant distance. close: moves along
+  /// with them as close as they allow. track: stands at `position` and turns toward the subjects.
   enum class Kind { placed, whole, follow, close, track };
   Kind kind = Kind::placed;
-  /// Names of surfaces; empty: the characters, or else the cloths; for `whole`: everything
+  /// Names of surfaces; empty: all characters or, if there are none, all cloths; for `whole`: everything.
   std::vector<std::string> subjects = {};
-  double azimuth = 33;     ///< of the eye at this time, from the front to the right [degrees]
-  double elevation = 17;   ///< of the eye above the subjects [degrees]
+  double azimuth = 33;     ///< of the camera position at this time, from the front to the right [degrees]
+  double elevation = 17;   ///< of the camera position above the subjects [degrees]
   double margin = 0.14;    ///< fraction of each half of the picture that is left free around the subjects
   double smoothing = 0.5;  ///< time over which the paths of subjects and eye are smoothed [s]
 };
@@ -137,7 +137,7 @@ struct Light {
   double cone_angle = 45;          ///< full opening [degrees] (spot)
   Vec3 color{1, 1, 1};             ///< sRGB
   double intensity = 1;            ///< at 1, a white matte surface that faces the light appears white
-  double softness = 2;  ///< angular width of the source seen from the scene [degrees]; wider gives softer shadows
+  double softness = 2;             ///< angular width of the source seen from the scene [degrees]; more: softer shadows
 };
 
 /// Surroundings that stay the same over a run.
@@ -149,9 +149,9 @@ struct Stage {
   // If absent, the look determines the value.
   std::optional<Vec3> sky_color;     ///< sRGB; light from above and background near the horizon
   std::optional<Vec3> ground_color;  ///< sRGB; light reflected from below
-  /// Fraction of the light that comes from the surroundings, 0 to 1; the rest comes from the lights
+  /// Fraction of the light that comes from the surroundings, 0 to 1; the rest comes from the lights.
   std::optional<double> sky_intensity;
-  double exposure = 0;     ///< brightening of the picture [stops]
+  double exposure = 0;     ///< exposure compensation; positive: brighter [stops]
   double motion_blur = 0;  ///< shutter angle [degrees, 360 per frame]; 0: everything is sharp
   Heat heat = Heat::none;
   double heat_max = 0;  ///< value at the hot end of the scale (strain, or speed [m/s]); 0: the frame's largest

@@ -374,7 +374,8 @@ class Sewing {
         }
         if (seam.open) tie.open = *seam.open;
         if (seam.closed) tie.closed = *seam.closed;
-        // Edges may meet in one particle at an end; more buttons than particles share them.
+        // Edges may meet in one particle at an end; it needs no tie. If there are more buttons than particles, each
+        // particle gets one tie.
         if (tie.a != tie.b && std::exchange(last_tied, tie.a) != tie.a) garment_.sheet.ties.push_back(tie);
       }
     }

@@ -35,7 +35,7 @@ struct Garment {
 /// the spacing, if the seams do not make a surface, or if panels fold over when they are laid together.
 Garment sew(const Pattern& pattern, double spacing, const std::string& where, const Wearer* wearer = nullptr);
 
-/// Meshes one flat panel [m]. `segments`: number of segments of each of its edges.
+/// Meshes one flat panel [m]. `segments`: number of segments of each of its edges; `spacing`: edge length of the mesh.
 FlatMesh mesh_of(const Panel& panel, const std::vector<int>& segments, double spacing);
 
 }  // namespace weft::garment

@@ -27,9 +27,9 @@ struct PanelEdge {
 struct Panel {
   std::string name;
   std::optional<Side> side;      ///< empty: the front, or as `angle` states
-  std::string path;              ///< SVG path data in metres, y upward; or
-  std::filesystem::path file;    ///< an SVG drawing that holds the outline instead of `path`
-  std::string id;                ///< the element of the drawing with this id
+  std::string path;              ///< SVG path data of the outline in metres, y upward; empty: see `file`
+  std::filesystem::path file;    ///< SVG drawing that holds the outline; empty: see `path`
+  std::string id;                ///< id of the element of the drawing
   std::string edge_names;        ///< one name per curve, separated by spaces, in drawing order; empty: 1 2 3 ...
   std::string fold;              ///< edge at which the outline is half of the panel; empty: the outline is whole
   double grain = 0;              ///< of the warp, counter-clockwise from the panel's y axis [degrees]
@@ -58,7 +58,7 @@ struct Seam {
   int buttons = 0;                     ///< number of buttons that hold the seam; 0: all points hold it, as in a zip
   std::optional<double> open, closed;  ///< times at which the closure opens and closes [s]
   double strength = 2;                 ///< maximum pull of a button, or of a point of a zip [N]
-  std::optional<double> tearing_load;  ///< load per length at which points of the seam part for good [N/m]
+  std::optional<double> tearing_load;  ///< load per length at which points of the seam come apart for good [N/m]
   double allowance = 0.02;             ///< width of the seam allowances, both sides together [m]
 
   bool closure() const { return buttons > 0 || open || closed || tearing_load; }
@@ -86,15 +86,15 @@ struct Measures {
 struct Pattern {
   std::filesystem::path file;
   Measures measures;    ///< of the body that the pattern is drawn for, as far as stated
-  double depth = 0.16;  ///< distance of the front panels before, and of the back panels behind, the wearer's coronal
-                        ///< plane at the start, far from the seams that join them [m]
+  double depth = 0.16;  ///< distance at the start of front and back panels from the wearer's coronal plane (which
+                        ///< separates front from back), far from the seams that join these panels [m]
   double gap = 0.015;   ///< distance of bent panels from the skin at the start [m]
   std::vector<Panel> panels;
   std::vector<Seam> seams;
   std::vector<Elastic> elastics;
   std::vector<Hem> hems;
 
-  /// Whether panels start bent around parts of a wearer; otherwise they lie before and behind the wearer.
+  /// Whether panels start bent around parts of a wearer; otherwise they start in front of and behind the wearer.
   bool wraps() const;
   /// Scales outlines and start positions by `factors` (across and up the drawings); seams and hems keep their values.
   void scale_by(const Vec2& factors);

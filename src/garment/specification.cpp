@@ -29,8 +29,8 @@ constexpr double kDefaultUnitsPerMetre = 100;  // units per metre
 constexpr double kPredecessorOrigin = 1.12;
 // Measures of the body that the dataset's patterns are drawn for [m].
 constexpr double kChest = 0.998, kWaist = 0.843, kHip = 1.035, kHeight = 1.72;
-// Patterns whose lowest point is below this height count as measured from that origin, others from the floor [m]. The
-// limit is negative since flat trousers end below the heel.
+// If the lowest point of a pattern is below this height [m], its heights count from the predecessor's origin, else from
+// the floor. The limit is negative since flat trousers end below the heel.
 constexpr double kMinLowestPanel = -0.2;
 // Minimum height of the lowest point above the floor at the start [m].
 constexpr double kMinStartHeight = 0.02;

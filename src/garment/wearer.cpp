@@ -198,7 +198,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
       sections_[i].scale = scale;
       for (double& support : sections_[i].support) support *= scale;
     }
-  // A cloak hangs from the widest section above.
+  // A cloak hangs from the widest section above, so each section is widened to contain the one above it.
   if (part == Around::body)
     for (std::size_t i = sections_.size() - 1; i-- > 0;) {
       const Section& above = sections_[i + 1];

@@ -27,9 +27,9 @@ struct Wearer {
   Eigen::Isometry3d to_world = Eigen::Isometry3d::Identity();
 };
 
-/// Part that panels are bent around. torso and neck share one upright tube around all but the arms; head is the widest
-/// section of the head, used along its whole tube and narrowed to a dome above. body also goes around the arms and
-/// never narrows downward. A leg continues up to the neck around half of the trunk.
+/// Part that panels are bent around. The tube of torso and neck is upright and goes around all but the arms. That of
+/// head has the widest section of the head everywhere, and narrows to a dome above it. That of body also goes around
+/// the arms and never narrows downward. That of a leg continues up to the neck, around half of the trunk.
 enum class Around { none, torso, body, neck, head, left_arm, right_arm, left_leg, right_leg };
 inline const std::vector<std::string> kAroundNames = {"",         "torso",     "body",     "neck",     "head",
                                                       "left_arm", "right_arm", "left_leg", "right_leg"};

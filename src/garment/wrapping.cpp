@@ -271,7 +271,7 @@ std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<con
 
 std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
                                 std::size_t vertices, double spacing) {
-  // This anchor acts over kBendingDistance.
+  // With this weight, the anchor acts over the distance kBendingDistance.
   JoinedPlaces<3> places(vertices, spacing * spacing / (kBendingDistance * kBendingDistance));
   for (std::size_t t = 0; t < triangles.size(); ++t) places.add(triangles[t], corners[t]);
   return places.solve();
@@ -290,7 +290,7 @@ void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> tria
     if (edge.triangles[1] < 0) rim[at(edge.vertices[0])] = rim[at(edge.vertices[1])] = 1;
   for (const mesh::Edge& edge : edges.edges) {
     const auto [a, b] = edge.vertices;
-    // A vertex of the rim has only neighbours along the rim.
+    // Of the neighbours of a vertex on the rim, only those along the rim count.
     if (!rim[at(a)] || edge.triangles[1] < 0) neighbours[at(a)].push_back(b);
     if (!rim[at(b)] || edge.triangles[1] < 0) neighbours[at(b)].push_back(a);
   }

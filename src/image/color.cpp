@@ -7,7 +7,7 @@
 namespace weft::image {
 namespace {
 
-/// CIE L*a*b* (D65) to linear sRGB; CIE 15:2004 and IEC 61966-2-1.
+/// Converts CIE L*a*b* (D65, CIE 15:2004) to linear sRGB (IEC 61966-2-1).
 Vec3 linear_from_lab(double lightness, double a, double b) {
   const auto inverse = [](double t) { return t > 6.0 / 29 ? t * t * t : 3 * (6.0 / 29) * (6.0 / 29) * (t - 4.0 / 29); };
   const double fy = (lightness + 16) / 116;
@@ -41,7 +41,8 @@ Vec3 srgb_from_linear(const Vec3& linear) {
 
 Vec3 heat_color(double t) {
   t = std::clamp(t, 0.0, 1.0);
-  // A helix in L*a*b*: lightness is linear, hue runs from violet blue (290 degrees) through red to yellow (100 + 360).
+  // A helix in L*a*b*: lightness is linear in t, and hue runs from violet blue (290 degrees) through red (360) to
+  // yellow (100 + 360).
   const double lightness = 15 + 75 * t;
   const double hue = (290 + 170 * t) * std::numbers::pi / 180;
   // Finds the largest chroma inside the gamut at this lightness and hue by 20 bisections.

@@ -37,7 +37,7 @@ std::size_t fitting(const Font& font, std::string_view text, int max_width) {
   return length;
 }
 
-// Limits the height of a sheet with very long captions.
+// Longer captions are cut, to limit the height of a sheet.
 constexpr std::size_t kMaxCaptionLines = 60;
 
 // Wraps a text at blanks to lines no wider than `max_width` [pixels]; splits a word that is longer than a line.

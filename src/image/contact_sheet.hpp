@@ -10,7 +10,7 @@ namespace weft::image {
 
 struct SheetPicture {
   Image image;
-  std::string left, right;  ///< caption: `left` wraps over several lines, `right` is at the end of the last one
+  std::string left, right;  ///< caption: `left` can take several lines, `right` is at the end of the last line
 };
 
 /// Lays out pictures of one size in rows under a heading. The size of the text is proportional to that of the pictures,

@@ -40,12 +40,12 @@ Picture decode_png(std::string_view bytes) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   Picture picture;
-  // libpng frees its own memory if this fails.
+  // If this call fails, libpng frees its own memory.
   if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) fail(png.message);
   try {
     check_size(png.width, png.height);
-    // Deflate expands a byte to at most 1032, and a pixel takes at least one bit, so a file that claims more pixels is
-    // damaged. It is refused before memory for the pixels is allocated.
+    // Deflate expands a byte to at most 1032 bytes, and a pixel takes at least one bit. A file that claims more pixels
+    // is damaged, and is refused before memory for the pixels is allocated.
     if (std::uint64_t{png.width} * png.height / 8 > 1032 * bytes.size())
       fail(fmt::format("{} bytes cannot hold {}x{} pixels", bytes.size(), png.width, png.height));
     picture.width = static_cast<int>(png.width);
@@ -60,7 +60,8 @@ Picture decode_png(std::string_view bytes) {
   return picture;
 }
 
-/// JPEG uses the full range of values. libav expresses this by separate formats, swscale by a parameter.
+/// The format for swscale. JPEG uses the full range of values: libav expresses this by separate formats, swscale by a
+/// parameter.
 AVPixelFormat plain_format(int format) {
   switch (format) {
     case AV_PIX_FMT_YUVJ420P:
@@ -83,7 +84,7 @@ Owned<AVFrame> decode_frame(std::string_view bytes, AVCodecID kind) {
   Owned<AVFrame> frame(av_frame_alloc());
   const Owned<AVPacket> packet(av_packet_alloc());
   if (!context || !frame || !packet) fail(fmt::format("libavcodec has no decoder of {}", avcodec_get_name(kind)));
-  context->log_level_offset = AV_LOG_TRACE;  // libav prints nothing; the error contains its message
+  context->log_level_offset = AV_LOG_TRACE;  // libav prints nothing; the exception contains its message
   context->err_recognition = AV_EF_EXPLODE | AV_EF_CRCCHECK | AV_EF_BITSTREAM;
   context->thread_count = 1;
   if (av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) fail("there is no memory for it");

@@ -45,7 +45,7 @@ void write_exr(const std::filesystem::path& file, const Layers& layers, const Me
     halves.reserve(layers.channels.size());
     for (const Layers::Channel& channel : layers.channels) {
       const auto insert = [&](Imf::PixelType type, const auto* values) {
-        // OpenEXR also expects data that it only reads as char*.
+        // OpenEXR takes char* also for data that it only reads.
         auto* bytes = const_cast<char*>(reinterpret_cast<const char*>(values));
         rows.insert(channel.name, Imf::Slice(type, bytes, sizeof(*values), sizeof(*values) * layers.width));
       };
@@ -69,7 +69,7 @@ ExrHeader read_exr_header(const std::filesystem::path& file) {
     Imf::InputFile in(file.c_str());
     const Imath::Box2i& area = in.header().dataWindow();
     ExrHeader found{area.max.x - area.min.x + 1, area.max.y - area.min.y + 1, {}};
-    // Reads the last line, since the table of line offsets does not show whether the file is truncated.
+    // Reads the last line of pixels: the table of line offsets does not show whether the file is truncated.
     std::vector<float> line(static_cast<std::size_t>(found.width));
     Imf::FrameBuffer last;
     for (auto channel = in.header().channels().begin(); channel != in.header().channels().end(); ++channel)

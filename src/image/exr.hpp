@@ -9,8 +9,8 @@
 
 namespace weft::image {
 
-/// Channels of one size, row-major, top row first. The name of a channel up to the dot is its layer, as in "normal.X";
-/// R, G, B and A without a layer are the picture in linear RGB.
+/// Channels of one size, row-major, top row first. The part of a channel's name before the dot is its layer, as in
+/// "normal.X"; R, G, B and A without a layer are the picture in linear RGB.
 struct Layers {
   struct Channel {
     std::string name;

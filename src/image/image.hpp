@@ -20,7 +20,7 @@ struct Image {
   const std::uint8_t* pixel(int x, int y) const { return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x); }
 };
 
-/// The same with 16 bits per channel.
+/// Same as Image, with 16 bits per channel.
 struct Image16 {
   int width = 0, height = 0;
   std::vector<std::uint16_t> rgb;

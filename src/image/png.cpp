@@ -30,19 +30,19 @@ namespace {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-// Limit on a side [pixels]: also that of the software renderer's frame buffer and of x264.
+// Limit on a side [pixels]; the software renderer's frame buffer and x264 have the same limit.
 constexpr int kMaxSide = 16384;
 
-// zlib level and row filter. Measured on rendered 1280×720 frames: 19 CPU ms and 62 KB; libpng's default filters at the
-// same level: 27 ms and 65 KB; level 3: 8 ms and 90 KB.
+// zlib level and row filter. Measured on rendered frames of 1280×720 pixels: 19 ms of CPU time and 62 KB per frame;
+// with libpng's default filters, 27 ms and 65 KB; with level 3, 8 ms and 90 KB.
 constexpr int kLevel = 6;
 constexpr int kFilter = PNG_FILTER_SUB;
 
-// Deflate expands a byte to at most 1032 (RFC 1951: 258 bytes from two bits), so a file that claims more pixels is
-// damaged. It is refused before memory for the pixels is allocated.
+// Deflate expands a byte to at most 1032 bytes (RFC 1951: 258 bytes from two bits). A file that claims more pixels is
+// damaged, and is refused before memory for the pixels is allocated.
 constexpr std::uintmax_t kMaxDeflateRatio = 1032;
 
-// An error message of libpng or the system, stored outside the frames that a longjmp skips.
+// An error message of libpng or the system, stored outside the stack frames that a longjmp skips.
 struct Complaint {
   std::array<char, 256> text{};
   void set(const char* words) { std::snprintf(text.data(), text.size(), "%s", words); }
@@ -54,7 +54,7 @@ void on_error(png_structp png, png_const_charp words) {
   png_longjmp(png, 1);
 }
 
-// Warnings concern private chunks and colour profiles, which this reader ignores.
+// Ignores warnings: they concern private chunks and colour profiles, which this reader does not use.
 void on_warning(png_structp, png_const_charp) {}
 
 // Stores the system's reason before libpng replaces it by "Write Error".
@@ -127,7 +127,7 @@ bool read_header(const Reader& reader, std::FILE* file) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_set_read_fn(reader.png, file, read_bytes);
   png_set_user_limits(reader.png, kMaxSide, kMaxSide);
-  // A damaged chunk is an error even if it contains only metadata: a reference image must be intact.
+  // A damaged chunk is an error even if it contains only metadata, because reference images must be intact.
   png_set_crc_action(reader.png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   png_read_info(reader.png, reader.info);
   return true;
@@ -160,14 +160,14 @@ bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
 }
 
-// PNG's rule for keys: 1 to 79 printable characters without spaces at the ends. libpng would silently change other
-// keys.
+// Whether a key obeys the rule of PNG: 1 to 79 printable characters without spaces at the ends. libpng would silently
+// change other keys.
 bool is_key(std::string_view key) {
   const bool printable = std::all_of(key.begin(), key.end(), [](unsigned char c) { return c >= 32 && c < 127; });
   return printable && !key.empty() && key.size() < 80 && key.front() != ' ' && key.back() != ' ';
 }
 
-// The chunks point into `metadata`. tEXt is Latin-1, so text other than ASCII goes into an iTXt chunk as UTF-8.
+// Text chunks that point into `metadata`. tEXt is Latin-1, so text other than ASCII goes into an iTXt chunk as UTF-8.
 std::vector<png_text> text_chunks(const std::filesystem::path& file, const Metadata& metadata) {
   std::vector<png_text> texts;
   for (const auto& [key, value] : metadata) {
@@ -203,9 +203,9 @@ Metadata metadata_of(const Reader& reader) {
 }
 
 // Checks that no chunk is longer than the rest of the file, since libpng would first allocate the claimed length, up to
-// 2 GB. Files that are not PNG are left to libpng.
+// 2 GB. For files that are not PNG, does nothing: libpng reports them.
 void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax_t file_size) {
-  // [bytes] of the signature; of length, name and checksum of a chunk
+  // Sizes [bytes] of the signature, and of length, name and checksum of a chunk together.
   constexpr std::uintmax_t kSignature = 8, kAround = 12;
   std::array<png_byte, kSignature> signature{};
   const bool is_png = std::fread(signature.data(), 1, kSignature, in) == kSignature &&
@@ -247,7 +247,7 @@ void write(const std::filesystem::path& file, const Rows& rows, std::size_t byte
   File out(std::fopen(temporary.path().c_str(), "wbe"), std::fclose);
   if (!out) fail_to_write(file, std::strerror(errno));
   encode(file, rows, std::move(texts), out.get());
-  // The last bytes are written only here, so a full disk may be noticed only here.
+  // fclose() writes the last bytes, so that only it may notice a full disk.
   if (std::fclose(out.release()) != 0) fail_to_write(file, std::strerror(errno));
   temporary.commit();
 }
@@ -292,7 +292,7 @@ std::string png_bytes(const Picture& picture) {
 
 namespace {
 
-/// A file, opened and read up to its pixels.
+/// An open file, read up to its pixels.
 struct Opened {
   File in{nullptr, std::fclose};
   std::uintmax_t size = 0;  // [bytes]
@@ -327,7 +327,7 @@ Image read_png(const std::filesystem::path& file, Metadata* metadata) {
   const Reader& reader = opened.reader;
   const Complaint& complaint = opened.complaint;
 
-  // Checks the claimed size against the size of the file before allocating memory.
+  // Compares the claimed size with the size of the file before allocating memory.
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const std::uintmax_t packed_size = std::uintmax_t{height} * png_get_rowbytes(reader.png, reader.info);

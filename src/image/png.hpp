@@ -16,17 +16,17 @@ using Metadata = std::map<std::string, std::string>;
 /// Writes an sRGB PNG under a temporary name, then renames the file. Throws Error(output_failed).
 void write_png(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {});
 
-/// The same with 16 bits per channel.
+/// Writes a PNG with 16 bits per channel in the same way.
 void write_png(const std::filesystem::path& file, const Image16& image, const Metadata& metadata = {});
 
 /// Encodes a picture as PNG in memory. Throws Error(output_failed).
 std::string png_bytes(const Image& image);
 
-/// The same with alpha.
+/// Encodes a picture with alpha as PNG in memory. Throws Error(output_failed).
 std::string png_bytes(const Picture& picture);
 
-/// Reads a PNG as 8-bit RGB: converts 16 bits, grey and palettes, and blends transparent pixels over white. Throws
-/// Error(asset_unreadable).
+/// Reads a PNG as 8-bit RGB: converts pictures with 16 bits, grey levels or palettes, and blends transparent pixels
+/// over white. Throws Error(asset_unreadable).
 Image read_png(const std::filesystem::path& file, Metadata* metadata = nullptr);
 
 /// Reads the metadata that precede the pixels, without decoding the pixels. Throws Error(asset_unreadable).

@@ -5,8 +5,8 @@
 
 namespace weft::image {
 
-/// Scales a picture down to `width` pixels, keeping its aspect ratio; unchanged if it is not wider. Each new pixel is
-/// the mean of the pixels that it covers, in sRGB values, as in browsers.
+/// Scales a picture down to `width` pixels and keeps its aspect ratio; a picture that is not wider stays unchanged.
+/// Each new pixel is the mean of the pixels that it covers. Like browsers, takes the mean of sRGB values.
 Image shrink(const Image& image, int width);
 
 }  // namespace weft::image

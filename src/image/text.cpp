@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-// The bytes of the font file, whose name the build defines.
+// The bytes of the font file. The build defines its name.
 asm(".pushsection .rodata\n"
     "weft_font_begin:\n"
     ".incbin \"" WEFT_FONT_FILE
@@ -61,7 +61,7 @@ struct Font::Face {
     FT_Done_FreeType(library);
   }
 
-  /// Calls visit(glyph, x) for each character with its pen position; returns the position after the last.
+  /// Calls visit(glyph, x) for each character; x: its pen position [pixels]. Returns the position after the last one.
   template <class Visit>
   int layout(std::string_view text, FT_Int32 flags, const Visit& visit) const {
     int x = 0;

@@ -23,7 +23,7 @@ class Font {
 
   int width(std::string_view text) const;  ///< [pixels]
 
-  /// Draws a line of text that starts at x on this baseline, clipped to the picture.
+  /// Draws a line of text from (x, baseline) on, clipped to the picture.
   void draw(Image& image, int x, int baseline, std::string_view text, const Color& color) const;
 
  private:

@@ -9,7 +9,7 @@ namespace weft::integrator {
 namespace {
 
 // The proportional-integral controller PI.4.2 (Söderlind, "Digital filters in adaptive time-stepping", ACM TOMS 29,
-// 2003): exponents of the current and the last ratio, to be divided by the order plus one.
+// 2003): exponents of the current and the last ratio of aimed error to error, to be divided by the order plus one.
 constexpr double kExponentNow = 3.0 / 5, kExponentBefore = -1.0 / 5;
 
 }  // namespace

@@ -36,7 +36,7 @@ class StepControl {
   template <class Archive>
   void serialize(Archive& archive) {
     serialize_values(archive, wanted_, last_ratio_);
-    // After a failure, half of the minimum step may be wanted.
+    // After an unsolved step, the wanted length may be below the minimum.
     if constexpr (Archive::kReads)
       require(wanted_ >= 0.1 * numerics.steps.least && std::isfinite(wanted_) && std::isfinite(last_ratio_),
               "a step length");
@@ -46,7 +46,7 @@ class StepControl {
   double aim_to_error_ratio(double error) const;
 
   double order_plus_one_, tolerance_, wanted_;
-  double last_ratio_ = 1;       // aimed error over error of the last accepted step
+  double last_ratio_ = 1;       // aimed error / error, of the last accepted step
   bool after_failure_ = false;  // the last step was rejected: do not grow yet
 };
 

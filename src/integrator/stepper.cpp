@@ -13,7 +13,7 @@
 namespace weft::integrator {
 namespace {
 
-// Lower bound of the solver's error, in roundings of positions.
+// Smallest error that is asked of the solver, in roundings of the largest coordinate of a block.
 constexpr double kMinRoundings = 32;
 
 // The largest coordinate of a block, as absolute value [m].
@@ -385,7 +385,7 @@ void Stepper::report_worst(StepReport& report) const {
   }
 }
 
-// Replaces the change of velocities by impacts; see the class.
+// Replaces the velocity changes that impacts cause; see the class.
 void Stepper::split_impacts(System& system, const State& now, const Stage& stage, double h) {
   std::vector<Vec3>& right_side = scratch_;
   std::ranges::fill(right_side, Vec3::Zero());

@@ -26,7 +26,7 @@ struct NewtonParameters {
   int max_iterations = 60;
   double linear_tolerance = 0.1;  ///< error of a linear solve, relative to its solution, in the energy norm
   int max_linear_iterations = 1000;
-  /// Tolerance of the local error if step sizes are adaptive [m], else 0. Upper bound of the visibility thresholds.
+  /// If step sizes are adaptive: tolerance of the local error [m], which also bounds the visibility thresholds; else 0.
   double position_tolerance = 0;
 };
 
@@ -64,10 +64,11 @@ struct StepReport {
 /// BDF2 assumes a smooth trajectory. Without further measures, cloth rebounds from obstacles with up to half of its
 /// energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's method,
 /// and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls, Int. J. Numer.
-/// Meth. Engng 96, 2013). Impacts move particles by δ, A δ = F, with the forces F of impacts and the matrix A of the
-/// step, whose only terms are those of friction in impacts and of contacts that pass impacts on. Positions stay as they
-/// are; velocities change by δ/h instead of δ/β. The start velocity in the history also changes by δ/h, so that the
-/// next step starts from a smooth trajectory. Changes of velocity by corrections after a solve count as impacts, too.
+/// Meth. Engng 96, 2013). Impacts move particles by δ. A δ = F, where F are the forces of impacts and A is the matrix
+/// of the step. Its only terms are those of friction in impacts and of contacts that pass impacts on. Positions stay as
+/// they are; velocities change by δ/h instead of δ/β. The start velocity in the history also changes by δ/h, so that
+/// the next step starts from a smooth trajectory. Changes of velocity by corrections after a solve count as impacts,
+/// too.
 ///
 /// The local error of positions is estimated from known velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of
 /// the mean acceleration from the last step to this one; then the leading terms of the error are

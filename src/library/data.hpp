@@ -37,13 +37,13 @@ namespace weft::library {
 
 Report report_of(const frame::FrameReport& report);
 
-/// Makes a frame, with views of `data` as its objects.
+/// Makes a frame. Its objects are views of `data`.
 Frame make_frame(Frame::Data data);
 
 /// Throws the public exception that corresponds to an error of the program.
 [[noreturn]] void throw_public(const Error& error);
 
-/// Returns what `work` returns. Throws errors as the exceptions of errors.hpp.
+/// Returns what `work` returns. If `work` throws Error, throws the corresponding exception of errors.hpp.
 template <class Work>
 auto with_public_errors(const Work& work) {
   try {

@@ -28,7 +28,8 @@ bool is_key(std::string_view text) {
          std::islower(static_cast<unsigned char>(text.front())) != 0;
 }
 
-// Splits "scenes/a.toml:12:8: cloth.band: expected ..." into place, key and text. The place may be missing.
+// Splits a message such as "scenes/a.toml:12:8: cloth.band: expected ..." into place, key and text. The place may be
+// missing.
 Mistake mistake_of(std::string_view text) {
   const std::string_view first_line = text.substr(0, text.find('\n'));
   std::size_t end = first_line.find(": ");

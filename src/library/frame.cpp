@@ -8,7 +8,7 @@
 namespace weft {
 namespace {
 
-// Views points as another type of the same size: an array of the same numbers.
+// Views points as another type of the same size, which holds the same numbers.
 template <class To, class From>
 std::span<const To> view_as(const std::vector<From>& points) {
   static_assert(sizeof(To) == sizeof(From));

@@ -1,4 +1,4 @@
-// The decoder of pictures in the shared library: the one that its host sets.
+// The decoder of pictures in the shared library. The program that uses the library sets it.
 #include <stdexcept>
 #include <utility>
 #include <weft/settings.hpp>

@@ -38,7 +38,7 @@ class Lattice {
     return v;
   }
 
-  /// Whether the surface may pass through the block that starts at this node.
+  /// Whether the surface may pass through the block that starts at this node, with a gradient below 3 (Field).
   bool may_cross(int i, int j, int k) const {
     const double half_diagonal = std::sqrt(3.0) / 2 * kBlock * cell_;
     const double half = kBlock / 2.0;
@@ -77,13 +77,14 @@ class Cutter {
     }
     if (ins == 0 || outs == 0) return;
     const auto v = [&](int a, int b) { return vertex(corner[a], corner[b]); };
-    // The inside corners followed by the outside corners, each ascending, are an even or odd permutation of 0 1 2 3.
+    // The inside corners followed by the outside corners, each ascending, are an even or odd permutation of 0 1 2 3. An
+    // odd one reverses the triangles.
     if (ins == 1) {
       add(v(in[0], out[0]), v(in[0], out[1]), v(in[0], out[2]), in[0] % 2 != 0);
     } else if (outs == 1) {
       add(v(out[0], in[0]), v(out[0], in[1]), v(out[0], in[2]), out[0] % 2 == 0);
     } else {
-      const bool odd = in[0] + in[1] == 2 || in[0] + in[1] == 4;  // {0, 2} and {1, 3} are one swap away
+      const bool odd = in[0] + in[1] == 2 || in[0] + in[1] == 4;  // {0, 2} and {1, 3} inside: odd permutations
       const Index a = v(in[0], out[0]), b = v(in[0], out[1]), c = v(in[1], out[1]), d = v(in[1], out[0]);
       add(a, b, c, odd);
       add(a, c, d, odd);

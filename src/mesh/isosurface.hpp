@@ -26,7 +26,8 @@ Mesh march_half_space(const Field& field, const Box3& box, double cell);
 void remesh(Mesh& surface, const Field& field, const Sizing& edge_length, int rounds);
 
 /// A surface whose border lies in x = 0, joined to its mirror image. Border vertices come first and are their own
-/// images, then come the other vertices of the half; the image of vertex v among them is v + (their number).
+/// images, then come the other vertices of the half; the image of such a vertex v is v + (number of these other
+/// vertices).
 struct MirroredMesh {
   Mesh mesh;
   std::vector<Index> image;  ///< index of the mirrored vertex, per vertex; itself on the plane

@@ -21,7 +21,7 @@ struct Topology {
 struct Mesh {
   Topology topology;
   std::vector<Vec3> positions;  ///< one per vertex [m]
-  std::vector<Vec2> uv;         ///< rest coordinates (weft, warp) per vertex [m]; empty where there are none
+  std::vector<Vec2> uv;         ///< rest coordinates (weft, warp) per vertex [m]; empty if the mesh has none
 };
 
 /// Grid of nu × nv particles in rows and columns. Index of (i, j): i + nu * j, i along weft (u), j along warp (v).

@@ -102,7 +102,7 @@ class Remesher {
     }
   }
 
-  /// Ascending, without duplicates.
+  /// Vertices that share a triangle with v, ascending, without duplicates.
   std::vector<Index> neighbours(Index v) const {
     std::vector<Index> list;
     for (const Index t : around_[z(v)]) {

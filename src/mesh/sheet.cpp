@@ -9,7 +9,7 @@
 namespace weft::mesh {
 namespace {
 
-// Minimum length of the projection of the x axis onto a triangle [1] (x at 84° to it); below, warp follows y.
+// Minimum length of the unit vector x projected onto a triangle (x at 84° to the triangle). Below it, warp follows y.
 constexpr double kMinProjectedWeft = 0.1;
 
 // Unit directions of weft and warp in a triangle with this normal.

@@ -42,8 +42,8 @@ class TriangleGrid {
   double crossing_of(const Triangle& triangle, const Vec3& from, const Vec3& to) const;
   std::span<const Index> in_cell(const std::array<int, 3>& cell) const;
 
-  /// Calls `visit(triangles of the cell, fraction of the path at which it leaves the cell)` for the cells along the
-  /// path, until a call returns true.
+  /// Calls `visit(triangles of the cell, fraction of the path at which the path leaves the cell)` for the cells along
+  /// the path, until a call returns true.
   template <class Visit>
   void walk(const Vec3& from, const Vec3& to, const Visit& visit) const;
 

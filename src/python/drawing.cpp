@@ -25,7 +25,8 @@ render::Quality quality_of(const std::string& name) {
   throw std::invalid_argument("quality: expected \"draft\", \"preview\" or \"final\", got \"" + name + "\"");
 }
 
-/// Draws frames as the program does. Only the thread that made it can use it, because of its OpenGL context.
+/// Draws frames as the program does. Only the thread that created the renderer can use it, because of its OpenGL
+/// context.
 class Renderer {
  public:
   Renderer(const Scene& scene, const std::string& quality) {

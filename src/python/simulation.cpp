@@ -63,7 +63,7 @@ Scene change(const Scene& scene, const py::dict& changes) {
   return scene.with(texts);
 }
 
-/// An object of a frame, and the frame, which must live as long.
+/// An object of a frame. It holds the frame too, since the data of the object belong to the frame.
 struct FrameObject {
   Frame frame;
   const Object* object;
@@ -104,7 +104,7 @@ const char* kind_of(const FrameObject& object) {
   return kNames[static_cast<std::size_t>(object.object->kind)];
 }
 
-// Makes the exceptions; SceneError has the places of the mistakes in `mistakes`.
+// Defines the exceptions. The attribute `mistakes` of SceneError lists the mistakes with their places.
 void bind_errors(py::module_& module) {
   py::class_<Mistake>(module, "Mistake", "One mistake in a scene, with its place in the file.")
       .def_readonly("file", &Mistake::file, "Path of the scene file, as it was given.")
@@ -114,7 +114,7 @@ void bind_errors(py::module_& module) {
                     "\"key=value\" of the change that contains the mistake; empty if the mistake is in the file.")
       .def_readonly("key", &Mistake::key, "Key, such as \"cloth.band.material.thickness\"; may be empty.")
       .def_readonly("text", &Mistake::text, "Description, such as \"expected > 0 m, got -0.001\".");
-  // These are never released, because the interpreter may end before this library.
+  // These references are never released, because the interpreter may end before this library.
   static const py::handle scene_error = py::exception<SceneError>(module, "SceneError", PyExc_ValueError).release();
   static const py::handle file_error = py::exception<FileError>(module, "FileError", scene_error).release();
   static const py::handle simulation_error =

@@ -50,7 +50,7 @@ ErrorOfRun estimate_error(const Scene& public_scene, bool mesh) {
   });
 }
 
-/// Frames of a cache, in the form of frames of a simulation, without data that only a simulation has.
+/// The frames of a cache, in the form of frames of a simulation. Data that only a simulation has are missing.
 class Cache {
  public:
   explicit Cache(const std::filesystem::path& folder)

@@ -10,11 +10,11 @@ namespace {
 
 using Kind = frame::Camera::Kind;
 
-// How far beyond the subjects of the first frame cloth is kept in view, in diagonals of their box. Without a limit,
-// cloth that falls for ever would shrink everything else to a dot.
+// Cloth is kept in view up to this distance from the subjects of the first frame, in diagonals of their box. Without a
+// limit, cloth that falls for ever would shrink everything else to a dot.
 constexpr double kClothRange = 1.5;
 
-// Half width of the Gaussian kernel, in standard deviations; 0.3 % of its weight is cut off.
+// The Gaussian kernel ends at this number of standard deviations; 0.3 % of its weight is cut off.
 constexpr double kKernelSigmas = 3;
 
 constexpr double kMaxFieldOfView = 100;   // maximum of computed fields of view [degrees]
@@ -44,7 +44,7 @@ std::vector<bool> subjects_of(const frame::FrameSnapshot& snapshot, const frame:
   return chosen(is_subject);
 }
 
-/// Weights of a Gaussian from its centre outward, `width` in entries; both sides together sum to 1.
+/// Weights of a Gaussian from its centre outward; both sides together sum to 1. `width`: standard deviation [entries].
 std::vector<double> gaussian(double width) {
   std::vector<double> weights{1};
   double sum = 1;
@@ -156,8 +156,8 @@ double CameraPath::frames_in(double seconds) const {
   return length > 0 ? seconds * static_cast<double>(frames_.size() - 1) / length : 0;
 }
 
-/// Gaussian means of the subjects' centres over neighbouring frames. Beyond both ends, the trajectory is
-/// point-reflected about its end, so that even walking is followed evenly from the first frame on.
+/// Gaussian means of the subjects' centres over neighbouring frames. Beyond each end, the trajectory is continued by
+/// point reflection about that end, so that the camera follows a steady walk steadily from the first frame on.
 std::vector<Vec3> CameraPath::smooth_centers() const {
   const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
   const auto last = static_cast<std::ptrdiff_t>(frames_.size()) - 1;
@@ -176,9 +176,9 @@ std::vector<Vec3> CameraPath::smooth_centers() const {
   return smooth;
 }
 
-/// Moves with the centre of the subjects. `follow`: at the distance that the widest frame needs. `close`: as
-/// close as possible, from the maximum of the distances within the kernel around each frame, smoothed with the same
-/// kernel; the result is never less than the frame's own distance.
+/// The camera moves with the centre of the subjects. `follow`: its distance is the largest that any frame needs.
+/// `close`: for each frame, the maximum of the needed distances within the kernel is computed. The kernel then smooths
+/// these maxima; the result is never less than the distance that the frame itself needs.
 void CameraPath::compute_following_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   const auto count = static_cast<std::ptrdiff_t>(frames_.size());
@@ -208,8 +208,8 @@ void CameraPath::compute_following_camera() {
   }
 }
 
-/// Stays in place and turns towards the centre of the subjects. If the scene gives no field of view, it is wide enough
-/// for the subjects' boxes in all frames.
+/// The camera stays in place and turns towards the centre of the subjects. If the scene gives no field of view, it is
+/// chosen so that the subjects' boxes are in view in all frames.
 void CameraPath::compute_tracking_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   double tangent = 0;

@@ -12,8 +12,8 @@ namespace weft::render {
 
 class CameraPath {
  public:
-  /// `camera`: its name; empty: the first of the scene, else one that shows the whole run. `aspect`: width over height
-  /// of the pictures.
+  /// `camera`: name of the camera; empty: the first of the scene or, if it has none, one that shows the whole run.
+  /// `aspect`: width / height of the pictures.
   CameraPath(std::string camera, double aspect) : name_(std::move(camera)), aspect_(aspect) {}
 
   /// Whether the camera needs all frames before the first can be drawn. Throws as find_camera() does.
@@ -23,8 +23,8 @@ class CameraPath {
   void see(const frame::FrameSnapshot& snapshot);
   void find();
 
-  /// The camera of a frame. If it is computed: that of the last seen frame up to this one; see() needs at least one
-  /// frame.
+  /// The camera of a frame. A computed camera is that of the last frame, not later than this one, that see() received;
+  /// see() must have received at least one frame.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
  private:
@@ -52,7 +52,7 @@ class CameraPath {
   bool azimuth_changes_ = false;   // the azimuth differs between frames
 };
 
-/// The camera for a single frame without its run.
+/// The camera for a single frame, computed from this frame alone.
 frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string& camera, double aspect);
 
 }  // namespace weft::render

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kRounding = 1e-6;  // motions below this are rounding errors [pixels]
 
-/// Intersection of a ray from `eye` with the plane of a triangle: the distance in lengths of `along`, and the
-/// barycentric weights of the second and third corner (Möller and Trumbore 1997).
+/// Intersection of a ray from `eye` with the plane of a triangle (Möller and Trumbore 1997): the distance in lengths of
+/// `along`, and the barycentric weights of the second and third corner.
 struct PlaneIntersection {
   double distance = 0, b = 0, c = 0;
 
@@ -96,7 +96,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
     add(name);
   if (heated) add("heat.V");
 
-  // Painted surfaces draw their triangles part by part.
+  // The drawn triangles of painted surfaces are sorted by part.
   std::vector<std::vector<std::int32_t>> parts;
   for (const SurfaceBuffers& drawn : surfaces) {
     parts.push_back(drawn.surface().part_of_triangle);
@@ -109,7 +109,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Vec2 here(x + 0.5, y + 0.5);
-      // Ray through the pixel; advances one metre along the view axis.
+      // Ray through the pixel; its length along the view axis is one metre.
       const Vec3 along = view.axes.forward + (2 * here.x() / width_ - 1) * view.tan_half_width * view.axes.right +
                          (2 * here.y() / height_ - 1) * view.tan_half_height * view.axes.up;
       const Hit& hit = hits_[static_cast<std::size_t>(y) * width_ + x];

@@ -16,12 +16,12 @@ struct Before {
   const frame::FrameSnapshot& snapshot;
   View view;
 
-  /// Positions of the surface with the same name and `count` vertices; null if there was none.
+  /// Earlier positions of the surface of this name with `count` vertices; null if `snapshot` has none.
   const std::vector<Vec3>* positions(const frame::Surface& surface, std::size_t count) const;
 };
 
-/// Rasterises on the CPU in single precision to find the front triangle of each pixel, then intersects the ray of the
-/// pixel with its plane in double precision. Holes of pictures with an alpha channel (lace) count as cloth.
+/// Finds the front triangle of each pixel by rasterising on the CPU in single precision. Then intersects the pixel's
+/// ray with the plane of this triangle in double precision. Holes that pictures cut into cloth (lace) count as cloth.
 class DataPasses {
  public:
   DataPasses(int width, int height) : width_(width), height_(height) {}
@@ -31,8 +31,8 @@ class DataPasses {
   /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, towards the viewer
   /// - id.object: 0 nothing, 1 the floor, 2 + i surface i of the picture; id.part: 1 + i part i of that surface, else 0
   /// - uv.U, .V: rest coordinates (weft, warp) [m]
-  /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], motion of the camera included; a
-  ///   surface that did not exist then counts as still
+  /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the motion of the
+  ///   camera; a surface that `before` does not contain counts as still
   /// - heat.V: strain or speed, if Stage::heat selects one; otherwise there is no such layer
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
             const std::optional<Before>& before, image::Layers& layers);

@@ -8,11 +8,11 @@
 namespace weft::render {
 namespace {
 
-/// Rasteriser time of the pictures that are being drawn: a pointer to each one's sum, and the time already distributed.
+/// Distributes the rasteriser's CPU time over the pictures that are being drawn. `sums`: one pointer per picture.
 struct RasteriserTime {
   std::mutex mutex;
   std::vector<double*> sums;
-  double distributed_until = 0;  // CPU seconds of the rasteriser's threads that are already distributed
+  double distributed_until = 0;  // total CPU seconds of the rasteriser at the last distribution
 
   void distribute() {
     const double now = rasteriser_cpu_seconds();

@@ -1,5 +1,5 @@
-// CPU time of drawing: of the drawing thread, of its rasteriser threads and of the threads that help in its loops. Time
-// of a concurrent simulation or encoder is excluded.
+// CPU time of drawing: the sum over the drawing thread, the rasteriser threads and the threads that help in its loops.
+// A concurrent simulation or encoder does not count.
 #pragma once
 
 #include <atomic>
@@ -28,8 +28,8 @@ void drawing_for(std::size_t count, std::size_t chunk, const Body& body) {
   helper_cpu_seconds += helped;
 }
 
-/// CPU time of one picture on one thread, from construction on. The rasteriser threads belong to the process: pictures
-/// that are drawn at the same time split their time equally.
+/// CPU time of one picture, from construction on. All pictures of the process share the rasteriser threads: pictures
+/// that are drawn at the same time split the time of these threads equally.
 class DrawingTimer {
  public:
   DrawingTimer();

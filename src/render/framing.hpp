@@ -18,7 +18,7 @@ bool is_subject(const frame::Surface& surface);
 Box3 subject_bounds(const frame::FrameSnapshot& snapshot);
 
 /// Box around all places that the subjects reach during the run [m]; the same in all frames. Backdrop and floor
-/// depend on it. If the snapshot does not store it, the box around the subjects.
+/// depend on it. If the snapshot stores no such box: subject_bounds().
 Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot);
 
 /// The camera for scenes that name none: it shows the whole run.
@@ -27,9 +27,10 @@ frame::Camera automatic_camera();
 /// Axes of a computed camera, from its azimuth and elevation.
 ViewAxes axes_from_angles(const frame::Camera& camera, const Vec3& up);
 
-/// Where an eye with given axes may stand so that points are in its picture. A point (x, y, z) in those axes (z
-/// forward) is within the left and right edges of an eye at (cx, cz) if |x - cx| <= t (z - cz). All points together
-/// require t cz - cx <= min(t z - x) = low and t cz + cx <= min(t z + x) = high; the same for y.
+/// Where an eye with given axes may stand so that all points are in its picture. t is the tangent of half the field of
+/// view, less the margin. A point (x, y, z) in the eye's axes (z forward) is between the left and right edges of the
+/// picture of an eye at (cx, cz) if |x - cx| <= t (z - cz). All points together require t cz - cx <= min(t z - x) = low
+/// and t cz + cx <= min(t z + x) = high; the same holds for y.
 class FrustumFit {
  public:
   FrustumFit() = default;
@@ -41,10 +42,10 @@ class FrustumFit {
   void add(const FrustumFit& other);
 
   const ViewAxes& axes() const { return axes_; }
-  /// Distance that the eye needs in front of `center` [m].
+  /// Distance from `center` that an eye looking at it needs, so that all points are in the picture [m].
   double distance(const Vec3& center) const;
-  /// Sets position and target as close as the points allow, centred along the direction that needs more room. The
-  /// target has the depth of `center`.
+  /// Sets position and target of the camera. The eye is as close as the points allow; they are centred along the
+  /// picture direction that needs the larger distance. The target has the depth of `center`.
   void place(frame::Camera& camera, const Vec3& center) const;
 
  private:

@@ -8,7 +8,7 @@
 namespace weft::render {
 namespace {
 
-/// How the picture of an appearance is applied: the uniform `laid` of geometry.frag.
+/// Value of the uniform `laid` of geometry.frag: how the picture of an appearance is applied.
 int laid(const frame::Appearance& look) {
   if (!look.paint.texture) return 1;
   switch (look.paint.alpha) {
@@ -162,7 +162,7 @@ void GeometryBuffer::copy(const Texture& from, const Texture& to) const {
                         1);
 }
 
-/// Colours and trims have attachments of their own, while some surface has them.
+/// Colours and trims have framebuffer attachments of their own, which are bound only if some surface has them.
 void GeometryBuffer::attach(bool painted, bool trimmed) {
   if (painted && !painting_) painting_.emplace(*gl_, width_, height_);
   if (trimmed && !trims_) trims_ = make_texture(*gl_, GL_RGBA32F, width_, height_, GL_NEAREST);
@@ -177,7 +177,7 @@ void GeometryBuffer::attach(bool painted, bool trimmed) {
   check_framebuffer(*gl_, target_, "geometry buffer");
 }
 
-/// If something in the picture is painted, all surfaces write for each pixel whether they are.
+/// If any surface of the picture is painted, all surfaces write for each pixel whether it is painted.
 void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peeled) {
   const auto use_for = [&](int laid) -> const GeometryProgram& {
     const GeometryProgram& program = use({painted_, laid >= 2, laid == 4, trimmed_, peeled});

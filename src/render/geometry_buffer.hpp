@@ -14,8 +14,8 @@
 
 namespace weft::render {
 
-/// Stencil values that select the shading pass. A floor pixel becomes shaded floor if Shading finds that soft light
-/// changes it; the lower two bits keep the class.
+/// Stencil values that select the shading pass. Shading turns `floor` into `shaded_floor` in the areas where light is
+/// missing or added; the lower two bits stay the same.
 enum class PixelClass : int { backdrop = 0, cloth = 1, solid = 2, floor = 3, shaded_floor = 7 };
 
 class GeometryBuffer {
@@ -27,29 +27,29 @@ class GeometryBuffer {
   /// 10 if something is painted; trims to unit 11 if cloth has hems.
   void draw(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, const FloorBuffers* floor,
             const Vec3& eye, double far);
-  /// Draws over the result of draw() the nearest layer of the surfaces flagged in `left_out`, with class cloth, and
-  /// replaces an earlier layer. `deeper`: the nearest layer behind the one of the previous call.
+  /// Draws the nearest layer of the surfaces flagged in `left_out` over the result of draw(), with class cloth. An
+  /// earlier layer is replaced. `deeper`: draws the nearest layer behind the one of the previous call instead.
   void draw_layer(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, bool deeper);
 
-  /// Whether the last picture contains painted pictures, or parts of different colours.
+  /// Whether a surface of the last picture has a picture on it, or parts of different colours.
   bool painted() const { return painted_; }
   /// Whether some cloth has visible hems or seams.
   bool trimmed() const { return trimmed_; }
-  /// Opacity of each painted range of a surface, in the form that Holes expects.
+  /// For each range of a painted mesh: the opacity of its picture, or null if it has no holes. For class Holes.
   std::vector<const Opacity*> opacity_of(const PaintedMesh& mesh);
 
   /// Reads back what each pixel shows, lowest row first.
   void read_seen(std::vector<Seen>& seen) const;
-  /// World normal of each pixel that shows a surface, times 1 + `rise` (geometry.frag); w: heat.
+  /// For each pixel that shows a surface: world normal times (1 + rise(), see geometry.frag); w: heat.
   void read_normals(std::vector<Eigen::Vector4f>& normals) const;
 
-  /// Distance and surface of each pixel, as Seen.
+  /// Distance and surface number of each pixel; see Seen.
   const Texture& seen() const { return seen_; }
   /// Depth and stencil, for the passes that shade by class.
   const Texture& depth_stencil() const { return depth_stencil_; }
 
  private:
-  /// Shader variant. All surfaces of a painted or trimmed picture also write whether they have paint or trims.
+  /// Shader variant. If any surface has paint (trims), the shaders of all surfaces write a pixel's paint (trims).
   struct Variant {
     bool painted = false, pictured = false, holes = false, trimmed = false, peeled = false;
     auto operator<=>(const Variant&) const = default;
@@ -67,7 +67,7 @@ class GeometryBuffer {
   void draw(const SurfaceBuffers& surface, float number, bool peeled);
   void copy(const Texture& from, const Texture& to) const;
 
-  /// Resources created on first use: for painted surfaces, and for cloth that is seen through.
+  /// Resources created on first use: Painting for painted surfaces, Layers for translucent cloth.
   struct Painting {
     Texture colors;
     Paints paints;

@@ -9,17 +9,17 @@ namespace weft::render {
 namespace {
 
 constexpr int kFilterReach = 2;      // points to either side
-constexpr float kNarrow = 1.5f;      // the same for shadows, whose edges may be sharp
-constexpr float kAny = 1e9f;         // as `wide`: distance does not matter
+constexpr float kNarrow = 1.5f;      // like kWide, for shadows, whose edges may be sharp [steps]
+constexpr float kAny = 1e9f;         // value of `wide` for which the distance does not matter
 constexpr float kNoise = 0.05f;      // difference of values that halves a weight
 constexpr float kPlaneSlack = 0.5f;  // distance from the tangent plane that halves a weight [points]
-constexpr float kWide = 6;           // distance along it, in steps, that halves a weight: floors seen at an angle
+constexpr float kWide = 6;           // distance along it that halves a weight; large for floors seen obliquely [steps]
 
 float square(float a) {
   return a * a;
 }
 
-/// Rows of points.
+/// Data of one row of points.
 struct Rows {
   const float *surface, *x, *y, *z, *nx, *ny, *nz, *density;
   Rows(const PixelPoints& points, int row)
@@ -32,8 +32,8 @@ struct Rows {
         nz(points.normal(2, row)),
         density(points.densities(row)) {}
 };
-/// How much point k of a row counts for point i of another one. `wide`: distance along the surface that halves it
-/// [points].
+/// Weight of point k of a row for the mean at point i of another row. `wide`: distance along the surface that halves
+/// the weight [points].
 float likeness(const Rows& here, int i, const Rows& there, int k, float wide) {
   const float same = here.surface[i] == there.surface[k] ? 1.0f : 0.0f;
   float agree = here.nx[i] * there.nx[k] + here.ny[i] * there.ny[k] + here.nz[i] * there.nz[k];
@@ -61,7 +61,7 @@ void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& p
         const Rows there(points, y + dy);
         for (int x = 0; x < width; ++x) weights[x] = likeness(here, x, there, x + dx, wide);
         if (step > 1 && k != 0) {
-          // What differs by more than the noise that nearer points have left is no noise.
+          // After the pass with step 1, a difference larger than the remaining noise is a feature, to be kept.
           std::ranges::fill(differences, 0.0f);
           for (const Plane& plane : from) {
             const float *a = plane.row(y), *b = plane.row(y + dy) + dx;
@@ -102,7 +102,7 @@ void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const Rows here(points, y);
       const float *asked = wanted.row(y), *own = from.row(y);
-      // Runs of points at a time; a gap is filled if it is shorter than a packet.
+      // Processes runs of wanted points; a gap shorter than a packet is processed too.
       for (int first = 0; first < width; ++first) {
         if (!(asked[first] > 0)) continue;
         int last = first + 1;
@@ -132,11 +132,11 @@ void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane
 
 void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few, const PixelPoints& many, int begin,
                  int end, std::span<Eigen::Vector4f> results) {
-  // Point i of either lies at pixel i * divisor + divisor / 2.
+  // In both `few` and `many`, point i lies at pixel i * divisor + divisor / 2.
   const int shift = many.divisor() / 2 - few.divisor() / 2;
   struct Place {
     int low, high;  // points to either side
-    float up;       // weight of the higher one
+    float up;       // weight of `high`
   };
   const auto place = [&](int i, int count) {
     const int at = i * many.divisor() + shift, low = at < 0 ? -1 : at / few.divisor();
@@ -176,13 +176,13 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       Eigen::Vector4f sum = Eigen::Vector4f::Zero(), any = sum;
       float total = 0;
       for (int k = 0; k < 4; ++k) {
-        constexpr float kLeast = 0.01f;  // so that the only point of a surface counts, however far it is
+        constexpr float kLeast = 0.01f;  // least weight: the only point of the surface counts at any distance
         const float weight =
             (plain[k] + kLeast) * likeness(here, x, there[k >> 1], (k & 1) != 0 ? column.high : column.low, kAny);
         sum += weight * *corners[k], total += weight;
         any += 0.25f * *corners[k];
       }
-      // Beside nearer objects none of the four may show this surface.
+      // Beside nearer objects, it can happen that none of the four points shows this surface.
       result[x] = total > 1e-4f ? Eigen::Vector4f(sum / total) : any;
     }
   }

@@ -8,17 +8,19 @@
 
 namespace weft::render {
 
-/// Averages each of the planes over 5 x 5 points, first along rows, then along columns. `step`: distance between the
-/// points [points]. Neighbours count by how near they are, most of all to the tangent plane, how much their normals
-/// agree and, if `step` exceeds 1, how little their values differ.
-/// `scratch`: as many planes, of any content.
+/// Averages each of the planes over 5 x 5 points, first along rows, then along columns. `step`: distance between these
+/// points, in points of the plane. A neighbour on the same surface has more weight if it is near, above all near the
+/// tangent plane, if its normal is similar and, if `step` exceeds 1, if its value is similar.
+/// `scratch`: as many planes as `planes`; their content is overwritten.
 void smooth(std::span<Plane> planes, std::span<Plane> scratch, const PixelPoints& points, int step);
 
-/// The same of one plane over points whose `known` is above 0, only where `wanted` is above 0.
+/// Does the same for one plane, but only at points whose `wanted` is above 0. Neighbours count if their `known` is
+/// above 0.
 void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane& known, const PixelPoints& points,
                   int step);
 
-/// Interpolates values of `few` points, row by row, at rows `begin` to `end` of the `many` points of the same picture.
+/// Interpolates the values at the points `few` (row by row) to rows `begin` to `end` of `many`, the denser points of
+/// the same picture.
 void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few, const PixelPoints& many, int begin,
                  int end, std::span<Eigen::Vector4f> results);
 

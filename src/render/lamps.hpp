@@ -1,4 +1,4 @@
-// Direct light without shadows, for eight points at a time; as toward_light() in shaders/lights.glsl.
+// Direct light without shadows, for eight points at a time: the same formulas as toward_light() in shaders/lights.glsl.
 #pragma once
 
 #include "render/lighting.hpp"
@@ -6,7 +6,7 @@
 
 namespace weft::render {
 
-/// Directions toward a lamp, not normalised for spots; and its intensity, 1 at the target of a spot.
+/// Directions from eight points toward a lamp, and the intensity at these points: 1 at the target of a spot.
 struct Toward {
   Lanes3 direction;  ///< unit length
   Lanes distance;    ///< of a spot [m]; 1e30 for suns

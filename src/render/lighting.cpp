@@ -18,7 +18,7 @@ double half_cone(const frame::Light& light) {
   return radians(std::clamp(light.cone_angle, 1.0, 160.0)) / 2;
 }
 
-/// Tangent of half the angular size of the light source; the minimum keeps shadow edges from being razor sharp.
+/// Tangent of half the angular size of the light source. A minimum avoids shadow edges without any penumbra.
 double source_tangent(const frame::Light& light) {
   return std::tan(radians(std::clamp(light.softness, 0.1, 40.0)) / 2);
 }
@@ -30,7 +30,8 @@ std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot,
   std::vector<frame::Light> lights = snapshot.lights;
   if (lights.size() > kMaxLights) lights.resize(kMaxLights);
   if (!lights.empty()) return lights;
-  // Key light over the left shoulder and low: shadows fall to the right and slightly away, and folds show relief.
+  // The key light is low, behind the left shoulder of the viewer. Shadows fall to the right and slightly away, and
+  // folds show relief.
   const Vec3 level_forward = view_axes(camera.right.cross(-up), up).forward;
   frame::Light key;
   key.name = "key";

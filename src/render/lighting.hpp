@@ -12,11 +12,11 @@
 
 namespace weft::render {
 
-/// Further lights are ignored: each costs rays of every pixel.
+/// Maximum number of lights; further ones are ignored. Each light costs rays at every pixel.
 inline constexpr int kMaxLights = 4;
 
-/// The snapshot's lights, at most kMaxLights. If it has none, those of the look: a warm key light from above, beside
-/// the camera; for the look `stage` also one from the other side.
+/// The snapshot's lights, at most kMaxLights. If it has none, the lights of the look: a warm key light from above,
+/// beside the camera; the look `stage` has a second light from the other side.
 std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, frame::Stage::Look look,
                                            const ViewAxes& camera, const Vec3& up);
 
@@ -42,7 +42,7 @@ struct LightsUniform {
 /// A light of a picture.
 struct Lamp {
   LightUniform packed;
-  float source_tangent = 0;  ///< of half the angular size of its source, for a spot as seen from its target
+  float source_tangent = 0;  ///< tangent of half the angular size of its source; of a spot: seen from its target
 
   bool is_spot() const { return packed.toward_light.w() != 0; }
   /// Distance of a spot from its target [m].

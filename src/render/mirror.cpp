@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kDivisor = 2;
 
-/// Reflections are blurred.
+/// Reduces detail, since reflections are blurred.
 QualitySettings plainer(QualitySettings quality) {
   quality.shadow_divisor *= kDivisor;
   quality.ambient_divisor *= kDivisor;
@@ -21,7 +21,7 @@ View mirrored(const View& view, const Floor& floor) {
   const auto turned = [&](const Vec3& v) -> Vec3 { return v - 2 * n.dot(v) * n; };
   View mirror = view;
   mirror.eye = floor.point + turned(view.eye - floor.point);
-  // A reflection swaps left and right; flipping up and down as well gives a proper view.
+  // A reflection is left-handed. Flipping up and down too makes the axes right-handed; the picture is upside down.
   mirror.axes = {turned(view.axes.right), -turned(view.axes.up), turned(view.axes.forward)};
   mirror.view_from_world = look_along(mirror.eye, mirror.axes);
   mirror.clip_from_world =
@@ -49,7 +49,7 @@ Mirror::Mirror(const Gl& gl, const QualitySettings& quality, int width, int heig
 void Mirror::draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights) {
   gl_->NamedBufferData(frame_block_.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl_->BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block_.name());
-  // Objects below the floor are not reflected.
+  // Clips what is below the floor, which is not reflected.
   gl_->Enable(GL_CLIP_DISTANCE0);
   geometry_.draw(subjects.surfaces, {}, nullptr, view.eye, view.far);
   gl_->Disable(GL_CLIP_DISTANCE0);

@@ -17,7 +17,7 @@ class Mirror {
   /// For pictures of width x height pixels; reflections have half that size.
   Mirror(const Gl& gl, const QualitySettings& quality, int width, int height);
 
-  /// What is drawn besides the view, in the form of the main passes.
+  /// The scene, as the main passes hold it.
   struct Subjects {
     std::span<const SurfaceBuffers> surfaces;
     std::span<const Shading::Material> materials;
@@ -26,8 +26,8 @@ class Mirror {
     double heat_scale;
     bool painted;  ///< whether pictures on surfaces are shown
   };
-  /// The light block must be bound. Binds the reflection to unit 13 and its distances to 14. Other units
-  /// and the frame block stay bound to this pass.
+  /// The light block must be bound. Binds the reflection to unit 13 and its distances to unit 14. Leaves the frame
+  /// block and the other units bound to the data of this pass.
   void draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights);
 
   int width() const { return width_; }

@@ -11,7 +11,7 @@ namespace {
 
 using Wrap = frame::Paint::Wrap;
 
-/// Weights of the texels of a line of `from` that each of `to` texels covers.
+/// Scaling of a line of `from` texels to `to` texels: weights of the old texels that each new texel covers.
 struct TexelWeights {
   int first = 0;
   std::vector<float> weights;

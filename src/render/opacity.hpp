@@ -15,7 +15,7 @@ struct MipLevel {
   std::vector<Eigen::Vector4f> texels;
 };
 
-/// The next mip level: each texel is the mean of those it covers. A level of 1 x 1 has no next one.
+/// The next smaller mip level: each texel is the mean of those it covers. `level` must be larger than 1 x 1.
 MipLevel next_mip_level(const MipLevel& level);
 
 /// Level 0 of the picture; `opaque` ignores alpha and uses 1.

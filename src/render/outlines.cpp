@@ -15,23 +15,23 @@ namespace {
 constexpr int kWordBits = 64;
 
 // Offsets of the samples from the pixel's lower left corner: Direct3D's pattern of 16 samples. No two share a row or
-// column of sixteenths, so that edges near the axes also have seventeen levels. (Measured: with eight samples, one that
-// an edge at rest repeatedly crosses changes the pixel by a visible flicker.)
+// column of sixteenths, so that nearly horizontal and vertical edges also have seventeen levels. (Measured with eight
+// samples: a resting edge that repeatedly crosses one of them flickers visibly.)
 constexpr float kOffsetX[] = {19 / 32.f, 15 / 32.f, 11 / 32.f, 25 / 32.f, 7 / 32.f, 21 / 32.f, 27 / 32.f, 23 / 32.f,
                               13 / 32.f, 17 / 32.f, 9 / 32.f,  5 / 32.f,  1 / 32.f, 31 / 32.f, 29 / 32.f, 3 / 32.f};
 constexpr float kOffsetY[] = {19 / 32.f, 11 / 32.f, 21 / 32.f, 15 / 32.f, 13 / 32.f, 27 / 32.f, 23 / 32.f, 7 / 32.f,
                               29 / 32.f, 3 / 32.f,  5 / 32.f,  25 / 32.f, 17 / 32.f, 9 / 32.f,  31 / 32.f, 1 / 32.f};
 
-// 1 / distance is linear over the picture of any plane. Where a surface ends or folds, it has a step or a kink. For a
-// crease seen head-on, the kink is the tangent of its angle times the angle of a pixel.
+// 1 / distance is linear over the picture of any plane. It has a step where a surface ends, and a kink where it folds.
+// For a crease seen head-on, the relative change of slope is the tangent of its angle times the angle of a pixel.
 constexpr double kMinCreaseTangent = 0.4;
-// A sample shows what its pixel shows if that lies in the plane of the sample's triangle, within this fraction of a
-// kink.
+// A sample takes its pixel's colour if the point that the pixel shows lies in the plane of the sample's triangle,
+// within this fraction of `kink_`.
 constexpr float kSamePlane = 0.25f;
 
-/// Edge function: twice the signed area of the triangle formed by an edge from a to b and a point, positive on its
-/// left. The edge from b to a gives exactly the negative value, because both use the same reference end: no sample
-/// falls between two triangles.
+/// Edge function: twice the signed area of the triangle of a, b and a point; positive if the point is left of the edge
+/// from a to b. The edge from b to a gives exactly the negative value, because both use the same reference end. Thus no
+/// sample falls between two triangles.
 struct Edge {
   float along, across, from_x, from_y;
 
@@ -48,11 +48,11 @@ struct Edge {
   float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
 };
 
-// Order of the samples' opacity thresholds, in sixteenths; consecutive samples differ much.
+// Opacity threshold of each sample, in sixteenths; those of consecutive samples differ much.
 constexpr int kThresholdOrder[] = {0, 8, 12, 4, 10, 2, 6, 14, 9, 1, 5, 13, 3, 11, 15, 7};
 
-/// The opacity of a triangle at points of the picture. An attribute that is linear over the triangle, times 1 /
-/// distance, is linear over the picture (perspective-correct interpolation).
+/// The opacity of a triangle at points of the picture. If an attribute is linear over the triangle, then attribute /
+/// distance is linear over the picture (perspective-correct interpolation).
 class HoleTest {
  public:
   template <class Vertex>
@@ -91,10 +91,10 @@ Outlines::Outlines(int width, int height)
       bits_(static_cast<std::size_t>(words_) * height),
       first_(bits_.size()) {}
 
-/// Sets the bits of the pixels in the area whose neighbours show another surface or a fold of their own.
+/// Sets the bits of the pixels in the area at which a neighbour shows another surface, or at which the surface folds.
 void Outlines::find_outlines(std::span<const Seen> seen, const PixelArea& area) {
   std::fill(bits_.begin(), bits_.end(), Bits{0});
-  // Holds three rows of 1 / distance at a time, with a padding column on either side.
+  // `nearness_` holds three rows of 1 / distance at a time, with a padding column on either side.
   const std::size_t stride = static_cast<std::size_t>(width_) + 2;
   nearness_.resize(3 * stride);
   const auto load = [&](int row) {
@@ -145,8 +145,8 @@ Outlines::Vertex Outlines::to_picture(const Eigen::Vector4d& clip) const {
           static_cast<float>((0.5 + 0.5 * clip.y() * nearness) * height_), static_cast<float>(nearness)};
 }
 
-/// Writes the triangle to the samples that it covers, if it is nearer than their content and `shows(x, y, nearness,
-/// sample)` is true.
+/// Writes the triangle to each sample that it covers, if it is nearer than the sample's content and `shows(x, y,
+/// nearness, sample)` is true.
 template <class Shows>
 void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface, const Shows& shows) {
   const auto [x_min, x_max] = std::minmax({a.x, b.x, c.x});
@@ -175,7 +175,7 @@ void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float s
   const Edge edges[] = {{a, b}, {b, c}, {c, a}};
   const float area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
   if (!(std::abs(area) > 0)) return;
-  // Seen from behind, all edges run in the opposite direction.
+  // If the triangle is seen from behind, all edge functions have the opposite sign.
   const float side = area > 0 ? 1.0f : -1.0f, shown = area > 0 ? surface : surface + 0.5f;
   const float b_a = b.nearness - a.nearness, c_a = c.nearness - a.nearness;
   const float slope_x = (b_a * (c.y - a.y) - c_a * (b.y - a.y)) / area;
@@ -259,7 +259,7 @@ void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const Vie
 void Outlines::sample_floor(const Floor& floor, const View& view) {
   const double height = floor.normal.dot(view.eye - floor.point);
   if (height <= 0) return;
-  // Descent towards the floor of the ray through a point of the picture, per metre along the view axis.
+  // How far the ray through a point of the picture descends towards the floor, per metre along the view axis.
   const double x = -2 * view.tan_half_width / width_ * floor.normal.dot(view.axes.right);
   const double y = -2 * view.tan_half_height / height_ * floor.normal.dot(view.axes.up);
   const double corner = -floor.normal.dot(view.axes.forward) - 0.5 * (x * width_ + y * height_);
@@ -277,17 +277,17 @@ void Outlines::sample_floor(const Floor& floor, const View& view) {
   }
 }
 
-/// The pixel from which each sample takes its colour: the pixel itself if it shows the same surface in the same plane;
-/// else the neighbour that shows the same surface nearest to the plane of the sample's triangle. Thus samples on each
-/// side of an edge take colours from their own side.
+/// The pixel from which each sample takes its colour. This is the sample's own pixel if it shows the same surface in
+/// the same plane; else, of the pixels around it that show this surface, the one nearest to the plane of the sample's
+/// triangle. Thus samples on each side of an edge take colours from their own side.
 std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t slot, std::span<const Seen> seen) const {
   const int x = pixels_[slot].x, y = pixels_[slot].y;
   const Samples& samples = samples_[slot];
   const int x0 = std::max(x - 1, 0), x1 = std::min(x + 1, width_ - 1);
   const int y0 = std::max(y - 1, 0), y1 = std::min(y + 1, height_ - 1);
   const auto index = [&](int i, int j) { return static_cast<std::size_t>(j) * width_ + i; };
-  // The plane of the triangle at the pixel's centre. If a crease passes close to the centre, the centre lies near the
-  // planes of both sides, but shows only one of them.
+  // Finds the plane of the triangle at the pixel's centre: of the samples on the same surface, the one whose plane is
+  // nearest. If a crease passes close to the centre, the planes of both sides are near, but only one is shown.
   const Seen& own = seen[index(x, y)];
   float min_own_offset = 1e9f, own_slope_x = 0, own_slope_y = 0;
   for (int s = 0; s < kSamples; ++s) {
@@ -306,8 +306,8 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
     // Most samples belong to the same triangle as the one before.
     if (s == 0 || surface != samples.surface[s - 1] || slope_x != samples.slope_x[s - 1] ||
         slope_y != samples.slope_y[s - 1]) {
-      // Relative distance of a pixel from the sample's plane; pixels of other surfaces rank behind all pixels of the
-      // same one.
+      // Distance of what a pixel shows from the sample's plane, relative to its distance from the eye; very large if
+      // the pixel shows another surface.
       const auto off_plane = [&](int i, int j) {
         const Seen& there = seen[index(i, j)];
         if (there.surface != surface) return 1e9f;

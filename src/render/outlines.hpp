@@ -35,8 +35,8 @@ class Outlines {
 
  private:
   static constexpr int kSamples = 16;
-  /// What the samples of one pixel show: 1 / distance [1/m] (0: nothing), its gradient over the plane of the triangle
-  /// [1/m for each pixel], and the surface.
+  /// What the samples of one pixel show: 1 / distance [1/m] (0: nothing), its change from pixel to pixel in the plane
+  /// of the triangle [1/m], and the surface.
   struct Samples {
     float nearness[kSamples] = {}, slope_x[kSamples] = {}, slope_y[kSamples] = {}, surface[kSamples] = {};
   };
@@ -62,7 +62,7 @@ class Outlines {
   Vertex to_picture(const Eigen::Vector4d& clip) const;
 
   int width_, height_, words_;  // words_: bit words in a row
-  float kink_ = 0;              // relative change of 1 / distance beyond which a surface folds
+  float kink_ = 0;              // relative change of the slope of 1 / distance per pixel that counts as a fold
   std::vector<Bits> bits_;      // a bit for each pixel with an outline
   std::vector<int> first_;      // index of the first sample of each word
   std::vector<Pixel> pixels_;

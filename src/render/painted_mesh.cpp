@@ -7,13 +7,13 @@
 namespace weft::render {
 namespace {
 
-/// Paint coordinates of each drawn vertex. A corner whose coordinates differ from the first of its vertex gets a new
-/// vertex.
+/// Paint coordinates of each drawn vertex. If the corners at a vertex have different coordinates, the vertex is copied,
+/// once for each of them.
 std::vector<Eigen::Vector2f> split_by_place(std::span<const std::array<Vec2, 3>> corners, ShadedMesh& mesh) {
   constexpr Index kNone = -1;
   std::vector<Eigen::Vector2f> places(mesh.source.size(), Eigen::Vector2f::Zero());
   std::vector<char> placed(mesh.source.size(), 0);
-  std::vector<Index> next(mesh.source.size(), kNone);  // next copy of the same vertex with other coordinates
+  std::vector<Index> next(mesh.source.size(), kNone);  // per drawn vertex: next copy of it, with other coordinates
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2f place = corners[t][k].cast<float>();

@@ -28,7 +28,7 @@ PaintedMesh make_painted_mesh(const frame::Surface& surface, ShadedMesh& mesh);
 /// The holes of a painted mesh.
 class Holes {
  public:
-  /// `opacity`: of the picture of each range; null if the range has no holes.
+  /// `opacity`: per range, that of its picture; null if the range has no holes.
   Holes(const PaintedMesh& mesh, std::vector<const Opacity*> opacity);
 
   bool any() const;

@@ -14,8 +14,8 @@ namespace {
 using Wrap = frame::Paint::Wrap;
 using Alpha = frame::Paint::Alpha;
 
-// GL_TEXTURE_MAX_ANISOTROPY of OpenGL 4.6, also in an extension that llvmpipe has; 8 keeps prints sharp on cloth seen
-// at 7 degrees.
+// GL_TEXTURE_MAX_ANISOTROPY of OpenGL 4.6, which llvmpipe has as an extension. The value 8 keeps prints sharp on cloth
+// that is seen at an angle of 7 degrees.
 constexpr GLenum kMaxAnisotropy = 0x84FE;
 constexpr float kAnisotropy = 8;
 

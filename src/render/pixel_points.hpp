@@ -1,4 +1,4 @@
-// The points of surfaces that pixels show, as arrays of single numbers for loops over eight of them.
+// The surface points that pixels show, stored as one array per number, so that loops can process eight points at once.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,10 +15,10 @@
 
 namespace weft::render {
 
-/// A picture of numbers, with a border so that neighbours can be read without a check.
+/// A picture with one number per pixel, and a border so that neighbours can be read without a check.
 class Plane {
  public:
-  static constexpr int kBorder = 8;  ///< numbers beside each row; a whole packet of lanes
+  static constexpr int kBorder = 8;  ///< border on either side of each row [numbers]: as many as a packet has lanes
 
   Plane() = default;
   Plane(int width, int height, float value);
@@ -36,11 +36,11 @@ class PixelPoints {
  public:
   enum class Kind : std::uint8_t { nothing, floor, solid, cloth };
 
-  /// For pictures of width x height pixels, of which every `divisor`-th in both directions gives a point.
+  /// For pictures of width x height pixels; every `divisor`-th pixel in both directions gives a point.
   PixelPoints(int width, int height, int divisor);
 
-  /// Reads what a picture shows. `normals`: world normals of surfaces towards the viewer, of length 1 + `rise`
-  /// (geometry.frag). `kinds`: of each surface.
+  /// Reads what a picture shows. `normals`: world normals of surfaces towards the viewer, of length 1 + rise(), see
+  /// geometry.frag. `kinds`: one per surface.
   void read(std::span<const Seen> seen, std::span<const Eigen::Vector4f> normals, std::span<const Kind> kinds,
             const View& view, const std::optional<Floor>& floor);
 
@@ -48,20 +48,20 @@ class PixelPoints {
   int height() const { return height_; }
   int divisor() const { return divisor_; }
 
-  /// What a point shows; nothing beyond the picture.
+  /// What a point shows; beyond the picture: Kind::nothing.
   Kind kind(int x, int y) const { return static_cast<Kind>(static_cast<int>(kinds_.row(y)[x])); }
-  /// Eight points of a row from x on; kinds as numbers.
+  /// The functions below return values of eight points of row y, from x on. kinds(): numbers of the enumeration.
   Lanes kinds(int x, int y) const { return Eigen::Map<const Lanes>(kinds_.row(y) + x); }
   Lanes3 positions(int x, int y) const { return lanes(position_, x, y); }
   Lanes3 normals(int x, int y) const { return lanes(normal_, x, y); }
   /// Height of the smooth surface above the drawn one, along the normal [m].
   Lanes rises(int x, int y) const { return Eigen::Map<const Lanes>(rise_.row(y) + x); }
 
-  /// Rows of single numbers. surfaces: as Seen, -1 beyond the picture.
+  /// The functions below return a row. surfaces(): number as in Seen; -1 beyond the picture.
   const float* surfaces(int y) const { return surface_.row(y); }
   const float* position(int axis, int y) const { return position_[axis].row(y); }
   const float* normal(int axis, int y) const { return normal_[axis].row(y); }
-  /// Points per metre, across the line of sight.
+  /// Points per metre, perpendicular to the line of sight.
   const float* densities(int y) const { return density_.row(y); }
 
  private:

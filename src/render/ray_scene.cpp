@@ -12,15 +12,15 @@
 namespace weft::render {
 namespace {
 
-/// A number in [0, 1) that differs between rays and triangles (Jarzynski and Olano, "Hash Functions for GPU Rendering",
-/// 2020: PCG).
+/// A pseudorandom number in [0, 1) for a ray and a triangle (the hash PCG of Jarzynski and Olano, "Hash Functions for
+/// GPU Rendering", 2020).
 float random_fraction(unsigned ray, unsigned triangle) {
   unsigned state = (ray * 747796405u + triangle * 2891336453u + 2891336453u);
   state = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
   return static_cast<float>(((state >> 22u) ^ state) >> 8) / 16777216.0f;
 }
 
-/// Opacity of a point of a triangle, from the picture that cuts holes into it.
+/// Opacity of a triangle at barycentric coordinates u, v, from the picture that cuts holes into it.
 float opacity_at(const DrawnMesh& mesh, std::size_t triangle, float u, float v) {
   if (mesh.holes == nullptr) return mesh.opacity;
   const auto ranges = mesh.holes->ranges();
@@ -36,7 +36,7 @@ float opacity_at(const DrawnMesh& mesh, std::size_t triangle, float u, float v) 
   return mesh.opacity;
 }
 
-/// Called by Embree for hits of surfaces that do not stop all light: lets a random fraction of rays pass.
+/// Embree calls this function for hits of surfaces that do not stop all light. It makes a random fraction of rays pass.
 void let_pass(const RTCFilterFunctionNArguments* args) {
   const auto& mesh = *static_cast<const DrawnMesh*>(args->geometryUserPtr);
   for (unsigned i = 0; i < args->N; ++i) {
@@ -63,7 +63,7 @@ void put(const Rays& rays, RTCRay8& to) {
 
 }  // namespace
 
-// One kind of kernels whatever the processor has, so that pictures do not depend on it.
+// Embree uses the same kernels on every processor, so that pictures do not depend on it.
 #ifdef __AVX2__
 constexpr const char* kKernels = "isa=avx2";
 #else
@@ -130,8 +130,8 @@ void RayScene::build(std::span<const DrawnMesh> meshes) {
   tree_->scene = rtcNewScene(tree_->device);
   for (std::size_t i = 0; i < meshes.size(); ++i)
     if (!meshes[i].triangles.empty()) tree_->add(meshes[i], static_cast<unsigned>(i));
-  // One thread, so that the tree does not depend on their number. (Embree's own setting would bound all loops of the
-  // process.)
+  // Builds with one thread, so that the hierarchy does not depend on the number of threads. (Embree's own setting would
+  // limit all parallel loops of the process.)
   tbb::task_arena one(1);
   one.execute([&] { rtcCommitScene(tree_->scene); });
   tree_->check();
@@ -145,7 +145,7 @@ Lanes RayScene::blocked(const Rays& rays) const {
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded8(wanted.data(), tree_->scene, &context, &query);
-  // Rays that are blocked end at minus infinity.
+  // Embree sets `tfar` of blocked rays to minus infinity.
   return (Eigen::Map<const Lanes, Eigen::Aligned32>(query.tfar) < 0).select(Lanes::Ones(), Lanes::Zero());
 }
 

@@ -1,4 +1,4 @@
-// The drawn surfaces, as rays meet them. Embree builds and traverses the tree.
+// The drawn surfaces, prepared for intersection with rays. Embree builds and traverses the hierarchy.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,8 @@ inline Mask mask(const Eigen::Array<bool, kLanes, 1>& conditions) {
   return -conditions.cast<int>();
 }
 
-/// Distance from a surface at which rays that leave it start [m]: more than rounding, less than layers are apart.
+/// Rays that leave a surface start at this distance from it [m]: more than rounding errors, less than the distance of
+/// layers.
 inline constexpr float kRayStart = 3e-4f;
 
 /// Eight vectors.
@@ -38,8 +39,8 @@ inline Lanes dot(const Lanes3& a, const Lanes3& b) {
 struct Rays {
   Lanes3 origin, direction;            ///< [m]
   Lanes end = Lanes::Constant(1e30f);  ///< largest distance, in lengths of `direction`
-  Mask wanted = Mask::Zero();          ///< other rays meet nothing
-  unsigned seed = 0;                   ///< decides what passes through translucent cloth
+  Mask wanted = Mask::Zero();          ///< rays to trace; the others meet nothing
+  unsigned seed = 0;                   ///< seed of the random choice which rays pass through translucent cloth
 };
 
 struct Hits {
@@ -61,8 +62,8 @@ class RayScene {
   /// std::bad_alloc, or Error(internal) with Embree's reason.
   void build(std::span<const DrawnMesh> meshes);
 
-  /// 1 for each wanted ray that meets a surface, else 0. Surfaces with holes or an opacity below 1 stop that fraction
-  /// of rays.
+  /// 1 for each wanted ray that meets a surface, else 0. A surface with holes or an opacity below 1 stops a random
+  /// fraction of the rays, equal to its opacity at that point.
   Lanes blocked(const Rays& rays) const;
   /// The nearest surface that each wanted ray meets.
   Hits nearest(const Rays& rays) const;

@@ -30,8 +30,9 @@ class Refinement {
 };
 
 /// Midpoint of an edge on the cubic curve given by the normals of its ends (Vlachos et al., "Curved PN Triangles",
-/// 2001), and the mean of the two normals: the paper's quadratic normals waver along sharp folds. The midpoint is at
-/// most `max_offset` [m] from the edge, so that layers in contact stay apart and bad normals make no spikes.
+/// 2001). Its normal is the mean of both normals, because the paper's quadratic normals oscillate along sharp folds.
+/// The midpoint is at most `max_offset` [m] from the edge, so that layers in contact stay apart and bad normals make no
+/// spikes.
 struct Middle {
   Vec3 position, normal;
 };

@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Fraction of the surroundings that lights a surface which a ray meets: no second ray asks how open it is.
+// Assumed open fraction of the surroundings at the point that a ray meets; no second ray measures it.
 constexpr float kOpenAtHits = 0.6f;
-constexpr float kMinSlope = 0.02f;  // rays that go down less steeply end at the horizon
+constexpr float kMinSlope = 0.02f;  // rays that descend less steeply do not meet the floor [m/m]
 
 Lanes evaluate(const std::array<Vector3f, 9>& c, int k, const Lanes3& n) {
   return (c[0][k] + n.x * c[1][k] + n.y * c[2][k] + n.z * c[3][k] + n.x * n.y * c[4][k] + n.y * n.z * c[5][k] +
@@ -29,7 +29,7 @@ Vector3f MeanColors::of(const frame::Appearance& look, bool back) {
     return own.cast<float>();
   const auto [known, added] = means_.try_emplace(paint.texture, Vector3f::Zero());
   if (added) {
-    // A few hundred pixels suffice for the mean.
+    // The mean of about 500 pixels is accurate enough.
     const std::size_t pixels = paint.texture->rgba.size() / 4, step = std::max<std::size_t>(1, pixels / 499);
     Vec3 sum = Vec3::Zero();
     std::size_t count = 0;
@@ -123,7 +123,7 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
     shadow.wanted = mask(on_surface + on_floor > 0 && strength > 0);
     if ((shadow.wanted == 0).all()) continue;
     const Lanes dark = rays_->blocked(shadow);
-    // The surroundings contain open floor in full light.
+    // The surroundings already contain the floor in full light, so that a shadow on the floor subtracts.
     const Lanes added =
         (shadow.wanted != 0).select(strength * (on_surface - dark * (on_surface + on_floor)), Lanes::Zero());
     result.light.x += added * lamp.packed.color.x();

@@ -1,4 +1,4 @@
-// What a ray brings from the surface that it meets: the light of lamps and surroundings that the surface reflects.
+// The light that arrives along a ray: light of lamps and surroundings, reflected by the surface that the ray meets.
 #pragma once
 
 #include <map>
@@ -16,7 +16,7 @@
 
 namespace weft::render {
 
-/// Mean colours of appearances, linear; pictures on surfaces are averaged once.
+/// Mean linear colours of appearances. Each picture on a surface is averaged only once.
 class MeanColors {
  public:
   Eigen::Vector3f of(const frame::Appearance& look, bool back);
@@ -31,7 +31,7 @@ struct ReflectingSurface {
     std::size_t end;  ///< triangle after the last one
     Eigen::Vector3f front, back;
   };
-  std::vector<Range> ranges;  ///< the last one holds for all further triangles
+  std::vector<Range> ranges;  ///< the last range also covers all further triangles
 };
 
 /// `look`: of the surface as a whole. `plain`: ignores the colours of parts. `dark`: reflects nothing.
@@ -40,7 +40,7 @@ ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame:
 
 class ReflectedLight {
  public:
-  /// `surfaces`: as the meshes of `rays`. `floor_color`: linear.
+  /// `surfaces`: one per mesh of `rays`, in the same order. `floor_color`: linear.
   ReflectedLight(const RayScene& rays, std::vector<ReflectingSurface> surfaces, std::vector<Lamp> lamps,
                  const Irradiance& around, const std::optional<Floor>& floor, const Eigen::Vector3f& floor_color);
 
@@ -49,7 +49,8 @@ class ReflectedLight {
 
   struct Arriving {
     Lanes open = Lanes::Zero();  ///< 1 if the ray meets no surface; the floor counts as part of the surroundings
-    Lanes3 light;                ///< radiance, relative to that of open surroundings; negative from shaded floor
+    Lanes3 light;                ///< radiance to add to that of the surroundings, which include floor in full light;
+                                 ///< negative if the ray meets shaded floor
   };
   Arriving arriving(const Rays& rays) const;
 
@@ -62,7 +63,7 @@ class ReflectedLight {
   std::array<Eigen::Vector3f, 9> around_;
   bool has_floor_;
   Eigen::Vector3f floor_normal_ = Eigen::Vector3f::UnitZ(), floor_color_;
-  float floor_height_ = 0;  // of the plane along its normal [m]
+  float floor_height_ = 0;  // position of the floor's plane along its normal [m]
 };
 
 }  // namespace weft::render

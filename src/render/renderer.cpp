@@ -26,11 +26,11 @@
 namespace weft::render {
 namespace {
 
-// Cloth is refined up to this number of triangles; finer meshes have small enough triangles.
+// Cloth with at most this number of triangles is refined; the triangles of finer meshes are small enough.
 constexpr std::size_t kMaxRefinedTriangles = 20000;
 constexpr std::size_t kMaxPeeledLayers = 4;  // overlapping layers of translucent cloth
 constexpr double kMaxMotionPerPicture =
-    5;  // maximum motion in each of the sharp pictures that motion blur averages [pixels]
+    5;  // motion blur averages so many sharp pictures that the motion during each is at most this [pixels]
 constexpr double kFloorSizeRatio = 60;  // half side of the drawn floor, relative to subject radius plus eye distance
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
@@ -88,7 +88,7 @@ struct Renderer::Impl {
   frame::Cords cords;
   DrawTimes times;
 
-  // GL objects; created and deleted with the context current.
+  // GL objects; the context must be current when they are created and deleted.
   struct Passes {
     RayScene rays;
     TracedLight traced;
@@ -113,8 +113,8 @@ struct Renderer::Impl {
   std::optional<DataPasses> data;
   image::Layers layers;
 
-  // The picture and what it shows, lowest row first; members, so that their memory is reused. open_floor: floor without
-  // shadows, only if layers are requested.
+  // The picture and what it shows, lowest row first; members, so that their memory is reused. open_floor: the picture
+  // with its floor unshadowed, only if layers are requested.
   std::vector<std::uint64_t> rgba, unsmoothed, open_floor;
   std::vector<Seen> seen;
 
@@ -180,7 +180,7 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const
       next.push_back(std::move(*known));
       passes->surfaces.erase(known);
     } else {
-      // Layers for compositors show the simulated faces.
+      // With layers for compositors, cloth is drawn without refinement: the layers show the simulated faces.
       const bool cloth = surface->kind == frame::ObjectKind::cloth;
       const bool free = cloth && !settings.layers;
       next.emplace_back(gl, surface,
@@ -239,7 +239,7 @@ std::vector<Shading::Material> Renderer::Impl::materials(const Plan& plan) const
   return list;
 }
 
-/// Uploads the lights, and collects what rays need to know of them and of the surfaces.
+/// Uploads the lights, and collects the properties of lights and surfaces that rays need.
 ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
   std::vector<Lamp> lamps;
   LightsUniform block{};
@@ -330,7 +330,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
 }
 
 /// Blends translucent cloth over the picture of everything else by depth peeling, nearest layer first (Everitt,
-/// "Interactive Order-Independent Transparency", 2001). `seen` then contains the nearest surfaces of all.
+/// "Interactive Order-Independent Transparency", 2001). Afterwards, `seen` also contains translucent cloth.
 void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
                                              std::span<const DrawnMesh> opaque, const PixelArea& area) {
   std::vector<std::uint64_t> behind = rgba;
@@ -378,7 +378,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   const frame::Camera camera = choose_camera(snapshot);
   const double scene_blur = snapshot.stage ? snapshot.stage->motion_blur : 0;
   const double shutter = before ? settings.motion_blur.value_or(scene_blur) : 0;
-  // Compositors blur by the motion and depth layers.
+  // With data layers, the picture stays sharp: compositors blur it by the motion and depth layers.
   if (data || (shutter <= 0 && camera.aperture <= 0)) {
     const Plan plan = plan_of(snapshot, camera);
     draw_sharp(snapshot, plan);
@@ -391,8 +391,8 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
     return make_view(between(camera, camera_before, back), up_of(moved), settings.aspect(), subject_bounds(moved),
                      find_floor(moved, up_of(moved)));
   };
-  // Without a lens: as many pictures as leave at most kMaxMotionPerPicture pixels of motion in each, and Smear along
-  // that motion.
+  // Without depth of field: draws so many pictures that the motion in each is at most kMaxMotionPerPicture pixels, and
+  // smears each picture along its motion.
   int count = quality.instants;
   const bool smears = camera.aperture <= 0;
   if (smears) {

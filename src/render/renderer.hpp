@@ -19,37 +19,37 @@ struct Settings {
   int width = 1280, height = 720;  ///< pixels
   Quality quality = Quality::final;
   Backend backend = Backend::automatic;
-  std::string camera;                      ///< by name; empty: the first, or one that shows the whole run
-  int threads = 0;                         ///< of the software rasteriser; 0: its default
-  bool layers = false;                     ///< whether layers() will be called
-  bool deep = false;                       ///< whether deep() will be called
+  std::string camera;   ///< name; empty: the first or, if there is none, one that shows the whole run
+  int threads = 0;      ///< number of threads of the software rasteriser; 0: its default
+  bool layers = false;  ///< whether layers() will be called
+  bool deep = false;    ///< whether deep() will be called
   std::optional<frame::Stage::Look> look;  ///< overrides that of the scene
   std::optional<double> motion_blur;       ///< shutter angle [degrees]; overrides that of the scene
 
   double aspect() const { return static_cast<double>(width) / height; }
 };
 
-/// Time that one picture took, without other work of the process.
+/// Time that one picture took; other work of the process does not count.
 struct DrawTimes {
   double wall_seconds = 0, cpu_seconds = 0;
 };
 
-/// Owns one context and the GPU-side copies of data that stays the same. Use from a single thread.
+/// Owns one OpenGL context, and copies in it of data that stay the same over a run. Use from a single thread.
 class Renderer {
  public:
-  /// Throws Error(usage or internal) with the driver's message if make_context() fails, Error(usage) for a bad size.
+  /// Throws as make_context() does, and Error(usage) for a bad size.
   explicit Renderer(const Settings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Sets the computed cameras of a run. Without them, the first drawn frame determines all unplaced cameras.
+  /// Sets the camera of a run. If this is not called, a computed camera is derived from the first drawn frame alone.
   void set_camera_path(CameraPath path);
   /// `before`: the frame from which layers() computes motion.
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
-  /// The last picture for compositors, linear: R, G, B, A of the surfaces alone, premultiplied; picture.R, .G, .B with
-  /// floor and backdrop; with a floor, caught.A: A plus the floor's shadow (black) where no surface is; and all layers
-  /// of DataPasses.
+  /// The last picture for compositors, linear. R, G, B, A: the surfaces alone, premultiplied. picture.R, .G, .B: with
+  /// floor and backdrop. caught.A, if there is a floor: alpha of surfaces and of their shadow on the floor (black).
+  /// Then all layers of DataPasses.
   image::Layers layers();
   /// The last picture with 16 bits per channel.
   image::Image16 deep();

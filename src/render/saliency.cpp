@@ -11,10 +11,10 @@
 namespace weft::render {
 namespace {
 
-// Occlusion is resolved in a picture of this height: one cell covers 1/5000 to 1/10000 of the picture.
+// Occlusion is computed on a grid with this number of rows: one cell covers 1/5000 to 1/10000 of the picture.
 constexpr int kRows = 72;
 constexpr double kHalfScoreRate =
-    0.5;  // rate of shape change at which motion scores half [sizes of the cloth per second]
+    0.5;  // rate of shape change at which Saliency::motion is 1/2 [sizes of the cloth per second]
 
 /// A coarse depth buffer: the nearest surface in each cell.
 class CoverageGrid {
@@ -43,8 +43,8 @@ class CoverageGrid {
   }
 
  private:
-  // Cells whose centre is in the triangle, by the signs of areas; triangles that cross the near plane are
-  // ignored.
+  // Fills the cells whose centre is in the triangle, unless they show something nearer. Ignores triangles that cross
+  // the near plane.
   void fill(const Vec3& a, const Vec3& b, const Vec3& c, bool cloth) {
     const auto area = [](const Vec3& p, const Vec3& q, const Vec3& r) {
       return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
@@ -103,7 +103,7 @@ Facing facing(const frame::Surface& surface, const std::vector<Vec3>& x) {
   return result;
 }
 
-/// Mean speed of the vertices relative to their mean velocity: falling or being carried along does not count.
+/// Mean speed of the vertices relative to their mean velocity [m/s]: translation of the whole cloth does not count.
 double speed_within(const std::vector<Vec3>& now, const std::vector<Vec3>& before, double seconds) {
   Vec3 mean = Vec3::Zero();
   for (std::size_t v = 0; v < now.size(); ++v) mean += (now[v] - before[v]) / static_cast<double>(now.size());
@@ -118,7 +118,7 @@ Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSna
                      const std::string& camera, double aspect) {
   Saliency saliency;
   saliency.coverage = coverage(snapshot, camera, aspect);
-  double area = 0, flat = 0, rate = 0;  // cloth sizes per second, weighted by area
+  double area = 0, flat = 0, rate = 0;  // `rate`: sum of area times rate of shape change [cloth sizes per second]
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
     if (surface.kind != frame::ObjectKind::cloth || !is_subject(surface)) continue;

@@ -9,7 +9,7 @@ inline constexpr int kNothing = 0, kFloor = 1, kFirstSurface = 2;
 /// Heat value of surfaces other than cloth. As in shaders/frame.glsl.
 inline constexpr float kSolid = -1e6f;
 
-/// One pixel: distance along the view axis [m], and the surface number, plus 0.5 if its back is seen.
+/// One pixel: distance along the view axis [m], and the number of the surface, plus 0.5 if the pixel shows its back.
 struct Seen {
   float distance = 0, surface = kNothing;
 };

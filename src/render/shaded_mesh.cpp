@@ -10,8 +10,8 @@
 namespace weft::render {
 namespace {
 
-// The faces of a regular prism can meet exactly at the crease angle; rounding would then decide differently in each
-// frame. This margin [degrees] keeps such edges soft at any orientation; no common division of the circle lands on it.
+// Margin added to the crease angle [degrees]. The faces of a regular prism can meet exactly at the crease angle;
+// without the margin, rounding would decide in each frame anew. No usual number of faces gives the angle plus margin.
 constexpr double kCreaseMargin = 0.37;
 
 Vec3 unit_or_up(const Vec3& sum) {
@@ -29,7 +29,7 @@ class VertexSplitter {
     const std::size_t first = mesh_.normals.size();
     for (const std::int32_t corner : corners) {
       const Vec3 normal = corner_normal(corner, corners);
-      // Corners that average the same triangles get identical bits, because the order of addition is the same.
+      // Corners that average the same triangles have bitwise equal normals, because the order of addition is the same.
       std::size_t drawn = first;
       while (drawn < mesh_.normals.size() && mesh_.normals[drawn] != normal) ++drawn;
       if (drawn == mesh_.normals.size()) {

@@ -1,4 +1,4 @@
-// Drawn mesh of a surface: vertices with normals; edges sharper than the crease angle stay hard.
+// Drawn mesh of a surface: vertices with normals. Normals are discontinuous at edges sharper than the crease angle.
 #pragma once
 
 #include <array>

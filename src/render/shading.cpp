@@ -19,7 +19,7 @@ std::vector<std::string> shading_defines(const LightSet& lights, const std::vect
 // [m].
 constexpr double kTopstitchedThickness = 0.7e-3, kTopstitchDistance = 4e-3;
 
-// Gloss of cotton: up to this value, threads shine by less than half a level of 255.
+// Gloss of cotton: up to this value, the highlights of threads are below half a level of 255 and are not computed.
 constexpr double kMaxMatteGloss = 0.1;
 
 Texture make_heat_colors(const Gl& gl) {
@@ -50,8 +50,8 @@ void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corn
   gl.VertexArrayAttribBinding(array.name(), 0, 0);
 }
 
-/// Cells of 16x16 pixels with two triangles each. The interpolation error is below half a level of 255 for curvatures
-/// like that of floor towards the horizon.
+/// Cells of 16x16 pixels with two triangles each. Interpolating the light of the floor, even towards the horizon, has
+/// an error below half a level of 255.
 struct Grid {
   std::vector<Eigen::Vector2f> corners;
   std::vector<GLuint> triangles;
@@ -132,8 +132,8 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
   check_framebuffer(gl, target_, "picture");
 }
 
-// The light of a sun on open floor, and its fading, vary so slowly over the picture that they can be interpolated on a
-// grid; the edges of spots and checkers cannot.
+// The light of a sun on open floor, and the fading of the floor into the backdrop, vary so slowly over the picture that
+// they can be interpolated on a grid. The edges of spots and checkers cannot.
 Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const Features& features)
     : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.tiled &&
                     !features.reflecting) {
@@ -231,7 +231,7 @@ void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
     corners.insert(corners.end(), {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y0}, {x1, y1}, {x0, y1}});
   }
   upload<Eigen::Vector2f>(*gl_, area_vertices_, corners);
-  // Only floor has both lower bits set.
+  // Only floor pixels have both lower bits set.
   gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::shaded_floor), static_cast<GLuint>(PixelClass::floor));
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   gl_->BindVertexArray(area_array_.name());
@@ -289,7 +289,7 @@ void Shading::draw(std::span<const Material> materials, double heat_scale, const
   bind();
   mark_shaded_floor(shaded_floor);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  // The stencil test skips blocks without pixels of the class.
+  // The stencil test makes the rasteriser skip blocks without pixels of the class.
   const auto shade = [&](PixelClass pixel_class, const Program& program, bool on_grid = false) {
     gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(pixel_class), 0xFF);
     use_floor(program, features);
@@ -340,7 +340,7 @@ double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stag
       for (const float heat : state.heat) hottest = std::max(hottest, static_cast<double>(heat));
     }
   }
-  // A frame without any heat is drawn entirely cold.
+  // If the largest value is 0, the scale does not matter: all cloth has the coldest colour.
   return hottest > 0 ? 1 / hottest : 1;
 }
 

@@ -23,7 +23,7 @@ class Shading {
     frame::Appearance appearance;
     bool cloth = false;
     double opacity = 1;  ///< at normal incidence
-    bool skin = false;   ///< where no picture covers its colour
+    bool skin = false;   ///< shaded as skin where no picture covers its colour
   };
   /// Features that select shader variants.
   struct Features {
@@ -41,14 +41,14 @@ class Shading {
     bool heat = false;        ///< heat replaces the colours of cloth
     auto operator<=>(const Features&) const = default;
   };
-  /// Sets the floor whose picture is drawn, and a factor on its light. Call before draw().
+  /// Sets the floor whose picture is drawn, and `tint`, a factor on the colour of that picture. Call before draw().
   void set_floor(const std::optional<Floor>& floor, double tint);
-  /// `materials`: in the order of the surfaces. `heat_scale`: 1 / hottest value, 0 for the surfaces' own colours; only
-  /// cloth shows heat. `subjects`: area that contains all surfaces. Outside `shaded_floor`, floor is fully lit and open
-  /// to the sky. Frame and light blocks, traced light and geometry must be bound.
+  /// `materials`: in the order of the surfaces. `heat_scale`: 1 / hottest value, or 0: cloth has its own colours.
+  /// `subjects`: area that contains all surfaces. Outside `shaded_floor`, floor is fully lit and open to the sky. Frame
+  /// and light blocks, traced light and geometry must be bound.
   void draw(std::span<const Material> materials, double heat_scale, const Features& features, const PixelArea& subjects,
             std::span<const PixelArea> shaded_floor);
-  /// Draws all floor without shadows or occlusion. Call after draw() of the same picture.
+  /// Draws the whole floor without shadows or occlusion. Call after draw() of the same picture.
   void draw_open_floor(const Features& features);
   /// Draws cloth only and writes its opacity to alpha. Call after draw() of the same picture.
   void draw_layer(Features features, const PixelArea& subjects);
@@ -64,7 +64,7 @@ class Shading {
 
   struct Programs {
     Program cloth, solid, open_floor, shaded_floor;
-    bool floor_on_grid;  // open_floor computes light at the corners of the grid
+    bool floor_on_grid;  // the program `open_floor` computes light only at the corners of the grid
     Programs(const Gl& gl, const QualitySettings& quality, const Features& features);
   };
   const Programs& programs(Features features);
@@ -88,14 +88,14 @@ class Shading {
   Eigen::Matrix<float, 2, 4> floor_picture_from_world_ = Eigen::Matrix<float, 2, 4>::Zero();
 };
 
-/// Fraction of the light that cloth stops at normal incidence. Dense weaves transmit light, but nothing is visible
-/// through them.
+/// Fraction of the light that cloth stops at normal incidence: 1 for dense weaves, which scatter light to the other
+/// side, but through which nothing is visible.
 double opacity_of(const frame::Surface& surface);
 
-/// Whether a body shows skin where no picture covers its colour, as the mannequin does.
+/// Whether a body, such as the mannequin, shows skin where no picture covers its colour.
 bool is_skin(const frame::Surface& surface);
 
-/// `plain`: as clay, without own colours.
+/// `plain`: clay, in place of the surface's own colours.
 Shading::Material material_of(const frame::Surface& surface, bool plain);
 
 /// The heat that a stage shows for a frame: none for clay, strain for the look `strain`.

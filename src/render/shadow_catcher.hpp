@@ -1,4 +1,4 @@
-// The parts of a picture that compositors lay over a plate: surfaces, and their shadow on the floor.
+// The shadow of the surfaces on the floor, which compositors lay over a photograph together with the surfaces.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace weft::render {
 
-/// Fraction of the floor's light that the subjects block at each pixel: `shaded` compared with `open`, the same floor
-/// without shadows (both as read, lowest row first). Pixels covered by a surface take the maximum of their neighbours,
-/// because part of such a pixel may be floor.
+/// Fraction of the floor's light that the subjects block, per pixel, from the picture `shaded` and `open`, its floor
+/// without shadows (both as read from OpenGL, lowest row first). A pixel that shows a surface takes the maximum of its
+/// neighbours that show floor, because part of it may be floor.
 std::vector<float> floor_shadows(std::span<const Seen> seen, std::span<const std::uint64_t> shaded,
                                  std::span<const std::uint64_t> open, int width, int height);
 

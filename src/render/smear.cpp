@@ -11,9 +11,9 @@ namespace weft::render {
 namespace {
 
 constexpr int kTile =
-    8;  // [pixels]; smears extend half of the motion to each side, so that they stay within the next tile
+    8;  // [pixels]; a smear extends by half of the motion to each side, so that it stays within the next tile
 constexpr float kMaxMotion = 2 * kTile;
-constexpr float kMinMotion = 1.2f;  // [pixels]; as wide as the antialiasing of outlines
+constexpr float kMinMotion = 1.2f;  // [pixels]; shorter motions are no wider than an antialiased edge
 
 /// Position in the picture [pixels], lowest row first; z: 1 / distance, 0 behind the near plane.
 Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int height) {
@@ -23,7 +23,7 @@ Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int
       .cast<float>();
 }
 
-/// Null if the snapshot lacks the surface or has another number of vertices.
+/// Positions of a surface in a snapshot; null if it lacks the surface, or if the number of vertices is not `count`.
 const std::vector<Vec3>* positions_of(const frame::FrameSnapshot& snapshot, const frame::Surface& surface,
                                       std::size_t count) {
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i)
@@ -88,8 +88,7 @@ void Smear::find_motions(std::span<const SurfaceBuffers> surfaces, const View& v
   }
 }
 
-/// Dilates motion over neighbouring tiles. Pixels in still surroundings stay sharp: only the longest motions smear
-/// their surroundings.
+/// Stores for each tile the longest motion in it and in its neighbours. Pixels far from moving surfaces stay sharp.
 void Smear::dilate_motions() {
   const int columns = (width_ + kTile - 1) / kTile, rows = (height_ + kTile - 1) / kTile;
   std::vector<Eigen::Vector2f> tiles(static_cast<std::size_t>(columns) * rows, Eigen::Vector2f::Zero());
@@ -109,14 +108,14 @@ void Smear::dilate_motions() {
                tiles[static_cast<std::size_t>(other) * columns + beside]);
 }
 
-/// Averages samples along a motion. A sample shows the picture there if that surface moves across this pixel, or if the
-/// surface at this pixel moves away from in front of it; else the picture here (after McGuire et al., "A Reconstruction
-/// Filter for Plausible Motion Blur", 2012).
+/// Averages samples along a motion through pixel (x, y), after McGuire et al., "A Reconstruction Filter for Plausible
+/// Motion Blur", 2012. A sample shows the picture at its own place if the surface there moves across (x, y), or if it
+/// is behind the surface at (x, y) and that surface moves away; else it shows the picture at (x, y).
 Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
                                    std::span<const Eigen::Vector3f> sharp) const {
   const std::size_t here = static_cast<std::size_t>(y) * width_ + x;
   const float length = motion.norm(), own = 0.5f * motions_[here].motion.norm();
-  // Taps are at most one pixel apart; one of them is here.
+  // Samples are at most one pixel apart; one of them is at (x, y).
   const int taps = 2 * static_cast<int>(std::ceil(0.5f * length)) + 1;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (int k = 0; k < taps; ++k) {
@@ -124,7 +123,7 @@ Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
     const int to_x = std::clamp(static_cast<int>(std::lround(static_cast<float>(x) + t * motion.x())), 0, width_ - 1),
               to_y = std::clamp(static_cast<int>(std::lround(static_cast<float>(y) + t * motion.y())), 0, height_ - 1);
     const std::size_t there = static_cast<std::size_t>(to_y) * width_ + to_x;
-    // Distance that the surface in front moves, with a falloff of one pixel.
+    // `extent`: distance that the nearer surface moves to either side; the weight falls off over one pixel around it.
     constexpr float kSame = 1.01f;
     const float distance = std::abs(t) * length, other = 0.5f * motions_[there].motion.norm();
     const bool before = motions_[there].nearness > kSame * motions_[here].nearness,

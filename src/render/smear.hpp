@@ -1,5 +1,5 @@
-// Motion within one of the sharp pictures of which a blurred one is the mean: each is smeared along the motion of what
-// it shows, so that few pictures suffice.
+// Motion blur is the mean of several sharp pictures. Each of these is smeared along the motion of what it shows, so
+// that few pictures suffice.
 #pragma once
 
 #include <span>
@@ -10,13 +10,13 @@
 
 namespace weft::render {
 
-/// Motion of what a pixel shows [pixels], and 1 / its distance [1/m]; 0 if it is still.
+/// Motion of what a pixel shows [pixels], and 1 / its distance [1/m]; both are 0 for floor and backdrop.
 struct PixelMotion {
   Eigen::Vector2f motion = Eigen::Vector2f::Zero();
   float nearness = 0;
 };
 
-/// Length of the longest motion between two frames of what is in front of the viewer [pixels].
+/// Length of the longest path in the picture that a visible vertex of a subject moves between two frames [pixels].
 double longest_motion(const frame::FrameSnapshot& from, const View& from_view, const frame::FrameSnapshot& to,
                       const View& to_view, int width, int height);
 

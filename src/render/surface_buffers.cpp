@@ -9,7 +9,7 @@
 namespace weft::render {
 namespace {
 
-/// Through holes, back faces are visible.
+/// Whether pictures cut holes into the surface; through holes, back faces are visible.
 bool has_holes(const frame::Surface& surface) {
   const auto cuts = [](const frame::Appearance& look) { return look.paint.alpha == frame::Paint::Alpha::cutout; };
   return cuts(surface.appearance) ||
@@ -68,7 +68,7 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
 }
 
 void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
-  // Skips unchanged surfaces: most obstacles stand still.
+  // Unchanged surfaces are not uploaded again: most obstacles do not move.
   if (!detail_.rims) rim = 0;
   if (has_corner_map_ && state.positions == state_.positions && state.heat == state_.heat && rim == rim_width_) return;
   rim_width_ = rim;
@@ -129,14 +129,14 @@ void SurfaceBuffers::add_midpoints(std::vector<Vertex>& vertices) {
   }
 }
 
-/// Appends strips after all other vertices and triangles.
+/// Appends the strips along borders after all other vertices and triangles.
 void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
   // One drawn vertex for each surface vertex, and the midpoints of curved rims.
   std::vector<Index> drawn(vertex_count_);
   for (std::size_t i = 0; i < mesh_.source.size(); ++i) drawn[mesh_.source[i]] = static_cast<Index>(i);
   std::vector<Vec3> places = state_.positions, normals(vertex_count_);
   for (std::size_t v = 0; v < vertex_count_; ++v) normals[v] = mesh_.normals[drawn[v]];
-  std::vector<std::pair<Index, Index>> ends;  // drawn vertices whose mean a place is
+  std::vector<std::pair<Index, Index>> ends;  // per place: the two drawn vertices whose mean it is
   for (std::size_t v = 0; v < vertex_count_; ++v) ends.emplace_back(drawn[v], drawn[v]);
   const double max_offset = max_midpoint_offset(surface_->appearance.thickness);
   std::vector<Trims::Rim> rims;
@@ -175,7 +175,7 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
     for (std::size_t t = 0; t < strip.triangles.size(); ++t) add(t);
     return;
   }
-  // Each range gets a second range with its strips.
+  // For each painted range, a second range contains its strips.
   const auto& parts = surface_->part_of_triangle;
   const auto look_of = [&](std::int32_t triangle) {
     return parts.empty() ? &look : &surface_->parts[static_cast<std::size_t>(parts[triangle])].appearance;
@@ -196,7 +196,7 @@ void SurfaceBuffers::upload_trims() {
   for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
   if (refinement_)
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
-  // Strips get a border distance inside the hem, so that they show neither its stitches nor its fold.
+  // Strips get a distance from the border between the hem's fold and its stitches, so that they show neither.
   constexpr float kPlain = 0.3f;
   Trim plain;
   plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);

@@ -13,15 +13,15 @@
 
 namespace weft::render {
 
-/// What a surface is drawn with in addition to its simulated triangles.
+/// Detail of the drawn surface beyond its simulated triangles.
 struct Detail {
-  bool refines = false;  ///< curved triangles; mesh() then holds the coarse ones
-  bool rims = false;     ///< strips along borders, as thick as the cloth; mesh() excludes them
+  bool refines = false;  ///< splits triangles on a smooth surface; mesh() then holds the coarse ones
+  bool rims = false;     ///< strips along borders, as wide as the cloth is thick; mesh() excludes them
   bool trims = false;    ///< hems and seams
 };
 
-/// Vertex attributes, as in the shaders: 0 position, 1 normal, 2 rest (u,v), 3 heat; 4 paint coordinates if painted; 5
-/// and 6 a Trim if trimmed.
+/// Vertex attributes, as in the shaders: 0 position, 1 normal, 2 rest (u, v), 3 heat. Painted surfaces also have 4,
+/// paint coordinates; trimmed ones 5 and 6, a Trim.
 class SurfaceBuffers {
  public:
   SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, const Detail& detail);
@@ -35,7 +35,7 @@ class SurfaceBuffers {
   void update(const frame::SurfaceState& state, double rim = 0);
   void draw() const;
   void draw(const PaintedRange& range) const;
-  /// Null if nothing is painted.
+  /// The painted mesh; null if nothing is painted.
   const PaintedMesh* painted() const { return painted_ ? &*painted_ : nullptr; }
   /// Whether only front faces are visible from `eye`: the surface is closed, its normals point outwards, and the eye is
   /// outside its bounding box.

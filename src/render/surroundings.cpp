@@ -93,8 +93,8 @@ Vec3 Surroundings::light(const Vec3& toward, double alpha) const {
 
 Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3& up,
                       std::span<const frame::Light> lights, const Vec3& ground) {
-  // The key light's horizontal direction. The boxes are placed relative to it, so that they stay still when the camera
-  // moves.
+  // Horizontal direction of the key light. The boxes are placed relative to it, not to the camera, so that they stay
+  // still when the camera moves.
   Vec3 key = Vec3::Zero();
   if (!lights.empty()) {
     const frame::Light& first = lights.front();
@@ -129,7 +129,7 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
       around.boxes = {box(0.2, 0.1, 1, 5, 1.2), box(-0.4, -1, 0.5, 4, 1.1), box(-1, 0.8, 0.45, 14, 2.0)};
       break;
   }
-  // A horizontal surface receives the style's fraction of light; the ground light is as given.
+  // Scales sky and boxes so that a horizontal surface receives the style's fraction of light. The ground light stays.
   const Vec3 flat = at(irradiance_of(around), up);
   const Vec3 scale = style.sky_intensity * style.sky_color.cwiseQuotient(flat.cwiseMax(1e-6));
   const bool tinted = stage.look == Look::daylight;
@@ -142,10 +142,11 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
 }
 
 Irradiance irradiance_of(const Surroundings& surroundings) {
-  // Midpoints of 24 x 48 cells of the sphere, uniform in height; enough, because the projected function is smooth.
+  // Integrates over 24 x 48 cells of the sphere, uniform in height; enough, because the projected function is smooth.
   constexpr int kRows = 24, kColumns = 48;
   constexpr double kPi = std::numbers::pi;
-  // Squared norms of the harmonics, times the cosine's pi, 2 pi / 3 and pi / 4, over pi to get what matte white shows.
+  // Squared norms of the harmonics, times the factors of the clamped cosine (pi, 2 pi / 3 and pi / 4), divided by pi to
+  // get the light that matte white shows.
   constexpr double kZero = 1 / (4 * kPi), kOne = 3 / (4 * kPi) * 2 / 3, kCross = 15 / (4 * kPi) / 4,
                    kUp = 5 / (16 * kPi) / 4, kSaddle = 15 / (16 * kPi) / 4;
   std::array<Vec3, 9> sums;

@@ -15,8 +15,8 @@ struct Style {
   Vec3 sky_color = Vec3::Ones();  ///< colour of the environment light on a horizontal surface
   double sky_intensity = 0.45;    ///< fraction of all light that the environment provides
   Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon, relative to fully lit floor
-  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above, likewise
-  double glow = 0;                ///< relative increase of backdrop brightness behind the subjects
+  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above, relative to fully lit floor
+  double glow = 0;                ///< the backdrop is brighter by this fraction behind the subjects
   double floor_tint = 1;          ///< factor on the colour of the floor
   double floor_roughness = 1;     ///< upper limit of the floor's roughness
   double toe = 0;                 ///< linear light below which tones are darkened, as film does; 0: unchanged
@@ -26,8 +26,8 @@ struct Style {
 };
 Style style_of(const frame::Stage& stage);
 
-/// Environment light for each direction: a sky, a ground, and soft boxes as spherical Gaussians. Unit: uniform light of
-/// 1 makes a matte white surface show 1.
+/// Environment light for each direction: a sky, a ground, and soft boxes as spherical Gaussians. Unit: under uniform
+/// light of value 1, a matte white surface has the linear colour 1.
 struct Surroundings {
   struct Box {
     Vec3 axis = Vec3::UnitZ();

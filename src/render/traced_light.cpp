@@ -16,20 +16,21 @@ using Kind = PixelPoints::Kind;
 constexpr float kGoldenAngle = 2.39996323f;
 constexpr std::size_t kRowsAtOnce = 8;
 constexpr int kTurns = 64;        // rotations of the points on a lamp
-constexpr int kFirstRays = 1;     // of each pixel, to find penumbrae
+constexpr int kFirstRays = 1;     // rays of each point, to find penumbrae
 constexpr int kFloorTile = 16;    // side of a tile of shaded floor [pixels]
-constexpr int kPenumbraTile = 8;  // side of a tile [points]
+constexpr int kPenumbraTile = 8;  // side of a tile in which penumbrae are searched [points]
 constexpr int kMirrorRays = 4;
-// Light falls to zero at the terminator of solid bodies, of skin beyond it (surface.frag); cloth lets light through.
+// No rays start where the cosine between normal and light is below this value, except from cloth, which lets light
+// through. Skin shows light slightly beyond the terminator (surface.frag).
 constexpr float kLeastCosine = -0.2f;
-// Changes of floor below half a level of 255.
+// Changes of the floor's light below this fraction are ignored: half a level of 255.
 constexpr float kUnseen = 0.002f;
 
 constexpr float kFloorKind = static_cast<float>(Kind::floor), kClothKind = static_cast<float>(Kind::cloth);
 
-/// A rotation for each pixel, from 0 to kTurns - 1, such that any 4 x 4 pixels hold 16 that are evenly spread, in an
-/// order without rows or columns (Bayer, "An optimum method for two-level rendition of continuous-tone pictures", 1973,
-/// over 8 x 8 pixels).
+/// A rotation for each pixel, from 0 to kTurns - 1. Any 4 x 4 pixels have 16 evenly spread rotations, in an order that
+/// shows no rows or columns (8 x 8 pixels of Bayer, "An optimum method for two-level rendition of continuous-tone
+/// pictures", 1973).
 int turn_of(int x, int y) {
   static constexpr auto kOrder = [] {
     std::array<int, kTurns> order{};
@@ -45,14 +46,15 @@ int turn_of(int x, int y) {
   return kOrder[static_cast<std::size_t>((y & 7) * 8 + (x & 7))];
 }
 
-/// Point k of n that cover a disc of radius 1 evenly (Vogel 1979), turned; `along` in [0, 1): its place in its ring.
+/// Point k of n points that cover a disc of radius 1 evenly (Vogel 1979). `turn`: rotation of all points [turns].
+/// `along` in [0, 1): radial position of each point within its ring.
 Vector2f on_disc(float k, int n, float turn, float along) {
   const float radius = std::sqrt((k + along) / static_cast<float>(n));
   const float angle = kGoldenAngle * k + 2 * std::numbers::pi_v<float> * turn;
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Two unit vectors across a unit vector (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+/// Two unit vectors orthogonal to a unit vector (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
 template <class Number, class Vector>
 void across(const Vector& n, Vector& first, Vector& second);
 template <>
@@ -69,12 +71,12 @@ void across<Lanes, Lanes3>(const Lanes3& n, Lanes3& first, Lanes3& second) {
   second = {b, sign + n.y * n.y * a, -n.y};
 }
 
-/// Pairs of numbers in [0, 1) for points: any block of 5 x 5 points holds 25 that are evenly spread. Each of 8 x 8
-/// blocks shifts them otherwise, by the R2 sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom
-/// Sequences", 2018), as few directions would be wrong in the same way everywhere.
+/// A pair of numbers in [0, 1) for each point. The 25 pairs of a block of 5 x 5 points are evenly spread. 64 kinds of
+/// blocks have different shifts of these pairs, by the R2 sequence (Roberts, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences", 2018). Otherwise, the same few directions would cause the same error everywhere.
 constexpr int kSpreads = 25 * 64;
 int spread_number(int x, int y) {
-  const int block = (x / 5 + 19 * (y / 5)) % 64;  // 19 steps of the sequence differ in both numbers
+  const int block = (x / 5 + 19 * (y / 5)) % 64;  // 19 steps of the sequence change both numbers much
   return block * 25 + (x + 2 * y) % 5 + 5 * ((y + 2 * x) % 5);
 }
 Vector2f spread(int number) {
@@ -86,7 +88,7 @@ Vector2f spread(int number) {
   return at - Vector2f(at.array().floor());
 }
 
-/// Directions of rays about +z, with a density of their cosine: ray k of `rays` for each number of spread().
+/// Directions of rays about +z, with a density proportional to their cosine: `rays` rays for each number of spread().
 std::vector<Vector3f> cosine_directions(int rays) {
   std::vector<Vector3f> all;
   for (int number = 0; number < kSpreads; ++number) {
@@ -98,8 +100,8 @@ std::vector<Vector3f> cosine_directions(int rays) {
   return all;
 }
 
-/// Marks the tiles of points that may lie in penumbrae: those in which two values differ, or one lies between 0 and 1,
-/// and their neighbours. In a penumbra's rim only few rays differ; one of those of a whole tile will.
+/// Marks the tiles that may contain penumbrae: those in which two values differ or one lies between 0 and 1, and their
+/// neighbours. At the rim of a penumbra only few rays have another result, but likely one of a whole tile.
 void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted) {
   const int width = points.width(), height = points.height();
   const int columns = (width + kPenumbraTile - 1) / kPenumbraTile, rows = (height + kPenumbraTile - 1) / kPenumbraTile;
@@ -131,8 +133,8 @@ void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& poi
   });
 }
 
-/// Of the wanted points, keeps those between 0 and 1, and those within two points of another value. `low`, `high`: of
-/// any content.
+/// Of the wanted points, keeps those with a value between 0 and 1, and those within two points of a different value.
+/// `low`, `high`: scratch, overwritten.
 void keep_mixed(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted, Plane& low,
                 Plane& high) {
   constexpr int kNeighbors = 2;
@@ -217,11 +219,12 @@ void TracedLight::trace_shadows(const ReflectedLight& light) {
   upload(lit_, points, lit_texture_, 0);
 }
 
-/// One ray from each pixel to a point of the lamp; half of all where a penumbra may be; all where one is.
+/// Traces one ray from each point to the lamp. Points that may lie in a penumbra get half of all rays, and those of
+/// them that do lie in one get all rays.
 void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plane& lit) {
   const PixelPoints& points = lit_points();
   const int width = points.width(), height = points.height(), rays = quality_.shadow_rays;
-  // Places on the lamp by rotation and ray: directions to a sun, positions of a spot.
+  // Target of each ray, per rotation: directions to a sun, positions on a spot.
   const Vector3f axis = lamp.packed.toward_light.head<3>();
   const Vector3f center = lamp.is_spot() ? Vector3f(lamp.packed.position.head<3>()) : axis;
   const float radius = lamp.source_tangent * (lamp.is_spot() ? lamp.reach() : 1);
@@ -230,7 +233,7 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
   std::vector<Vector3f> places;
   for (int turn = 0; turn < kTurns; ++turn) {
     for (int k = 0; k < rays; ++k) {
-      // The first rays lie at radii and angles that represent the disc.
+      // In this order, the first half of the rays already covers the disc.
       const auto order = static_cast<float>((k * 5 + rays / 2) % rays);
       const Vector2f at = on_disc(order, rays, static_cast<float>(turn) / kTurns, 0.5f);
       places.emplace_back(center + radius * (at.x() * first + at.y() * second));
@@ -252,7 +255,8 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
           Rays packet;
           packet.wanted = mask(kinds * asked > 0 && to.intensity > 0 && (kinds == kClothKind || side > least));
           if ((packet.wanted == 0).all()) continue;
-          // Rays start on the side that faces the lamp, on the smooth surface: its triangles would shade each other.
+          // Rays start on the side that faces the lamp, at the smooth surface: from the flat triangles, neighbouring
+          // triangles would block them.
           const Lanes facing = (side < 0).select(Lanes::Constant(-1), Lanes::Constant(1));
           const Lanes lift = facing * (kRayStart + (facing * points.rises(x, y)).max(0.0f));
           packet.origin = points.positions(x, y) + lift * normal;
@@ -325,7 +329,7 @@ void TracedLight::trace_surroundings(const ReflectedLight& light) {
   upload(open_, points, open_texture_, 1);
 }
 
-/// Rays about the mirrored view, as widely spread as the surface is rough.
+/// Traces rays about the mirrored direction of view; they spread more widely from rougher surfaces.
 void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Surface> surfaces, const Vector3f& eye) {
   const PixelPoints& points = open_points_;
   mirrored_.resize(4, Plane(points.width(), points.height(), 0));
@@ -372,7 +376,7 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
   upload(mirrored_, points, *mirrored_texture_, 2);
 }
 
-/// Interpolates four planes at all pixels, and marks the floor that they change.
+/// Interpolates four planes at all pixels, and marks the tiles in which they change the light of the floor.
 void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& points, const Texture& texture,
                          GLuint unit) {
   texels_.resize(seen_.size());

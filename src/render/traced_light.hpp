@@ -1,5 +1,6 @@
-// The light that reaches each pixel, by rays: fractions of the lamps, of the surroundings, and what surfaces reflect
-// onto each other. Few rays a pixel; joint_filter.hpp removes their noise.
+// Computes the light that reaches each pixel by tracing rays: the visible fractions of the lamps and of the
+// surroundings, and the light that surfaces reflect onto each other. Each pixel has only a few rays; joint_filter.hpp
+// removes their noise.
 #pragma once
 
 #include <optional>
@@ -18,17 +19,19 @@ class TracedLight {
   /// For pictures of width x height pixels.
   TracedLight(const Gl& gl, const QualitySettings& quality, int width, int height);
 
-  /// What each surface is to rays that start on it.
+  /// Properties of a surface for rays that start on it.
   struct Surface {
     PixelPoints::Kind kind;
-    float mirror_alpha;  ///< squared roughness of its reflections; negative: it mirrors nothing near by
+    float mirror_alpha;  ///< squared roughness of its reflections; negative: it mirrors only the surroundings
 
     static Surface of(const frame::Appearance& look, bool cloth);
   };
 
-  /// Light of what the geometry buffer shows. Binds to unit 0 the fractions of up to four lamps; to unit 1 the light
-  /// reflected by surfaces, as matte white shows it, and in w the fraction of the surroundings that is open; to unit 2,
-  /// if a surface mirrors, the light mirrored by it and the fraction of it that surfaces hide.
+  /// Traces the light of what the geometry buffer shows, and binds textures:
+  /// - unit 0: the visible fractions of up to four lamps
+  /// - unit 1: light that other surfaces reflect, as a matte white surface shows it; w: open fraction of the
+  /// surroundings
+  /// - unit 2, if a surface mirrors: light of mirrored surfaces; w: fraction of the mirror image that they cover
   void draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Surface> surfaces,
             const View& view, const std::optional<Floor>& floor);
 
@@ -50,8 +53,8 @@ class TracedLight {
   std::optional<PixelPoints> lit_points_;              // if shadows are smaller than the picture
   std::vector<Plane> lit_;                             // per lamp
   std::vector<Plane> open_, open_scratch_, mirrored_;  // red, green, blue, fraction
-  std::vector<Eigen::Vector3f> directions_;            // of the rays to the surroundings
-  std::array<Plane, 5> scratch_;                       // of the size of lit_
+  std::vector<Eigen::Vector3f> directions_;            // directions of the rays to the surroundings
+  std::array<Plane, 5> scratch_;                       // scratch planes, as large as those of lit_
   Texture lit_texture_, open_texture_;
   std::optional<Texture> mirrored_texture_;
   std::vector<Seen> seen_;

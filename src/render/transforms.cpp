@@ -6,7 +6,7 @@ ViewAxes view_axes(const Vec3& forward, const Vec3& up) {
   ViewAxes axes;
   axes.forward = forward.squaredNorm() > 0 ? forward.normalized() : Vec3(-up.unitOrthogonal());
   Vec3 right = axes.forward.cross(up);
-  // Straight up or down, any roll is possible.
+  // If the view is straight up or down, the roll is arbitrary.
   if (right.norm() < 1e-9 * up.norm()) right = up.unitOrthogonal();
   axes.right = right.normalized();
   axes.up = axes.right.cross(axes.forward);

@@ -14,13 +14,13 @@ std::uint64_t key(Index a, Index b) {
 
 constexpr double kMaxSmoothCosine = 0.87;  // cosine of 30 degrees: borders that turn by more have a corner
 
-/// Assigns the two border kinds alternately to the sides between corners. On a closed border, starts with the first
-/// edge after a corner; with an odd number of sides, two of the same kind meet at the end.
+/// Assigns the two border kinds alternately to the sides between corners. A closed border starts with the first edge
+/// after a corner. If it has an odd number of sides, its first and last side have the same kind.
 template <class Segment>
 void assign_border_kinds(std::vector<Segment>& segments, std::span<const std::size_t> chain, std::span<const Vec2> uv) {
   const auto direction = [&](std::size_t k) { return Vec2(uv[segments[chain[k]].b] - uv[segments[chain[k]].a]); };
   const auto corner_before = [&](std::size_t k) {
-    // Not across seams, which end a panel.
+    // Edges on different sides of a seam do not form a corner.
     if (segments[chain[(k + chain.size() - 1) % chain.size()]].b != segments[chain[k]].a) return false;
     const Vec2 before = direction((k + chain.size() - 1) % chain.size()), after = direction(k);
     return before.dot(after) < kMaxSmoothCosine * before.norm() * after.norm();
@@ -36,7 +36,8 @@ void assign_border_kinds(std::vector<Segment>& segments, std::span<const std::si
   }
 }
 
-/// Chains consecutive edges and stores the arc length at each start. Each seam is measured once, from its first side.
+/// Chains consecutive edges and stores the arc length at the start of each edge. A seam is measured along the side that
+/// is met first; both sides get the same arc lengths.
 template <class Segment>
 void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> places) {
   std::unordered_multimap<Index, std::size_t> by_start;
@@ -60,8 +61,8 @@ void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> p
         std::swap(twin.a, twin.b);
         twin.start = segments[i].start;
       }
-      // Of several continuations, prefers the same panel, then the lowest index, so that the order of the map has no
-      // influence.
+      // If several edges continue the chain, prefers one in the same panel, then the lowest index. Thus the order of
+      // the map has no influence.
       std::size_t next = segments.size();
       const auto [from, to] = by_start.equal_range(segments[i].to);
       const auto rank = [&](std::size_t k) { return std::pair(segments[k].a != segments[i].b, k); };
@@ -79,8 +80,8 @@ void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> p
 
 }  // namespace
 
-/// Assigns places, the positions of vertices in their panels. Panels are flat: a vertex on a seam between panels, or of
-/// a panel with itself, has one place in each.
+/// Assigns places, the positions of vertices in their flat panels. A vertex on a seam has one place on each side of the
+/// seam, even if both sides belong to one panel.
 std::vector<Triangle> Trims::find_places(const frame::Surface& surface) {
   const auto& triangles = surface.triangles;
   const bool by_part = surface.part_of_triangle.size() == triangles.size(),
@@ -158,8 +159,8 @@ Trims::Place Trims::place(const Lines& lines, std::int32_t segment, const Vec2& 
   return {(at - from - along / length * direction).norm(), line.start + along};
 }
 
-/// Finds the nearest segment of each place by propagation along mesh edges, so that distances are measured within the
-/// cloth: laid-out panels may overlap in the plane.
+/// Finds the nearest segment of each place by propagation along mesh edges. Thus distances are measured within the
+/// cloth, although panels may overlap in the plane in which they are laid out.
 Trims::Lines Trims::lines(std::vector<Segment> segments, std::span<const std::vector<Index>> neighbors) const {
   Lines result{std::move(segments), std::vector<std::int32_t>(places_.size(), -1), {}};
   result.at.resize(places_.size());
@@ -196,8 +197,8 @@ Trim Trims::trim(const Vec2& at, std::span<const Index> near) const {
       const std::int32_t nearest = lines.nearest[vertex];
       if (nearest < 0) continue;
       try_segment(nearest);
-      // At a vertex of a line, two segments are equally near, and only one is stored: points beside the vertex may be
-      // closer to the other.
+      // At a vertex of a line, both of its segments are equally near, but only one is stored. A point beside the vertex
+      // may be closer to the other one.
       for (const Index end : {lines.segments[nearest].a, lines.segments[nearest].b})
         std::ranges::for_each(lines.at[end], try_segment);
     }
@@ -223,7 +224,7 @@ Trim Trims::at(Index vertex) const {
 
 Trim Trims::middle(Index a, Index b) const {
   if (places_of_.empty()) return {};
-  // Of all pairs of places, the closest two in the same panel are the ends of the edge.
+  // Of all pairs of places of the two vertices, the ends of the edge are the closest pair in the same panel.
   std::array<Index, 2> ends{places_of_[a].front(), places_of_[b].front()};
   double length = kNoTrim;
   for (const Index from : places_of_[a]) {

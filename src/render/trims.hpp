@@ -13,8 +13,7 @@ namespace weft::render {
 inline constexpr float kNoTrim = 1e3f;
 
 /// Distances from a point to the nearest line of each kind, in rest coordinates [m]; kNoTrim if there is none. Two
-/// borders that meet at a corner have different kinds, so that both distances are linear across the corner; their
-/// minimum would not be.
+/// borders that meet at a corner have different kinds: each distance is linear across the corner, their minimum is not.
 struct Trim {
   enum Kind { border, other_border, seam };
   static constexpr int kKinds = 3;
@@ -33,7 +32,7 @@ class Trims {
   Trim at(Index vertex) const;
   Trim middle(Index a, Index b) const;
 
-  /// A border edge: it belongs to one triangle only and has its orientation.
+  /// A border edge: it belongs to a single triangle, and runs from a to b in that triangle's orientation.
   struct Rim {
     Index a, b;
     std::int32_t triangle;
@@ -45,7 +44,7 @@ class Trims {
     Index a, b;              // indices of places
     Index from, to;          // indices of vertices
     double start = 0;        // arc length of its start along its border or seam [m]
-    bool other = false;      // of two border sides that meet at a corner, the second kind
+    bool other = false;      // is an `other_border`
     std::int32_t twin = -1;  // same edge on the other side of a seam
   };
   /// All lines of one kind, with lookup by place.
@@ -72,7 +71,7 @@ class Trims {
 /// The visible thickness at the edge of cloth: a strip along each border, from front to back.
 struct RimStrip {
   std::vector<Vec3> positions, normals;
-  std::vector<Index> source;        ///< the vertex that each is at, or behind
+  std::vector<Index> source;        ///< per position: the vertex of the surface at or behind which it lies
   std::vector<Triangle> triangles;  ///< indices into positions, from 0
   std::vector<std::int32_t> owner;  ///< by triangle: the triangle of its rim
 };

@@ -12,13 +12,13 @@ namespace {
 // Rec. 709 luminance weights.
 const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
 constexpr double kGroundLight =
-    0.8;  // fraction of the open floor's light that comes from below: far floor fades to a darker backdrop
+    0.8;  // light from below / light of open floor; less than 1, since far floor fades to a darker backdrop
 constexpr double kReflectedGround =
-    0.5;  // factor on that in reflections: glossy surfaces see floor in the shade of the subjects
+    0.5;  // factor on the light from below in reflections: the floor near glossy surfaces is often shaded
 constexpr double kMaxGain = 1.8;           // maximum gain of direct light; darker scenes are meant to be dark
 constexpr double kMaxWhiteBalance = 0.08;  // maximum relative change of a channel by white balance
 
-/// Map from the world to picture coordinates, from the corners of a triangle and their picture coordinates.
+/// Map from the world to picture coordinates, given the corners of a triangle in both.
 Eigen::Matrix<double, 2, 4> picture_from_world(const std::array<Vec3, 3>& x, const std::array<Vec2, 3>& places) {
   const Vec3 p = x[1] - x[0], q = x[2] - x[0];
   Mat3 axes;
@@ -67,12 +67,12 @@ View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const
   const double reach = (subjects.center() - view.eye).norm() + radius;
   double nearest = view.axes.forward.dot(subjects.center() - view.eye) - radius;
   if (floor) {
-    // The floor is nearest at the lower edge of the picture, and never nearer than this fraction of the eye's height.
+    // Visible floor is nearest at an edge of the picture, and never nearer than the eye's height / `widest`.
     const double height = floor->normal.dot(view.eye - floor->point);
     const double widest = std::hypot(1.0, view.tan_half_width, view.tan_half_height);
     if (height > 0) nearest = std::min(nearest, height / widest);
   }
-  // Depth resolution is distance^2 / (near 2^24): with near at a thousandth of `reach`, about 1e-4 of the scene.
+  // Depth resolution is distance² / (near · 2^24) [m]. If near is reach / 1000, this is about 1e-4 of `reach`.
   view.near = std::max(0.8 * nearest, 1e-3 * reach);
   view.far = 200 * reach;
   view.view_from_world = look_along(view.eye, view.axes);
@@ -125,7 +125,7 @@ Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::opt
   lighting.style = style_of(stage);
   lighting.exposure = expose(lighting.style, floor, lights);
   lighting.gain = std::exp2(stage.exposure);
-  // Light of open floor; rays subtract what shaded floor lacks (reflected_light.hpp).
+  // The light from below is that of open floor; rays to shaded floor subtract the difference (reflected_light.hpp).
   const Vec3 ground =
       floor && !stage.ground_color
           ? Vec3(kGroundLight * lighting.style.floor_tint * lighting.exposure.floor)
@@ -152,7 +152,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   const double radius = 0.5 * surroundings.diagonal().norm();
   const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
   const Vec3 shown = style.floor_tint * lighting.exposure.floor;
-  // A sky has its own colour, a backdrop that of the floor.
+  // A sky has its own colour, a backdrop the colour of the floor.
   const auto behind = [&](const Vec3& color) -> Vec3 { return sky ? color : shown.cwiseProduct(color); };
 
   FrameUniform frame;

@@ -32,7 +32,7 @@ struct View {
   Mat4 view_from_world = Mat4::Identity(), clip_from_world = Mat4::Identity();
 };
 
-/// Places the near plane as far away as the subjects and the visible floor allow.
+/// The near plane is as far away as the subjects and the visible floor allow.
 View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
                const std::optional<Floor>& floor);
 
@@ -62,9 +62,10 @@ struct Exposure {
   Vec3 floor = Vec3::Zero();   ///< linear colour that open floor shows; without a floor, that of the environment light
 };
 
-/// Exposes for the floor, as for a product on white: direct light is increased, never decreased, until open floor shows
-/// its own colour, and warmed against a bluish sky. Darkness and hues beyond a slight tint stay as the scene has them.
-/// Without a floor, or if the style does not expose, nothing changes. `lights`: those of the picture.
+/// Exposes for the floor, as product photographers do for a white ground. Direct light is increased, never decreased,
+/// until open floor shows its own colour. It also gets a slight tint (white balance), against a bluish sky. The gain
+/// and the tint are limited, so that dark or coloured scenes stay so. Without a floor, or if the style does not expose,
+/// nothing changes. `lights`: those of the picture.
 Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights);
 
 /// Style, environment and exposure of a picture.
@@ -77,8 +78,8 @@ struct Lighting {
 Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
                        std::span<const frame::Light> lights);
 
-/// Roughness of the floor, from its own appearance and from the style; 1 without a floor. Below kMirrorsLamps, which is
-/// less than the default of scenes, the floor mirrors lamps; below kMirrorsSubjects it also mirrors the subjects.
+/// Roughness of the floor, from its own appearance and from the style; 1 without a floor. Below kMirrorsLamps the floor
+/// mirrors lamps (the default roughness of scenes does not); below kMirrorsSubjects it also mirrors the subjects.
 double floor_roughness(const Style& style, const std::optional<Floor>& floor);
 inline constexpr double kMirrorsLamps = 0.6, kMirrorsSubjects = 0.5;
 

@@ -1,5 +1,5 @@
-// Reviewers' decisions about runs: `review.json` in the folder of a run or above it, as the page offers it for
-// download.
+// Reviewers' decisions about runs. The page offers them for download as `review.json`; reviewers put this file into the
+// folder of a run or a folder above it.
 //
 //     {"format": "weft review 1", "runs": {"stiff/band": {"state": "needs work", "of": "9f86d081884c7d65", "by": "Ann",
 //      "date": "2026-11-23T19:40:00.000Z", "notes": [{"frame": 12, "text": "a fold stands up", "by": "Ann",
@@ -19,8 +19,8 @@ namespace weft::review {
 
 class Decisions {
  public:
-  /// The entry of a run, from the nearest file with such an entry; null if there is none. Adds unusable files and
-  /// entries to `run.problems`.
+  /// The entry of a run. It comes from the file in the nearest folder, from that of the run upward, that has such an
+  /// entry; null if there is none. Adds unusable files and entries to `run.problems`.
   Json of(RunFiles& run);
 
  private:
@@ -33,7 +33,7 @@ class Decisions {
   std::map<std::filesystem::path, File> files_;  // by folder
 };
 
-/// The defect of an entry; empty if it is valid.
+/// Describes the defect of an entry; empty if it is valid.
 std::string mistake_of_decision(const Json& entry);
 
 /// Hash of the bytes of the run's video or pictures: 16 hexadecimal digits; empty if it has none. Throws

@@ -101,7 +101,7 @@ Json set_of(const Json& run) {
   return set != run.end() && set->is_object() && std::all_of(set->begin(), set->end(), is_text) ? *set : Json();
 }
 
-// The files below one folder, while runs are composed from them.
+// Composes runs from the files below one folder.
 class Search {
  public:
   explicit Search(const fs::path& folder) : folder_(folder) {
@@ -193,8 +193,8 @@ class Search {
     runs_.push_back(std::move(run));
   }
 
-  // Finds the pictures that the statistics name as output. Searches them beside the statistics, since folders may have
-  // been moved or copied from other machines. If none is found, uses the video with the name of the statistics.
+  // Finds the video or pictures that the statistics name as output. Searches beside the statistics, since folders may
+  // have been moved or copied from other machines. If it finds none, uses the video with the name of the statistics.
   void take_pictures(RunFiles& run) {
     const fs::path beside = run.stats.parent_path();
     const auto named_output = run.stats_json.find("output");
@@ -225,7 +225,7 @@ class Search {
     return true;
   }
 
-  // Whether a farm has joined these pictures, which are in a subfolder of a run, to the video of that run.
+  // Whether the pictures are in a subfolder of a run that has a video: then a farm has joined them to this video.
   bool are_in_a_video(const fs::path& prefix) const {
     const fs::path run = prefix.parent_path().parent_path();
     return swept_.contains(run.lexically_relative(folder_)) && std::ranges::any_of(runs_, [&](const RunFiles& other) {

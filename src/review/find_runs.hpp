@@ -25,7 +25,8 @@ struct RunFiles {
   Json values;                        ///< for a sweep: changed values by key; otherwise null
 };
 
-/// Index that weft sweep writes beside its runs: `runs`, each with its `folder` and the values that were `set`.
+/// Name of the index that weft sweep writes beside its runs. It lists `runs`, each with its `folder` and the values
+/// that were `set`.
 inline constexpr const char* kSweepName = "sweep.json";
 
 /// All runs below `folder`, ordered by name; runs of a sweep in the order of the sweep. Skips hidden files and review
@@ -45,7 +46,7 @@ long long picture_number(const std::filesystem::path& picture);
 /// Whether `weft review` wrote the page in `folder`.
 bool is_review_page(const std::filesystem::path& folder);
 
-/// Marks index.html as a page of Weft.
+/// Text in index.html that marks it as a page of Weft.
 inline constexpr const char* kPageMark = "name=\"generator\" content=\"weft review";
 
 }  // namespace weft::review

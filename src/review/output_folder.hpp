@@ -8,7 +8,7 @@
 
 namespace weft::review {
 
-/// List of the files of a page, one per line, which a later page may remove.
+/// Name of the file that lists the files of a page, one per line. A later page may remove these files.
 inline constexpr const char* kFileList = "files.txt";
 
 /// Throws Error(output_failed) if `folder` holds a page and `overwrite` is not set, or in any case if it holds a file

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxTiles = 16;
 constexpr int kTileWidth = 320;  // [pixels]; width of a poster in the overview on a high-density screen
-constexpr int kHeatWidth = 640;  // maximum [pixels]; shrinking keeps the largest value
+constexpr int kHeatWidth = 640;  // maximum width of a FLIP map [pixels]
 
 // Reads pictures one after the other, from a video or from files.
 class Reader {
@@ -31,7 +31,7 @@ class Reader {
     return image::read_png(run_.pictures[at]);
   }
 
-  /// The picture with this index, which must not be before the next one; nullopt if there are fewer.
+  /// The picture with this index; nullopt if there are fewer. Indices must ascend from call to call.
   std::optional<image::Image> skip_to(long long picture) {
     if (!decoder_) next_ = picture;
     while (next_ < picture) {

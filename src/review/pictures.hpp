@@ -17,7 +17,7 @@ struct Tile {
   image::Image image;
 };
 
-/// Result of one pass over the pictures.
+/// Result of one pass over the pictures of a run.
 struct Survey {
   std::vector<Tile> tiles;  ///< evenly spaced: all pictures if there are few, else 8 to 15
   long long count = 0;      ///< number of readable pictures

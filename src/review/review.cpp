@@ -48,7 +48,7 @@ std::string last_part(const std::string& name) {
   return name.substr(name.rfind('/') + 1);
 }
 
-// The reference with the same path, else the only one with the same last part.
+// The reference with this name. If there is none, the only reference whose name has the same last part; else null.
 const RunFiles* find_reference(const std::vector<RunFiles>& references, const std::string& name) {
   const RunFiles* found = nullptr;
   for (const RunFiles& reference : references) {
@@ -81,7 +81,7 @@ void copy_into(const fs::path& from, const fs::path& to) {
   if (error) throw Error(ExitCode::output_failed, "{}: cannot be copied: {}", from.string(), error.message());
 }
 
-// Writes without a flush, since the folder is flushed as a whole.
+// Writes a file without a flush to disk, since the folder is flushed as a whole.
 void write_text(const fs::path& file, std::string_view text) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
@@ -235,7 +235,7 @@ class Page {
     if (!sheet.empty()) entry.json["poster"] = sheet[sheet.size() / 2]["file"];
   }
 
-  // Adds the decision, the folder for the decisions file of the page, and the arguments of weft accept.
+  // Adds the decision, the folder into which review.json belongs, and the arguments of weft accept.
   void add_decision(Entry& entry, const Json& decision, const RunFiles* reference) {
     const RunFiles& run = *entry.run;
     entry.json["key"] = run.key;
@@ -268,7 +268,7 @@ class Page {
     entry.json["accept"] = std::move(accept);
   }
 
-  // Compares the pictures of the contact sheet.
+  // Compares the pictures of the contact sheet with those of the reference.
   void compare(Entry& entry, const Entry& reference) {
     entry.json["reference"] = reference.json["id"];
     if (reference.tiles.empty()) entry.problem("the reference has no pictures that can be read");

@@ -15,7 +15,7 @@ struct Request {
   std::filesystem::path reference;             ///< folder with runs to compare with; empty: none
   std::filesystem::path output;
   bool overwrite = false;
-  std::function<bool()> stop = [] { return false; };  ///< called between runs; true interrupts
+  std::function<bool()> stop = [] { return false; };  ///< called between runs; true: interrupt
 };
 
 struct Outcome {

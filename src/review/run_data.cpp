@@ -13,7 +13,7 @@
 namespace weft::review {
 namespace {
 
-// Rounds to six digits. A plot of 1000 pixels cannot show more, and the file has half the size.
+// Rounds a number to six digits. A plot of 1000 pixels cannot show more, and the file has half the size.
 Json rounded(const Json& value) {
   if (!value.is_number_float()) return value.is_number() || value.is_boolean() ? value : Json(nullptr);
   const auto number = value.get<double>();

@@ -12,7 +12,7 @@ namespace weft::review {
 /// values, and values that are neither numbers nor booleans, become null. Numbers are rounded to six digits.
 Json frame_columns(const Json& frames);
 
-/// Summary of each column: {"count", "min", "min_frame", "max", "max_frame", "last", "sum"} over its numbers; columns
+/// Summary of the numbers in each column: {"count", "min", "min_frame", "max", "max_frame", "last", "sum"}. Columns
 /// without numbers are omitted.
 Json column_digest(const Json& columns);
 

@@ -22,8 +22,8 @@ namespace weft::scene {
 namespace {
 
 constexpr double kMaxFrames = 100000;
-constexpr double kMinKeyGap = 1e-7;        // minimum time between keys [s], that of the shortest time step
-constexpr long kMaxParticles = 4'000'000;  // of all cloths together; their solver state fits a large workstation
+constexpr double kMinKeyGap = 1e-7;        // minimum time between keys [s]: the shortest time step
+constexpr long kMaxParticles = 4'000'000;  // of all cloths together; the solver's data fit a large workstation
 
 template <class Entries>
 std::vector<std::string> names_of(const Entries& entries) {
@@ -77,7 +77,7 @@ void check_rotation_changes(const std::vector<Key>& keys, const std::string& pat
   }
 }
 
-/// Decodes the picture, so that its defects are reported together with all other mistakes.
+/// Decodes the picture already here, so that its defects are reported together with all other mistakes.
 void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
   if (!image || !findings.has(key) || findings.has_mistake(key)) return;
   try {
@@ -114,8 +114,8 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                       "expected none for a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
   if (rectangle_particles(cloth) == 0) return;  // the number of particles is known only after the file is read
-  // A part between two rows of particles would hold no particle without any message. Returns the nearest row, or
-  // nothing if a row is inside.
+  // A part between two rows of particles holds no particle, which must be reported. Returns the place of the nearest
+  // row if no row is inside, else nothing.
   const auto nearest_missed_row = [](double low, double high, int count, double grading) {
     std::optional<double> nearest;
     const auto distance = [&](double at) { return std::max({low - at, at - high, 0.0}); };
@@ -271,7 +271,7 @@ void check_shape(const Shape& shape, const std::string& path, Findings& findings
   }
 }
 
-// Checks a body moved by forces; without a mass, reports the keys that need one.
+// Checks a body that forces move. For a body without mass or density, reports the keys that need one.
 void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::string& path, Findings& findings) {
   if (!is_dynamic(obstacle)) {
     for (const auto& [key, is_given] :

@@ -12,7 +12,7 @@ Quat from_angles(const Vec3& degrees) {
 }
 
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to) {
-  // A pose without rotation counts as having angles of 0.
+  // The identity rotation counts as angles of 0, even if it is not given as angles.
   const auto angles = [](const Pose& pose) {
     return !pose.angles && pose.rotation.coeffs() == Quat::Identity().coeffs() ? Vec3(Vec3::Zero()) : pose.angles;
   };

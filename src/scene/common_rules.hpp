@@ -53,7 +53,7 @@ void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherw
       .when_given([of](S& s) { of(s).rotation = from_angles(*of(s).angles); });
 }
 
-/// Rows for position, and quaternion or rotation. `otherwise`: text about the value if they are absent.
+/// Rows for position, and quaternion or rotation. `otherwise`: text about the default.
 template <class S, class Member>
 void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
   rows.vector(

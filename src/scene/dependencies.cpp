@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /// Larger files are skipped: no reader accepts them.
 constexpr std::uintmax_t kMaxDependencyBytes = std::uintmax_t{256} << 20;
 
-/// Longer texts count as no file names. A name has at most 255 bytes; its folders come in addition.
+/// Longer texts are not taken for file names: 255 bytes for the name itself, and more for its folders.
 constexpr std::size_t kMaxFileNameBytes = 1024;
 
 bool is_alphanumeric(char c) {
@@ -54,8 +54,8 @@ std::string decode_escapes(std::string_view text) {
   return plain;
 }
 
-/// Possible file names in text or binary content: any text between quotes, brackets, commas, equals signs and control
-/// characters, and its pieces between blanks.
+/// Possible file names in text or binary content. Quotes, brackets, commas, equals signs and control characters
+/// separate texts; each text and its pieces between blanks count if they have an extension.
 std::set<std::string> find_possible_names(std::string_view content) {
   std::set<std::string> names;
   const auto add = [&](std::string_view text) {
@@ -94,7 +94,7 @@ class DependencyWalk {
     const std::optional<std::string> content = visit_alone(file, use);
     if (!content) return;
     for (const std::string& name : find_possible_names(*content)) visit(file.parent_path() / name, use);
-    // The readers of this format find the motion file by the name of the mesh file.
+    // assimp finds the motion file of this format by the name of the mesh file.
     if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"), use);
   }
 

@@ -16,7 +16,7 @@ namespace weft::scene {
 /// Maximum size of a scene file [bytes]; a scene with ten thousand key frames has about one megabyte.
 inline constexpr std::uintmax_t kMaxFileSize = 16 << 20;
 
-/// The bytes of a scene file; if it cannot be read, reports a mistake without a place. Checks type and size first.
+/// The bytes of a scene file. Reports a mistake without a place if it is no regular file, too large or unreadable.
 std::optional<std::string> read_file(const std::filesystem::path& file, Findings& findings);
 
 /// Parses TOML text; reports a mistake and returns nothing if it is not TOML.

@@ -30,7 +30,7 @@ std::string toml_string(const std::string& text) {
   return out + "\"";
 }
 
-/// A value as TOML. fmt writes the shortest digits that read back as the same double.
+/// A value as TOML. fmt writes the fewest digits that give the same double when read.
 std::string toml_value(const Value& value, const Rule& rule) {
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* text = std::get_if<std::string>(&value)) return toml_string(*text);
@@ -137,7 +137,7 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325ull;
 };
 
-/// The content and the name of files count, but not their folder.
+/// Removes the folders from file names: the hash depends on content and name of files, but not on their folder.
 void keep_file_names(Scene& scene) {
   const auto keep_name = [](std::filesystem::path& path) { path = path.filename(); };
   const auto keep_name_if_any = [&](std::optional<std::filesystem::path>& path) {
@@ -179,7 +179,7 @@ void identify(Scene& scene) {
     scene.files.push_back(file);
     for (Fnv1a* hash : {&shown, &simulated}) {
       if (hash == &simulated && use == FileUse::pictures) continue;
-      hash->add(fmt::format("{} ", content.size()));  // so that the boundary between files counts
+      hash->add(fmt::format("{} ", content.size()));  // so that the hash depends on the boundaries between files
       hash->add(content);
     }
   });
@@ -187,7 +187,8 @@ void identify(Scene& scene) {
   keep_file_names(copy);
   shown.add(text_of(copy, Part::all));
   simulated.add(text_of(copy, Part::simulated));
-  // Characters are sampled up to the end of the film, and the last key frames influence the motion between them.
+  // The motion of characters depends on the duration: they are sampled up to its end, and the last key frames influence
+  // the interpolation before them.
   if (!scene.characters.empty()) simulated.add(fmt::format("{}", scene.time.duration));
   scene.hash = shown.value();
   scene.simulation_hash = simulated.value();

@@ -4,8 +4,8 @@
 #include <cmath>
 
 // Units. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
-//   bending     1 gf·cm²/cm    = 98.07 µN·m; of 2HB, 1 gf·cm/cm = 9.807 mN
-//   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; our mu is twice the shear modulus
+//   bending     B: 1 gf·cm²/cm = 98.07 µN·m; 2HB: 1 gf·cm/cm = 9.807 mN
+//   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; Material's mu is twice the shear modulus
 //   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; linearity LT is 2 / (n + 1) if force ~ strainⁿ
 // FAST (Minazio, "FAST – Fabric Assurance by Simple Testing", Int. J. Clothing Sci. Tech. 7(2/3), 1995):
 //   shear       G = 123 / EB5 N/m, EB5 the bias extension in percent
@@ -20,7 +20,7 @@
 //   shear        2 G
 //   bend         √(weft · warp): bending is isotropic here
 //   bend_friction   HB
-//   All are rounded to two digits, since none is known more precisely.
+//   All values are rounded to two digits, since none is known more precisely.
 //
 // Quantities without a measurement are estimated from fibre, weave and weight:
 //   bend         130 µN·m (density / 1 kg/m²)^1.35: within 13 % of the medians of 251 fabrics in nine classes of
@@ -36,9 +36,9 @@
 //                and linear, since they have no crimp
 //   thickness    2.2 mm for 1 kg/m²; measured: 1.7 to 4
 //
-// Our choice for every fabric: friction (cloth on cloth is usually given as 0.2 to 0.6), contact thickness (several
-// times the thickness of the fabric, which contact cannot resolve), drag, and viscosity of bending. Stretch and shear
-// have no viscosity: implicit Euler already damps them like a viscosity of half a time step times the stiffness.
+// Chosen, not measured: friction (published for cloth on cloth: usually 0.2 to 0.6), contact thickness (several times
+// that of the fabric, which contact cannot resolve), drag, and viscosity of bending. Stretch and shear have
+// no viscosity: implicit Euler already damps them like a viscosity of half a time step times the stiffness.
 
 namespace weft::scene {
 
@@ -49,13 +49,13 @@ constexpr double kBendingDampingTime = 0.1;
 
 enum class Fibre { cotton, wool, filament };
 enum class Weave { woven, knitted, none };
-/// Stiffness for the weight, as a quantile of the measured fabrics: 10, 25, 50, 75 and 90 %.
+/// Bending stiffness relative to fabrics of the same weight: the 10, 25, 50, 75 or 90 % quantile of measured fabrics.
 enum class Hand { limp, soft, usual, firm, stiff };
 
 using Measured = std::optional<double>;
 using Pair = std::optional<std::pair<double, double>>;
 
-/// A fabric as published; missing figures are estimated.
+/// A fabric as published; missing values are estimated.
 struct Row {
   const char* name;
   const char* what;
@@ -67,10 +67,10 @@ struct Row {
   Measured thickness = {};     // [mm]
   Pair extension = {};         // EMT of weft and warp [%]
   Measured shear = {};         // G [N/m]
-  Pair bend = {};              // B of weft and warp [µN·m]; if only their mean is published, twice the same value
+  Pair bend = {};              // B of weft and warp [µN·m]; both equal if only their mean is published
   Measured fitted_shear = {};  // G fitted to the published drape, if not measured [N/m]
   Measured hysteresis = {};    // HB / B [1/m]
-  Pair drape = {};             // minimum and maximum [%]
+  Pair drape = {};             // minimum and maximum of Cusick's coefficient [%]
   double contact = 2;          // contact thickness [mm]
   double friction = 0.3;
   std::optional<Finish> finish = {};  // absent: that of the fibre
@@ -80,7 +80,7 @@ constexpr const char* kMatsudaira =
     "Matsudaira et al., J. Textile Eng. 61(6), 2015, tables 1 and 2, as transcribed in 3fold-motion-engine";
 constexpr const char* kNone = "none found: all estimated";
 
-// Order as in the documents: cotton and similar fibres, wool, filaments, others.
+// In the order of the documentation: cotton and similar fibres, wool, filaments, others.
 constexpr Row kRows[] = {
     {.name = "cotton",
      .what = "light plain weave",
@@ -257,7 +257,8 @@ Finish finish_of(const Row& row) {
 
 double two_digits(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  // A quotient of two integers is correctly rounded: the result is the double that "0.015" in a scene denotes.
+  // A quotient of two integers is correctly rounded, so that the result is the same double that a scene with the text
+  // "0.015" gives.
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
 }
 
@@ -271,7 +272,7 @@ constexpr std::pair<Measured, Measured> both(const Pair& pair) {
 }
 
 double estimated_bend(const Row& row) {
-  // Ratios of the 10, 25, 75 and 90 % quantiles of a weight class to its median, mean of the nine classes.
+  // 10, 25, 50, 75 and 90 % quantiles of a weight class / its median; means over the nine classes.
   constexpr std::array kQuantiles{0.3, 0.55, 1.0, 1.5, 2.3};
   return kQuantiles[static_cast<std::size_t>(row.hand)] * 130e-6 * std::pow(1e-3 * row.density.value, 1.35);
 }
@@ -285,7 +286,8 @@ std::pair<double, double> estimated_extension(const Row& row) {
   return row.weave == Weave::woven ? std::pair{0.08, 0.05} : std::pair{0.60, 0.25};
 }
 
-// Secant up to the worn load. Crimped threads stiffen as they are stretched; fabrics without threads are linear.
+// Secant stiffness up to kWornLoad [N/m]. Crimped threads stiffen as they are stretched; fabrics without threads are
+// linear.
 double secant_stiffness(Weave weave, double extension) {
   return (weave == Weave::none ? kExtensionLoad : std::sqrt(kExtensionLoad * kWornLoad)) / extension;
 }
@@ -312,8 +314,8 @@ Measurements measurements(const Row& row) {
   return m;
 }
 
-// Value of max_stretch for which the force at strain `extension` is kExtensionLoad: threads that lock carry what
-// exceeds the force of the secant.
+// Value of max_stretch for which the force at strain `extension` is kExtensionLoad: locking threads carry the
+// difference to the force of the secant stiffness.
 double max_stretch_for(Weave weave, double extension) {
   constexpr double kOnset = 0.7, kTension = 4e3;  // constants of forces::Lock
   const double rest = kExtensionLoad - secant_stiffness(weave, extension) * extension;

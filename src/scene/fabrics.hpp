@@ -10,7 +10,7 @@
 
 namespace weft::scene {
 
-/// A figure, and whether it was measured or estimated by the rules of fabrics.cpp.
+/// A value, and whether it was measured or estimated by the rules of fabrics.cpp.
 struct Figure {
   double value = 0;
   bool estimated = false;
@@ -30,14 +30,14 @@ struct Measurements {
 struct Fabric {
   Material material;  ///< `fabric` is the name; derived from `measured`
   Measurements measured;
-  Finish finish;       ///< our choice, by fibre and weave
+  Finish finish;       ///< chosen by fibre and weave, not measured
   bool frays;          ///< cut edges fray, so they are hemmed
   std::string what;    ///< weave and kind
-  std::string source;  ///< of its figures
+  std::string source;  ///< publication of the measurements
 };
 
-/// Load of the KES extension test (500 gf/cm), and load up to which `stretch` is the secant (20 gf/cm, as in FAST)
-/// [N/m].
+/// Load of the KES extension test (500 gf/cm) [N/m], and the load of worn cloth (20 gf/cm, as in FAST) [N/m]:
+/// Material's `stretch` is the secant stiffness up to this load.
 inline constexpr double kExtensionLoad = 490.3, kWornLoad = 19.6;
 
 /// All named fabrics; the first is the default and equals Material{}.

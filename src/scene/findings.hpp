@@ -15,10 +15,10 @@ namespace weft::scene {
 /// A place in the scene file, or an override of the command line.
 struct Place {
   int line = 0, column = 0;
-  std::string override_text;  ///< as in Mistake
+  std::string override_text;  ///< see Mistake
 };
 
-/// Place of a node or key of a parsed document. Overrides are parsed with their own name as source path.
+/// Place of a node or key of a parsed document. Overrides are parsed with their own text as source path.
 Place place_of(const toml::source_region& source);
 
 class Findings {
@@ -38,8 +38,8 @@ class Findings {
   void add_entry(const std::string& list, std::string path) { entries_[list].push_back(std::move(path)); }
   const std::string& entry(const std::string& list, std::size_t i) const { return entries_.at(list).at(i); }
 
-  /// Returns at most kMaxMistakes mistakes, those of the file in its order and then those of overrides; if there are
-  /// more, a final one counts the rest. Clears the mistakes.
+  /// Returns at most kMaxMistakes mistakes: first those of the file in its order, then those of overrides. If there are
+  /// more, a final entry gives the number of the others. Clears the mistakes.
   std::vector<Mistake> take_mistakes();
 
  private:

@@ -1,4 +1,4 @@
-// Bodies that follow the rigid motion of another one.
+// Obstacles and cameras that follow the rigid motion of another body.
 #pragma once
 
 #include "scene/findings.hpp"
@@ -6,12 +6,12 @@
 
 namespace weft::scene {
 
-/// Whether an obstacle ever moves: by its own keys, or by those of a body that it follows, directly or through others.
-/// A character counts as moving; forces do not count.
+/// Whether an obstacle moves by prescribed motion: by its own keys or, if it follows a body directly or through others,
+/// by the motion of that body. A character counts as moving. Motion by forces does not count.
 bool moves(const Scene& scene, const Obstacle& obstacle);
 
 /// Reports each `follow` of an obstacle or camera that names no body, or a character without a part. For obstacles,
-/// also reports a `follow` of a body that forces move, and the first cycle.
+/// also reports the first cycle, and each `follow` of a body that forces move.
 void check_following(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

@@ -7,7 +7,7 @@
 namespace weft::scene {
 namespace {
 
-// Adds all cloths that are worn below a cloth.
+// Adds the names of all cloths that are worn below the cloth `name`.
 void add_below(const Scene& scene, const std::string& name, std::set<std::string>& below) {
   for (const Cloth& cloth : scene.cloths)
     if (cloth.name == name)
@@ -32,7 +32,7 @@ bool worn_over(const Scene& scene, const std::string& outer, const std::string& 
 
 std::vector<std::size_t> layer_depths(const Scene& scene) {
   std::vector<std::size_t> layers(scene.cloths.size(), 0);
-  // One pass per cloth is enough; cycles are reported elsewhere.
+  // One pass per cloth is enough, since a chain without cycle has at most all cloths. check_layers() reports cycles.
   for (std::size_t pass = 0; pass < scene.cloths.size(); ++pass)
     for (std::size_t c = 0; c < scene.cloths.size(); ++c)
       for (std::size_t below = 0; below < scene.cloths.size(); ++below)

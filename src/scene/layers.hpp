@@ -1,4 +1,4 @@
-// Cloth worn over cloth: the order of dressing.
+// Cloth worn over cloth: the order in which garments are put on.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace weft::scene {
 
-/// Whether a cloth is worn over another, directly or through others. A name of no cloth is over nothing.
+/// Whether `outer` is worn over `inner`, directly or through other cloths. False if `outer` is not the name of a cloth.
 bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner);
 
-/// For each cloth, the maximum number of cloths worn below it, one over the other; 0 next to the skin.
+/// For each cloth, the number of layers below it (longest chain of cloths, one over the other); 0: next to the skin.
 std::vector<std::size_t> layer_depths(const Scene& scene);
 
 /// A layer of cloths that is put on together.
@@ -21,8 +21,8 @@ struct Layer {
   std::vector<std::size_t> dressed;  ///< indices of the cloths of this and all lower layers, ascending
 };
 
-/// All layers from the skin outward, at least one. The layers share, evenly and in whole frames, the start of the
-/// preroll: until the first of the characters with `dressing` moves.
+/// All layers from the skin outward, at least one. They are put on one after the other, each in an equal number of
+/// frames, from the start of the preroll until the first character with `dressing` moves.
 std::vector<Layer> list_layers(const Scene& scene);
 
 }  // namespace weft::scene

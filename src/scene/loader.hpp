@@ -11,7 +11,7 @@
 
 namespace weft::scene {
 
-/// Maximum number of listed mistakes; a file that is no scene may have millions.
+/// Maximum number of listed mistakes; a file that is not a scene may have millions.
 inline constexpr std::size_t kMaxMistakes = 200;
 
 /// One mistake in a scene.
@@ -33,11 +33,11 @@ struct LoadResult {
   std::string text;  ///< content of the file
 };
 
-/// Reads and checks a scene. `overrides`: texts "path.to.key=value", checked like the file itself. No file content
-/// makes it throw.
+/// Reads and checks a scene. `overrides`: texts "path.to.key=value", checked like the file itself. Does not throw,
+/// whatever the file contains.
 LoadResult load(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// As `load`, from text in memory (tests, fuzzing). Relative paths start at the folder of `name`.
+/// Same as `load`, but from text in memory (tests, fuzzing). Relative paths start at the folder of `name`.
 LoadResult load_text(std::string_view text, const std::filesystem::path& name,
                      const std::vector<std::string>& overrides = {});
 

@@ -26,7 +26,7 @@ std::vector<std::string> split(std::string_view path) {
   return parts;
 }
 
-/// Whether the text may be used without quotes. Called only for texts that are no TOML values.
+/// Whether a text that is not a TOML value may be used without quotes.
 bool is_plain_word(std::string_view text) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c >= 0x80 || std::strchr("_-./# ", c); };
   return !text.empty() && std::all_of(text.begin(), text.end(), plain);
@@ -72,7 +72,7 @@ std::string suggest_names(const std::string& part, const std::vector<std::string
 }  // namespace
 
 void apply_override(const std::string& override_text, toml::table& document, Findings& findings) {
-  // Shown in messages; also marks nodes that come from overrides.
+  // Messages show this text as the source; it also marks nodes that come from overrides.
   std::string source = "--set " + override_text;
   std::replace_if(
       source.begin(), source.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');

@@ -19,7 +19,7 @@ struct PressureKey {
   double value = 0;
 };
 
-/// A cloth filled with air. It counts as closed from the start; sewn cloth, from the end of sewing.
+/// Air in a cloth. The cloth counts as closed from the start or, if it is sewn, from the end of sewing.
 struct Pressure {
   PressureControl control = PressureControl::gauge;
   double value = 0;                                    ///< value of the controlled quantity if there are no keys

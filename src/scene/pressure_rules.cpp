@@ -37,7 +37,7 @@ void quantity_rows(TableBuilder<Pressure>& rows, const Quantity& quantity, const
 }  // namespace
 
 const Table& pressure_rules() {
-  // Ranges: silk bursts at some kPa; a cubic kilometre of air keeps all sums finite.
+  // The ranges only keep sums finite: silk already bursts at some kPa, and 1e9 m³ are a cubic kilometre.
   static const Quantity kGauge = {"gauge", within(-1e6, 1e6), "Pa",
                                   "pressure inside minus pressure outside; negative: it draws the cloth in"};
   static const Quantity kAir = {

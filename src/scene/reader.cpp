@@ -17,12 +17,12 @@ std::string join_path(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// Place of a key. toml++ stores it for keys of files; keys of overrides use that of their value.
+/// Place of a key. toml++ stores it for keys of files; for a key of an override, the place of its value is used.
 Place place_of_key(const toml::key& key, const toml::node& node) {
   return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
 }
 
-/// Whether a value comes from the command line: such nodes have a source path, and no line.
+/// Whether a value comes from the command line.
 bool is_override(const toml::node& node) {
   return !place_of(node.source()).override_text.empty();
 }
@@ -39,7 +39,7 @@ std::string in_quotes(std::string_view text) {
   std::string shown = "\"";
   const bool cut = text.size() > kMaxShownCharacters;
   if (cut) {
-    // Keeps UTF-8 characters whole: moves the end back over continuation bytes.
+    // Moves the end back over continuation bytes, so that no UTF-8 character is cut.
     std::size_t end = kMaxShownCharacters;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
     text = text.substr(0, end);
@@ -52,7 +52,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
-  // A longer name is not a misspelt key, and the search would take long.
+  // A longer name is hardly a misspelt key, and the search would take long.
   if (name.size() > 64) return {};
   const std::string nearest = nearest_name(name, known);
   return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
@@ -78,7 +78,7 @@ void Reader::read(const toml::table& table, const Table& rules, void* target, co
   for (const Rule& rule : rules.rules) read_rule(table, rule, target, path);
 
   const Variant* variant = rules.variant_of(target);
-  // If the selector has a mistake, keys of all variants are accepted: one mistake is enough.
+  // If the selector has a mistake, keys of all variants are accepted, so that only the selector is reported.
   const bool undecided = !rules.selector.empty() && findings_.has_mistake(join_path(path, rules.selector));
   if (variant != nullptr && !undecided) {
     for (const Rule& rule : variant->rules) read_rule(table, rule, target, path);
@@ -100,7 +100,7 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
   findings_.set_place(key, place_of(node->source()));
 
   if (!rule.excludes.empty() && table.contains(rule.excludes)) {
-    // A value from --set replaces the excluded alternative in the file.
+    // If only one of two exclusive keys comes from --set, it replaces the other one, which is in the file.
     const bool set_here = is_override(*node), set_there = is_override(*table.get(rule.excludes));
     if (set_here == set_there) {
       findings_.report(key, place_of(node->source()),
@@ -172,7 +172,7 @@ void Reader::report_unknown(const toml::table& table, const Table& rules, const 
     const std::string name(key.str());
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
 
-    // Best guess first: a key of another variant, a key of an inner table, a misspelling.
+    // Suggests the likeliest cause: a key of another variant, else a key of an inner table, else a misspelling.
     std::string text = "unknown key";
     std::vector<std::string> owners;
     for (const Variant& each : rules.variants) {

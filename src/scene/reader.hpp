@@ -12,9 +12,9 @@
 
 namespace weft::scene {
 
-/// A node as messages show it: "-0.001", "the text \"heavy\"", "an array of 4 values".
+/// Text for a node in messages: "-0.001", "the text \"heavy\"", "an array of 4 values".
 std::string describe_node(const toml::node& node);
-/// The text in quotes, shortened to about 40 bytes, with control characters escaped.
+/// The text in quotes for messages, shortened to about 40 bytes, with control characters escaped.
 std::string in_quotes(std::string_view text);
 /// Whether the text is valid as the name of a list entry.
 bool is_name(std::string_view text);
@@ -33,7 +33,8 @@ class Reader {
  private:
   void read_rule(const toml::table& table, const Rule& rule, void* target, const std::string& path);
   void read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path);
-  /// The key path of a list entry: by its name if that is valid and unique (adds it to `names`), else by its index.
+  /// The key path of a list entry: with its name if that is valid and not in `names` (then adds it), else with its
+  /// index.
   std::string entry_path(const toml::table& table, const Rule& rule, const std::string& path,
                          const std::string& by_index, std::set<std::string>& names);
   void report_unknown(const toml::table& table, const Table& rules, const Variant* variant, const std::string& path);

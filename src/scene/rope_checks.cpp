@@ -12,7 +12,7 @@ namespace {
 
 constexpr long kMaxRopeParticles = 1'000'000;  // total of all ropes
 
-// Checks that the course of a rope is defined; returns whether it is.
+// Checks that the start path of a rope is defined, and returns whether it is.
 bool check_course(const Scene& scene, const Rope& rope, const std::string& path, Findings& findings) {
   if (rope.points.empty()) {
     for (const auto& [key, end] : {std::pair("from", rope.from), std::pair("to", rope.to)})

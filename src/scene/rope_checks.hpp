@@ -6,7 +6,7 @@
 
 namespace weft::scene {
 
-/// Reports ropes whose course is not defined, and pieces that are too short for contact.
+/// Reports ropes whose start shape is not defined, and ropes with pieces that are too short for contact.
 void check_ropes(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

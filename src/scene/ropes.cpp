@@ -26,13 +26,13 @@ std::vector<Vec3> path_through(const Rope& rope) {
   return path;
 }
 
-// A catenary of this length [m] that hangs from both ends.
+// A catenary between two ends. `length`: length of the curve [m]. `up`: unit vector.
 std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, const Vec3& up) {
   const Vec3 chord = to - from;
   const double rise = up.dot(chord);
   const Vec3 along = chord - rise * up;
   const double span = along.norm();
-  // Solves sinh(u) / u = ratio by bisection. a = span / (2 u) is tension / weight per length at the lowest point [m].
+  // Solves sinh(u) / u = ratio by bisection. a = span / (2 u) is horizontal tension / weight per length [m].
   const double ratio = std::sqrt(length * length - rise * rise) / span;
   double low = 0, high = 1;
   while (std::sinh(high) / high < ratio) high *= 2;
@@ -72,10 +72,10 @@ std::vector<Vec3> resample(const std::vector<Vec3>& path, int pieces) {
 
 }  // namespace
 
-// Mass and stiffness of nylon, polyester, polypropylene and steel (wire with a fibre core): formulas for mooring ropes,
-// as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py). Data sheets of Robline give masses of 680 for
-// polyester and 430 for polypropylene at 10 mm. Cotton and all bending lengths are estimates: 9 cm for a limp line of 6
-// mm.
+// Nylon, polyester, polypropylene and steel (wire with a fibre core): mass and stiffness are from formulas for mooring
+// ropes, as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py). For comparison, data sheets of Robline for 10
+// mm give masses of 680 kg/m per m² (polyester) and 430 (polypropylene). The values of cotton and all bending lengths
+// are estimates, from a limp line of 6 mm with a bending length of 9 cm.
 const std::vector<RopeMaterial>& rope_materials() {
   static const std::vector<RopeMaterial> kMaterials = {
       {"cotton", 650, 2.5e8, 15},         {"nylon", 676, 1.18e8, 15},   {"polyester", 798, 1.09e9, 15},

@@ -10,22 +10,23 @@
 
 namespace weft::scene {
 
-/// A value between TOML and a struct: absent, flag, text, numbers (one, or one per component of the rule), or texts.
+/// A value on its way between TOML and a struct: absent, flag, text, numbers (one, or one per component of the rule),
+/// or texts.
 using Value = std::variant<std::monostate, bool, std::string, std::vector<double>, std::vector<std::string>>;
 
 enum class Type {
   boolean,
   text,
   texts,   ///< a text, or an array of texts
-  name,    ///< of a list entry; becomes part of key paths and file names
+  name,    ///< name of a list entry; becomes part of key paths and file names
   file,    ///< path of an existing file, relative to the scene's folder
   choice,  ///< one of `choices`
   points,  ///< an array of arrays, each with one number for each of `components`
   number,  ///< one number, or an array of one per component; or one of `choices`, if there are any
   color,   ///< [r, g, b] from 0 to 1, or "#rrggbb"; sRGB
   table,
-  list,  ///< of tables, [[key]]
-  keys,  ///< of tables in time order, usually written as keys = [{...}, ...]
+  list,  ///< list of tables, [[key]]
+  keys,  ///< list of keyframes: tables in time order, usually written as keys = [{...}, ...]
 };
 
 /// Bounds of each number of a value. Both always exist, so that no scene can cause an overflow.
@@ -43,7 +44,7 @@ inline Range above(double low, double high) {
 enum class Need {
   optional,
   required,
-  here_or_in_first_key,  ///< for objects that either stand still or have `keys`
+  here_or_in_first_key,  ///< required in the table itself or, if it has `keys` (keyframes), in the first of them
 };
 
 struct Table;
@@ -54,8 +55,8 @@ struct Rule {
   Type type = Type::number;
   std::string documentation;
 
-  std::string unit;                     ///< of its numbers; empty: none
-  Range range;                          ///< of its numbers; for list, keys: of the number of entries
+  std::string unit;                     ///< unit of its numbers; empty: none
+  Range range;                          ///< bounds of its numbers; list, keys: bounds of the number of entries
   bool whole = false;                   ///< integers only
   std::vector<std::string> components;  ///< names of the numbers of an array; empty: a single number
   bool single_fills_all = false;        ///< one number may replace the whole array
@@ -67,12 +68,12 @@ struct Rule {
   std::string excludes;      ///< key that must not be given together with this one
   bool simulated = true;     ///< affects the simulation; if false, changes leave the simulation hash as it is
 
-  std::function<Value(void*)> get;  ///< monostate: nothing to write
+  std::function<Value(void*)> get;  ///< returns monostate if there is nothing to write
   std::function<void(void*, const Value&)> set;
 
   const Table* table = nullptr;                     ///< table, list, keys: the rules of an entry
-  std::function<void*(void*)> inner;                ///< table: its struct
-  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write; table: 0 to write none
+  std::function<void*(void*)> inner;                ///< table: returns its struct
+  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write; table: 0 if not written
   std::function<void*(void*, std::size_t)> entry;   ///< list, keys: entry i
   std::function<void*(void*, std::size_t)> append;  ///< list, keys: creates entry i with its defaults
 };

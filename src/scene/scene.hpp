@@ -37,18 +37,18 @@ struct Time {
   double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
   double fps = 25;      ///< frames per second
   double preroll = 0;   ///< time simulated before frame 0 and not shown [s]
-  double step = 0.01;   ///< maximum time step [s]; frames are cut into equal steps no longer than this
+  double step = 0.01;   ///< maximum time step [s]; each frame is divided into equal steps no longer than this
   std::optional<double> tolerance =
-      std::nullopt;  ///< replaces `step`: local error of a cloth's positions in one step [m]
+      std::nullopt;  ///< replaces `step`: allowed local error of a cloth's positions in one step [m]
   Integrator integrator = Integrator::implicit_euler;
 };
 
 struct Solver {
-  double newton_tolerance = 0.4;  ///< what the solver may leave, relative to the error of the step
-  int newton_iterations = 60;     ///< maximum per step, before the step is halved
-  double linear_tolerance = 0.1;  ///< residual of the conjugate gradients / first residual
-  int linear_iterations = 1000;
-  int halvings = 8;  ///< maximum of a rejected step, before the run gives up
+  double newton_tolerance = 0.4;  ///< error that the solver may leave / local truncation error of the step
+  int newton_iterations = 60;     ///< maximum per step; a step that needs more is halved
+  double linear_tolerance = 0.1;  ///< allowed error of a linear solve / its solution, in the energy norm
+  int linear_iterations = 1000;   ///< maximum of conjugate gradients in one linear solve
+  int halvings = 8;               ///< how often a rejected step is halved before the run ends with an error
 };
 
 enum class Bounds { box, dop18, dop26 };
@@ -61,24 +61,24 @@ struct Search {
   int leaf = 8;                   ///< maximum number of triangles per leaf
   bool open_longer_side = false;  ///< of two nodes, open only the longer one
   bool separation_lists = false;  ///< start each traversal where the previous one stopped
-  bool velocity_cones = false;    ///< keep the bounds of slow nodes
-  bool normal_cones = false;      ///< skip regions that are provably flat enough
+  bool velocity_cones = false;    ///< keep the bounds of slow nodes while their vertices stay inside
+  bool normal_cones = false;      ///< skip regions that are provably too flat to touch themselves
   bool coherence = false;         ///< keep closest points of surfaces with little relative motion
   bool reuse = true;              ///< keep candidate pairs and close features until something moves far
 };
 
-/// Coulomb friction between two objects, in place of their own coefficients.
+/// Coulomb friction between two objects; replaces the mean of their own coefficients.
 struct FrictionPair {
   std::string first, second;              ///< names of cloths or obstacles; equal names: a cloth with itself
-  double friction = 0.3;                  ///< while sliding
-  std::optional<double> static_friction;  ///< while sticking, at least `friction`; absent: equal to it
+  double friction = 0.3;                  ///< coefficient of kinetic friction
+  std::optional<double> static_friction;  ///< coefficient of static friction, at least `friction`; absent: equal to it
 };
 
 /// Contact of all surfaces.
 struct Contact {
   bool self = true;        ///< cloth against itself and other cloths
   bool obstacles = true;   ///< cloth against obstacles
-  double stiffness = 100;  ///< of one contact [N/m]
+  double stiffness = 100;  ///< stiffness of one contact [N/m]
   std::vector<FrictionPair> pairs;
   Search search;
   Response response = Response::springs;
@@ -86,30 +86,30 @@ struct Contact {
 
 /// A fabric in continuum units (seed, "Elastic Model").
 struct Material {
-  std::string fabric = "cotton";  ///< the named fabric that supplies the initial figures
+  std::string fabric = "cotton";  ///< the named fabric that supplies the default values
   double density = 0.15;          ///< [kg/m²]
   double stretch_weft = 800;      ///< k1 [N/m]
   double stretch_warp = 2100;     ///< k2 [N/m]
   double shear = 130;             ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
   double bend = 1e-5;             ///< B [N·m]
-  double max_stretch = 0.1;       ///< extension at which threads lock; 0: never
-  double max_shear = 0;           ///< change of the right angle at which they lock [degrees]; 0: never
+  double max_stretch = 0.1;       ///< extension at which threads lock (stiffen) [1]; 0: never
+  double max_shear = 0;           ///< change of the angle between weft and warp at which they lock [degrees]; 0: never
   double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
   double shear_viscosity = 0;     ///< [N·s/m]
   double bend_viscosity = 1e-6;   ///< [N·m·s]
   double bend_friction = 5e-4;    ///< moment per width that must be overcome to change the curvature [N]
   double thickness = 0.002;       ///< contact distance between two layers [m]
-  double friction = 0.3;          ///< Coulomb coefficient; of two objects: the geometric mean
-  double drag = 1.0;              ///< air resistance coefficient of the normal motion; 0: none
+  double friction = 0.3;          ///< Coulomb coefficient; a contact uses the geometric mean of both objects
+  double drag = 1.0;              ///< air resistance coefficient, for motion normal to the cloth; 0: none
 };
 
 /// Colours of a cloth or of one of its panels, and a picture on it, aligned with the grain.
 struct Paint {
   Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
-  std::optional<Vec3> back_color;              ///< other side of cloth; absent: a paler front
+  std::optional<Vec3> back_color;              ///< sRGB, other side of cloth; absent: paler than the front
   std::optional<std::filesystem::path> image;  ///< PNG, JPEG or TGA; absolute after checking
-  double image_width = 0.2;                    ///< of one tile along weft [m]; the height follows from the picture
-  Vec2 image_offset{0, 0};                     ///< of the lower left corner of a tile along weft and warp [m]
+  double image_width = 0.2;                    ///< width of one tile along weft [m]; the picture determines its height
+  Vec2 image_offset{0, 0};                     ///< position of the lower left corner of a tile along weft and warp [m]
   double image_rotation = 0;                   ///< about that corner, counter-clockwise [degrees]
   bool image_repeat = true;                    ///< false: one tile, with `color` around it
   bool cutout = false;                         ///< transparent parts are holes; else `color` shows there
@@ -127,20 +127,20 @@ struct Finish {
 };
 
 struct Look : Paint {
-  std::vector<PanelPaint> panels;  ///< of a pattern
+  std::vector<PanelPaint> panels;  ///< colours of the panels of a pattern
   bool as_file = true;             ///< characters: use colours and pictures of the file, if any
   double roughness = 0.6;
-  std::optional<double> gloss;        ///< of threads, absent: that of the fabric; obstacles: of the clear coat
+  std::optional<double> gloss;        ///< cloth: gloss of threads, absent: that of the fabric; obstacles: clear coat
   std::optional<double> fuzz, sheer;  ///< cloth only; absent: those of the fabric
-  double metal = 0;                   ///< obstacles only: 1 for reflections in the object's colour
-  std::optional<double> tile_width;   ///< obstacles only: of its picture [m]; absent: once over the shape
-  double warp_fraction = 0.5;         ///< fraction of the gloss along warp; from the fabric
+  double metal = 0;                   ///< obstacles only: 1: reflects all light, in the object's colour
+  std::optional<double> tile_width;   ///< obstacles only: width of the picture [m]; absent: once over the shape
+  double warp_fraction = 0.5;         ///< fraction of warp among the threads on top; from the fabric
   Threads threads = Threads::plain;   ///< of the fabric
-  double cloth_thickness = 0;         ///< of the fabric itself, or of a rope [m]
-  double thread_spacing = 0.0006;     ///< of the drawn weave [m]; cloth only; 0: not drawn
+  double cloth_thickness = 0;         ///< thickness of the fabric itself, or of a rope [m]
+  double thread_spacing = 0.0006;     ///< cloth only: spacing of the drawn threads [m]; 0: draws no threads
   std::optional<double> hem;          ///< width of hems [m]; cloth only; 0: cut edges
   bool checker = false;               ///< floors only
-  bool strands = true;                ///< ropes only: drawn twisted
+  bool strands = true;                ///< ropes only: drawn with twisted strands
   bool visible = true;
 };
 
@@ -148,7 +148,7 @@ struct Look : Paint {
 struct Pose {
   Vec3 position{0, 0, 0};  ///< [m]
   Quat rotation{1, 0, 0, 0};
-  std::optional<Vec3> angles{};  ///< the same rotation as angles, if given so [degrees]; may contain whole turns
+  std::optional<Vec3> angles{};  ///< the rotation as given by angles [degrees], may contain whole turns; absent: not so
 };
 
 /// Difference of the angles of two poses [degrees]; empty if one of them has no angles.
@@ -164,7 +164,7 @@ struct PoseTrack {
   std::vector<PoseKey> keys;  ///< empty: keeps the object's own pose
 };
 
-/// Pose in which a pin holds its particles at one time. The rotation is about their centroid.
+/// Pose in which a pin holds its particles at one time. They rotate about their centroid.
 struct PinKey {
   double time = 0;  ///< [s], strictly increasing
   Pose pose;        ///< position: of the centroid, relative to its start or in the world
@@ -178,19 +178,19 @@ struct PinTrack {
 
 enum class VertexColor { none, red, green, blue, brightness };
 
-/// Particles of a cloth inside [low, high], in fractions of its rest size along weft and warp. The other members give
-/// each particle a weight; several weights are multiplied.
+/// Particles of a cloth inside [low, high], in fractions of its rest size along weft and warp. `mask`, `vertex_color`
+/// and `vertex_group` give each particle a weight; several weights are multiplied.
 struct ClothPart {
   std::string panel;  ///< of a pattern: only this panel, with fractions of its size; empty: all
   Vec2 low{0, 0}, high{1, 1};
-  std::optional<Vec2> at = {};                   ///< of a rope, in place of low and high: fractions of its length
-  std::string edge;                              ///< of a pattern, as "panel.edge": only this edge; empty: all
-  std::optional<std::filesystem::path> mask;     ///< picture whose grey values are weights; absolute after checking
+  std::optional<Vec2> at = {};                ///< of a rope: first and last fraction of its length, replace low, high
+  std::string edge;                           ///< of a pattern, as "panel.edge": only this edge; empty: all
+  std::optional<std::filesystem::path> mask;  ///< picture whose grey values are weights; absolute after checking
   VertexColor vertex_color = VertexColor::none;  ///< of a mesh file: colour channel that gives weights
   std::string vertex_group;  ///< of a mesh file: vertex group or bone that gives weights; empty: all
 
-  /// Whether the particle at fractions (u, v) of the rest size is inside. kSlack admits a particle at a bound that is
-  /// written with nine digits, such as 0.333333333.
+  /// Whether the particle at fractions (u, v) of the rest size is inside. The tolerance kSlack admits a particle at a
+  /// bound that the scene gives with nine digits, such as 0.333333333.
   bool holds(double u, double v) const {
     constexpr double kSlack = 1e-9;
     return u >= low.x() - kSlack && u <= high.x() + kSlack && v >= low.y() - kSlack && v <= high.y() + kSlack;
@@ -202,7 +202,7 @@ struct Pin : ClothPart {
   std::string follow;              ///< body or "<character>.<part>" whose motion the particles share; empty: none
   PinTrack motion;                 ///< motion of the particles, if they follow nothing
   double release = -1;             ///< time of release [s]; negative: never
-  std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: held rigidly
+  std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
   double fade = 0;  ///< distance along the cloth over which the pull on other particles fades [m]; needs a strength
 };
 
@@ -215,7 +215,7 @@ inline Followed followed(const std::string& follow) {
   return {follow.substr(0, dot), dot == std::string::npos ? "" : follow.substr(dot + 1)};
 }
 
-/// Mass distributed over particles by their weights.
+/// Additional mass, distributed over particles in proportion to their weights (see ClothPart).
 struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };
@@ -223,9 +223,9 @@ struct Weight : ClothPart {
 /// Springs from particles of a cloth to the nearest points of another cloth or body: buttons, pegs, tacks.
 struct Attachment : ClothPart {
   std::string name, cloth, to;
-  double stiffness = 10000;             ///< of the spring of a particle with weight 1 [N/m]
-  std::optional<double> length;         ///< slack length [m]; absent: the distance at `begin`
-  double begin = -1e5, release = -1;    ///< [s]; negative release: never
+  double stiffness = 10000;             ///< stiffness of the spring of a particle with weight 1 [N/m]
+  std::optional<double> length;         ///< rest length of the springs [m]; absent: the distance at `begin`
+  double begin = -1e5, release = -1;    ///< times between which it acts [s]; negative release: for ever
   std::optional<double> breaking_load;  ///< total force of its springs above which it breaks [N]; absent: never
 };
 
@@ -239,24 +239,24 @@ struct Cloth {
   std::string name;
   ClothShape shape = ClothShape::quads;
   Vec2 size{1, 1};                               ///< weft, warp [m]; for rectangles
-  int particles_weft = 41, particles_warp = 41;  ///< for rectangles; crossed triangles have one more per cell
+  int particles_weft = 41, particles_warp = 41;  ///< for rectangles; crossed triangles have another one in each cell
   Vec2 grading{1, 1};                            ///< for rectangles: last spacing of particles / first spacing
   std::filesystem::path file;                    ///< mesh or sewing pattern; absolute after checking
   double scale = 1;                              ///< mesh: metres per unit of the file; pattern: factor on its lengths
   FileUp up = FileUp::as_file;                   ///< mesh: up axis of the file
   std::string object;                            ///< mesh: name of the object in the file; empty: all objects
   ClothRest rest = ClothRest::automatic;         ///< mesh: source of the rest shape
-  std::optional<Vec2> uv_scale;                  ///< metres per unit of the UVs; absent: measured against the mesh
-  double edge_length = 0.02;                     ///< of the mesh of a pattern [m]
+  std::optional<Vec2> uv_scale;                  ///< metres per unit of the UVs; absent: so that they fit the mesh
+  double edge_length = 0.02;                     ///< edge length of the mesh of a pattern [m]
   std::string wearer;                            ///< character that wears a pattern; empty: the only one
   bool fit = false;                              ///< scale a pattern to the wearer's measures
   double sewing = 1;         ///< time in which the rest shape changes from the sewn start to flat panels [s]
   int line = 0, column = 0;  ///< where the scene names it, for errors in its file
-  Pose pose;                 ///< of the middle of a sheet (weft along x, warp along y), or of a file's origin
+  Pose pose;                 ///< pose of the middle of a sheet (weft along x, warp along y), or of a file's origin
   Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
   Vec3 spin{0, 0, 0};        ///< at the start, about the centre of mass: vector along the axis [degrees/s]
   Vec2 start_scale{1, 1};    ///< start lengths along weft and warp / rest lengths
-  ClothStart start = ClothStart::as_given;  ///< if it touches or crosses something at the start
+  ClothStart start = ClothStart::as_given;  ///< what happens if the cloth touches or crosses something at the start
   std::vector<std::string> over;            ///< cloths that are put on before it and stay inside it
   double start_noise = 0;                   ///< maximum random offset of a particle at the start, along each axis [m]
   Material material;
@@ -264,40 +264,40 @@ struct Cloth {
   Look look;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
-  std::shared_ptr<const Rope> rope;  ///< the rope that it represents; null: a sheet
+  std::shared_ptr<const Rope> rope;  ///< the rope that this cloth represents; null: a sheet
 };
 
-/// Number of particles of a rectangle of cloth; 0 for other shapes, whose files determine the number.
+/// Number of particles of a rectangle of cloth; 0 for other shapes.
 inline long rectangle_particles(const Cloth& cloth) {
   const long u = cloth.particles_weft, v = cloth.particles_warp;
   if (cloth.shape > ClothShape::crossed_triangles) return 0;
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
 
-/// Length of a rope at a time. A change of length is distributed evenly over the rope.
+/// Rest length of a rope at one time. A change of length is distributed evenly over the rope.
 struct RopeKey {
   double time = 0;    ///< [s], strictly increasing
-  double length = 1;  ///< at rest [m]
+  double length = 1;  ///< rest length [m]
 };
 
 /// A thin chain of particles. It is simulated as a one-dimensional cloth; see as_cloth().
 struct Rope {
   std::string name;
-  std::vector<Vec3> points;                            ///< points of its start course [m]
+  std::vector<Vec3> points;                            ///< points that it passes through at the start [m]
   std::optional<Vec3> from, to;                        ///< its ends, if it has no points [m]
   bool smooth = false;                                 ///< curved through its points; else straight between them
   bool closed = false;                                 ///< its end joins its beginning
-  std::optional<double> length;                        ///< at rest [m]; absent: as at the start
+  std::optional<double> length;                        ///< rest length [m]; absent: length at the start
   Interpolation interpolation = Interpolation::cubic;  ///< between its keys
-  std::vector<RopeKey> keys;                           ///< of its length; empty: constant
-  std::optional<int> segments;                         ///< pieces between particles; absent: by diameter
+  std::vector<RopeKey> keys;                           ///< keys of its length; empty: constant length
+  std::optional<int> segments;                         ///< number of pieces between particles; absent: by diameter
   double diameter = 0.008;                             ///< contact diameter [m]
   int material = 0;                                    ///< index into rope_materials()
-  std::optional<double> mass, stretch, bend;  ///< mass per length [kg/m], EA [N], EI [N·m²]; absent: of the material
+  std::optional<double> mass, stretch, bend;  ///< mass per length [kg/m], EA [N], EI [N·m²]; absent: by material
   double damping = 0.01;                      ///< viscosity of stretch and bending / their stiffness [s]
-  double friction = 0.3;                      ///< Coulomb coefficient; of two objects: the geometric mean
-  double drag = 1.1;                          ///< air resistance coefficient of the motion across it, as of a cylinder
-  Vec3 velocity{0, 0, 0};                     ///< at the start [m/s]
+  double friction = 0.3;   ///< Coulomb coefficient; a contact uses the geometric mean of both objects
+  double drag = 1.1;       ///< air resistance coefficient of a cylinder, for motion across the rope
+  Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
   Look look;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
@@ -306,15 +306,15 @@ struct Rope {
 struct Obstacle {
   std::string name;
   Shape shape;
-  int segments = 48;  ///< round shapes: number of faces around
+  int segments = 48;  ///< round shapes: number of faces around the axis
   Pose pose;
   PoseTrack motion;        ///< absolute poses; empty: rests at `pose`
-  double mass = 0;         ///< [kg]; 0: by density
-  double density = 0;      ///< of its volume [kg/m³]; 0 without mass: not moved by forces
+  double mass = 0;         ///< [kg]; 0: from the density
+  double density = 0;      ///< [kg/m³]; if mass and density are 0, forces do not move the obstacle
   Vec3 velocity{0, 0, 0};  ///< at the start, if forces but no keys move it [m/s]
-  Vec3 spin{0, 0, 0};      ///< likewise, about its centre of mass [degrees/s]
-  double release = 0;      ///< time from which forces move it [s]; before it, its keys do
-  /// Obstacle, or "<character>.<part>", whose rigid motion since the start of the run is added; empty: none.
+  Vec3 spin{0, 0, 0};      ///< at the start, as `velocity`; about its centre of mass [degrees/s]
+  double release = 0;      ///< time from which forces move it [s]; until then, its keys do
+  /// Obstacle, or "<character>.<part>", whose rigid motion since the start of the run is added to its own; empty: none.
   std::string follow = {};
   double friction = 0.3;
   bool collide = true;
@@ -329,7 +329,7 @@ inline bool is_dynamic(const Obstacle& obstacle) {
 
 enum class Stance { first, rest };
 
-/// Names of a joint in the body and in the motion, for files that do not use the common names.
+/// Names of one joint in two files, for files that do not use the common names.
 struct JointNames {
   std::string name;                   ///< one of character::joint_names()
   std::optional<std::string> body;    ///< in the character's file
@@ -340,45 +340,45 @@ struct JointNames {
 struct Travel {
   enum class Kind { file, none, speed };
   Kind kind = Kind::file;
-  double speed = 0;  ///< for Kind::speed [m/s of the scene]
+  double speed = 0;  ///< for Kind::speed: horizontal speed in the scene [m/s]
 };
 
 /// How a skinned body moves.
 struct Acting {
-  std::optional<std::string> clip;              ///< of `motion`, or else of the body; absent: the first
+  std::optional<std::string> clip;  ///< name of a clip in `motion` or, without, in the body; absent: the first
   std::optional<std::filesystem::path> motion;  ///< file with the motion to transfer; absolute after checking
   FileUp motion_up = FileUp::as_file;           ///< up axis of `motion`
   std::vector<JointNames> joints;
   Travel travel;
   Stance stance = Stance::first;      ///< pose while dressing
-  std::optional<double> stance_arms;  ///< angle of straight arms from hanging [degrees]; absent: unchanged
-  bool loop = false;                  ///< repeat; each round continues from the end position of the last
-  double crossfade = 0;               ///< clip time at the end of a round that is blended into the next [s]
+  std::optional<double> stance_arms;  ///< angle between straight arms and the vertical [degrees]; absent: unchanged
+  bool loop = false;                  ///< repeats the clip; each round starts where the previous one ended
+  double crossfade = 0;               ///< the end of a round, for this clip time, is blended into the next round [s]
 };
 
 /// A skinned and animated character from a file.
 struct CharacterFile : Acting {
   std::filesystem::path path;        ///< absolute after checking
-  std::vector<std::string> meshes;   ///< its meshes, by names of meshes or their nodes; empty: all
-  std::vector<std::string> without;  ///< meshes to leave out, likewise
+  std::vector<std::string> meshes;   ///< meshes to use, by names of meshes or their nodes; empty: all
+  std::vector<std::string> without;  ///< meshes to leave out, by the same names
 };
 
 /// The built-in mannequin; see character::MannequinBuild. In scenes with z up it faces and walks along −y.
 struct Mannequin : Acting {
   double height = 1.75;       ///< [m]
   double girth = 1;           ///< factor on the widths of the slender default
-  double masculinity = 0;     ///< 0 a woman, 1 a man
-  double edge_length = 0.02;  ///< of its triangles [m]
-  double walk = 0;            ///< distance [m]; 0: it stands
+  double masculinity = 0;     ///< shape from 0, a woman, to 1, a man
+  double edge_length = 0.02;  ///< edge length of its triangles [m]
+  double walk = 0;            ///< walked distance [m]; 0: it stands
   double pace = 1.2;          ///< steady walking speed [m/s]
-  bool turn_back = false;     ///< at the end it turns and walks back
+  bool turn_back = false;     ///< at the end of the walk it turns and walks back
   double arms_out = 13;       ///< angle of the upper arms from the vertical while walking [degrees]
 };
 
-/// Key frames as a sequence of mesh files.
+/// Key frames of a body, given by a sequence of mesh files.
 struct MeshSequence {
   std::string files;  ///< a folder, or a file name with one *; relative paths start at the scene's folder
-  double fps = 25;    ///< [1/s]
+  double fps = 25;    ///< files per second
 };
 
 using CharacterSource = std::variant<CharacterFile, Mannequin, MeshSequence>;
@@ -390,7 +390,7 @@ struct BodyPart {
   std::optional<std::string> material;  ///< of the character's file
   bool collide = true;
   std::optional<double> friction;  ///< absent: that of the character
-  double thickness = 0;            ///< twice the contact distance beyond half of the cloth's thickness [m]
+  double thickness = 0;            ///< thickness of padding [m]; half of it is added to the contact distance
 };
 
 /// A body with prescribed motion, stored as key frames of its vertices.
@@ -399,13 +399,13 @@ struct Character {
   CharacterSource source;
   std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, else 1
   FileUp up = FileUp::as_file;
-  Pose pose;                              ///< of the file's origin, or of the floor below the mannequin
-  double dressing = 0;                    ///< time standing still [s]
-  double blend = 0;                       ///< time in which it then starts to move [s]
-  double grow = 0;                        ///< part of the dressing in which it grows from its bones to its size [s]
-  double start = 0;                       ///< time of the clip at which it begins [s]
-  double speed = 1;                       ///< factor on the speed of the clip
-  std::optional<double> room;             ///< clearance between limbs for cloth [m]; absent: by cloth thickness
+  Pose pose;                   ///< pose of the file's origin, or of the point on the floor below the mannequin
+  double dressing = 0;         ///< time from the start of the preroll during which it stands still [s]
+  double blend = 0;            ///< time after `dressing` in which its motion starts smoothly [s]
+  double grow = 0;             ///< first part of `dressing`: it grows from its bones to its size [s]
+  double start = 0;            ///< time of the clip at which the motion begins [s]
+  double speed = 1;            ///< factor on the speed of the clip
+  std::optional<double> room;  ///< clearance between limbs for cloth [m]; absent: from cloth thickness
   std::optional<double> keys_per_second;  ///< absent: that of the clip
   Interpolation interpolation = Interpolation::cubic;
   double friction = 0.3;
@@ -415,7 +415,7 @@ struct Character {
   int line = 0, column = 0;  ///< where the scene names it, for errors in its file
 };
 
-/// The acting of a character with joints; else nullptr.
+/// The acting of a character that has joints; nullptr for others.
 inline const Acting* acting_of(const Character& character) {
   if (const auto* file = std::get_if<CharacterFile>(&character.source)) return file;
   return std::get_if<Mannequin>(&character.source);
@@ -458,8 +458,8 @@ struct Scene {
   std::filesystem::path file;
   std::string name;  ///< file name without extension; names the output
   std::string title;
-  std::uint64_t hash = 0;                    ///< of the checked values, independent of comments and order
-  std::uint64_t simulation_hash = 0;         ///< of the values that affect the simulation
+  std::uint64_t hash = 0;                    ///< hash of the checked values, independent of comments and order
+  std::uint64_t simulation_hash = 0;         ///< hash of only the values that affect the simulation
   std::vector<std::filesystem::path> files;  ///< files that for_each_dependency() visits
   UpAxis up = UpAxis::z;
   Time time;
@@ -468,7 +468,7 @@ struct Scene {
   Solver solver;
   Contact contact;
   std::vector<Cloth> cloths;  ///< those of ropes come last
-  std::vector<Rope> ropes;    ///< as they are read
+  std::vector<Rope> ropes;    ///< as the scene gives them
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
   std::vector<Character> characters;
@@ -479,7 +479,7 @@ struct Scene {
   int frame_count() const { return static_cast<int>(std::lround(time.duration * time.fps)) + 1; }
   /// Number of frames in the preroll; frame 0 follows them.
   int preroll_frames() const { return static_cast<int>(std::ceil(time.preroll * time.fps - 1e-9)); }
-  double start_time() const { return -preroll_frames() / time.fps; }  ///< of the run, with its preroll [s]
+  double start_time() const { return -preroll_frames() / time.fps; }  ///< start of the run, including the preroll [s]
 };
 
 }  // namespace weft::scene

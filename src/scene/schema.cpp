@@ -1,4 +1,5 @@
-// The JSON schema of the scene format, Draft 2020-12. It uses only features that editors limited to draft 7 read alike.
+// The JSON schema of the scene format, Draft 2020-12. It uses only features that have the same meaning in draft 7, to
+// which some editors are limited.
 #include <fmt/format.h>
 
 #include "core/json.hpp"
@@ -60,7 +61,7 @@ Json type_schema(const Rule& rule) {
   return {};
 }
 
-/// "length of the film [s]", followed by components, default and exclusions.
+/// Description of a key: documentation and unit ("length of the film [s]"), components, default and exclusions.
 std::string description(const Rule& rule) {
   std::string text = rule.documentation;
   if ((rule.type == Type::number || rule.type == Type::points) && !rule.components.empty())
@@ -105,7 +106,7 @@ Json variant_schema(const Table& table, const Variant* variant) {
   return schema;
 }
 
-/// Whether both schemas allow the same values, regardless of descriptions and defaults.
+/// Whether both schemas allow the same values; descriptions and defaults may differ.
 bool allow_same_values(Json one, Json other) {
   for (Json* schema : {&one, &other}) {
     schema->erase("description");
@@ -124,8 +125,8 @@ Json condition(const Table& table, const Variant& variant) {
   return when;
 }
 
-// Lists the properties of all variants, for completion in editors, and for each variant a condition with the allowed
-// keys. Not oneOf: editors then only state that no alternative fits, whereas for a condition they name the wrong key.
+// Lists the properties of all variants, so that editors can complete them. For each variant, a condition gives the
+// allowed keys: editors then name the wrong key (with oneOf, they only state that no alternative fits).
 Json table_schema(const Table& table) {
   Json schema = variant_schema(table, nullptr);
   if (table.variants.empty()) return schema;
@@ -142,7 +143,7 @@ Json table_schema(const Table& table) {
   Json conditions = Json::array();
   for (std::size_t i = 0; i < variants.size(); ++i) {
     for (const char* unused : {"type", "description"}) variants[i].erase(unused);
-    // Properties that are listed above need not be repeated.
+    // Properties equal to those in the common list need not be repeated.
     for (auto& [key, property] : variants[i]["properties"].items())
       if (property == properties[key]) property = true;
     conditions.push_back({{"if", condition(table, table.variants[i])}, {"then", std::move(variants[i])}});

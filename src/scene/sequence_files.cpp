@@ -10,7 +10,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Inserts before each number its count of digits without leading zeros, so that text order is the order of numbers.
+/// Inserts before each number the count of its digits (without leading zeros), so that sorting the texts sorts by
+/// number.
 std::string sort_key(const std::string& name) {
   std::string key;
   for (std::size_t i = 0; i < name.size();) {

@@ -1,5 +1,5 @@
-// Builds rows of the rule table: each binds a key to the member of a struct that it fills. Code that does not depend on
-// the struct is in table_builder.cpp, to be compiled once for the hundreds of rows.
+// Builds rows of the rule table: each binds a key to the struct member that it fills. Code that does not depend on the
+// struct is in table_builder.cpp, so that it is compiled once, not for each of hundreds of rows.
 #pragma once
 
 #include <functional>
@@ -73,7 +73,7 @@ class RowBuilder {
   void add_table(std::string_view key, Type type, const Table& inner);
   void set_components(const Words& components);
   void bind(std::function<Value(void*)> get, std::function<void(void*, const Value&)> set);
-  /// One array of two numbers for two members. The functions read and write one of them, as `second` selects.
+  /// One array of two numbers for two members. The functions read and write the member that `second` selects.
   void bind_pair(std::function<Value(void*, bool second)> get,
                  std::function<void(void*, bool second, const Value&)> set);
   /// The functions read and write the index of the choice.
@@ -86,7 +86,7 @@ class RowBuilder {
   Table table_;
 };
 
-/// Rows of the table that describes struct S. A member is a member pointer or a generic lambda S& -> member&.
+/// Rows of the table that describes struct S. Arguments `member`: a member pointer, or a lambda S& -> member&.
 template <class S>
 class TableBuilder : public RowBuilder {
  public:
@@ -131,7 +131,7 @@ class TableBuilder : public RowBuilder {
     add(key, type, documentation);
     return bind_member(member);
   }
-  /// An enumeration (or a bool: false is the first); the choices in the order of its values.
+  /// An enumeration, or a bool. `choices`: in the order of the enumeration, or for false and true.
   template <class Member>
   TableBuilder& choice(std::string_view key, Member member, const Words& choices, std::string_view documentation) {
     using Field = std::remove_reference_t<std::invoke_result_t<Member, S&>>;
@@ -139,7 +139,7 @@ class TableBuilder : public RowBuilder {
         key, choices, documentation, [member](S& s) { return static_cast<std::size_t>(std::invoke(member, s)); },
         [member](S& s, std::size_t index) { std::invoke(member, s) = static_cast<Field>(index); });
   }
-  /// A choice with its own storage: the functions read (S&) and write (S&, std::size_t) its index.
+  /// A choice that is no member of S: the functions read (S&) and write (S&, std::size_t) its index.
   template <class Get, class Set>
   TableBuilder& choice_by(std::string_view key, const Words& choices, std::string_view documentation, Get get,
                           Set set) {
@@ -149,7 +149,7 @@ class TableBuilder : public RowBuilder {
         [set](void* s, std::size_t index) { set(*static_cast<S*>(s), index); });
     return *this;
   }
-  /// A number, or one of `words`; the functions read (S&) and write (S&, const Value&) either.
+  /// A number, or one of `words`. The functions read (S&) and write (S&, const Value&) the number or the word.
   template <class Get, class Set>
   TableBuilder& number_or(std::string_view key, const Words& words, Range range, std::string_view unit,
                           std::string_view documentation, Get get, Set set) {
@@ -203,7 +203,7 @@ class TableBuilder : public RowBuilder {
     };
     return *this;
   }
-  /// Rows that apply only to this value of the selector.
+  /// Rows that apply only if the selector has the value `name`.
   TableBuilder& variant(std::string_view name, const RowBuilder& rows) {
     add_variant(name, rows);
     return *this;
@@ -234,7 +234,7 @@ class TableBuilder : public RowBuilder {
     last().excludes = key;
     return *this;
   }
-  /// Additional action (S&) if the key is given.
+  /// `then` (S&): additional action if the key is given.
   template <class Then>
   TableBuilder& when_given(Then then) {
     do_when_given([then](void* s) { then(*static_cast<S*>(s)); });
@@ -248,19 +248,19 @@ class TableBuilder : public RowBuilder {
     table_.selector = last().key;
     return *this;
   }
-  /// Whether (S&) the row is written.
+  /// `when` (S&): whether the row is written.
   template <class When>
   TableBuilder& written_if(When when) {
     write_if([when](void* s) { return when(*static_cast<S*>(s)); });
     return *this;
   }
 
-  /// The struct with the defaults, if it differs from S{}.
+  /// `start`: the struct with the defaults, if these differ from S{}.
   TableBuilder& starting_from(S start) {
     table_.make = [start] { return std::make_shared<S>(start); };
     return *this;
   }
-  /// Adds rows that several tables share.
+  /// Calls `rows` (TableBuilder&), which adds rows that several tables share.
   template <class Rows>
   TableBuilder& with(const Rows& rows) {
     rows(*this);

@@ -6,8 +6,8 @@
 namespace weft::scene {
 namespace {
 
-// A camera or light that stands still has one key, which stores its own values. If `keys` are given, the first one
-// starts with these values, and each later one with those of its predecessor.
+// The values in the table of a camera or light itself are stored as its first key. If the table has `keys`, the
+// defaults of the first key are these values, and the defaults of each later key are those of the key before.
 template <class S>
 void copy_key_before(S& owner, std::size_t i) {
   if (i == 0) return;
@@ -22,7 +22,7 @@ template <class S>
 bool stands_still(S& owner) {
   return owner.keys.size() == 1;
 }
-/// Access to a member of the first key, which stores the own values of a camera or light.
+/// Access to a member of the first key, which stores the values in the table of a camera or light itself.
 template <class Key, class Field>
 auto own(Field Key::*field) {
   return [field](auto& owner) -> Field& { return owner.keys.front().*field; };
@@ -32,7 +32,8 @@ const Range kFieldOfView = within(1, 170);    // [degrees]
 const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
 
-/// Row of the focal length of a key, after that of its field of view. `stands`: whether (S&) its own value is written.
+/// Row of the focal length; follows that of the field of view. `stands` (S&): whether the value in the table itself is
+/// written.
 template <class S, class Member, class Stands>
 void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& otherwise, Stands stands) {
   rows.number("focal_length", member, kFocalLength, "mm",
@@ -42,7 +43,7 @@ void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& o
       .written_if([member, stands](S& s) { return stands(s) && std::invoke(member, s) > 0; });
 }
 
-/// The same for a camera, with its sensor width.
+/// Rows of the focal length and the sensor width of a camera.
 template <class Stands>
 void focal_rows(TableBuilder<Camera>& rows, Stands stands) {
   focal_length_row(rows, own(&CameraKey::focal_length), "none", stands);
@@ -150,7 +151,7 @@ void file_rows(TableBuilder<Camera>& rows) {
               "factor on the lengths of the file, which glTF gives in metres");
 }
 
-/// Keys that suns and spots share; `rows` adds the others.
+/// Table of the keys of a light. Suns and spots share some keys; `rows` adds the others.
 Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
   return TableBuilder<LightKey>("The light at one time.")
       .number("time", &LightKey::time, kMoment, "s", "time of the scene; later than that of the key before")

@@ -59,7 +59,7 @@ const mesh::RigidFrame& Attachments::frame_of(const Attachment& attachment) cons
   return environment_->bodies[attachment.body].dynamics->frame;
 }
 
-// Converts a point on three vertices into a point on the frame of their body.
+// Converts a point from weights of three vertices to weights of the four frame particles of their body.
 void Attachments::move_to_frame(const Attachment& attachment, Spring& spring) const {
   const std::vector<mesh::RigidFrame::Weights>& weights = frame_of(attachment).weights();
   const Spring on_vertices = spring;
@@ -105,7 +105,7 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
 
 void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
   for (Attachment& attachment : attachments_) {
-    // A longer attempt at this step has tied it already.
+    // A longer, rejected attempt has tied the attachment, but this step ends before it begins.
     if (attachment.state == State::tied && t1 < attachment.begin) attachment.state = State::open;
     attachment.holds = holds_at(attachment, t1);
     if (!attachment.holds) continue;
@@ -168,7 +168,7 @@ void Attachments::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force)
 
 void Attachments::add_terms(std::span<const Vec3> x_end, double end_rate, solver::LinearSystem& system) const {
   for_each_tension(x_end, [&](const Attachment& attachment, const Spring& spring, const Tension& tension) {
-    // Positive semidefinite: the spring is in tension.
+    // Positive semidefinite, because the spring is in tension.
     const double lateral = tension.force / tension.length;
     const Mat3 stiffness =
         end_rate *

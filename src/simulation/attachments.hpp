@@ -21,20 +21,21 @@ namespace weft::simulation {
 /// `length` of the scene, or else the distance at which the particle was tied. A shorter distance causes no force:
 /// contact keeps surfaces apart.
 ///
-/// The springs act at the end of the step, as contacts do.
+/// The spring forces follow from the positions at the end of the step, as contact forces do.
 class Attachments {
  public:
   /// `first_particle`: of each cloth; `first_of_frames`: first frame particle of each body, −1 for a body that forces
-  /// do not move. The environment must outlive it.
+  /// do not move. The environment must outlive this object.
   Attachments(const scene::Scene& scene, const environment::Environment& environment,
               std::span<const Index> first_particle, std::span<const Index> first_of_frames);
 
   bool empty() const { return attachments_.empty(); }
 
   /// Begins a step from t0 to t1 [s of the scene] with particles at x [m]: selects the attachments that hold in the
-  /// step, ties new ones, and places their points on key-framed bodies at t1.
+  /// step, ties new ones, and computes where their points on key-framed bodies are at t1.
   void begin_step(double t0, double t1, std::span<const Vec3> x);
-  /// Whether the attachments that hold, and their key-framed triangles, are the same at t0 and t1 [s].
+  /// Whether the same attachments hold at t0 and t1 [s], and their triangles on key-framed bodies are at the same
+  /// places.
   bool are_constant_between(double t0, double t1) const;
 
   /// Adds the spring forces to `force` [N]; `x_end`: all particles at the end of the step [m].
@@ -48,7 +49,7 @@ class Attachments {
   void accept(std::span<const Vec3> x);
   std::vector<frame::AttachmentLoad> measure() const;
 
-  /// Copies the state of attachments of the same name; `cloths`: number here of each cloth there.
+  /// Copies the state of attachments of the same name. `cloths[k]`: number in this object of cloth k of `there`.
   void copy_state_from(const Attachments& there, std::span<const std::size_t> cloths);
 
   template <class Archive>

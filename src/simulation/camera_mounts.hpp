@@ -14,8 +14,8 @@ class CameraMounts {
  public:
   CameraMounts(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// Moves the cameras of a frame from the positions of their keys, along with what they follow. Takes time linear in
-  /// the vertices of the followed obstacles.
+  /// Moves each camera that follows something along with it, starting from the position that the camera's keys give.
+  /// Takes time linear in the vertices of the followed obstacles.
   void move(frame::FrameSnapshot& snapshot) const;
 
  private:

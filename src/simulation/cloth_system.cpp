@@ -25,7 +25,7 @@
 namespace weft::simulation {
 namespace {
 
-// Smallest number of particles in a range, and largest number of ranges per part and thread: several balance the load.
+// Minimum number of particles in a range. Maximum number of ranges per part and thread: several balance the load.
 constexpr Index kMinRangeSize = 512;
 constexpr Index kMaxRangesPerThread = 2;
 
@@ -60,7 +60,7 @@ struct Lattice {
   std::array<double, 3> sides;  // of a box, along the same axes [m]
 };
 
-// The finest lattice: one box per particle of a grid; of triangles, cubes with the mean particle distance as side.
+// The finest lattice. Grids have one box per particle; triangles have cubes with the mean particle distance as side.
 Lattice lattice_of(const environment::ClothObject& cloth) {
   Lattice lattice;
   const mesh::Grid& grid = cloth.grid;
@@ -79,8 +79,8 @@ Lattice lattice_of(const environment::ClothObject& cloth) {
   return lattice;
 }
 
-// Doubles all sides but those that are longer than `slender_aggregate` times the shortest one, because cloth is
-// stiffest between close particles.
+// Doubles all sides of the boxes, except those longer than `slender_aggregate` times the shortest one: cloth is
+// stiffest between close particles, so these are merged first.
 void coarsen(Lattice& lattice) {
   Box last{0, 0, 0};
   for (const Box& box : lattice.boxes)
@@ -95,7 +95,7 @@ void coarsen(Lattice& lattice) {
   }
 }
 
-// Progress of sewing over the elapsed fraction of its duration: starts and ends with zero slope.
+// Progress of sewing as a function of the elapsed fraction of its duration; the slope is zero at both ends.
 double ease(double s) {
   s = std::clamp(s, 0.0, 1.0);
   return s * s * (3 - 2 * s);
@@ -276,8 +276,8 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
     forces_[cloth].push_back(std::make_unique<forces::Air>(sheet, first, air_of(material, physics)));
 }
 
-// Divides each part into ranges that threads evaluate in parallel, the same number for each thread. Forces at the
-// border of two ranges are evaluated twice: a tenth of them with 1,024 particles in 16 rows.
+// Divides each part into ranges that threads evaluate in parallel, the same number for each thread. Forces across the
+// border of two ranges are evaluated twice: a tenth of all if a range has 1,024 particles in 16 rows.
 void ClothSystem::divide_into_ranges() {
   const Index threads = thread_count();
   for (std::size_t c = 0; c < parts(); ++c) {

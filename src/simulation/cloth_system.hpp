@@ -34,9 +34,9 @@ bool bends(const scene::Material& material);
 bool locks(const scene::Material& material);
 
 /// Numbers the particles of all cloths consecutively, in the order of the scene. After them come four particles for
-/// each body that forces move: its frame. A part is a cloth or such a frame. Forces depend only on their arguments, and
-/// on what changes with time: rest shapes of cloth that is being sewn, rope lengths, enclosed air, and which particles
-/// are held.
+/// each body that forces move: its frame. A part is a cloth or such a frame. Forces depend on their arguments, and
+/// besides only on what changes with time: rest shapes of cloth that is being sewn, rope lengths, enclosed air, and
+/// which particles are held.
 class ClothSystem {
  public:
   ClothSystem(const scene::Scene& scene, const environment::Environment& environment);
@@ -53,7 +53,7 @@ class ClothSystem {
 
   /// Sets gravity for cancel_weight_of_sewn_cloth() in the following steps [m/s²].
   void use_gravity(const Vec3& gravity) { gravity_ = gravity; }
-  /// Cancels the weight of cloth that is being sewn: it would fall before it fits.
+  /// Cancels the weight of cloth that is being sewn, which would otherwise fall before it fits.
   void cancel_weight_of_sewn_cloth(std::span<Vec3> force) const;
 
   /// Particles of one part whose forces can be evaluated in parallel with those of other ranges.
@@ -64,13 +64,14 @@ class ClothSystem {
   };
   /// The ranges of all parts. The division does not change any bit of the forces.
   std::span<const Range> ranges() const { return ranges_; }
-  /// Largest number of ranges, with as many threads as have work.
+  /// Number of ranges if the number of threads were unlimited.
   std::size_t largest_range_count() const;
 
   /// Adds the forces on one part, without its weight; `at` has positions, velocities and forces of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
-  /// State of the thread locks (forces::StretchLimit), per cloth; empty for cloths without a limit to stretch.
+  /// Where the thread locks (forces::StretchLimit) are linearised, per cloth; empty for cloths without a limit to
+  /// stretch.
   using LockLinearisations = std::vector<forces::LockLinearisation>;
   void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
   void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
@@ -94,17 +95,18 @@ class ClothSystem {
   const Inflation& inflation() const { return inflation_; }
   Inflation& inflation() { return inflation_; }
 
-  /// Sets which particles pins hold. Returns whether they changed, and with them the stiffness at the borders of pins.
+  /// Sets which particles pins hold. Returns whether this set has changed; the bending stiffness beside pins then
+  /// changes, too.
   bool hold(std::span<const integrator::HeldParticle> pinned);
 
   /// Accepts a step that ends with particles at x [m]: seams may tear.
   void accept(std::span<const Vec3> x);
-  /// The pull of each seam that tears.
+  /// The pull of each seam that can tear [N].
   std::vector<frame::AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
-  /// Which parts of seams are torn. `cloths`: number here of each cloth there.
+  /// Copies which ties of seams hold or are torn. `cloths[k]`: number in this object of cloth k of `there`.
   void copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths);
 
-  /// What persists from frame to frame: progress of sewing, torn seams, and enclosed air.
+  /// Saves or restores what persists from frame to frame: progress of sewing, torn seams, and enclosed air.
   template <class Archive>
   void serialize(Archive& archive);
 
@@ -155,7 +157,7 @@ class ClothSystem {
     forces::StretchLimit* limit;               // nullptr if the cloth has none
     forces::Ties* ties;                        // nullptr if the cloth has none
     std::vector<std::string> tearing_seams{};  // names
-    double time = 0;                           // for which the ties were last set [s since the start of the run]
+    double time = 0;                           // at which the ties were last updated [s since the start of the run]
 
     void set_progress(double new_progress);
   };
@@ -163,7 +165,7 @@ class ClothSystem {
   /// A rope with key-framed length.
   struct KeyedRope {
     forces::Cord* cord;
-    double length;                   // as built, at rest [m]
+    double length;                   // rest length at construction [m]
     environment::Spline<1> lengths;  // over the time of the scene
   };
   std::vector<KeyedRope> keyed_ropes_;

@@ -324,7 +324,8 @@ bool CollisionStage::obstacles_move_little(const SystemState& now, const SystemS
   return true;
 }
 
-// Whether a triangle of cloth, with its velocity, enters the box that an obstacle sweeps as it turns by `angle` [rad].
+// Whether a triangle of cloth, which keeps its velocity, meets the box that an obstacle sweeps as it turns by `angle`
+// [rad].
 bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, double angle,
                                       const SystemState& now) const {
   constexpr double kMaxPieceAngle = 0.25;  // [rad]

@@ -18,8 +18,8 @@
 
 namespace weft::simulation {
 
-/// State of all particles and bodies at one time. `x` has the particles, then the vertices of the bodies that collide,
-/// those of bodies that forces move first. `v` has the particles alone.
+/// State of all particles and bodies at one time. `x`: the particles, then the vertices of the bodies that collide;
+/// bodies that forces move come first. `v`: the particles alone.
 struct SystemState : integrator::State {
   double bodies_time = 0;  ///< time at which the key-framed bodies in x are placed [s]
 
@@ -36,7 +36,7 @@ class CollisionStage {
   /// Whether anything in the scene can collide. If not, no stage is made.
   static bool needed(const scene::Scene& scene);
 
-  /// Appends the vertices of the bodies to `start`, at its time. The environment must outlive it.
+  /// Appends the vertices of the bodies at start.bodies_time to start.x. The environment must outlive the stage.
   CollisionStage(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
                  SystemState& start);
 
@@ -44,36 +44,37 @@ class CollisionStage {
   /// against penetration holds only for surfaces that start apart.
   std::vector<IntersectionPlace> find_intersections(const SystemState& start);
 
-  /// Lifts bodies that forces move off what they touch at the start, because scenes place a box exactly on what carries
-  /// it. Of two bodies that touch, the upper one rises by 0.2 mm along the unit vector `up`, at most 33 times; bodies
-  /// that keys hold at t [s] stay. Returns the largest lift [m]. If something still touches in the end, changes nothing
-  /// and returns 0.
+  /// Lifts dynamic bodies (moved by forces) that touch something at the start, because scenes place a box exactly on
+  /// its support. Of two bodies that touch, the upper one rises by 0.2 mm along the unit vector `up`, at most 33 times.
+  /// Bodies that keys hold at t [s] stay. Returns the largest lift [m]. If surfaces still touch afterwards, changes
+  /// nothing and returns 0.
   double lift_bodies(const Vec3& up, double t, SystemState& start);
 
   /// Moves cloth that touches or crosses something at the start, if may_be_untangled() is true for the cloth. Particles
-  /// in `held` stay, as do cloths that were `dressed` before (numbers); all others end up outside of a dressed cloth
-  /// that one of them is worn over. Throws Error(scene_invalid) with objects and places if an obstacle goes through
-  /// cloth that has no way out. Other intersections may remain: see find_intersections().
+  /// in `held` stay, and so do the cloths whose numbers are in `dressed`. If a new cloth is worn over a dressed one,
+  /// all new cloths end up outside of the dressed one. Throws Error(scene_invalid) with objects and places if an
+  /// obstacle goes through cloth that has no way out. Other intersections may remain: see find_intersections().
   void untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
                 std::span<const std::size_t> dressed, SystemState& start);
 
-  /// Takes over the pinched pairs of another stage; `cloths`: number here of each cloth there.
+  /// Copies the pinched pairs of another stage. `cloths[k]`: number in this stage of cloth k of `before`.
   void copy_state_from(const CollisionStage& before, std::span<const std::size_t> cloths);
 
   /// Begins a step, before its solve. Places bodies at t in `now` and at t + h in `next`. Predicts the particles of
-  /// `next`: held ones at their targets, others with unchanged velocity. Finds contacts for `now` and this prediction,
-  /// and moves predicted particles apart that would meet on the way. Returns whether it moved any.
+  /// `next`: held ones at their targets, others with unchanged velocity. Finds contacts for `now` and this prediction.
+  /// If predicted particles would meet on the way, moves them apart. Returns whether it moved any.
   bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, SystemState& now,
                   SystemState& next);
 
-  /// Whether an obstacle with cloth near it turns so far between t and t + h [s] that its vertices leave the straight
-  /// trajectories that the search assumes by more than `numerics.separation.creep` detection distances.
+  /// The search assumes straight trajectories. Returns whether an obstacle near cloth turns so far between t and t + h
+  /// [s] that its vertices deviate from them by more than `numerics.separation.creep` detection distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
   /// Whether no body near the cloth moves between t0 and t1 [s]; t0 is the time of `now`. Places bodies in both states.
   bool bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const;
 
-  /// Whether no obstacle moves so far from `now` to `next` that a shorter step could find space for cloth.
+  /// Whether no obstacle near cloth moves by more than `numerics.separation.creep` detection distances from `now` to
+  /// `next`. If so, a shorter step would not find more space for cloth.
   bool obstacles_move_little(const SystemState& now, const SystemState& next) const;
 
   /// The vertices of bodies that forces move; nullptr if there are none.
@@ -92,16 +93,17 @@ class CollisionStage {
     return engine_.is_separated(trajectory_start(now), next.x);
   }
 
-  /// After is_separated() has failed: makes contacts of the pairs that would meet, and returns how many are new. In a
-  /// further solve, new contacts keep pairs apart by forces, where push_apart() would move particles.
+  /// After is_separated() has failed: makes contacts of the pairs that would meet, and returns how many are new. In the
+  /// next solve, the new contacts keep these pairs apart by forces, whereas push_apart() moves particles.
   int add_failing_contacts(const SystemState& now, const SystemState& next) {
     return engine_.add_failing_contacts(now.x, next.x);
   }
 
-  /// Corrects positions and velocities of `next` so that no pair meets. Cloth between obstacles without space becomes
-  /// pinched: exempted from this. Without `may_pinch`, only obstacles that pinch a cloth already may pinch it. With
-  /// `may_move_pins`, pinned particles may move too if nothing else helps; without it, obstructed_pins() only lists
-  /// them. Returns nothing on success, else a text that says which objects are stuck, and where.
+  /// Corrects positions and velocities of `next` so that no pair meets. Cloth that has no space between obstacles
+  /// becomes pinched: the obstacles may intersect it. If `may_pinch` is false, only obstacles that already pinch a
+  /// cloth may do so. If `may_move_pins` is true, pinned particles move, too, if nothing else helps; otherwise
+  /// obstructed_pins() lists them. Returns nothing on success, else a text that says which objects are stuck, and
+  /// where.
   std::optional<std::string> push_apart(double h, bool may_pinch, bool may_move_pins, const SystemState& now,
                                         SystemState& next);
   /// Restarts the trajectory of the step from `next`, as push_apart() has corrected it, and finds contacts there.
@@ -111,12 +113,12 @@ class CollisionStage {
   bool find_pins_between_cloths();
   /// The pinned particles that the last push_apart() or find_pins_between_cloths() found.
   std::span<const collision::ObstructedPin> obstructed_pins() const { return obstructed_pins_; }
-  /// Text that says what such a particle would have met, and where: "'a' near (0, 0, 0) m".
+  /// Text that says what this pinned particle would have met, and where: "'a' near (0, 0, 0) m".
   std::string describe(const collision::ObstructedPin& given, const SystemState& now) const;
 
   /// What obstacles pinched in the steps of a frame. take_pinches() also begins the next frame.
   struct Pinches {
-    int pairs = 0;  ///< largest number of triangles exempted from non-penetration at once
+    int pairs = 0;  ///< largest number of pinched cloth triangles at once, each counted once per obstacle limb
     /// One text per pair of objects that is new in this frame: "'a' has no room between ..."
     std::vector<std::string> begun;
   };
@@ -127,7 +129,8 @@ class CollisionStage {
   /// Before a frame: clears the caches of an optional part of the search, see Engine::forget.
   void forget() { engine_.forget(); }
 
-  /// All that the next step from `now`, at t [s], depends on. Throws std::runtime_error if the archive does not fit.
+  /// Saves or restores all that the next step from `now`, at t [s], depends on. Throws std::runtime_error if the
+  /// archive does not fit.
   template <class Archive>
   void serialize(Archive& archive, double t, SystemState& now);
 

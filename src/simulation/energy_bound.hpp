@@ -1,5 +1,5 @@
-// Detects energy without a source, as an unstable run may stay finite for long, and large work of the solver's
-// residual.
+// Detects energy without a source, because an unstable run may stay finite for long. Detects large work of the solver's
+// residual, too.
 #pragma once
 
 #include <optional>
@@ -47,7 +47,7 @@ class EnergyBound {
   double potential_low_, potential_high_;  // lowest and highest so far [J]
   // Work of pins since the start, with its lowest and highest value [J].
   double pin_work_ = 0, pin_work_low_ = 0, pin_work_high_ = 0;
-  double solver_work_ = 0;  // sum of its magnitudes, frame by frame [J]
+  double solver_work_ = 0;  // sum over frames of |work of the solver's residual| [J]
   double highest_ = 0;      // largest sum of kinetic and elastic energy so far [J]
 };
 

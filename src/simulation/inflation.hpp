@@ -32,8 +32,8 @@ class Inflation {
 
   bool empty() const { return cloths_.empty(); }
 
-  /// Begins a step that ends at time t of the scene [s]. Cloth that is not closed yet, for which is_closed(cloth) is
-  /// false, has no pressure. In the step in which it is closed, the volume that it encloses at x [m] becomes the
+  /// Begins a step that ends at time t of the scene [s]. Cloth that is still open, for which is_closed(cloth) is false,
+  /// has no gauge pressure. In the first step in which it is closed, the volume that it encloses at x [m] becomes the
   /// reference of its amount of air. Throws Error(scene_invalid) if the scene gives an amount of air, but the cloth
   /// encloses no volume then.
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
@@ -48,7 +48,7 @@ class Inflation {
   double energy(std::span<const Vec3> x) const;
   std::vector<frame::EnclosedAir> measure(std::span<const Vec3> x) const;
 
-  /// Copies the enclosed air from another simulation; `numbers`: number here of each cloth there.
+  /// Copies the enclosed air from another simulation. `numbers[k]`: number in this scene of cloth k of `there`.
   void copy_state_from(const Inflation& there, std::span<const std::size_t> numbers);
 
   template <class Archive>
@@ -64,7 +64,7 @@ class Inflation {
     forces::EnclosedVolume volume;
     scene::PressureControl control;
     environment::Spline<1> track;
-    double value = 0;                      // of the track, in the current step
+    double value = 0;                      // of the track in the current step; for the unit, see PressureControl
     double closed_volume = kOpen;          // volume when it was closed [m³]; kOpen: not closed yet
     mutable std::vector<Vec3> gradient{};  // scratch
 

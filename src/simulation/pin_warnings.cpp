@@ -20,13 +20,14 @@ namespace {
 constexpr double kMaxPinSpeed = 20;
 // Smallest jump of a pin at the start that is reported [m].
 constexpr double kMinJump = 1e-3;
-// Largest distance at the start of a pin from the body that it follows, without a warning [m]: capes are 5 cm off.
+// Maximum distance of a pin, at the start, from the body that it follows [m]; more causes a warning. Capes are 5 cm
+// off.
 constexpr double kMaxPinDistance = 0.1;
-// Depth in an obstacle from which on a particle counts as inside [m].
+// Minimum depth in an obstacle at which a particle counts as inside [m].
 constexpr double kEntryDepth = 1e-3;
 // Sampled times per frame.
 constexpr int kSamplesPerFrame = 4;
-// Largest number of sampled particles of one pin, its last one aside.
+// Maximum number of sampled particles of one pin, besides its last one.
 constexpr std::size_t kMaxSampledParticles = 41;
 
 using HeldParticles = std::vector<integrator::HeldParticle>;
@@ -71,13 +72,13 @@ struct MovingPins {
   }
 };
 
-// What a pin without a strength holds on a rectangle of cloth: a sample of positions, now and at rest [m].
+// Sampled particles that a pin without a strength holds on a rectangle of cloth: positions at one time and at rest [m].
 struct HeldRegion {
   std::vector<Vec3> x;
   std::vector<Vec2> rest;
 };
 
-// One region per pin; empty for pins with a strength, and for other cloth.
+// Returns one region per pin; empty for pins with a strength, and for cloth that is no rectangle.
 std::vector<HeldRegion> held_regions(const scene::Scene& scene, const environment::Environment& environment,
                                      const MovingPins& moving, const HeldParticles& held) {
   std::vector<HeldRegion> regions(moving.pins.size());
@@ -272,7 +273,8 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
       for (const integrator::HeldParticle& particle : held) {
         const std::size_t pin = moving.pins.pin_of(particle.constraint.particle);
         if (entered.contains(pin) || !moving.is_moved(scene, pin)) continue;
-        // Behind an open surface, such as a floor, a pin counts as inside only if it was in front of it before.
+        // An open surface, such as a floor, has no inside: a pin enters it only if it was in front of the surface
+        // before.
         const double height = height_of(particle.x_end);
         if (height > 0) outside.insert(pin);
         if (height > -kEntryDepth || !outside.contains(pin)) continue;

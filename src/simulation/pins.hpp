@@ -22,7 +22,7 @@ class Pins {
   bool empty() const { return groups_.empty(); }
 
   struct Info {
-    std::size_t cloth = 0, number = 0;  ///< of the cloth in the scene, and of the pin in its cloth; from 0
+    std::size_t cloth = 0, number = 0;  ///< from 0: of the cloth in the scene, of the pin in its cloth
     std::size_t particles = 0;
     std::optional<double> strength;  ///< stiffness of the spring to each particle [N/m]; none: the particles are held
   };
@@ -33,9 +33,9 @@ class Pins {
   /// Fraction of that pin's strength for this particle, in (0, 1]; 0 for a particle without a pin.
   double strength_fraction(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].fraction; }
 
-  /// Particles of all pins with their targets at time t [s], without those of pins released before t. One entry per
-  /// particle: where pins overlap, the first pin of the scene wins, but the region of any pin wins over the fade of
-  /// another.
+  /// Particles of all pins with their targets at time t [s], without those of pins released before t. Each particle has
+  /// one entry. If pins overlap, the particle belongs to the first of them in the scene; but a pin with the particle in
+  /// its region comes before one with the particle in its fade.
   void held_at(double t, const environment::Environment& environment,
                std::vector<integrator::HeldParticle>& held) const;
   /// Whether a pin is released at a time in [t0, t1) [s].
@@ -48,7 +48,7 @@ class Pins {
     std::array<double, 3> weights;  // barycentric, of the nearest point of the triangle at the start
     Vec3 arm;                       // from that point, in the axes of the triangle [m]
   };
-  /// The pin that has a particle, and the particle's fraction of its strength.
+  /// The pin that has a particle, and the fraction of the pin's strength for this particle.
   struct Owner {
     std::size_t pin = 0;
     double fraction = 0;  // 0: no pin
@@ -61,7 +61,7 @@ class Pins {
   struct Group {
     Info info;
     std::vector<Index> particles;
-    std::vector<Vec3> arms;       // from the origin of the motion at the start, in its axes [m]
+    std::vector<Vec3> arms;       // particles at the start relative to the origin of the motion, in its axes [m]
     double release = -1;          // [s]; negative: never
     int follow = -1;              // number of the obstacle or character that it follows; −1: it follows `track`
     std::vector<Anchor> anchors;  // in place of `arms`, if it follows a body without bones

@@ -11,8 +11,8 @@
 
 namespace weft::simulation {
 
-/// In arrays of positions, these vertices come after all particles. Contacts act on them as on particles; this class
-/// passes the resulting forces and terms on to the frames.
+/// In arrays of positions, the vertices of bodies that forces move come after all particles. Contacts act on them as on
+/// particles; this class passes the resulting forces and terms on to the frames.
 class RigidVertices {
  public:
   /// `first`: number of the first vertex, which equals the number of particles.

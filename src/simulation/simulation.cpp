@@ -50,7 +50,7 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
-// Whether something touches a character whose arms hang, where they are in the way of most skirts.
+// Whether something touches a character with hanging arms, which are in the way of most skirts.
 bool touches_hanging_arms(const scene::Scene& scene, const std::vector<IntersectionPlace>& places) {
   return std::ranges::any_of(scene.characters, [&](const scene::Character& character) {
     const auto* file = std::get_if<scene::CharacterFile>(&character.source);
@@ -75,7 +75,7 @@ void check_start(const scene::Scene& scene, StepLoop& steps) {
                                           : "");
 }
 
-// The scene and its environment without the cloths that are not put on yet.
+// The scene and its environment with some of the cloths only; `cloths`: their numbers.
 struct DressedScene {
   DressedScene(const scene::Scene& of, const environment::Environment& whole, std::span<const std::size_t> cloths)
       : scene(of), environment(whole.with_cloths(cloths)) {
@@ -137,7 +137,8 @@ Simulation::Impl::Impl(const scene::Scene& s)
       frame(-scene.preroll_frames()),
       snapshots(scene, environment) {
   set_put_on_times(scene, layers, environment);
-  // Checks each later layer alone against the bodies now, so that its start is refused before anything is simulated.
+  // Checks each later layer alone against the bodies where they start, so that a layer that does not fit is refused
+  // before anything is simulated.
   for (std::size_t later = 1; later < layers.size(); ++later) {
     DressedScene alone(scene, environment, layers[later].cloths);
     StepLoop trial(alone.scene, alone.environment, time());

@@ -112,8 +112,8 @@ class Simulation {
   /// it. Not allowed after a failed advance().
   void save(std::string& bytes) const;
   /// Restores what a simulation of the same scene has saved; the frames that follow have the same bits. Only allowed
-  /// before the first advance(). Before, call drive() once, to any pose, for each obstacle that was driven. Throws
-  /// std::runtime_error if the bytes do not fit this scene; the simulation is then unusable.
+  /// before the first advance(). If obstacles were driven, first call drive() once for each of them, to any pose.
+  /// Throws std::runtime_error if the bytes do not fit this scene; the simulation is then unusable.
   void restore(std::string_view bytes);
 
  private:

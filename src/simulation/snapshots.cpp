@@ -47,8 +47,8 @@ frame::Appearance appearance(const scene::Look& look) {
 constexpr double kGarmentHem = 0.015, kHem = 0.010;
 // Thickness per density of fabrics without a name, estimated from the named ones [m per kg/m²].
 constexpr double kThicknessPerDensity = 2.2e-3;
-// Lay length of a rope (along which a strand turns once), in diameters. Smallest diameter with strands [m]: those finer
-// than pixels flicker.
+// Lay length of a rope (along which a strand turns once), in diameters. Smallest diameter with strands [m]: strands
+// finer than pixels would flicker.
 constexpr double kStrandTurnLength = 3.2, kMinTwistedDiameter = 0.009;
 
 /// The look of a cloth. Values that the scene does not set come from the finish of its fabric.
@@ -246,7 +246,7 @@ Box3 box_around(std::span<const Vec3> positions) {
   return box;
 }
 
-/// Bounding box of a body from time 0 on.
+/// Bounding box of a body at sampled times from 0 to `duration` [s].
 Box3 bounds_over_run(const environment::Environment& environment, std::size_t body, double duration) {
   constexpr int kSamples = 100;
   std::vector<Vec3> positions(environment.bodies[body].mesh.positions.size());
@@ -258,7 +258,8 @@ Box3 bounds_over_run(const environment::Environment& environment, std::size_t bo
   return bounds;
 }
 
-/// Sensor height of a camera with a focal length [mm], else 0. The sensor's width lies along the longer side.
+/// Sensor height of a camera with a focal length [mm], else 0. The sensor's width lies along the longer side of the
+/// picture.
 double sensor_height(const scene::Camera& camera, const scene::Render& render) {
   if (!scene::has_focal_length(camera)) return 0;
   return camera.sensor_width * std::min(1.0, static_cast<double>(render.height) / render.width);

@@ -1,4 +1,4 @@
-// Makes what frames show from the environment and the state of the particles.
+// Makes the snapshots of frames from the environment and the state of the particles.
 #pragma once
 
 #include <filesystem>
@@ -38,7 +38,7 @@ class Looks {
   frame::SnapshotPtr put_on(const frame::FrameSnapshot& snapshot);
   /// Sets stage, cameras and lights of a snapshot whose positions are set.
   void surround(frame::FrameSnapshot& snapshot) const;
-  /// Sets where the picture of an obstacle lies, and nothing else.
+  /// Sets only the texture coordinates of an obstacle's picture.
   void place_picture(frame::Surface& surface) const;
 
  private:
@@ -62,7 +62,7 @@ class Looks {
   std::optional<CameraMounts> mounts_;
 };
 
-/// Makes the snapshots of a run. Makes what stays the same over the run once, and shares it.
+/// Makes the snapshots of a run. What stays the same over the run is made once, and all snapshots share it.
 class SnapshotMaker {
  public:
   SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);

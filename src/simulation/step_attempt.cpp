@@ -12,7 +12,8 @@
 
 namespace weft::simulation {
 
-// Repeats the attempt without the pinned particles that obstacles or other cloth keep from their targets.
+// If obstacles or other cloth keep pinned particles from their targets, repeats the attempt with these particles
+// released.
 StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool is_last, FrameReport& report) {
   for (int tries = 1;; ++tries) {
     const Attempt attempt{t, h, rejections, is_last, tries > numerics.repair.halvings};
@@ -36,7 +37,7 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   const double t = attempt.t, h = attempt.h;
   held_ = pins_.held();
   hold_frames(environment_, cloth_, t + h, held_);
-  // Whatever is released changes its acceleration at once, so that the history does not predict what follows.
+  // What is released changes its acceleration at once: the stepper's history does not predict the motion that follows.
   const bool releases = release_frames(environment_, cloth_, t, h, progress_.now.v) || pins_.release_between(t, t + h);
   if (releases) stepper_.restart();
   pinned_ = held_.size();
@@ -51,7 +52,7 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   return start;
 }
 
-// Sets gravity and air of the step: at its stage, and at the positions that unchanged velocities lead to.
+// Sets gravity at the stage of the step, and the air velocity there at the positions that unchanged velocities lead to.
 void StepLoop::update_weather(double t, double h) {
   const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
   gravity_ = weather_.gravity(t + until_stage);
@@ -84,7 +85,7 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
     if (!is_separated && !may_continue && solved) return push_apart(attempt);
     if (is_separated || !may_continue) continue;
 
-    // Pins that press cloth into cloth: a continued solve has not moved that cloth out of the way.
+    // Pins may press cloth into cloth that a continued solve has not moved out of the way.
     const bool may_release_pins =
         continuations > 0 && !attempt.may_move_pins && (is_short_enough(attempt) || pins_.any_lags());
     if (may_release_pins && collisions_->find_pins_between_cloths()) return "pins press cloth into cloth";
@@ -103,8 +104,8 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
   }
 }
 
-// The response of the seed (contact.response). After each solve, constraints are set and released, and pairs without a
-// separating plane add some.
+// The response of the seed (contact.response). After each solve, it sets and releases velocity constraints, and adds
+// some for pairs without a separating plane.
 StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
                                                               FrameReport& report) {
   const SystemState& now = progress_.now;
@@ -129,15 +130,15 @@ StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& att
   }
 }
 
-// Solves with the contacts and constraints at hand into `next_`. `solved`: false if the solve ended for an early check.
+// Solves the step with the current contacts and constraints; writes the result into `next_`. `solved`: false if the
+// solve ended for an early check.
 StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early,
                                              bool& solved, FrameReport& report) {
   held_.resize(pinned_);
   collisions_->append_prescribed_particles(held_);
   integrator::StepReport step = solve(attempt.h, start, check_early, report);
-  // Normal forces that follow friction, and friction that follows them, can increase each other without end. With fixed
-  // normal forces, friction has a potential, and dissipates (measured without: a sheet of 0.5 J with friction 10 gained
-  // 1,300 J).
+  // Normal forces and friction depend on each other, and can increase each other without end. With fixed normal forces,
+  // friction has a potential, and dissipates (measured without this: a sheet of 0.5 J with friction 10 gains 1,300 J).
   if (is_first && step.verdict == integrator::Verdict::unfinished &&
       added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.astray_energy) {
     problem_.fix_normal_forces();
@@ -177,7 +178,7 @@ integrator::Method StepLoop::method() const {
   return needs_damping ? integrator::Method::bdf2 : chosen;
 }
 
-// Pushes `next_` apart without solving again. Asks for a shorter step if that adds much energy.
+// Pushes particles of `next_` apart without solving again. Asks for a shorter step if this adds much energy.
 StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
   const double energy_before = energy(next_);
   const bool may_pinch = is_short_enough(attempt);
@@ -210,7 +211,7 @@ StepLoop::Rejection StepLoop::check_overstretch(double h) {
   return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", ratio);
 }
 
-// [J]
+// Mechanical energy at `moment`, with the gravity of the current step [J].
 double StepLoop::energy(const SystemState& moment) const {
   return cloth_.elastic_energy(moment.particles()) + cloth_.air_energy(moment.particles()) +
          attachments_.energy(moment.particles()) + cloth_.kinetic_energy(moment.v) +

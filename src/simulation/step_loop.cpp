@@ -109,8 +109,8 @@ void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
   progress_.control ? advance_controlled(t_t0, t_t1, report) : advance_equally(t_t0, report);
 }
 
-// Divides the frame into equal steps, or takes it in one if everything rests. Times are counted in steps, so that they
-// are the same for any number of frames a second.
+// Divides the frame into equal steps, or takes one step if everything rests. Computes times from the number of steps
+// before, so that they have the same bits at any frame rate.
 void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   const double fps = scene_.time.fps;
   const int steps = std::max(1, static_cast<int>(std::ceil(1 / (fps * scene_.time.step) - 1e-9)));
@@ -120,9 +120,9 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, scene_.solver.halvings, report);
 }
 
-// Whether all cloth is slow, has settled in its last step, and everything that keys move stays where it is at t, at the
-// ends of the next `steps` steps of length h [s]. Motion that begins is never tried in one long step: contacts that
-// only the long step needs would remain for the steps that follow.
+// Whether one long step may replace the next `steps` steps of length h [s]: all cloth is slow and has settled in its
+// last step, and everything that keys move is, at the end of each of these steps, where it is at t. If something moves,
+// the long step is not even tried: contacts that it alone needs would remain for the steps that follow.
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints release and stick again from step to step.
@@ -143,7 +143,7 @@ bool StepLoop::may_rest(double t, double h, int steps) {
   return true;
 }
 
-// Whether the accelerations of the last step are invisible, root mean square over all particles.
+// Whether the root mean square of all accelerations in the last step is below the visibility threshold.
 bool StepLoop::has_settled() const {
   const integrator::Stepper::History& last = stepper_.history();
   if (last.h == 0) return false;
@@ -168,9 +168,10 @@ bool StepLoop::rest(double t, double h, FrameReport& report) {
   return true;
 }
 
-// Advances from t to t + h. Takes two halves if the step is rejected, or if it is longer than may follow the last step
-// or than turning obstacles allow. `rejections`: rejected steps of which this one is a part, earlier ones included
-// while steps are still short for them (measured: without, pinched cloth took 75,202 steps in place of 160).
+// Advances from t to t + h. Takes two halves if the step is rejected, or if it is too long after the last step or for
+// obstacles that turn. `rejections`: number of rejected steps that contain this one. Earlier rejections count, too,
+// while steps are still short because of them (measured without this rule: pinched cloth takes 75,202 steps instead of
+// 160).
 void StepLoop::advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report) {
   const bool after_rejection = h > (1 + 1e-9) * progress_.longest;
   const bool too_long = after_rejection || h > (1 + 1e-9) * stepper_.longest_step() || obstacle_turns_too_far(t, h);
@@ -187,8 +188,8 @@ void StepLoop::advance_over(double t, double h, int rejections, int halvings_lef
 }
 
 // Takes steps whose local error is at most time.tolerance, as far as their minimum length allows. The remainder of the
-// frame is divided into equal steps no longer than wanted: no step is much shorter than those before it, and lengths
-// change rarely.
+// frame is divided into equal steps no longer than `control` wants. So no step is much shorter than those before it,
+// and lengths change rarely.
 void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report) {
   integrator::StepControl& control = *progress_.control;
   double t = t_t0, h = 0;
@@ -204,7 +205,8 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
     const bool is_last = rejections == scene_.solver.halvings || h < numerics.steps.least;
     const Rejection rejection = attempt(t, h, rejections, is_last, report);
     if (rejection && is_last) fail(report.frame, t, h, *rejection);
-    // An impact may ask for shorter steps without end. The last attempt is accepted whatever its error.
+    // In an impact, the error may ask for shorter steps without end. So the last attempt is accepted whatever its
+    // error.
     if (rejection || !(is_last || control.accepts(h, local_error_))) {
       ++report.rejected_steps, ++rejections;
       rejection ? control.record_unsolved_step(h) : control.record_rejected_step(h, local_error_);

@@ -29,8 +29,8 @@ class StepLoop {
   StepLoop(const StepLoop&) = delete;  // members refer to each other
   StepLoop& operator=(const StepLoop&) = delete;
 
-  /// Before the first advance(): continues with the cloths of a loop that ends here. `cloths`: their numbers in this
-  /// loop, in the order of `before`.
+  /// Before the first advance(): takes over the cloths of `before`, a loop that this one replaces. `cloths[k]`: number
+  /// in this loop of cloth k of `before`.
   void copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths);
   /// Before the first advance(): untangles cloths that touch or intersect at the start, if the scene allows it.
   /// Cloths that were taken over stay as they are.
@@ -50,10 +50,10 @@ class StepLoop {
   struct Progress {
     SystemState now;
     std::optional<integrator::StepControl> control;  // if the scene has a tolerance in place of a step
-    double longest;                                  // longest step after a rejected one [s]; infinite before one
+    double longest;  // longest step allowed after a rejection [s]; infinite before the first one
   };
   const Progress& progress() const { return progress_; }
-  /// State between two frames, for the return to it after a failure.
+  /// State between two frames, to which a simulation returns after a failure.
   struct Checkpoint {
     Progress progress;
     integrator::Stepper::History history;
@@ -83,7 +83,8 @@ class StepLoop {
   /// Pins that lagged in that frame.
   YieldingPins::Lags take_lags() { return pins_.take_lags(); }
 
-  /// Two parts of the state that later frames depend on; the second one is of contacts at the time t of a frame [s].
+  /// Save or restore the state that later frames depend on: first all but contacts, then contacts at the time t of a
+  /// frame [s].
   template <class Archive>
   void serialize(Archive& archive);
   template <class Archive>
@@ -98,9 +99,9 @@ class StepLoop {
   /// One attempt at a step.
   struct Attempt {
     double t, h;         // start and length [s]
-    int rejections;      // rejected steps of which this one is a part
+    int rejections;      // number of rejected steps that contain this one
     bool is_last;        // the run fails if it is rejected
-    bool may_move_pins;  // pinned particles are moved if nothing else can be; otherwise they are only reported
+    bool may_move_pins;  // true: pinned particles move if nothing else helps; false: they are only listed
   };
 
   // From frames to steps: step_loop.cpp.

@@ -1,4 +1,4 @@
-// The equation of one step as the integrator sees it: forces of cloth, contacts and attachments, and their memory.
+// The equation of one step as the integrator sees it: forces of cloth, contacts and attachments, and what they keep.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace weft::simulation {
 
 /// What evaluations keep for later ones. Evaluations with equal memory and equal arguments give the same bits.
 struct SolveMemory {
-  // Changed by linearisations. Cloth at rest keeps its rows of the matrix.
+  // Linearisations change the following members. Cloth at rest keeps its rows of the matrix.
   solver::LinearSystem system;
   solver::Assembly assembly;        ///< from which the matrix is written
-  double rate = 0;                  ///< of system and assembly [1/s]; 0: not set
+  double rate = 0;                  ///< for which system and assembly were filled [1/s]; 0: not set
   std::vector<Vec3> linearised_at;  ///< positions where each cloth's rows were assembled; empty: not assembled
   collision::ContactLag contacts;
   ClothSystem::LockLinearisations locks;  ///< empty before the first step
@@ -41,7 +41,7 @@ struct PinSpring {
 /// Combines ClothSystem, Attachments and ContactResponse, and keeps their memory between evaluations.
 class StepProblem final : public integrator::System {
  public:
-  /// The cloth must outlive it.
+  /// The cloth must outlive this object.
   explicit StepProblem(ClothSystem& cloth);
 
   /// Sets the contacts, and the vertices of bodies that forces move, if there are any. Both must outlive the steps.
@@ -54,8 +54,8 @@ class StepProblem final : public integrator::System {
   void use_attachments(const Attachments& attachments) { attachments_ = &attachments; }
 
   /// Begins a step that ends at time t [s since the start of the run], before its first solve. `pinned`: particles that
-  /// pins or keys hold in the step. Updates rest shapes and enclosed air; starts friction from the normal forces, and
-  /// thread locks from the tensions, at the particles' start positions x [m]. The next linearisation assembles the
+  /// pins or keys hold in the step. Updates rest shapes and enclosed air. Friction starts from the normal forces at the
+  /// particles' start positions x [m], and thread locks from the tensions there. The next linearisation assembles the
   /// matrix anew. `pulls` must outlive the step.
   void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
                   std::span<const PinSpring> pulls = {});
@@ -63,8 +63,8 @@ class StepProblem final : public integrator::System {
   /// Sets the air velocity at each particle in the step that begins [m/s]. Without it, the air velocity is uniform.
   void set_air_velocity(SolveMemory::PaddedVec3s air);
 
-  /// Called within a step whose contacts have changed: friction follows the normal forces for numerics.newton.patience
-  /// / 2 more updates, or for those that are left of numerics.newton.patience if they are more.
+  /// Call it within a step if contacts have changed. Friction then follows the normal forces for those of the step's
+  /// numerics.newton.patience updates that are left, but at least for half of that number.
   void limit_friction_updates() {
     memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.patience / 2)};
   }

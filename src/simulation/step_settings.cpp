@@ -42,7 +42,8 @@ namespace {
 // Times that differ by less count as equal [s].
 constexpr double kSameTime = 1e-9;
 
-// Velocities of the frame particles of a body where its keys place it; if it is free, with its own velocity and spin.
+// Velocities of the frame particles of a body as its keys move it at t; if the body is free, plus its own velocity and
+// spin.
 std::array<Vec3, mesh::RigidFrame::kParticles> velocities_of_frame(const environment::Environment& environment,
                                                                    std::size_t number, double t, bool is_free) {
   const environment::Dynamics& body = *environment.bodies[number].dynamics;

@@ -25,7 +25,8 @@ std::vector<Index> first_particles(const ClothSystem& cloth);
 SystemState start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
                      double t);
 
-/// Appends the frame particles of bodies that keys still move at t [s], the end of a step, where the keys place them.
+/// For a step that ends at t [s]: appends the frame particles of bodies that keys still move then, where the keys place
+/// them.
 void hold_frames(const environment::Environment& environment, const ClothSystem& cloth, double t,
                  std::vector<integrator::HeldParticle>& held);
 

@@ -6,7 +6,8 @@ namespace weft::simulation {
 
 StepWork measure_work(const integrator::Stepper& stepper, std::span<const integrator::HeldParticle> pinned,
                       std::span<const double> masses, const integrator::State& start, const integrator::State& end) {
-  // The force of a constraint is the residual of the equation of motion; on a free particle, it is the solver's error.
+  // The force of a constraint is the residual of the equation of motion. On a free particle, this residual is the
+  // solver's error.
   const auto missing_work = [&](std::size_t i) {
     return stepper.constraint_force(static_cast<Index>(i), masses[i]).dot(end.x[i] - start.x[i]);
   };

@@ -13,7 +13,7 @@
 namespace weft::simulation {
 namespace {
 
-// Largest fraction of border edges of a body that counts as closed: characters are open at eyes and soles.
+// Maximum ratio of border edges to all edges at which a body counts as closed: characters are open at eyes and soles.
 constexpr double kClosedBorder = 0.02;
 
 untangle::Kind kind_of(const environment::BodyObject& body) {

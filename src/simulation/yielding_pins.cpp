@@ -49,7 +49,7 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   const bool any_lagged = std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; });
   if (any_lagged) pins_.held_at(t, environment_, at_start_);
   std::ranges::fill(lags_, std::uint8_t{0});
-  // Particles that have arrived are held again. Those that their pin releases before t + h are not in `targets_`.
+  // Particles that have arrived are held again. Particles whose pin is released before t + h are not in `targets_`.
   if (any_lagged)
     for (const integrator::HeldParticle& start : at_start_) {
       const auto i = static_cast<std::size_t>(start.constraint.particle);

@@ -14,11 +14,12 @@
 namespace weft::simulation {
 
 /// A pin with a `strength` is always a damped spring. Any other pin holds its particles exactly at their targets, until
-/// one of them cannot get there. That particle then lags: a force of bounded size pulls it, until it arrives and is
-/// held again.
+/// something keeps one of them from its target. That particle then lags: a force of bounded size pulls it, until it
+/// arrives and is held again.
 class YieldingPins {
  public:
-  /// `first_particle`: of each cloth; `masses`: of all particles [kg]. The environment and `masses` must outlive it.
+  /// `first_particle`: of each cloth; `masses`: of all particles [kg]. The environment and `masses` must outlive this
+  /// object.
   YieldingPins(const scene::Scene& scene, const environment::Environment& environment,
                const std::vector<Index>& first_particle, std::span<const double> masses);
 
@@ -31,9 +32,11 @@ class YieldingPins {
   /// Whether the pins hold the same particles at the same places at t0 and t1 [s], and no particle lags.
   bool are_constant_between(double t0, double t1);
 
+  /// Whether the scene releases a pin at a time in [t0, t1) [s]. See also release_particle(), which is another release.
   bool release_between(double t0, double t1) const { return pins_.release_between(t0, t1); }
 
-  /// Makes a held particle lag, before the step begins again. `obstruction`: what is in its way and where, as text.
+  /// Makes a held particle lag in the current step; the step must then begin again. `obstruction`: what is in its way
+  /// and where, as text.
   void release_particle(Index particle, const std::string& obstruction);
   /// Whether any particle lags in this step.
   bool any_lags() const { return any_lags_; }
@@ -47,11 +50,11 @@ class YieldingPins {
   };
   Lags take_lags();
 
-  /// Between two frames: takes over from `there` which particles of a cloth lag. The cloth has `count` particles; the
-  /// first is `first_there` there and `first` here. Pins that were reported there are not reported again.
+  /// Between two frames: copies which particles of one cloth lag. The cloth has `count` particles, from `first_there`
+  /// on in `there`, from `first` on in this object. Pins that `there` has reported are not reported again.
   void copy_state_from(const YieldingPins& there, Index first_there, Index first, Index count);
 
-  /// Which particles lag, and which pins were reported.
+  /// Saves or restores which particles lag, and which pins were reported.
   template <class Archive>
   void serialize(Archive& archive);
 
@@ -61,14 +64,14 @@ class YieldingPins {
   Pins pins_;
   const environment::Environment& environment_;
   std::span<const double> masses_;
-  std::vector<double> pull_force_;  // largest total force on the lagging particles, per pin [N]
+  std::vector<double> pull_force_;  // per pin: maximum total force on its lagging particles [N]; pull() may raise it
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;
   std::vector<PinSpring> pulls_;
   std::vector<std::uint8_t> lagged_, lags_;     // per particle: in the previous step, and in this one
   std::vector<std::uint8_t> released_;          // per particle: whether release_particle() was called for this step
   std::vector<std::size_t> lagging_particles_;  // number of particles that lag in this step, per pin
-  std::map<std::size_t, std::string> obstructions_;  // in this step, of the pins of those particles
-  double forced_t_ = 0, forced_h_ = 0;               // the step to which released_ belongs [s]
+  std::map<std::size_t, std::string> obstructions_;  // per pin: text of its first obstruction in this step
+  double forced_t_ = 0, forced_h_ = 0;               // start and length of the step to which released_ belongs [s]
   bool any_lags_ = false;
   std::set<std::size_t> lagging_, lagging_before_;  // pins, in this frame and in the previous one
   Lags seen_;

@@ -46,9 +46,9 @@ inline PackedBlock packed_scalar(double value) {
   return {Lanes{value, 0, 0, 0}, Lanes{value, 0, 0, 0}, Lanes{value, 0, 0, 0}};
 }
 
-/// Stores both triangles, so that each row of a product is computed on its own, with the same bits on any number of
-/// threads. A block that can only be a multiple of the identity is stored as one number: 30 of the 37 blocks in a
-/// garment's row come from bending alone, and a product reads a third of the memory.
+/// Stores the upper and the lower triangle, so that each row of a product is computed on its own, with the same bits on
+/// any number of threads. A block that can only be a multiple of the identity is stored as one number: 30 of the 37
+/// blocks in a garment's row come from bending alone. A product then reads a third of the memory.
 class BlockMatrix {
  public:
   BlockMatrix() = default;

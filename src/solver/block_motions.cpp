@@ -9,13 +9,14 @@
 namespace weft::solver {
 namespace {
 
-// A motion counts if its part that is independent of the directions before it has more than this fraction of its
+// A motion is used if the part of it that is independent of the directions before it has more than this fraction of its
 // energy.
 constexpr double kMinIndependentEnergy = 1e-4;
 
 using Block = Eigen::Matrix<double, kDirections, kDirections>;
 
-// Product with a term's stiffness and a displacement: the term's forces along the directions of a diagonal block.
+// Row k: weighted sum of direction k over those particles of a term that belong to one diagonal block. Times the term's
+// stiffness and a displacement, it gives the work of the term's force along each direction.
 using TermForces = Eigen::Matrix<double, kDirections, 3>;
 
 // Contributions of terms to the projected system (lower triangle), and to its products with the motions, per diagonal
@@ -99,7 +100,7 @@ void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size
       if (!motions[m].empty()) result.row(3 + m) = vec3_of(motions[m][static_cast<std::size_t>(particle)]);
     return result;
   };
-  // Sums over chunks, so that threads share them.
+  // Sum over chunks, which the threads share.
   const std::size_t count = term_count(system);
   std::vector<TermBlocks> of_chunks((count + kFineGrainSize - 1) / kFineGrainSize, TermBlocks(selected.size()));
   parallel_for(count, kFineGrainSize, [&](std::size_t begin, std::size_t end) {

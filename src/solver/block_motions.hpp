@@ -1,4 +1,5 @@
-// Galerkin correction along a few directions of each diagonal block: its translations, and the given motions.
+// Galerkin correction along a few directions per diagonal block (particles that the matrix couples): three translations
+// of all its particles together, and up to two motions that the caller gives.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -11,7 +12,7 @@
 
 namespace weft::solver {
 
-/// Largest number of given motions.
+/// Largest number of motions that the caller gives.
 inline constexpr int kMaxMotions = 2;
 /// Directions of one diagonal block: three translations, then the motions.
 inline constexpr int kDirections = 3 + kMaxMotions;
@@ -23,18 +24,20 @@ using AlongMotions = Eigen::Matrix<double, kDirections, 1>;
 /// (kMinIndependentEnergy).
 class BlockMotions {
  public:
-  /// Column m: the product of the whole system with motion m, along the directions of one diagonal block.
+  /// Column m: the system (matrix and terms) times motion m, projected on the directions of one diagonal block.
   using Products = Eigen::Matrix<double, kDirections, kMaxMotions>;
 
   /// Builds and factorises the projected system. `motions`: one entry per row, filtered by the constraints, zero
-  /// outside of the selected blocks; empty if absent. `row_sums`: the sum of all 3×3 blocks of the matrix, per selected
-  /// block. `products`: per selected block.
+  /// outside of the selected diagonal blocks; empty if absent. `row_sums`: per selected diagonal block, the sum of all
+  /// its 3×3 entries, without terms (= the matrix projected on the translations). `products`: per selected diagonal
+  /// block.
   template <class Real>
   void prepare(const LinearSystem& system, std::span<const std::size_t> selected,
                const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,
                std::span<const Mat3> row_sums, std::span<const Products> products);
 
-  /// Returns the coefficients whose displacement balances `forces`, both per selected block.
+  /// Returns the coefficients of the displacement that balances `forces`. Both have one entry per selected diagonal
+  /// block.
   std::vector<AlongMotions> solve(std::span<const AlongMotions> forces) const;
 
  private:

@@ -19,8 +19,8 @@ struct LinearReport {
 /// Solves A x = b on the free directions, with the Preconditioner P of particles and multigrid levels.
 ///
 /// Single precision is used if `relative` is at least kSmallestSingleGoal, and no particle exceeds kMaxSingleStiffness.
-/// It is safe because Newton's method evaluates its residual in double, so that the next solve corrects errors of
-/// rounding.
+/// Single precision is safe because Newton's method evaluates its residual in double, so that the next solve corrects
+/// errors of rounding.
 class ConjugateGradient {
  public:
   /// Prepares the preconditioner for `system`, which must outlive the following calls. With AggregateSums::reuse, sums
@@ -36,8 +36,8 @@ class ConjugateGradient {
   /// = P⁻¹ r, so the gains of the last steps estimate ‖e‖²_A before them (Hestenes & Stiefel 1952; Strakoš & Tichý,
   /// "Error Estimation in Preconditioned Conjugate Gradients", BIT 45, 2005). Each diagonal block has its own summand
   /// of rᵀz. The squared error in the mass-weighted norm is that estimate times the largest ratio of a last step's
-  /// squared norm to its gain. √(rᵀz) does not replace the estimate: for smooth motion this root is far below ‖e‖_A,
-  /// and flat sheets fold in free fall.
+  /// squared norm to its gain. √(rᵀz) cannot replace the estimate: for smooth motion this root is far below ‖e‖_A, and
+  /// flat sheets would fold in free fall.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                      const Directions& directions = {});
   /// Solves for these diagonal blocks only: all other particles count as held, so x is zero there.

@@ -437,7 +437,7 @@ void Preconditioner<Real>::factorise_coarsest() {
   coarse_factor_ = coarse_matrix_.template cast<Real>();
 }
 
-// From particles to the finest aggregates, then to coarser ones.
+// Sums the residual from particles into the finest aggregates, then into coarser ones.
 template <class Real>
 void Preconditioner<Real>::restrict_residual(std::span<const PaddedVec3<Real>> r) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
@@ -450,7 +450,7 @@ void Preconditioner<Real>::restrict_residual(std::span<const PaddedVec3<Real>> r
   }
 }
 
-// From the coarsest to the finest aggregates: each adds to its own correction what it interpolates from coarser ones.
+// From coarsest to finest level: each aggregate adds what it interpolates from coarser ones to its own correction.
 template <class Real>
 void Preconditioner<Real>::correct_aggregates() {
   Level& coarsest = levels_.back();

@@ -20,22 +20,22 @@ enum class AggregateSums { recompute, reuse };
 /// directions. T_0 is the identity, and A_0 the diagonal of 3×3 blocks of S A S + (I − S) (prefiltered, Tamstorf, Jones
 /// & McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation", 2015). Each further level reduces errors whose
 /// wavelength is about the width of its aggregates (Bramble, Pasciak & Xu, "Parallel Multilevel Preconditioners",
-/// 1990). T_l = Q_1 Q_2 … Q_l, where Q_k gives each member a weighted mean of the values of its own aggregate and those
-/// of its neighbours: a step of damped Jacobi on the graph of the matrix, applied to constants (smoothed aggregation:
-/// Vaněk, Mandel & Brezina, 1996).
+/// 1990). T_l = Q_1 Q_2 … Q_l, where Q_k gives each member a weighted mean of the values of its own aggregate and of
+/// the aggregates of its neighbours. This is a step of damped Jacobi on the graph of the matrix, applied to constants
+/// (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
 ///
 /// Ideally A_l is the diagonal of 3×3 blocks of T_lᵀ A T_l, or all of it on the last level. Both are expensive, so A_l
-/// is built from R_l A R_lᵀ, where R_l sums over each aggregate. If aggregates move as wholes, all strain is at their
-/// boundaries; the same motion, spread over the width of an aggregate, has half the stiffness for each doubling of
-/// that width. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters with the factor
-/// 1/2 per level, the mass part with factor 1. Contact terms are not part of the matrix. For each particle of a contact
-/// term, the particle's stiffness enters the aggregates from which it interpolates. The sum bounds the contact part of
-/// the diagonal of T_lᵀ A T_l from above. The last level has T_lᵀ A T_l of the contact terms exactly.
+/// is built from R_l A R_lᵀ, where R_l sums over each aggregate. If each aggregate moves as a whole, all strain is at
+/// the boundaries of aggregates. If the same motion is spread over the width of an aggregate, its stiffness halves with
+/// each doubling of that width. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters with
+/// the factor 1/2 per level, the mass part with factor 1. Contact terms are not part of the matrix. For each particle
+/// of a contact term, the particle's stiffness enters the aggregates from which it interpolates. The sum bounds the
+/// contact part of the diagonal of T_lᵀ A T_l from above. The last level has T_lᵀ A T_l of the contact terms exactly.
 ///
 /// If threads are so stiff that the trace of a particle's block exceeds `stiff_particle` times the sum of
 /// `norm_weights` over its diagonal block, levels do not interpolate: T_l = R_lᵀ, and the factor per level is 1.
-/// Interpolated motion would stretch threads across folds, and sums over boundaries of aggregates contain nothing of
-/// the threads inside of them.
+/// Interpolated motion would stretch threads across folds. Sums over boundaries of aggregates do not contain the
+/// threads inside of the aggregates.
 ///
 /// Set up in double, applied in `Real`.
 template <class Real>

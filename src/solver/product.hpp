@@ -9,9 +9,9 @@
 
 namespace weft::solver {
 
-/// A block matrix A in single precision, half the memory to read: y_i = D_i x_i + Σ_j A_ij (x_j − x_i). The sum D_i of
-/// a row's blocks is made in double. Thus rounding affects only the stiffness of relative motion. Common motion keeps
-/// its mass, although mass is small beside stiffness.
+/// A block matrix A in single precision, which halves the memory to read. Its product is y_i = D_i x_i + Σ_j A_ij (x_j
+/// − x_i). The sum D_i of a row's blocks is made in double. Thus rounding affects only the stiffness of relative
+/// motion. Common motion keeps its mass, although mass is small beside stiffness.
 class DifferenceMatrix {
  public:
   void copy_pattern(const BlockMatrix& matrix);
@@ -47,7 +47,7 @@ class Product {
   /// their order, into `norms_sq`. p must obey the constraints.
   double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q, std::span<double> norms_sq) const;
 
-  /// Sum of all 3×3 blocks of the matrix, without terms and constraints, per selected block.
+  /// Per selected diagonal block: the sum of all its 3×3 entries, without terms and constraints.
   std::vector<Mat3> row_sums() const;
 
   /// b = S b, on the rows of the selected blocks.

@@ -73,8 +73,8 @@ class Recurrence {
   /// Returns P⁻¹ b. Valid until the next call.
   std::span<const PaddedVec3<Real>> precondition(std::span<const Vec3> b);
 
-  /// Solves A x = b on these diagonal blocks; all others are held. x is zero at first, or if `progress` has iterations,
-  /// their result.
+  /// Solves A x = b on these diagonal blocks; all others are held. At the call, x must be zero or, if `progress` has
+  /// iterations already, their result.
   End solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
             const Directions& directions, std::span<const std::size_t> parts, Progress& progress);
 

@@ -16,11 +16,12 @@ struct RowRange {
 };
 
 /// Divides row ranges into chunks that do not depend on the number of threads and never cross a range, so that sums
-/// always have the same bits. Threads get small chunks, those of many small cloths, several at a time.
+/// always have the same bits. A thread takes several chunks at a time if they are small, as for many small cloths.
 class RowChunks {
  public:
   RowChunks() = default;
-  /// `max_rows`: maximum number of rows per chunk; a task for a thread collects chunks until it has at least as many.
+  /// `max_rows`: maximum number of rows per chunk; a task for a thread collects chunks until it has at least that many
+  /// rows.
   RowChunks(std::span<const RowRange> ranges, std::size_t max_rows) : ranges_(ranges.size()) {
     std::size_t rows = 0;  // of the last task
     for (std::size_t r = 0; r < ranges.size(); ++r)

@@ -293,7 +293,7 @@ void push_out_of_solids(const Fabric& fabric, std::span<const Crossing> crossing
       for (const double fraction : {0.5, 0.25, 0.75, c.fraction})
         raise(*solid, edge, std::array{1 - fraction, fraction}, above[cloth]);
     } else {
-      // Raise by the length of the edge on the shorter side, at most half the longest side of the triangle.
+      // Raise by the length of the shorter part of the edge, at most by half the longest side of the triangle.
       const double out = std::min(c.fraction, 1 - c.fraction) * (x[edge[1]] - x[edge[0]]).norm();
       const double longest =
           std::max({(x[t[1]] - x[t[0]]).norm(), (x[t[2]] - x[t[1]]).norm(), (x[t[0]] - x[t[2]]).norm()});

@@ -18,15 +18,17 @@ struct CrossedPair {
   friend auto operator<=>(const CrossedPair&, const CrossedPair&) = default;
 };
 
-/// The pairs of surfaces of these crossings, except those with solids and those whose edge is not of cloth.
+/// The pairs of surfaces that cross each other in these crossings, except those with solids and those whose edge is not
+/// of cloth.
 std::vector<CrossedPair> list_crossed_pairs(const Fabric& fabric, std::span<const Crossing> crossings);
 
-/// Lines of crossing cut islands off from the largest island of a mesh. Returns, for each other island, moves to that
-/// side of the crossed surface where the largest one is, the smallest island first (similar to flood filling in Baraff,
-/// Witkin & Kass, "Untangling Cloth", 2003). An island is flattened onto the other side, or folded over the line of
-/// crossing if that costs a tenth less (see stretch_cost). If islands cut each other off, only the smallest moves.
-/// `above`: height over the other surface, per body of cloth [m]. `only`: restricts the search to one pair; if a line
-/// then ends inside that cloth, at a border of the other, the other is extended as a plane. `surfaces`: fitted to x.
+/// Lines of crossing cut islands off from the largest island of a mesh. Returns moves for each of these islands, the
+/// smallest first. They take an island to the side of the crossed surface on which the largest island is (similar to
+/// flood filling in Baraff, Witkin & Kass, "Untangling Cloth", 2003). An island is flattened onto the other side, or
+/// folded over the line of crossing if that costs a tenth less (see stretch_cost). If islands cut each other off, only
+/// the smallest moves. `above`: height over the other surface, per body of cloth [m]. `only`: restricts the search to
+/// one pair; if a line then ends inside that cloth, at a border of the other, the other is extended as a plane.
+/// `surfaces`: fitted to x.
 std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::span<const Crossing> crossings,
                                                     const collision::BroadPhase& surfaces,
                                                     std::span<const double> above,

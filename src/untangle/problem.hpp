@@ -54,8 +54,9 @@ struct Move {
   Vec3 target;  ///< [m]
 };
 
-/// Squared strain that these moves cause: mean, over the threads of the moved particles, of the squared relative excess
-/// over the maximum length or shortfall below the minimum length. Present excess or shortfall does not count.
+/// Cost of these moves: mean squared strain of the threads of the moved particles. Strain is the relative excess over
+/// the maximum length, or the relative shortfall below the minimum length. Excess or shortfall before the moves does
+/// not count.
 double stretch_cost(const Fabric& fabric, std::span<const Move> moves, std::span<const Vec3> x);
 
 }  // namespace weft::untangle

@@ -39,8 +39,8 @@ class Solid {
   double distance_out(const Vec3& p, const Vec3& d) const;
   /// Whether the segment from p to q crosses the surface; false for a floor.
   bool crosses_surface(const Vec3& p, const Vec3& q) const { return kind_ != Kind::floor && !hits(p, q - p).empty(); }
-  /// Depth of the segment's midpoint inside the solid, divided by the length of the segment; 0 outside. For a segment
-  /// around a round body: 0.21 for a quarter turn, 0.5 for half a turn.
+  /// Depth of the segment's midpoint inside the solid, divided by the length of the segment; 0 outside. For a chord of
+  /// a circle: 0.21 if it spans a quarter turn, 0.5 if it spans half a turn.
   double midpoint_depth(const Vec3& p, const Vec3& q) const;
 
  private:

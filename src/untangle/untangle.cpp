@@ -29,7 +29,8 @@ constexpr int kSweepsAfterMove = 120, kSweeps = 8;
 constexpr double kMaxDisplacementRatio = 1.5;
 // Maximum number of passes: a region that leaves one body may enter another.
 constexpr int kMaxPasses = 3;
-// A region whose particles move less than this is not locked before the move; in heights over the obstacle.
+// If the particles of a region move by less than this, its way out is always tried: it is locked only by strain after
+// the move. In heights over the obstacle (kHeightInThicknesses).
 constexpr double kShallowDepth = 4;
 // Maximum strain of a thread after the move; beyond it the body goes through the cloth and the region is locked
 // (measured: 0.44 for a tube 4 cm too small, the largest of the valid starts; 4.9 for trousers with a leg through the
@@ -119,7 +120,8 @@ class Untangling {
     return any;
   }
 
-  // Coincident cloths have no side yet: moves the later one to the front of the other.
+  // Separates coincident cloths, which are not on any side of each other: moves one to the front of the other; the
+  // later cloth, if it is movable.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
     for (const collision::TrianglePair& pair : finder_.near(x_, kTouchDistance)) {
@@ -159,8 +161,8 @@ class Untangling {
     report_.pairs_after = fewest_pairs_;
   }
 
-  // Tries to move cut-off islands: all of them; then, for each cloth and the surface it crosses, all; then each of
-  // these alone. Returns whether fewer triangles cross; if not, nothing has changed.
+  // Tries to move cut-off islands: first all at once; then, for each cloth and each surface that it crosses, those of
+  // this pair at once, then each of them alone. Returns whether fewer triangles cross; if not, nothing has changed.
   bool move_islands() {
     const std::vector<Vec3> before(x_.begin(), x_.end());
     const auto try_moves = [&](std::span<const std::vector<Move>> islands) {
@@ -206,7 +208,7 @@ class Untangling {
     const std::span<const Crossing> found = finder_.find(x_);
     crossings_.assign(found.begin(), found.end());
   }
-  // Keeps the present state if fewer pairs cross than ever before.
+  // Stores the present state as the best one if fewer pairs cross than ever before.
   bool keep_if_better() {
     if (finder_.pairs() >= fewest_pairs_) return false;
     fewest_pairs_ = finder_.pairs();

@@ -10,8 +10,8 @@ namespace {
 
 // Cost of a thread that would still go through the body, in units of squared strain.
 constexpr double kBlockedCost = 25;
-// Depth of a thread's midpoint in the body, relative to its length: above kBlockedDepth it goes through the body and
-// does not just cut a corner; below kFreeDepth it certainly does not go through.
+// Depth of a thread's midpoint in the body, relative to the length of the thread. Above kBlockedDepth, the thread goes
+// through the body and does not just cut a corner. Below kFreeDepth, it certainly does not go through.
 constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
 // Cost of a way as long as the region, so that the shorter of two ways with equal stretch is chosen.
 constexpr double kDisplacementCost = 0.05;

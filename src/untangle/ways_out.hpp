@@ -20,7 +20,7 @@ struct InsideRegion {
   double shortest = std::numeric_limits<double>::infinity();  ///< likewise, on the shortest unblocked way [m]
   double cost = 0;                                            ///< see stretch_cost; 0 if the whole mesh moves
   double blocked = 0;       ///< fraction of its threads that would still go through the body
-  std::vector<Move> moves;  ///< out of the body, to `above` its surface
+  std::vector<Move> moves;  ///< out of the body, to the height `above` over its surface
 };
 
 /// Finds all regions of cloth inside `solid` at x [m]. In each, either every particle takes its nearest way out, or all

@@ -27,8 +27,8 @@ int check_read(int code, const std::filesystem::path& file) {
   fail_to_read(file, reason.data());
 }
 
-// Uses the colour matrix that the file names, since a wrong one changes colours by tens of levels; BT.709 if the file
-// names none.
+// Converts frames to RGB. Uses the colour matrix that the file names, or BT.709 if it names none; a wrong matrix
+// changes colours by tens of levels (of 255).
 ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   ScalerPtr scaler(sws_getContext(
       frame.width, frame.height, static_cast<AVPixelFormat>(frame.format), frame.width, frame.height, AV_PIX_FMT_RGB24,
@@ -37,7 +37,7 @@ ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   const bool named = frame.colorspace != AVCOL_SPC_UNSPECIFIED && frame.colorspace != AVCOL_SPC_RGB;
   const int* from = sws_getCoefficients(named ? static_cast<int>(frame.colorspace) : SWS_CS_ITU709);
   constexpr int kUnit = 1 << 16;  // contrast and saturation of 1 in 16.16 fixed point
-  // Ignored for RGB formats.
+  // libav ignores these settings for RGB formats.
   sws_setColorspaceDetails(scaler.get(), from, frame.color_range == AVCOL_RANGE_JPEG,
                            sws_getCoefficients(SWS_CS_ITU709), 1, 0, kUnit, kUnit);
   return scaler;

@@ -11,7 +11,7 @@
 
 namespace weft::video {
 
-/// Reads the pictures of a video in display order. Errors are Error(asset_unreadable) with libav's message.
+/// Reads the pictures of a video in display order. All functions throw Error(asset_unreadable) with libav's message.
 class Decoder {
  public:
   explicit Decoder(const std::filesystem::path& file);
@@ -21,7 +21,7 @@ class Decoder {
 
   int width() const;   ///< [pixels]
   int height() const;  ///< [pixels]
-  /// Whether the encoder has changed the pictures.
+  /// Whether the codec is lossy, so that the pictures differ from those given to the encoder.
   bool lossy() const;
   double fps() const;  ///< frames per second, 0 if the file does not state it
   const std::map<std::string, std::string>& metadata() const;

@@ -47,8 +47,8 @@ constexpr int kMaxSide = 16384;  // [pixels]; limit of x264
 constexpr std::array<std::string_view, 10> kPresets = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
                                                        "medium",    "slow",      "slower",   "veryslow", "placebo"};
 
-// A key frame every two seconds, since players seek only to key frames. The distance is limited for very low and very
-// high rates; 250 is the default of x264.
+// Number of frames between key frames: two seconds, since players seek only to key frames. For very low and very high
+// rates, the number is limited; 250 is the default of x264.
 int key_frame_distance(double fps) {
   return std::clamp(static_cast<int>(std::lround(2 * fps)), 12, 250);
 }
@@ -153,7 +153,7 @@ Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
       std::make_unique<Mp4Writer>(fragments->path(), file, Mp4Layout::fragmented, *parameters, rate, settings.metadata);
 }
 
-// Sends a frame to the encoder, or nullptr for the end, and writes the packets that are ready.
+// Sends a frame to the encoder, or nullptr to end the video, and writes the packets that are ready.
 void Encoder::Impl::send(const AVFrame* next) {
   check(avcodec_send_frame(codec.get(), next), file, "encode a frame");
   while (true) {

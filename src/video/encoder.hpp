@@ -16,12 +16,12 @@ namespace weft::video {
 enum class Codec { automatic, h264, h264_lossless, ffv1, prores };
 
 struct Settings {
-  int width = 1280, height = 720;  ///< [pixels]; unless the codec keeps RGB, odd sizes are padded by one column or row
+  int width = 1280, height = 720;  ///< [pixels]; odd sizes are padded by one column or row unless the codec keeps RGB
   double fps = 25;                 ///< frames per second; frame k is shown at exactly k / fps (23.976: 24000/1001)
   Codec codec = Codec::automatic;
   int crf = 18;                     ///< for h264: x264 constant quality, 1 to 51; smaller is better
   std::string preset = "veryfast";  ///< x264 preset
-  int threads = 1;  ///< of the encoder; does not follow the machine, as the output of x264 depends on the number
+  int threads = 1;  ///< of the encoder; the same on all machines, as the output of x264 depends on this number
   std::map<std::string, std::string> metadata;
 };
 

@@ -11,7 +11,7 @@ namespace weft::video {
 /// Converts RGB to BT.709 in limited range, with the chroma siting (left) that H.264 assumes by default, or keeps RGB.
 class FrameConverter {
  public:
-  /// `file` names the video in errors. Sizes are in pixels; unless the format is RGB, odd ones are padded by one.
+  /// `file` names the video in errors. Sizes are in pixels; odd sizes are padded by one unless the format is RGB.
   FrameConverter(int width, int height, std::filesystem::path file, AVPixelFormat format = AV_PIX_FMT_YUV420P);
 
   int padded_width() const { return rgb_ ? width_ : width_ + width_ % 2; }

@@ -7,11 +7,11 @@
 namespace weft::video {
 namespace {
 
-// Relative tolerance. Broadcast rates with two or three decimals are within 1.1e-6 of n * 1000/1001; the nearest other
-// decimals, such as 23.98, are 1e-4 away.
+// Relative tolerance for broadcast rates. With two or three decimals, they are within 1.1e-6 of n * 1000/1001; the
+// nearest other decimals, such as 23.98, are 1e-4 away.
 constexpr double kBroadcastTolerance = 5e-6;
 
-// Keeps the time unit of MP4, a power of two times the numerator, well inside 32 bits.
+// Maximum numerator and denominator. The time unit of MP4, a power of two times the numerator, then fits into 32 bits.
 constexpr int kMaxTerm = 100000;
 
 }  // namespace

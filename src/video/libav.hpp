@@ -40,7 +40,7 @@ using OutputPtr = std::unique_ptr<AVFormatContext, OutputDeleter>;
 using InputPtr = std::unique_ptr<AVFormatContext, InputDeleter>;
 
 /// Redirects the log of libav and x264 from standard error to a buffer of the latest warnings and errors, and empties
-/// it. The buffer belongs to the process. Thread-safe.
+/// this buffer. The whole process has one buffer. Thread-safe.
 void collect_log();
 
 /// Throws Error(output_failed): "file: cannot <step>: <reason>", followed by libav's latest warnings.

@@ -59,7 +59,7 @@ bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
 }
 
-// Delay between decoding and showing the first frame, in frames; 0 if the file tells only one of both times.
+// Delay between decoding and showing the first frame, in frames; 0 if the file has only one of these times.
 std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
   const InputPtr input = open_video(file, reported_file);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
@@ -88,7 +88,7 @@ Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path re
     check(av_dict_set(&output_->metadata, key.c_str(), value.c_str(), 0), reported_file_, "set metadata");
   }
 
-  // Writes each packet to the system at once, so that a kill loses only the encoder's look-ahead.
+  // Writes each packet to the system at once. If the process is killed, only the frames inside the encoder are lost.
   output_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
   // Without this flag, Matroska files contain random numbers, and equal runs would not give equal bytes.
   if (is_matroska(reported_file_)) output_->flags |= AVFMT_FLAG_BITEXACT;
@@ -124,7 +124,8 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
   Mp4Writer writer(to, reported_file, Mp4Layout::fast_start, codec, rate, metadata);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
 
-  // Frame k is decoded at time k minus the delay of the B-frames. Files differ in this delay: with one frame it is 0.
+  // Packet k is decoded `delay` frames before time k, since B-frames need later frames. Files may differ in this delay
+  // (with one frame it is 0), so the largest one is used.
   std::int64_t delay = 0;
   for (const std::filesystem::path& file : from) delay = std::max(delay, delay_of(file, reported_file, rate));
 

@@ -1,5 +1,5 @@
-// MP4, MOV and Matroska files with one video stream: written in fragments while frames arrive, then copied to a file
-// that can be played while it loads. Matroska has the same layout in both cases.
+// MP4, MOV and Matroska files with one video stream. While frames arrive, a file is written in fragments; it is then
+// copied to a file that can be played while it loads. Matroska has the same layout in both cases.
 #pragma once
 
 #include <filesystem>
@@ -43,7 +43,8 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
                         const std::filesystem::path& reported_file, AVRational rate,
                         const std::map<std::string, std::string>& metadata);
 
-/// Reads `file`; throws Error(output_failed) unless it has each of `frames` frames once, frame k at k / `rate`.
+/// Reads `file`. Throws Error(output_failed) unless it has each of `frames` frames once, frame k at k / `rate`. In
+/// Matroska, times are rounded to milliseconds.
 void verify_frames(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate,
                    int frames);
 

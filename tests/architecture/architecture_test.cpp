@@ -118,8 +118,8 @@ TEST(Architecture, NoFileIsLongerThan500Lines) {
   EXPECT_EQ(long_files(kRoot, 500, kMayBeLong), "");
 }
 
-// The words are assembled here so that this file does not contain them.
-// Parsers recurse, and streams wait for pipes: core has the only access to both, with limits.
+// Only core parses text and opens files from outside, with limits, because parsers recurse and streams wait for pipes.
+// The forbidden words are assembled here, so that this file does not contain them.
 TEST(Architecture, TextAndFilesFromOutsideAreReadByCoreAlone) {
   std::string found;
   std::istringstream lines(

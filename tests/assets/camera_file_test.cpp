@@ -18,7 +18,7 @@ namespace {
 
 class CameraFile : public support::TestFolder {
  protected:
-  /// The camera is on a rig that turns by 90 degrees to the left about y in two seconds, 3 m out along z, 1 m up.
+  /// A rig turns by 90 degrees to the left about y in two seconds. The camera on it is 3 m out along z and 1 m up.
   nlohmann::json document_ = nlohmann::json::parse(gltf_camera());
 
   LoadedCamera load(const std::string& object = "") {

@@ -127,7 +127,7 @@ TEST_F(Scenes, BecomeNodesBonesOneMeshAndClips) {
   ASSERT_EQ(body.clips.size(), 1u);
   EXPECT_EQ(body.clips[0].duration, 2);
   EXPECT_EQ(body.clips[0].channels[0].position.times, (std::vector<double>{0, 2}));
-  // In the middle of the clip the knee is 1.5 m up; vertex 1 has half of its weight, vertex 3 all.
+  // In the middle of the clip the knee is 1.5 m up. It moves vertex 1 with weight 1/2 and vertex 3 with weight 1.
   std::vector<Vec3> x(10);
   character::skin(body, character::pose_at(body, body.clips[0], 1), x);
   EXPECT_EQ(x[1], Vec3(1, 0, 0.75));
@@ -165,7 +165,7 @@ TEST_F(Scenes, WhoseRestPoseIsNotThatInWhichTheSkinWasBoundAreWarnedAbout) {
             "\"knee\"; if the body looks wrong, export it in its bind pose, or as glTF");
 }
 
-// In FBX a mesh is bound at its node; a mesh with one bone is consistent in any pose.
+// An FBX mesh is bound at its node. In other files, a mesh with one bone is consistent with any pose.
 TEST_F(Scenes, OfFbxAreComparedWithTheirNodes) {
   leg_->mBones[1]->mWeights[0].mWeight = leg_->mBones[1]->mWeights[1].mWeight = 0;
   hip_->mTransformation.c4 = 25;
@@ -381,7 +381,7 @@ TEST_F(Scenes, PicturesThatCannotBeHadAreLeftOutWithAWarning) {
   EXPECT_EQ(got.character.coloring.material_of_triangle.size(), 4u);
 }
 
-// FBX avatars whose pictures are not embedded: one warning replaces eight.
+// As in FBX avatars whose pictures are not embedded: one warning for all materials.
 TEST_F(Scenes, PicturesThatAreNeitherNamedNorHeldAreToldOfOnce) {
   scene_.mNumMaterials = 5;
   scene_.mMaterials = new aiMaterial*[5];

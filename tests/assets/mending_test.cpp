@@ -72,7 +72,7 @@ TEST(MendedSheet, FacesAsMostOfItsAreaDoes) {
   expect_uv_of_places(loaded);
 }
 
-// As SketchUp writes two-sided faces.
+// SketchUp writes a two-sided face as two triangles.
 TEST(MendedSheet, HasOneOfTwoTrianglesThatLieOnEachOther) {
   LoadedMesh loaded = strip(3);
   for (std::size_t t = 0; t < 6; ++t) {
@@ -86,7 +86,7 @@ TEST(MendedSheet, HasOneOfTwoTrianglesThatLieOnEachOther) {
   expect_uv_of_places(loaded);
 }
 
-/// A flap of this many triangles, attached to the edge between the third and the fourth square of a strip of eight.
+/// A strip of eight squares, with a flap of `triangles` triangles at the edge between the third and the fourth square.
 LoadedMesh with_flap(int triangles) {
   LoadedMesh loaded = strip(8);
   for (int i = 0; i < triangles; ++i) {

@@ -80,7 +80,8 @@ TEST_F(MeshFiles, OfQuadsAloneStayQuadsAndLoseTheirSeams) {
   EXPECT_TRUE(cube.mesh.uv.empty());
 }
 
-// The data of a binary file may begin with any byte, including those that end lines and separate words in its header.
+// The data of a binary PLY file may begin with any byte, even with one that ends lines or separates words in the
+// header.
 TEST_F(MeshFiles, OfOurOwnAreReadWhateverByteTheirDataBeginWith) {
   for (const unsigned char first : {9, 10, 13, 32})
     for (const unsigned char second : {10, 13, 32}) {
@@ -222,7 +223,7 @@ TEST_F(MeshFiles, ThatSayTheirUnitAreInMetresWithTheirTextureCoordinates) {
   }
 }
 
-// Binary glTF under another name, as in VRM.
+// VRM files are binary glTF with another extension.
 TEST_F(MeshFiles, OfBinaryGltfAreReadWhateverTheyAreCalled) {
   for (const char* name : {"body.vrm", "body.VRM", "body.glb"})
     EXPECT_NEAR(volume(load(name, glb_tetrahedron())), 1.0 / 6, 1e-15) << name;
@@ -247,7 +248,7 @@ TEST_F(MeshFiles, OfGltfThatNestsTooDeepAreRefusedBeforeTheyAreRead) {
   EXPECT_EQ(refusal("deep.glb", binary), words);
 }
 
-/// Two squares of 0.1 m side by side, at this distance.
+/// Two squares of 0.1 m side by side. `gap`: their distance [m].
 std::string two_squares(double gap) {
   const double x = 0.1 + gap;
   return "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nv " + std::to_string(x) + " 0 0.001\nv 0.3 0 0\nv 0.3 0.1 0\nv " +

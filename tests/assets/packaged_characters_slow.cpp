@@ -28,7 +28,7 @@ using character::Character;
 
 const fs::path kModels = "/usr/share/assimp/models";
 
-/// Number of compared poses of a clip.
+/// Number of poses of a clip that are compared.
 constexpr int kPoses = 10;
 
 class Packaged : public testing::Test {
@@ -206,7 +206,8 @@ struct Evaluation {
   }
 };
 
-/// Largest distance of a vertex of `from`, over all poses, to the vertex of `to` that stays closest to it.
+/// Per vertex of `from`: the largest distance, over all poses, to the vertex of `to` that stays closest. Returns the
+/// maximum over all vertices.
 double max_distance(const std::vector<std::vector<Vec3>>& from, const std::vector<std::vector<Vec3>>& to) {
   // Sorted by x in the first pose, so that only nearby vertices are compared.
   std::multimap<double, std::size_t> along_x;
@@ -227,7 +228,7 @@ double max_distance(const std::vector<std::vector<Vec3>>& from, const std::vecto
   return worst;
 }
 
-/// File, and the size that its body is scaled to for the comparison [m].
+/// Parameter: a file, relative to kModels.
 class Skinned : public testing::TestWithParam<const char*> {};
 
 TEST_P(Skinned, FollowsAnEvaluationOfItsOwnOverTheWholeClip) {

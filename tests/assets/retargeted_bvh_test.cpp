@@ -62,7 +62,7 @@ Quat turn_of(const Bone& bone, int key) {
   return Quat(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, bone.axis.normalized()));
 }
 
-/// Translations of the joints below the root, which then have six channels.
+/// Translation channels of the joints below the root: none, or three beside those of rotation, of zero or of offsets.
 enum class Translations { none, of_zero, of_offsets };
 
 /// BVH text with joint j turned by zero[j] in the world when all angles are zero; children are sorted by `order`.
@@ -193,7 +193,8 @@ TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) 
     for (const Bone& bone : bones)
       turned.push_back(bone.parent < 0 ? turn_of(bone, key) : turned[bone.parent] * turn_of(bone, key));
     const auto posture = skeleton.at(character::pose_at(body_, result_.clip, key * kKeyTime));
-    // z up instead of y. The left of the body is +x, that of the motion follows its hips and shoulders at the start.
+    // Turns the motion from y up to z up, and its left to that of the body, +x. The left of the motion is the mean
+    // direction across hips and shoulders at the start.
     const Quat up(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()));
     const Quat hips = turn_of(bones[0], 0), chest = hips * turn_of(bones[1], 0) * turn_of(bones[2], 0);
     const Vec3 left_first = up * Vec3(hips * Vec3::UnitX() + chest * Vec3::UnitX());

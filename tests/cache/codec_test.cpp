@@ -144,13 +144,13 @@ TEST(Codec, FramesComeBackBitForBit) {
   }
 }
 
-// A field that is missing in serialize(FrameReport) would leave the report as short as before the field was added.
+// Positions with the same bits as those of the surfaces are not stored.
 TEST(Codec, WhatHasNotMovedTakesTwoBytes) {
   const Sample sample;
   frame::FrameSnapshot resting = *sample.snapshot(0);
   const Surfaces surfaces = surfaces_of(resting);
   const std::size_t still = encode_frame(resting, {}, surfaces).size();
-  resting.states[1].positions[0].x() = -0.0;  // equal, but not the same
+  resting.states[1].positions[0].x() = -0.0;  // compares equal, but has other bits
   EXPECT_EQ(encode_frame(resting, {}, surfaces).size() - still, 3 * sizeof(Vec3));
   resting.states[0].positions[2].x() = 0.5;
   EXPECT_EQ(encode_frame(resting, {}, surfaces).size() - still, 7 * sizeof(Vec3));
@@ -160,7 +160,8 @@ TEST(Codec, PositionsAreStoredInPlanesOfEqualBytes) {
   const Sample sample;
   const frame::SnapshotPtr snapshot = sample.snapshot(2);
   const std::string payload = encode_frame(*snapshot, {}, surfaces_of(*sample.snapshot(0)));
-  // The end of the payload: planes of the cloth's positions, 1, planes of its heat, and 0, 0 for the floor.
+  // The payload ends with the byte planes of the cloth's positions, a byte 1, the planes of its heat, and two bytes 0
+  // for the floor.
   const std::string_view planes = std::string_view(payload).substr(payload.size() - 2 - 16 - 1 - 96, 96);
   const auto* bytes = reinterpret_cast<const char*>(snapshot->states[0].positions.data());
   for (std::size_t vertex = 0; vertex < 4; ++vertex)

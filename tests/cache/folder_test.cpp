@@ -198,7 +198,7 @@ TEST_F(CacheFolder, ForeignFilesWithNamesOfFramesAreKept) {
     writer.add(*sample_.snapshot(1), {});  // this frame was added before
   }
   EXPECT_NE(support::read_bytes(cache() / "frame_00001.weft"), frame);
-  // A valid manifest beside it does not mention it.
+  // frame_00007.weft is foreign, because the valid manifest beside it does not mention it.
   expect_error(ExitCode::output_failed, "holds frame_00007.weft", [&] { Lock(cache()).clear(); });
   EXPECT_EQ(support::read_bytes(cache() / "frame_00007.weft"), "precious");
   support::write_bytes(cache() / "frame_00007.weft", std::string(100, '\0'));  // as after a crash of the machine
@@ -217,7 +217,7 @@ TEST_F(CacheFolder, ClearingLeavesNothingOfIt) {
   EXPECT_FALSE(fs::exists(cache() / ".frame_00003.weft.weft-1234.tmp"));
 }
 
-// State after a kill during clearing: without the manifest, but without files of others too.
+// State after a kill during clearing: the manifest is gone, and no foreign file is there.
 TEST_F(CacheFolder, ThatWasClearedInPartIsClearedToTheEnd) {
   fill(3);
   fs::remove(cache() / kSceneFile);

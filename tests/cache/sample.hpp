@@ -1,4 +1,4 @@
-// A made-up scene of two surfaces, one of them moving, with numbers for which lossy coding shows.
+// A made-up scene of two surfaces, one of them moving, with numbers that lossy coding would change.
 #pragma once
 
 #include <cstring>

@@ -15,7 +15,7 @@
 namespace weft::character {
 namespace {
 
-/// Hips at (0, 0, 1) with two legs of one bone and its end each, 0.1 m to either side.
+/// Hips at (0, 0, 1). On either side, at 0.1 m, is a leg of one bone with an end node.
 Character two_legs() {
   const auto at = [](double x, double y, double z) { return Affine(Eigen::Translation3d(x, y, z)); };
   Character body;
@@ -26,7 +26,8 @@ Character two_legs() {
                 {"right_end", 3, at(0, 0, -0.9)}};
   for (Index n = 0; n < 5; ++n)
     body.bones.push_back({n, Affine(global_transforms(body, rest_pose(body))[n].inverse())});
-  // A vertex beside the left leg, one between the legs with equal weights, one below the left end with its weight only.
+  // A vertex beside the left leg; one between the legs, with equal weights of both; one below the left end node, which
+  // alone moves it.
   body.mesh.positions = {{0.15, 0, 0.6}, {0, 0, 0.8}, {0.1, 0.05, 0.05}};
   body.first_influence = {0, 1, 3, 4};
   body.influences = {{1, 1}, {1, 0.5}, {3, 0.5}, {2, 1}};
@@ -127,8 +128,8 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   std::vector<Vec3> after = before;
   room().make(pose, after);
   EXPECT_GT(crossings(before), 100u);
-  // Measured: 546 before, 464 after. Where only one of two limbs detects the other, half of the clearance is made, and
-  // bent fingers have many small triangles there.
+  // Measured: 546 before, 464 after. Bent fingers have many small triangles, and if only one of two limbs detects the
+  // other, only half of the clearance is made.
   EXPECT_LT(crossings(after), 9 * crossings(before) / 10);
   // Least distance from the skin of the left forearm to that of the trunk, between vertices.
   double least = 1;
@@ -137,7 +138,7 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   const Posture posture = Skeleton({body_, joints_}).at(pose);
   for (std::size_t v = 0; v < after.size(); ++v) {
     moved += after[v] != before[v] ? 1 : 0;
-    // Dents spread a little in each round: measured 0.2 mm.
+    // The head is far from the arms, but dents spread a little in each round: measured 0.2 mm.
     if (after[v].z() > 1.5) {
       EXPECT_LT((after[v] - before[v]).norm(), 1e-3) << "head";
     }
@@ -165,7 +166,7 @@ TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
   EXPECT_LE(moved.distance, 0.032 + 1e-9) << "twice the room";
 }
 
-// At rest the body does not have ten centimetres of clearance, above all between its legs.
+// Clearance is only made up to that of the rest pose, which is less than the 10 cm asked for, e.g. between the legs.
 TEST_F(RoomOfAMannequin, LeavesARestingBodyToTheBit) {
   const std::vector<Vec3> before = skinned(rest_pose(body_));
   std::vector<Vec3> after = before;
@@ -207,7 +208,7 @@ TEST_F(RoomOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
   EXPECT_TRUE((moved.limb == "trunk") != (moved.away_from == "trunk")) << moved.limb << ", " << moved.away_from;
 }
 
-// A limb deep inside another, as a thigh against the belly, must not shrink to a thin peg.
+// If a limb is deep inside another, e.g. a thigh in the belly, it must not shrink to a thin peg.
 TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
   Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   for (const bool right : {false, true}) {
@@ -260,7 +261,7 @@ TEST(TriangleGrids, FindTheFirstFrontThatBruteForceFinds) {
   for (std::size_t v = 0; v + 7 < x.size(); v += 7) {
     const Vec3 from = x[v] + Vec3(0.1, 0.02, 0.01), to = x[v + 7] - Vec3(0.1, 0.03, 0.02);
     const mesh::Entry entry = grid.find_first_crossing(from, to, [](Index t) { return t % 3 != 0; });
-    // The first crossing of the path with a triangle, by barycentric coordinates.
+    // Expected: the first crossing of the path with the front of a selected triangle, by barycentric coordinates.
     double first = 1;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       if (t % 3 == 0) continue;

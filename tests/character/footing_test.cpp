@@ -30,7 +30,7 @@ struct Glide {
   Footsteps steps;
 };
 
-/// Hips that travel at 1 m/s with feet that move along; `sunk`: depth below the floor [m]. The left foot is marked as
+/// Hips that travel at 1 m/s; the feet move with them. `sunk`: depth below the floor [m]. The left foot is marked as
 /// standing from 0.3 to 0.6 s.
 Glide gliding(double sunk) {
   Glide walk;

@@ -28,8 +28,8 @@ std::size_t keys(const Clip& clip) {
   return clip.channels[0].rotation.times.size();
 }
 
-/// One stride of steady walking, between two strikes of the left heel, from the middle of a long walk. The strides
-/// before and after it are so many that neither start nor end affects it.
+/// One stride of steady walking, between two strikes of the left heel, from the middle of a walk of 20 steps: neither
+/// its start nor its end affects the stride.
 Clip make_stride(const Character& body, double speed) {
   const Physique physique = physique_of(body);
   const Pace pace = pace_of(speed, physique.height);
@@ -82,7 +82,7 @@ TEST(Gait, StrideIsPeriodicWithItsVelocity) {
     const auto p = [&](std::size_t k) { return places(clip, k); };
     for (std::size_t j = 0; j < kJointCount; ++j) {
       EXPECT_LT((p(last)[j] - p(0)[j] - stride).norm(), 1e-9) << name(static_cast<Joint>(j));
-      // The velocity changes as little at the seam as inside.
+      // Between the last key and the first, the velocity changes as little as between other keys.
       jump = std::max(jump, (p(1)[j] - p(0)[j] - (p(last)[j] - p(last - 1)[j])).norm());
     }
     for (std::size_t k = 1; k < last; ++k) {
@@ -121,10 +121,9 @@ TEST(Gait, HasTheSpeedAskedForAndStepsOfConstantWalkRatio) {
   }
 }
 
-/// Largest slip of any point of a sole while it stands, and `lowest`, the deepest point below the floor. Soles are the
-/// undersides of `Foot` and `Toes`; they are in contact if closer than a millimetre. `period` is that of a stride that
-/// begins with a strike of the left foot; 0 if the times of contact are unknown: then points that skim the floor count
-/// too.
+/// `slip`: largest slip of any vertex while it is in contact, less than a millimetre above the floor. `lowest`: minimum
+/// height of all vertices. `period` [s]: duration of a stride that begins with a strike of the left foot; vertices
+/// count only while their foot stands. If it is 0, these times are unknown, and vertices that skim the floor count too.
 struct FootAtRest {
   double slip = 0, lowest = 1;
 };
@@ -162,8 +161,8 @@ TEST(Gait, FeetNeitherSlideNorSink) {
   }
 }
 
-// Includes small steps. Points that skim the floor within a millimetre while the foot is set down count too:
-// measured 5.1 mm at most; a standing foot slides by 1.7 mm.
+// Starts, turns and ends have small steps. Vertices that skim the floor while the foot is set down count too: measured
+// 5.1 mm at most; a standing foot slides by 1.7 mm.
 TEST(Gait, FeetDoNotSlideFromStandingThroughATurnToStanding) {
   for (const double speed : kSpeeds) {
     Walk walk = at_speed(speed);
@@ -184,9 +183,12 @@ double flexion(const Clip& clip, std::size_t key, Joint hip) {
   return std::atan2(thigh.cross(shin).x(), thigh.dot(shin)) / kDegree;
 }
 
-// Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13): 5° at contact, 15 to 20° in loading response, 5° in
-// terminal stance, 40° at toe-off, 60° in initial swing. Measured at 0.7, 1.2, 1.5 m/s: 4.8
-// to 5.0°; 16.7, 19.8, 22.6°; 6.6, 6.9, 6.9°; 25, 30, 31° (lower, because a mannequin's toes are short); 54, 60, 60°.
+// Source: Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). Measured: the mannequin at 0.7, 1.2, 1.5 m/s.
+//   heel contact      5°          4.8 to 5.0°
+//   loading response  15 to 20°   16.7, 19.8, 22.6°
+//   terminal stance   5°          6.6, 6.9, 6.9°
+//   toe-off           40°         25, 30, 31° (lower, because the mannequin's toes are short)
+//   initial swing     60°         54, 60, 60°
 TEST(Gait, KneesBendAsMeasuredOnPeople) {
   for (const double speed : kSpeeds) {
     const Clip clip = make_stride(mannequin(), speed);
@@ -323,7 +325,7 @@ TEST(Gait, WalkStartsAndEndsStillAndTurnsRound) {
   }
   EXPECT_NEAR(farthest, 3, 0.05);
   EXPECT_GT(lowest, -0.003);
-  // No jumps: second differences are 0.025 m at a straightening knee, 0.015 m at a foot that touches down.
+  // No jumps. Second differences between keys: 0.025 m where a knee straightens, 0.015 m where a foot touches down.
   EXPECT_LT(bend, 0.04);
 }
 

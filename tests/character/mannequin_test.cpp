@@ -20,7 +20,7 @@
 namespace weft::character {
 namespace {
 
-/// The default build with such edges [m], made once.
+/// The default build with edges of this length [m]; each is made once.
 const Character& standard(double edge_length = 0.02) {
   static std::map<double, Character> made;
   const auto found = made.find(edge_length);
@@ -30,7 +30,7 @@ const Character& standard(double edge_length = 0.02) {
   return made.emplace(edge_length, make_mannequin(build)).first->second;
 }
 
-/// Length [m] of the section of the mesh with a plane, of the part in which `take` is true.
+/// Length [m] of the section of the mesh with a plane, counting only the part in which `take` is true.
 double girth(const Character& body, const Vec3& at, const Vec3& normal, const std::function<bool(const Vec3&)>& take) {
   double length = 0;
   for (const auto& t : body.mesh.topology.triangles) {
@@ -80,7 +80,7 @@ void expect_whole(const Character& body) {
   EXPECT_TRUE(judgement.degenerate.empty());
 }
 
-// Drillis & Contini (1966), in Winter, Fig. 4.1, as fractions of the body height.
+// Source of the numbers, fractions of the body height: Drillis & Contini (1966), in Winter, Fig. 4.1.
 TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
   for (const double h : {1.5, 1.75, 1.95}) {
     MannequinBuild build;
@@ -98,7 +98,7 @@ TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
     EXPECT_NEAR(distance(Joint::left_upper_leg, Joint::left_lower_leg), 0.245, 0.001);
     EXPECT_NEAR(distance(Joint::left_lower_leg, Joint::left_foot), 0.246, 0.001);
 
-    // The skin and the length of the foot match the table within a hundredth of the height: triangles are inscribed.
+    // Tolerance of a hundredth of the height: triangles are inscribed, so the skin lies inside the surface.
     const Box3 box = mesh::bounding_box(body.mesh.positions);
     EXPECT_NEAR(box.min().z() / h, 0, 0.001);
     EXPECT_NEAR(box.max().z() / h, 1, 0.003);
@@ -154,7 +154,7 @@ void expect_whole(const MannequinBuild& build) {
   expect_whole(make_mannequin(build));
 }
 
-// Any two of height, girth and masculinity in all their extremes.
+// For any two of height, girth and masculinity, all four combinations of their extremes occur.
 TEST(Mannequin, IsWholeInExtremeBuilds) {
   for (const auto& [height, girth_of, masculinity] :
        {std::array{1.2, 0.9, 0.0}, std::array{1.95, 0.9, 1.0}, std::array{1.95, 1.3, 0.0}, std::array{1.2, 1.3, 1.0}})
@@ -169,8 +169,8 @@ TEST(SlowMannequin, IsWholeInEveryBuild) {
 }
 
 TEST(Mannequin, HasTrianglesOfTheLengthAskedForAndOfGoodShape) {
-  // Head, hands and feet have shorter edges, which do not grow beyond the size for 0.02 m. The mean edge is 0.60, 0.60
-  // and 0.32 of the requested length (measured).
+  // Head, hands and feet have shorter edges. With a requested length above 0.02 m these edges do not grow further.
+  // Measured: the mean edge is 0.60, 0.60 and 0.32 of the requested length.
   for (const auto& [edge, share] : {std::pair(0.015, 0.60), std::pair(0.02, 0.60), std::pair(0.04, 0.32)}) {
     const Character& body = standard(edge);
     EXPECT_NEAR(mean_edge(body.mesh) / edge, share, 0.03) << edge;
@@ -190,7 +190,8 @@ double profile(const Character& body, double up) {
   return forward;
 }
 
-// Heights of the features come from the tables; each feature stands out by more than the error of a triangle.
+// Heights of the features [cm] come from the tables of the mannequin. Each feature stands out by more than the error
+// of a triangle.
 TEST(Mannequin, HasAFaceInProfileAndEarsAndFingers) {
   const Character& body = standard();
   const double root = profile(body, 164.5), tip = profile(body, 160.6), below = profile(body, 158.8),
@@ -242,7 +243,7 @@ TEST(Mannequin, VerticesLieOnTheSurface) {
     const double h = 1e-6;
     Vec3 slope;
     for (int k = 0; k < 3; ++k) slope[k] = (surface(p + h * Vec3::Unit(k)) - surface(p - h * Vec3::Unit(k))) / (2 * h);
-    // The mesher makes two Newton steps a round: 1e-5 m is ten times the measured error.
+    // The mesher moves vertices by two Newton steps per round. 1e-5 m is ten times the measured error.
     EXPECT_LT(std::abs(surface(p)) / slope.norm(), 1e-5) << p.transpose();
   }
 }
@@ -278,8 +279,8 @@ TEST(Mannequin, SkinWeightsAddUpAndAreSmoothAndMirrored) {
   }
   for (std::size_t j = 0; j < kJointCount; ++j) EXPECT_GT(largest[j], 0.9) << name(static_cast<Joint>(j));
   for (std::size_t j = 5; j < 13; ++j) EXPECT_EQ(largest[j], largest[j + kSideJointCount]);
-  // The shortest distance over which a weight rises from 0 to 1 is 4 cm, at the toes: at most 1.875 / 0.04 per metre;
-  // between the thighs a quarter of that.
+  // The shortest distance over which a weight rises from 0 to 1 is 4 cm, at the toes: its slope is at most 1.875 / 0.04
+  // per metre. Between the thighs the distance is a quarter of that, so edges there are skipped.
   for (const auto& e : mesh::collect_edges(body.mesh.topology.triangles).edges) {
     const auto [a, b] = std::pair(static_cast<std::size_t>(e.vertices[0]), static_cast<std::size_t>(e.vertices[1]));
     const double length = (body.mesh.positions[a] - body.mesh.positions[b]).norm();

@@ -11,8 +11,8 @@
 namespace weft::character {
 namespace {
 
-/// A body of sticks, z up, facing -y (left at +x), arms stretched out. Nodes are called j0, j1, ...; `parts` names
-/// them.
+/// A body of sticks, z up, facing -y (left at +x), arms stretched out. Nodes are called j0, j1, ...; `parts` tells
+/// which joint each node is.
 struct Sticks {
   Character body;
   std::vector<std::string> parts;

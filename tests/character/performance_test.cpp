@@ -7,7 +7,7 @@
 namespace weft::character {
 namespace {
 
-/// One node that moves by (3, 0, 1) in 2 s on an uneven path, z up, with one vertex at its origin.
+/// A node that moves by (3, 0, 1) in 2 s along a bent path, with one vertex at its origin; z is up.
 struct Slider {
   Character body;
   Clip clip{"slide", 2, {}, {}};
@@ -34,7 +34,8 @@ TEST(ClipTime, StandsThenGetsGoingSmoothlyThenRunsAtItsSpeed) {
   EXPECT_EQ(clip_time(timing, 1), 0.25);
   EXPECT_NEAR(clip_time(timing, 1.5), 0.25 + 1.5 * 0.25, 1e-15);
   EXPECT_NEAR(clip_time(timing, 3.5) - clip_time(timing, 1.5), 3, 1e-14);
-  // First and second central differences: velocity and acceleration are continuous across the ends of the blend.
+  // Velocity and acceleration are continuous: the velocity, by central differences, hardly changes across the ends of
+  // the blend.
   const auto velocity = [&](double t, double h) {
     return (clip_time(timing, t + h) - clip_time(timing, t - h)) / (2 * h);
   };
@@ -70,7 +71,8 @@ TEST(Performance, WithACrossfadeDoesNotJump) {
   for (double t = 0; t < 8; t += kStep)
     largest =
         std::max(largest, (performance.at(t + kStep).nodes[0].position - performance.at(t).nodes[0].position).norm());
-  // The clip itself moves by 2.9 m/s at most; the fade adds the gap of 1 m in 0.4 s, at most 1.5 times as fast.
+  // The clip itself moves by 2.9 m/s at most. The fade closes the gap of 1 m in 0.4 s, with at most 1.5 times its mean
+  // speed.
   EXPECT_LT(largest, (2.9 + 1.5 / 0.4) * kStep);
 }
 
@@ -94,7 +96,7 @@ TEST(Performance, TurnsTheTravelIntoTheDirectionsOfTheRootsParent) {
   const auto world = [&](double t) -> Vec3 {
     return global_transforms(slider.body, performance.at(t))[1].translation();
   };
-  // y of the clip is now the height, which starts again in each repetition; -z became y.
+  // In the world, y of the clip is the height, which starts again in each repetition; -z of the clip is y.
   EXPECT_LT((world(2.5) - (world(0.5) + Vec3(3, -1, 0))).norm(), 1e-12);
 }
 

@@ -14,15 +14,15 @@
 namespace weft::character {
 namespace {
 
-// Rotations are converted to quaternions and back about ten times.
+// About ten conversions of rotations to quaternions and back.
 constexpr double kRoundingOfTurns = 1e-12;
 
 Quat about(const Vec3& axis, double degrees) {
   return Quat(Eigen::AngleAxisd(degrees * kDegree, axis));
 }
 
-/// A body of sticks, z up, facing -y, so that its left is +x. Its nodes have frames of their own: each is turned by
-/// `frame` relative to the world at rest.
+/// A body of sticks, z up, facing -y, so that its left is +x. At rest the axes of each node are turned by `frame`
+/// relative to the world.
 struct Builder {
   Character body;
   Quat frame;
@@ -67,7 +67,7 @@ Character sticks(double size, double arm, double facing, const Quat& frame, bool
   return b.body;
 }
 
-/// The arm bends at the elbow by 90° upward, in the world of a body that faces -y, while the hips walk along `way`.
+/// The elbow bends by 90° upward, and the hips move by `way`; both for a body that faces -y in the world.
 Clip waving(const Character& body, const Vec3& way) {
   const auto joints = find_joints(body);
   const auto node = [&](const char* joint) { return joints[joint_number(joint)]; };
@@ -232,7 +232,7 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
 }
 
 TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
-  // As in 100STYLE: four chests and no spine.
+  // A skeleton as in 100STYLE: four chests and no spine.
   std::vector<Node> nodes;
   const auto add = [&](const std::string& name, Index parent) {
     nodes.push_back({name, parent, Affine(Eigen::Translation3d(0, 0, 0.1))});
@@ -321,7 +321,7 @@ TEST(Joints, OfRigsWhoseNameStandsBeforeAllNodesAreFound) {
   }
 }
 
-// As in "EthanLeftArm", or with a suffix that a program adds to joints.
+// Every node name begins with the name of the rig, as in "EthanLeftArm", or ends with a suffix that a program adds.
 TEST(Joints, OfRigsWhoseNameIsPartOfAllNamesAreFound) {
   const Character plain = make_mannequin({.edge_length = 0.1});
   const std::vector<Index> expected = find_joints(plain);
@@ -336,7 +336,7 @@ TEST(Joints, OfRigsWhoseNameIsPartOfAllNamesAreFound) {
 }
 
 TEST(Joints, AreFoundWithTheNumbersThatSketchfabPutsBehindNamesAndWithoutColons) {
-  // Bone names of available characters, without the help of the hierarchy.
+  // Bone names of available characters. Only the names are given, no hierarchy.
   const std::vector<std::vector<std::string>> rigs = {
       {"CC_Base_Hip_02", "CC_Base_L_Upperarm_050", "CC_Base_L_Forearm_051", "CC_Base_R_Upperarm_078",
        "CC_Base_R_Forearm_079", "CC_Base_L_Thigh_04", "CC_Base_L_Calf_05", "CC_Base_R_Thigh_019", "CC_Base_R_Calf_020",
@@ -394,7 +394,7 @@ Clip arms_along(const Character& body, const std::array<std::array<Vec3, 2>, 2>&
   return clip;
 }
 
-// The forearms of the motion are longer: retargeted arm by arm, the hands would be 10 cm farther apart.
+// The forearms of the motion are longer. If each arm were retargeted alone, the hands would be 10 cm farther apart.
 TEST(Retarget, KeepsHandsTogetherThatAreTogetherInTheMotion) {
   const Character body = make_mannequin({.edge_length = 0.1});
   Character motion = body;
@@ -466,7 +466,7 @@ TEST(Retarget, DoubtsABodyThatDoesNotStandInItsFile) {
   EXPECT_NE(doubts()[0].find("a knee bent by 60°"), std::string::npos) << doubts()[0];
 }
 
-// The hips are a control above the spine.
+// In the motion, the node of the hips is a control 0.4 m higher, above the start of the spine.
 TEST(Retarget, OfHipsAboveTheSpineIsUpright) {
   Character motion = make_mannequin({.edge_length = 0.1});
   const auto joints = find_joints(motion);

@@ -24,7 +24,7 @@ class Travel : public testing::Test {
 
   Vec3 hips(const Clip& clip, double t) const { return skeleton_.at(pose_at(body_, clip, t)).places[0]; }
 
-  /// Largest slip of the ball of a foot while it stands in the walk.
+  /// Largest slip [m] in `clip` of the ball of a foot, over the times in which this foot stands in `walk_`.
   double slip(const Clip& clip) const {
     const std::vector<double> times = key_times(clip);
     const Footsteps steps = find_footsteps(skeleton_, postures(walk_), key_times(walk_), kUp);

@@ -215,7 +215,8 @@ TEST(AccuracyOfASheet, ReferenceIsTheBetterKnownOfTwo) {
   EXPECT_LT(at(accuracy.reference.doubt(), Quantity::position), at(accuracy.second.doubt(), Quantity::position));
   EXPECT_GE(at(accuracy.uncertainty, Quantity::position), at(accuracy.reference.doubt(), Quantity::position));
   EXPECT_GT(at(accuracy.apart, Quantity::position), 0);
-  // Steps of an eighth against steps of a quarter: 3/64, and as much again from the solver.
+  // The reference is compared with a run of twice its step. Relative to the error of the finest run the difference is
+  // 1/16 − 1/64 = 3/64, and as much again comes from the solver.
   EXPECT_LT(at(accuracy.uncertainty, Quantity::position),
             0.1 * error_of(*accuracy.decided(Integrator::implicit_midpoint).back(), Quantity::position));
 }
@@ -286,7 +287,7 @@ TEST(AccuracyOfASheet, ConclusionFollowsFromTheTable) {
   const std::string text = conclusion(measured());
   for (const auto& [target, words] : {std::pair{0.01, "of 0.01 m: "}, {0.001, "; 0.001 m: "}, {0.0001, "; 0.0001 m: "}})
     EXPECT_NE(text.find(words + cheapest_of(rows, target)), std::string::npos) << target << "\n" << text;
-  // The residual of the solver at the step of the scene.
+  // The text also gives the residual of the solver at the settings of the scene.
   const auto at_scene_settings = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
     return row.axis == "grid" && row.integrator == "implicit_euler" && row.step == 0.01 &&
            row.newton == scene::Solver{}.newton_tolerance;

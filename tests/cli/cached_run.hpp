@@ -22,7 +22,7 @@ class CachedRun : public support::TestFolder {
   Outcome weft(Arguments arguments) const;
   void expect_well(const Arguments& arguments) const;
 
-  /// Files below a folder with this name ending, by name; those of working caches are left out.
+  /// Contents of the files below a folder whose names end so, by name. Working caches are left out.
   std::map<std::string, std::string> contents(const std::string& folder, const std::string& ending) const;
   /// Expects `count` files in both folders, with the same names and bytes.
   void expect_same(const std::string& a, const std::string& b, const std::string& ending, std::size_t count) const;

@@ -191,7 +191,8 @@ TEST_F(Joining, OfPicturesIsInTheCodecThatIsAskedFor) {
 TEST_F(Joining, OfVideosKeepsEveryPictureAndItsTime) {
   std::string pictures;
   const auto lines = [&](const std::string& video) {
-    // The hash column only: times differ between a part and the whole. Columns: "0, pts, duration, size, hash".
+    // Takes the column of hashes only: times differ between a part and the whole. Columns: "0, pts, duration, size,
+    // hash".
     std::string hashes;
     std::istringstream text(decoded(video));
     for (std::string line; std::getline(text, line);) hashes += line.substr(line.rfind(',')) + "\n";

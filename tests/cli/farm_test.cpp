@@ -18,7 +18,7 @@ class Farms : public CachedRun {
     more.insert(more.begin(), "farm");
     return run_weft(more, folder_);
   }
-  /// The frames end before the scene does: its camera is found from all of them.
+  /// Requests fewer frames than the scene has; the camera is computed from all frames of the scene.
   Outcome submit(const Arguments& more = {}) const {
     Arguments arguments{"submit",    "s.toml",   "-o",       "a b",    "--set",  kRadius, "--size", "64x36",
                         "--quality", "draft",    "--frames", "0:19:2", "--part", "4",     "--set",  "time.duration=0.8",

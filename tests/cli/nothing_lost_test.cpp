@@ -194,7 +194,7 @@ TEST_F(AnyInput, ThatNestsTooDeepIsRefused) {
   expect_refused({"check", "g.toml"}, "128 levels");
   write("c/manifest.json", "{\"format\": " + list);
   expect_refused({"render", "c", "-o", "x.mp4"}, "128 levels");
-  // A page shows what it can read.
+  // A review page shows the files that it can read.
   for (const char* file : {"r/b.json", "r/sweep.json", "r/review.json"}) write(file, "{\"scene\": " + list);
   image::write_png(folder_ / "r/p_1.png", image::Image(16, 16));
   image::write_png(folder_ / "r/p_2.png", image::Image(16, 16));
@@ -301,7 +301,7 @@ TEST_F(AnyInput, DoctorWithoutAPlaceForTemporaryFilesSaysSo) {
       << outcome.out;
 }
 
-// Valid checksums, invalid content: eight bytes, at one place after another, become numbers that break something.
+// The checksum is valid, the content is not: at one place after another, eight bytes become an extreme number.
 TEST_F(AnyInput, AFrameWithWildContentUnderARightChecksumIsDrawnOrNamed) {
   const std::string whole = support::read_bytes(folder_ / "c/frame_00001.weft");
   const cache::Content content = cache::unpack(whole);

@@ -50,7 +50,7 @@ std::string compressed(const std::string& bytes) {
   return out;
 }
 
-/// An archive whose program prints `said` and then executes the built program.
+/// An archive whose program prints `message` and then executes the built program.
 std::vector<Entry> program(const std::string& message) {
   const std::string script = "#!/bin/sh\necho '" + message + "' >&2\nexec '" WEFT_PROGRAM "' \"$@\"\n";
   return {{"weft/", "", '5'},

@@ -117,7 +117,7 @@ TEST(Summary, NamesTheFramesOfTheExtremes) {
   }
 }
 
-// The summary gives the error of the worst frame, not the sum over all frames: 120 mm for a band of a metre.
+// The summary gives the error of the worst frame. The sum over all frames says little: 120 mm for a band of a metre.
 TEST(Summary, SaysByWhatTheWorstFrameIsOffAndWhatReducesIt) {
   RunReport report;
   report.frames = two_frames();

@@ -82,7 +82,7 @@ TEST_F(Robustness, KilledAtAnyMomentNoFileUnderAFinalNameIsHalf) {
   }
 }
 
-/// A file system of 64 MB in memory, in a mount namespace of this process; it disappears with the process.
+/// A file system of 64 MB in memory, in a mount namespace of this process. It disappears with the process.
 class SmallDisk : public Robustness {
  protected:
   void SetUp() override {

@@ -87,7 +87,7 @@ TEST_F(Stills, FromACacheAreThoseFromTheScene) {
     expect_well({"sheet", input, "-o", name + "_sheet.png", "--count", "4"});
     expect_well({"thumbnail", input, "-o", name + "_chosen.png"});
   }
-  // The camera frames all frames up to the requested one.
+  // The camera is computed from all frames up to the requested one.
   expect_well({"simulate", "s.toml", "--cache", "c_to_7", "--frames", ":8"});
   expect_well({"thumbnail", "s.toml", "-o", "s_7.png", "--frame", "7"});
   expect_well({"thumbnail", "c_to_7", "-o", "c_7.png", "--frame", "7"});

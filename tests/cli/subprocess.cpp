@@ -33,7 +33,7 @@ void prepare(const std::filesystem::path& folder, int out, int err, std::size_t 
   if (file_size_limit > 0 && ::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
 }
 
-// If this process has several threads, the child may wait for a lock that a thread holds which does not exist in it.
+// If this process has several threads, the child may wait for a lock held by a thread that does not exist in the child.
 // The sanitizers report leaks only if a program ends by itself.
 bool can_run_in_fork() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -44,8 +44,8 @@ bool can_run_in_fork() {
 #endif
 }
 
-// Forks that draw find the OpenGL of this machine loaded, which takes a fifth of what a small picture takes. What
-// cannot be opened here they look for themselves.
+// Loads OpenGL in this process, so that forks find it loaded: loading takes a fifth of the time of a small picture. If
+// a library cannot be loaded here, each fork searches for it.
 void load_opengl_once() {
   static void* const library = [] {
     for (const char* file : {"libOSMesa.so.8", "/usr/lib/x86_64-linux-gnu/dri/swrast_dri.so"})

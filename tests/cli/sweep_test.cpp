@@ -60,7 +60,7 @@ TEST(SweepPlan, NamesHaveNothingOfAPathFromAKey) {
   EXPECT_EQ(names(plan_sweep({}, {{"../a/b", {"1", "2"}}})), (std::vector<std::string>{"-a-b=1", "-a-b=2"}));
 }
 
-// The maximum number of values, all equal in the part of the text that names keep: each name gets the next number.
+// The maximum number of values. Names keep only the beginning of a value, which is equal here, so they are numbered.
 TEST(SweepPlan, NamesThatAreCutAlikeAreNumbered) {
   Axis axis{"k", {}};
   for (int i = 0; i < 10'000; ++i) axis.values.push_back(std::string(200, 'x') + std::to_string(i));
@@ -273,7 +273,7 @@ TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
   EXPECT_EQ(decoded("w/radius=0.1/s.mp4"), decoded("one.mp4"));
 }
 
-/// Waits up to five seconds until no process writes this cache; true if so.
+/// Waits up to five seconds until no process writes this cache. Returns whether that is so.
 bool is_left(const fs::path& cache) {
   const int lock = ::open((cache / "lock").c_str(), O_RDONLY);
   bool left = false;
@@ -286,7 +286,7 @@ bool is_left(const fs::path& cache) {
 }
 
 TEST_F(Sweeps, ThatAreKilledTakeTheirRunsWithThem) {
-  // Would take half a minute without the signal.
+  // The run would take half a minute without the signal.
   Subprocess process(with_sweep({"--set", "time.step=0.0001,0.01"}), folder_);
   const fs::path cache = folder_ / "w/step=0.0001/.s.weft-cache";
   for (int i = 0; i < 3000 && !fs::exists(cache / "frame_00000.weft"); ++i) usleep(20'000);

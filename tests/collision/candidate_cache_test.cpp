@@ -1,4 +1,4 @@
-// Compares the collected candidate pairs, and the meaning of "covered", with brute force.
+// Compares the collected candidate pairs, and what the cache reports as covered, with brute force.
 #include "collision/candidate_cache.hpp"
 
 #include <gtest/gtest.h>
@@ -154,7 +154,7 @@ TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundThatOfTheWay) {
   EXPECT_FALSE(cache.covers_end(to));
 }
 
-// Bounds with diagonal directions grow by the margin as a length: an end at half of it along each axis is outside.
+// With diagonal directions the margin bounds the length of a displacement, otherwise its components along the axes.
 TEST(CandidateCache, WithMoreDirectionsThanSixAnEndIsCoveredWithinABall) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;

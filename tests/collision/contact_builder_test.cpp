@@ -72,7 +72,7 @@ TEST(ContactBuilder, APairMayHaveFrictionOfItsOwnInEitherOrder) {
   EXPECT_DOUBLE_EQ(builder.friction_of(0, 1).sliding, 0.4);
 }
 
-// Vertices 1 and 2 of the obstacle are padded and rough. Friction of a pair of bodies applies to all of both.
+// Vertices 1 and 2 of the obstacle are padded and rough. Friction for a pair of bodies also overrides that of patches.
 TEST(ContactBuilder, APatchHasThicknessAndFrictionOfItsOwn) {
   Scene scene;
   const std::vector<Triangle> one{{0, 1, 2}};
@@ -107,8 +107,8 @@ TEST(ContactBuilder, FrictionReachesTheContact) {
   EXPECT_DOUBLE_EQ(contacts[1].static_friction, 0.3);
 }
 
-// An edge pair has its full stiffness inside both wedges and away from the ends of the edges; towards the limits the
-// ratio falls linearly.
+// An edge pair has its full stiffness inside both wedges and away from the ends of the edges. Towards these limits the
+// stiffness falls linearly.
 TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   EXPECT_EQ(stiffness_fraction(vertex_face(0, {3, 4, 5})), 1);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0.5)), 1);
@@ -130,7 +130,8 @@ TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0)), 0);
 }
 
-// Faces of two blocks touch where their rims cross, also at a corner, and only along the normal of the faces.
+// Flat faces of two blocks touch where the rims of the faces cross, also at a corner: only along the normal of the
+// faces.
 TEST(StiffnessShare, OfBlocksFadesOutsideOfAWedgeOnly) {
   EXPECT_EQ(stiffness_fraction(edges(0, 0, 0.01), false), 1);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0), false), 1);
@@ -147,7 +148,7 @@ TEST(ContactBuilder, TheShareScalesTheStiffnessAndNoneMakesNoContact) {
   EXPECT_NEAR(contacts[1].stiffness, 0.5e9, 1);
 }
 
-// The stiffness is 100 m / h², m the weighted mean mass of the pushed particles, and at least the scene's value.
+// The stiffness is 100 m / h², with the weighted mean mass m of the pushed particles, and at least the scene's value.
 TEST(ContactBuilder, StiffnessFollowsTheMassOfWhatIsPushed) {
   Scene scene;
   constexpr double kSceneStep = 3 * kBuilderStep;  // the scene's step; the law ignores the actual step
@@ -255,7 +256,8 @@ TEST(ContactBuilder, EachCornerThatWouldMeetAnObstacleGetsAWall) {
     EXPECT_TRUE(response.springs().empty());
     ASSERT_EQ(response.prescribed().size(), 3U);
     for (const PrescribedParticle& held : response.prescribed()) {
-      // It starts 1 mm above, which equals the range: it stops there, and the obstacle rises by 0.4 mm.
+      // The corner starts 1 mm above the obstacle, at its activation distance, and must follow the obstacle, which
+      // rises by 0.4 mm.
       EXPECT_NEAR(held.x_end.z(), 0.0004, 1e-9) << held.constraint.particle;
     }
   }

@@ -69,8 +69,8 @@ TEST(Engine, EachParticleNearAFloorIsAProximityAndAContact) {
   EXPECT_TRUE(std::isinf(of_far.min_distance()));
 }
 
-// Candidate pairs stay valid while no particle moves farther than the Verlet margin of 1.5 mm; they hold every pair of
-// features that comes near within it.
+// Candidate pairs stay valid while no particle moves farther than the Verlet margin of 1.5 mm. They contain every pair
+// of features that comes near through such motions.
 TEST(Engine, WhatSinksWithinTheSkinIsFoundNear) {
   Sheet sheet(3, 0.0044);
   Engine engine = sheet.engine();
@@ -81,7 +81,7 @@ TEST(Engine, WhatSinksWithinTheSkinIsFoundNear) {
   EXPECT_EQ(engine.proximities(), 16);
 }
 
-// With velocity cones the engine finds the same pairs; nothing moves here, so that all are kept.
+// Kept closest points, found with velocity cones, equal those of a new search. Nothing moves, so that all are kept.
 TEST(Engine, KeptClosestPointsAreThoseOfTheSearch) {
   Sheet sheet(3, 0.0029);
   EngineParameters parameters;
@@ -159,9 +159,9 @@ TEST(Engine, PushingApartLeavesAWayWithoutMeeting) {
   for (std::size_t i = 0; i < sheet.particles(); ++i) EXPECT_GT(end[i].z(), 0);
 }
 
-// If the step restarts from an intermediate state, its contacts are those of that state: none from the start, and one
-// for each pair that was pushed apart, with slip measured from the start of the step. Corners stay behind the plane of
-// their pair without friction.
+// A step that restarts from an intermediate state has the contacts of that state: none from the start, and one for each
+// pair that was pushed apart. Slip is measured from the start of the step. Corners stay behind the plane of their pair
+// without friction.
 TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
@@ -192,7 +192,7 @@ TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
   EXPECT_GT(smooth, 0);
   EXPECT_LT(smooth, static_cast<int>(contacts.size()));
 
-  // From here the trajectory is another: through the floor it is refused as from the start, but back up it is free.
+  // From the intermediate state on, an end beyond the floor is refused as it is from the start; an end above is free.
   std::vector<Vec3> through = bend, up = bend;
   for (std::size_t i = 0; i < sheet.particles(); ++i) through[i].z() -= 0.01, up[i].z() += 1;
   EXPECT_FALSE(engine.is_separated(bend, through));
@@ -217,7 +217,7 @@ TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   EXPECT_TRUE(engine.is_separated(sheet.x, pinched));  // apart from the pinched pairs
 }
 
-// A ceiling comes down on one side first and pinches the cloth there.
+// A ceiling comes down tilted and pinches the cloth on one side. A guess of the next end exempts no further pairs.
 TEST(Engine, NothingIsExemptedForAGuess) {
   Sheet sheet(6, 0.005, 0.01);
   std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);

@@ -78,7 +78,7 @@ TEST(Compare, FiguresAreTheMeanAndTheLargestOfTheMap) {
   EXPECT_EQ(result.figures.spot, *std::max_element(result.flip.values.begin(), result.flip.values.end()));
 }
 
-// A square of `size` pixels, `levels` brighter than its flat surroundings, in a picture of 320x180.
+// Verdict on a square of `size` × `size` pixels, `levels` brighter than the rest of a flat picture of 320x180.
 Verdict verdict_of_speck(int size, int levels) {
   const image::Image flat = plain(320, 180, 110, 110, 110);
   image::Image speck = flat;
@@ -108,7 +108,8 @@ image::Image edge_at(double at, int width = 480, int height = 270) {
   return image;
 }
 
-/// Flips one of four samples across the edge, in `count` pixels of the edge, `apart` rows from each other.
+/// Moves one of the four samples of a pixel across the edge, in `count` pixels of the edge, `apart` rows from each
+/// other.
 image::Image with_flipped_samples(const image::Image& image, int count, int apart) {
   image::Image flipped = image;
   for (int i = 0, y = 2; i < count; ++i, y += apart) {
@@ -168,7 +169,7 @@ TEST(Compare, OnlyTheDefaultMeanIsWiderInSmallPictures) {
   EXPECT_EQ(for_size({}, figures).flip, Limits{}.flip);
 }
 
-// The changes that another CPU type made in four pictures of our scenes.
+// Noise of the size of the changes that another CPU type made in four pictures of our scenes.
 TEST(Compare, DefaultsPassTheNoiseOfProcessors) {
   const image::Image picture = textured(320, 180, 1);
   EXPECT_EQ(verdict(compare(picture, with_noise(picture, 60, 1, 5), 4).figures, {}), Verdict::within);
@@ -188,7 +189,8 @@ Figures mild(double flip) {
   return figures;
 }
 
-/// Whether frame 20 - `before` is spill of frame 20, whose map has the mean `changed`.
+/// Whether frame 20 - `before`, with the figures `frame`, counts as spill (see is_spill) of frame 20, whose mean FLIP
+/// is `changed`.
 bool is_spill_of(const Figures& frame, double changed, std::size_t before = 2) {
   std::vector<Figures> frames(40);
   for (Figures& other : frames) other.pixels = 1000;

@@ -29,8 +29,8 @@ TEST(Flip, OpponentSpaceInverts) {
   }
 }
 
-// L*a*b* of the sRGB primaries from published tables, a* and b* times L*/100. Tolerance 0.02: the last digit of the
-// tables, times 1.
+// L*a*b* of the sRGB primaries from published tables; a* and b* are multiplied by L*/100. Tolerance 0.02: the tables
+// have two decimals.
 TEST(Flip, PrimariesHaveTheirLabShrunkByLightness) {
   const auto expect = [](const Color& linear, double lightness, double a, double b) {
     const Color lab = flip::hunt_lab(linear);
@@ -57,7 +57,7 @@ TEST(Flip, RemappedDistancesMeetTheirThreePoints) {
   EXPECT_NEAR(flip::remapped(largest), 1, 1e-6);
 }
 
-// Mean over the middle of a plane with one grating, divided by the amplitude.
+// Value of the filtered channel in the middle of a plane with a grating of amplitude 1.
 double gain(int channel, double cycles_per_degree) {
   const auto wave = [&](int x) { return std::cos(2 * std::numbers::pi * cycles_per_degree * x / kPixelsPerDegree); };
   Plane<float> plane(401, 9);
@@ -67,8 +67,9 @@ double gain(int channel, double cycles_per_degree) {
   return static_cast<double>(flip::as_seen(plane, channel).row(4)[200]);
 }
 
-// Continuous effect of the Gaussians of Table 1 on a grating: exp(-b f²), and for two Gaussians the mean weighted with
-// a sqrt(b). Tolerance 0.01: kernels end at three sigmas of the widest, which omits 0.3 %, and are sampled at pixels.
+// Without discretisation, the Gaussians of Table 1 multiply a grating by exp(-b f²), and two Gaussians by the mean of
+// both factors, weighted with a sqrt(b). Tolerance 0.01: kernels are sampled at pixels and end at three sigmas of the
+// widest Gaussian, which omits 0.3 %.
 TEST(Flip, GratingsAreDampedByTheContrastSensitivity) {
   for (const double f : {0.5, 2.0, 5.0, 10.0, 20.0}) {
     EXPECT_NEAR(gain(0, f), std::exp(-0.0047 * f * f), 0.01) << f;
@@ -108,8 +109,8 @@ TEST(Flip, BlackAgainstWhiteIsTheDistanceOfItsColours) {
   for (const float value : map.values) ASSERT_NEAR(value, expected, 1e-4);
 }
 
-// A second implementation of the rest of the paper, directly from its formulas: kernels over the whole plane, in double
-// precision, pixel by pixel. All constants are repeated here.
+// A second implementation of the two filters, directly from the formulas of the paper: with two-dimensional kernels, in
+// double precision, pixel by pixel. All constants are repeated here.
 namespace paper {
 
 constexpr double kPi = std::numbers::pi;
@@ -153,8 +154,8 @@ Map as_seen(const Picture& picture, const Map& map, int channel) {
                           kernel);
 }
 
-// Section 4.2: the standard deviation is half of 0.082 degrees; ((|dF|) / sqrt 2)^(1/2), the larger of the values for
-// edges and points.
+// Section 4.2: (|dF| / sqrt 2)^(1/2), where dF is the difference in edges or in points, whichever is larger. The
+// standard deviation is half of 0.082 degrees.
 Map feature_difference(const Picture& picture, const Map& a, const Map& b) {
   const double sigma = 0.5 * 0.082 * kPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));

@@ -27,8 +27,8 @@ class Idiff : public support::TestFolder {
     if (WEXITSTATUS(status) == 127) GTEST_SKIP() << "idiff is not here: apt-get install openimageio-tools";
   }
 
-  // Half a level above the tolerance, so that floating-point rounding does not matter. It warns of any pixel, so that
-  // it counts where it passes, too: exit code 1.
+  // The threshold is half a level above the tolerance, so that floating-point rounding does not matter. idiff warns of
+  // any pixel above it (exit code 1), so that it also prints the count if the pictures pass.
   Judgement ask(int tolerance, double budget) const {
     const std::string command =
         fmt::format("idiff -warn {0:.9f} -warnpercent 0 -fail {0:.9f} -failpercent {1:.9f} '{2}' '{3}' 2>&1",
@@ -41,7 +41,7 @@ class Idiff : public support::TestFolder {
     const int code = WEXITSTATUS(::pclose(pipe));
     EXPECT_LE(code, 2) << text;
     judgement.passed = code < 2;
-    // "  34811 pixels (60.4%) over 0.0177", of warnings and again of failures; not printed if there is none.
+    // idiff prints "  34811 pixels (60.4%) over 0.0177" for warnings and again for failures, if there are any.
     const std::regex line(R"((\d+) pixels \()");
     std::smatch match;
     for (; std::regex_search(text, match, line); text = match.suffix()) judgement.pixels_over = std::stoll(match[1]);

@@ -128,7 +128,7 @@ TEST_F(References, NewPictureGoesToDefaultWhereThatIsUsedElseIntoTheFolder) {
   EXPECT_EQ(level("other/name.png"), 30);
 }
 
-// The two hashes were computed with the coreutils; the difference has the format of diff: all 256 pixels by 10 levels.
+// All 256 pixels differ by 10 levels. The log states this in the words of `weft diff`.
 TEST_F(References, EachChangeIsALineOfTheLogWithHashesDifferenceAndReason) {
   write("ref/a.png", 10);
   write("out/a.png", 20);

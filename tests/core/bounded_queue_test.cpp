@@ -37,7 +37,8 @@ TEST(BoundedQueue, NeverHoldsMoreThanItsCapacity) {
   });
   while (queue.pop()) --inside;
   producer.join();
-  // Two more than the capacity: an item is in before push() has a place for it, and out after pop() has returned.
+  // Up to two more than the capacity: the test counts an item before push() has a place for it, and until after pop()
+  // has returned.
   EXPECT_LE(max_inside, 4);
   EXPECT_GE(max_inside, 1);
 }

@@ -70,8 +70,8 @@ TEST(Nesting, CountsDotsInTextsAndCommentsForNothing) {
     EXPECT_FALSE(nests_too_deep(text)) << text.substr(0, 40);
 }
 
-// Random text of all characters that matter to the grammar: if the parser accepts it, its depth is at most what is
-// allowed, where headers and the keys below them count separately.
+// Random text of all characters that matter to the grammar. If the parser and nests_too_deep() accept it, its depth is
+// at most twice the limit, because headers and the keys below them count separately.
 TEST(Nesting, NoTextThatTheParserTakesIsDeeperThanTwiceTheLimit) {
   const std::vector<std::string> pieces{
       "a", ".",  ".",  "\"",   "'",       "\"\"\"",           "'''",    "#", "=", "[", "]", "{", "}",

@@ -32,7 +32,7 @@ TEST_F(ParallelLoops, CallEachItemOnceHoweverManyFollowEachOther) {
 TEST_F(ParallelLoops, UseSeveralThreads) {
   std::atomic<int> inside = 0;
   std::atomic<bool> together = false;
-  // Each chunk waits until there are two: on one thread the loop would never end, so that it gives up after a while.
+  // Each chunk waits until a second one runs. On one thread that never happens, so the chunk gives up after a while.
   parallel_for(4, 1, [&](std::size_t, std::size_t) {
     ++inside;
     for (int k = 0; k < 100'000 && !together; ++k) {
@@ -87,14 +87,14 @@ TEST(CountedLoops, TellWhatThreadsWouldGain) {
   counted_loops = &counts;
   const auto work = [](std::size_t, std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
   parallel_for(8, 1, work);
-  parallel_for(5, 5, work);  // one chunk: no loop
+  parallel_for(5, 5, work);  // a single chunk does not count as a loop
   parallel_for(2, 1, [&](std::size_t, std::size_t) { parallel_for(3, 1, work); });
   counted_loops = nullptr;
   set_thread_count(0);
   EXPECT_EQ(counts.loops, 2);
   EXPECT_EQ(counts.chunks, 10);
   EXPECT_GE(counts.seconds, 14e-3);
-  // On four threads eight chunks take the time of two, two chunks that of one.
+  // On four threads, eight chunks take as long as two, and two chunks as long as one.
   EXPECT_LT(counts.seconds_on[1], 0.5 * counts.seconds);
   EXPECT_GT(counts.seconds_on[1], 5e-3 - 1e-6);
 }

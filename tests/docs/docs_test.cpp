@@ -117,7 +117,7 @@ TEST_F(MeasuredTables, HaveTheirCommandVersionMachineAndDateAbove) {
   }
 }
 
-// Returns "12: first row" for each table that is not printed from a measured file.
+// Returns "LINE: FIRST ROW" for each table that is not printed from a measured file.
 std::string written_tables(const std::string& text) {
   std::string found;
   std::istringstream lines(text);
@@ -144,7 +144,7 @@ TEST(MeasuredPage, HasTablesOfNamedCommandsAlone) {
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 350);
 }
 
-// Measured files that no page shows would become outdated unnoticed.
+// A measured file that no page shows would become out of date without notice.
 TEST(MeasuredPage, ShowsOrLinksEachMeasuredFile) {
   const std::string text = read_file(kRoot / "tests/bench/README.md");
   for (const auto& entry : fs::directory_iterator(kRoot / "tests/bench/measured")) {
@@ -190,7 +190,7 @@ TEST(Documentation, OfEachRoomIsLinkedFromTheReadme) {
   }
 }
 
-// Collision consists of three modules in one.
+// The page of a module has at most 80 lines. That of collision, which consists of three modules, may have 140.
 TEST(Documentation, OfARoomFitsAScreen) {
   for (const architecture::Module& module : architecture::read_modules(kRoot)) {
     const fs::path page = kRoot / "src" / module.name / "README.md";

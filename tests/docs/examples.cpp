@@ -26,7 +26,7 @@ void write(const fs::path& file, const std::string& text) {
   if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 
-// Runs `commands` in a shell, which stops at the first failure. `output` receives both outputs.
+// Runs `commands` in a shell, which stops at the first failure. `output` receives standard output and standard error.
 int run(const std::string& commands, const fs::path& folder, std::string& output) {
   write(folder / "commands.sh", commands);
   FILE* pipe = ::popen(
@@ -41,7 +41,7 @@ int run(const std::string& commands, const fs::path& folder, std::string& output
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-// The first line of `expected` that is missing in `output`, in order; empty if all are there.
+// Looks for the lines of `expected` in `output`, in order. Returns the first missing one; empty if there is none.
 std::string missing_line(const std::string& expected, const std::string& output) {
   std::istringstream lines(expected);
   std::size_t from = 0;

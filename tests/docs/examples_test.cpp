@@ -68,7 +68,7 @@ TEST(Guide, HasNoBlockThatIsNotRun) {
   for (const Fence& fence : page.fences) EXPECT_NE(fence.section, "") << "line " << fence.line;
 }
 
-// The scenes in the README are checked, not run.
+// The scenes in README.md are only checked by `weft check`, not run.
 TEST(Guide, StartsInTheReadmeWithScenesThatAreWell) {
   const fs::path folder = fs::path(::testing::TempDir()) / "weft_readme_scenes";
   fs::create_directories(folder);

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Escapes a cell: bars would end it, and text between < and > would be invisible.
+// Escapes the text of a table cell: a bar would end the cell, and text between < and > would be invisible.
 std::string in_cell(const std::string& text) {
   return std::regex_replace(std::regex_replace(text, std::regex(R"(\|)"), R"(\|)"), std::regex("<"), "&lt;");
 }
@@ -42,7 +42,7 @@ struct Entry {
   std::string name, meaning;
 };
 
-// The entries below `heading`, up to an empty line. The meaning of a long name is on the next line.
+// The entries below `heading`, up to an empty line. If a name is long, its meaning is on the next line.
 std::vector<Entry> section(const std::vector<std::string>& lines, const std::string& heading) {
   std::vector<Entry> entries;
   auto line = std::find(lines.begin(), lines.end(), heading);
@@ -208,8 +208,8 @@ std::string origin(const fs::path& file) {
 
 std::string side_by_side(const fs::path& folder, const std::string& arguments);
 
-// Arguments: "FILE FILE ...[: COLUMN, COLUMN]". Prints the origin of the tables, then side by side the rows that the
-// first tables of all these files have in common; without columns the first table of one file.
+// Arguments: "FILE" or "FILE FILE ...: COLUMN, COLUMN". Prints the origin of each file, then a table: without columns
+// the first table of the file, with columns the rows that the first tables of all files have in common, side by side.
 std::string measured(const fs::path& folder, const std::string& arguments) {
   std::istringstream files(arguments.substr(0, arguments.find(": ")));
   std::string text;

@@ -73,7 +73,7 @@ bool is_file(const std::string& name, const fs::path& root, const fs::path& page
                      [&](const fs::path& folder) { return fs::exists(root / folder / name); });
 }
 
-// Checks each part of a::b. Plain words may be any word; text that only programs contain must be an identifier.
+// Checks each part of a::b. A part of lower-case letters may be any word; any other part must be a known identifier.
 bool is_name(const std::string& name, const Known& known) {
   static const std::regex kPart(R"(\w+)");
   const std::vector<std::string> parts(std::sregex_token_iterator(name.begin(), name.end(), kPart), {});

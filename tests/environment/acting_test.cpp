@@ -18,7 +18,8 @@ namespace {
 // Rounding of single-precision files, for coordinates of a few metres.
 constexpr double kSingle = 1e-6;
 
-/// Vertices at the ends of the rod, at x = -0.1. The reader reverses faces and with them the order of vertices.
+/// Indices of the vertices at the ends of the rod, at x = -0.1. The reader reverses faces, which changes the order of
+/// vertices.
 constexpr std::size_t kLow = 2, kHigh = 3;
 
 class Acting : public support::TestFolder {
@@ -60,7 +61,7 @@ TEST_F(Acting, TurnsTheFileUpScalesItAndPutsItInItsPlace) {
   character_.pose.rotation = Eigen::AngleAxisd(std::acos(0.0), Vec3::UnitZ());
   const Actor actor = make();
   EXPECT_TRUE(actor.warnings.empty());
-  // y of the file is up; x of the file, turned by 90° about z, is y.
+  // y of the file points up; x of the file, turned by 90° about z, points along y.
   EXPECT_LT((at(actor, 0)[kLow] - Vec3(10, -0.05, 0)).norm(), kSingle);
   EXPECT_LT((at(actor, 0)[kHigh] - Vec3(10, -0.05, 1)).norm(), kSingle);
   EXPECT_EQ(actor.mesh.positions, at(actor, 0));
@@ -71,7 +72,7 @@ TEST_F(Acting, TurnsTheFileUpScalesItAndPutsItInItsPlace) {
 
 TEST_F(Acting, PlaysTheClipThatItsSceneNamesAfterDressing) {
   character_.dressing = 0.5;
-  // The reader converts left-handed X files by mirroring z. With y up, z became -y; mirrored, it becomes +y.
+  // X files are left-handed: the reader mirrors z. Turning y of the file up then turns z of the file to +y.
   const Actor walking = make();
   EXPECT_LT((at(walking, 0.4)[0] - at(walking, 0)[0]).norm(), kSingle);
   EXPECT_NEAR((at(walking, 1.5)[0] - at(walking, 0)[0]).norm(), 2, 1e-5);
@@ -91,7 +92,7 @@ TEST_F(Acting, GrowsFromItsBonesWhileItIsDressedAndThenMoves) {
   const Vec3 low = at(whole, -1)[kLow], on_bone(0, 0, 0);
   EXPECT_LT((at(growing, -1)[kLow] - (on_bone + 0.1 * (low - on_bone))).norm(), kSingle);
   EXPECT_LT((at(growing, -0.75)[kLow] - (on_bone + 0.55 * (low - on_bone))).norm(), 1e-4) << "half, between keys";
-  // The keys of the two motions are at different times: splines through a start at 2 m/s.
+  // The two motions have keys at different times, so that their splines differ where the motion starts at 2 m/s.
   for (const double t : {-0.5, -0.2, 0.5, 1.7})
     EXPECT_LT((at(growing, t)[kLow] - at(whole, t)[kLow]).norm(), 0.02) << t;
   for (const double t : {-0.5, -0.3}) EXPECT_LT((at(growing, t)[kLow] - low).norm(), 1e-3) << t;
@@ -238,7 +239,7 @@ TEST_F(Acting, LeavesPartsOutOfContactAndClosesWhatIsLeft) {
       low = std::min(low, body.mesh.positions[v].x());
       high = std::max(high, body.mesh.positions[v].x());
     }
-  // The right shoulder ends 0.25 m from the middle; of the left arm, hanging at 45 degrees, the upper part is kept.
+  // The right shoulder ends 0.25 m from the middle. Of the left arm, which hangs at 45 degrees, the upper part is kept.
   EXPECT_GT(low, -0.25);
   EXPECT_GT(high, 0.3);
   EXPECT_LT(high, 0.45);

@@ -52,7 +52,7 @@ class ChosenParticles : public support::TestFolder {
   }
 };
 
-// A grid of 0.1 m: distances from the row at warp 0, up to 0.25 m.
+// A grid with a spacing of 0.1 m at rest. The strength fades with the distance from the row at warp 0, up to 0.25 m.
 TEST_F(ChosenParticles, FadeWithTheDistanceAlongTheClothAtRest) {
   for (const char* shape : {"quads", "aligned_triangles"}) {
     const ClothObject cloth =
@@ -69,7 +69,7 @@ TEST_F(ChosenParticles, FadeWithTheDistanceAlongTheClothAtRest) {
   }
 }
 
-// Distances from a corner also cross quads: 0.141 m along the diagonal.
+// Distances from a corner of the sheet are also measured across quads: 0.141 m along the diagonal of a cell.
 TEST_F(ChosenParticles, FadeAcrossQuadsToo) {
   const ClothObject cloth =
       cloth_of("size = [0.4, 0.4]\nparticles = 5\npin = [{ high = [0, 0], strength = 10, fade = 0.2 }]\n");
@@ -79,7 +79,8 @@ TEST_F(ChosenParticles, FadeAcrossQuadsToo) {
   EXPECT_NEAR(shares.at(6), s * s * (3 - 2 * s), 1e-12);
 }
 
-// A mask of white, a third, and black over five columns: the grey values lie at the middles of the pixels.
+// A mask of three pixels (white, a third of white, black) over five columns of particles. Grey values are exact at the
+// middles of pixels and interpolated between them.
 TEST_F(ChosenParticles, HaveTheGreyOfAMaskAsTheirShare) {
   const std::string mask = row_of({255, 85, 0});
   const auto pinned = [&](const std::string& more) {

@@ -225,7 +225,8 @@ TEST(Obstacle, InMotionHasTheVelocityAndAccelerationOfEachVertex) {
       const Vec3 arm = now[i] - pose.position;
       const Vec3 velocity = (after[i] - before[i]) / (2 * h);
       const Vec3 acceleration = (after[i] - 2 * now[i] + before[i]) / (h * h);
-      // Error h²/6 and h²/12 times derivatives below 500, plus rounding 4e-16 / h² of the second difference.
+      // Errors of the differences: h²/6 and h²/12 times derivatives below 500. The second difference adds rounding of
+      // 4e-16 / h².
       EXPECT_LT((pose.velocity_at(arm) - velocity).norm(), 1e-6);
       EXPECT_LT((pose.acceleration_at(arm) - acceleration).norm(), 1e-6);
     }

@@ -11,8 +11,8 @@ namespace {
 const scene::Gusts kGusts{.speed = 2, .size = 1.5, .seed = 7};
 const Vec3 kWind(6, 1, 0);
 
-// Tolerance of means of 14 shells of three waves each over 8,000 places that are several length scales apart: a few
-// times the relative error 1/√8000 of one place.
+// Relative tolerance of means over 8,000 places, which are several length scales apart and thus independent: a few
+// times 1/√8000.
 constexpr double kOfMeans = 0.05;
 
 /// Calls body(x) for places on a lattice that is no multiple of any wave length.
@@ -71,7 +71,7 @@ TEST(Gusts, AreOfTheSizeThatIsSaid) {
       }
   }
   const double length = sum / (kFields * 3 * kPlaces) / (kGusts.speed * kGusts.speed);
-  // Ten fields of three directions each; wave lengths of neighbouring shells differ by a third.
+  // Tolerance of the mean of ten fields in three directions; wave lengths of neighbouring shells differ by a third.
   EXPECT_NEAR(length, kGusts.size, 0.2 * kGusts.size);
 }
 

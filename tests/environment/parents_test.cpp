@@ -51,7 +51,7 @@ TEST(Parent, CarriesTheOwnMotionOfWhatFollowsThroughAChain) {
   const PoseSample hand = environment.pose(2, 1);
   EXPECT_LT((hand.position - Vec3(1, 1.5, 2)).norm(), kRounding);
   EXPECT_LT(hand.rotation.angularDistance(about({0, 0, 1}, 90 * kDegree) * about({1, 0, 0}, 90 * kDegree)), 1e-7);
-  // The ring was 1 m before the hand and 1 m above it; the turn of the hand maps up to +x.
+  // At t = 0 the ring is at the hand + (1, 0, 1). At t = 1 the rotation of the hand maps +x to +y and +z to +x.
   const PoseSample ring = environment.pose(0, 1);
   EXPECT_LT((hand.rotation * Vec3(0, 0, 1) - Vec3(1, 0, 0)).norm(), 1e-7);
   EXPECT_LT((ring.position - Vec3(2, 2.5, 2)).norm(), 1e-7);

@@ -106,10 +106,10 @@ TEST(PicturePlaces, GoOnceAroundAndAreNowhereTornInATriangle) {
         EXPECT_LT(side.cwiseAbs().maxCoeff(), 0.5) << shape;
       }
     }
-    // At a seam a triangle extends beyond the picture by at most its own width.
+    // A triangle at a seam may extend beyond the picture, by at most its own width.
     EXPECT_GT(low.minCoeff(), -0.2) << shape;
     EXPECT_LT(high.maxCoeff(), 1.2) << shape;
-    // A bevel continues the picture of the nearest side, so that its triangles may skip a part of it.
+    // A bevel continues the picture of the nearest side, and its triangles may skip a part of the picture.
     EXPECT_GT((high - low).minCoeff(), 0.9) << shape;
   }
 }
@@ -125,7 +125,7 @@ TEST(PicturePlaces, WithAWidthAreMeasuredInMetres) {
       EXPECT_NEAR(to->v.norm(), tile.y(), 1e-12);
     }
   }
-  // Six tiles come nearest to fitting around a cylinder of 3.14 m, so each is 0.524 m wide.
+  // Six tiles of 0.5 m fit best around a cylinder of 3.14 m circumference, so each is widened to 0.524 m.
   const Laid laid = lay(kShapes[5] + "\nsegments = 200", "z", tile);
   for (std::size_t t = 0; t < laid.places.size(); ++t) {
     const auto to = directions(laid, t);
@@ -142,7 +142,7 @@ TEST(PicturePlaces, OfAFileAreItsUVs) {
   const std::string shape = "shape = 'mesh'\nfile = '" + file.string() + "'";
   std::ofstream(file) << "v 0 0 0\nv 2 0 0\nv 2 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n";
   EXPECT_EQ(lay(shape, "z").places.at(0), (std::array<Vec2, 3>{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}));
-  // One unit of the coordinates is 2 m long.
+  // One unit of the texture coordinates of this file is 2 m long.
   EXPECT_LT((lay(shape, "z", Vec2(0.5, 1)).places.at(0)[2] - Vec2(4, 2)).norm(), 1e-12);
   std::ofstream(file) << "v 0 0 0\nv 2 0 0\nv 2 2 0\nf 1 2 3\n";
   EXPECT_THROW(lay(shape, "z"), Error);

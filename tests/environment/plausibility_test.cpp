@@ -30,7 +30,7 @@ TEST(Plausibility, DoubtsABodyWhoseBonesHoldNoSkin) {
   EXPECT_EQ(warn_of_missing_skin(body, clip), std::nullopt) << "what turns may be something else";
 }
 
-// A jumping body is in the air for most of its motion, a rolling one inside the floor for a part of it.
+// A jumping body is in the air most of the time, a rolling one is below the floor part of the time: no reason to warn.
 TEST(Plausibility, DoubtsTheFloorByHalfOfTheMotionOrAllOfIt) {
   const auto doubts = [](std::vector<double> lowest, bool alone = true) {
     return warn_of_floor_distance(std::move(lowest), alone).value_or("");
@@ -42,7 +42,7 @@ TEST(Plausibility, DoubtsTheFloorByHalfOfTheMotionOrAllOfIt) {
   EXPECT_EQ(doubts({0.6, 0.04, 0.6}), "") << "on it once";
   EXPECT_EQ(doubts({0.6, 0.06, 0.6}), "it comes no nearer to the floor than 0.06 m; position puts it lower");
   EXPECT_EQ(doubts({0.6, 0.06, 0.6}, false), "") << "it may stand on something else";
-  // Visible depth: 5 cm.
+  // Depths up to 5 cm cause no warning.
   EXPECT_EQ(doubts({-0.049}), "");
   EXPECT_NE(doubts({-0.051}), "");
 }

@@ -50,7 +50,7 @@ TEST(Start, NoiseIsBoundedDifferentForEachParticleAndTheSameInEveryRun) {
     }
   EXPECT_EQ(offsets.size(), 3 * x.size());
   EXPECT_LE(most, 0.01);
-  EXPECT_GT(most, 0.009);  // probability of less, for 135 numbers uniform in ±0.01: 7e-7
+  EXPECT_GT(most, 0.009);  // for 135 numbers uniform in ±0.01, the probability of less is 7e-7
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Interpolations, Tracks, testing::Values(Interpolation::
                          [](const auto& way) { return way.param == Interpolation::linear ? "linear" : "cubic"; });
 
 TEST(LinearTrack, TurnsEvenlyTheShortestWay) {
-  // From 170° to -170° the rotation passes 20°, not 340°; a negated quaternion is the same key.
+  // From 170° to -170° the body turns by 20°, not by 340°. A negated quaternion is the same rotation.
   scene::PoseTrack keys = spin(Interpolation::linear, {0, 0, 1}, {0, 2}, {170 * kDegree, -170 * kDegree});
   for (const bool negated : {false, true}) {
     if (negated) keys.keys[1].pose.rotation.coeffs() *= -1;
@@ -127,7 +127,8 @@ TEST(LinearTrack, TurnsEvenlyTheShortestWay) {
 }
 
 TEST(Track, TurnsByAllOfTheChangeOfOneAngle) {
-  // About x, y or z: 3 turns, 290 degrees the long way, back by 2.5 turns. Constant other angles tilt the axis.
+  // Three turns about x, 290 degrees about y (the longer way), or 2.5 turns back about z. The other two angles stay
+  // constant and tilt the axis.
   const double change[3] = {1080, 290, -900};
   const Vec3 held(20, -40, 70);
   for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
@@ -182,7 +183,8 @@ TEST(Track, GoesOnThroughHalfTurnsInTheSameDirection) {
   for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
     for (const double way : {1.0, -1.0}) {
       const double quarter = way * 90 * kDegree;
-      // Rounding may give a little more than half a turn, for which the shortest rotation is backward.
+      // From the second key to the third the body turns by half a turn plus a rounding error. The shortest rotation
+      // there would be backward.
       const double more = 3 * quarter + way * 1e-9;
       const Track track(spin(interpolation, {0, 0, 1}, {0, 1, 3, 5, 7}, {0, quarter, more, 5 * quarter, 7 * quarter}));
       for (const double t : {0.5, 1.5, 2.5, 4.0, 6.5})

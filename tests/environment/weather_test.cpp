@@ -55,7 +55,7 @@ TEST(Weather, OfAFanIsAJetInItsConeAndNothingElsewhere) {
 
 TEST(Weather, OfAFreeJetKeepsItsMomentum) {
   const Weather weather = weather_of(kFan);
-  // Momentum flux per density: ∫ u_y |u| dA over a sphere about the apex, u radial.
+  // Momentum flux per density, ∫ u_y² dA, through a plane across the axis at distance s from the apex of the cone.
   const double slope = std::tan(12 * std::numbers::pi / 180), apex = 0.2 / slope;
   const auto momentum = [&](double s) {
     constexpr int kRings = 2000;

@@ -1,5 +1,5 @@
-// Exported files, read by other programs, contain what the frames show: assimp reads meshes and animations, a small
-// reader in this file point caches.
+// Exported files contain what the frames show. Independent readers check this: assimp reads meshes and animations, and
+// a small reader in this file reads point caches.
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
@@ -212,7 +212,8 @@ T take(std::string_view& bytes) {
   return value;
 }
 
-// A program that counts samples, as Blender does, shows frame k in frame k; the axes are those that it assumes for OBJ.
+// Blender counts samples, so the cache has one for every frame from 1 on, and frames that are not exported are
+// interpolated. The axes are those of the OBJ files: y up, -z forward.
 TEST_F(Exported, PointCachesHaveASampleForEachFrameAndMoveTheObjFilesBesideThem) {
   write(Format::pc2, {1, 4, 7});
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
@@ -375,7 +376,7 @@ TEST_F(Exported, GltfAnimationGoesThroughEveryFrameAtItsTime) {
     const auto shown = snapshot(k)->states[0].positions, next = snapshot(std::min(k + 1, 5))->states[0].positions;
     for (std::size_t i = 0; i < shown.size(); ++i) {
       const auto turned = [](const Vec3& x) { return Vec3(x.x(), x.z(), -x.y()); };
-      // Three single-precision numbers of at most half a metre.
+      // Tolerance: a sum of three single-precision numbers of at most half a metre.
       EXPECT_LT((here[i] - turned(shown[i])).norm(), 3 * kSingle) << "frame " << k;
       if (k < 5) {
         EXPECT_LT((half[i] - turned(0.5 * (shown[i] + next[i]))).norm(), 3 * kSingle) << "after frame " << k;

@@ -16,7 +16,7 @@
 namespace weft::exporter {
 namespace {
 
-// Two triangular panels, sewn along their common edge, that move from frame 3 on; a static bent sheet; a hidden
+// Two triangular panels, sewn along their common edge, which move between frames 3 and 4; a static bent sheet; a hidden
 // surface.
 class Staged : public MadeFrames {
  protected:
@@ -167,7 +167,7 @@ TEST_F(Staged, UsdMaterialsShowThePictureOfAPart) {
 }
 
 TEST_F(Staged, PackedUsdFilesHoldTheTextAsItIsAtAMultipleOf64Bytes) {
-  // Names of all lengths give the padding field all of its lengths.
+  // With these lengths of the name, the padding in front of the text takes every possible length.
   for (request_.name = "a"; request_.name.size() < 68; request_.name += 'a') {
     const std::string inner = request_.name + ".usda", name = request_.name + ".usdz";
     const std::string bytes = written(Format::usdz, name);
@@ -208,7 +208,7 @@ TEST_F(Staged, UsdCamerasStandAndSeeAsTheFramesDo) {
   ASSERT_EQ(samples.size(), 3U * 17);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(samples[17 * k], 2.0 + static_cast<double>(k));
-    // The last row is the position.
+    // The last row of the matrix is the position.
     EXPECT_EQ(Vec3(samples[17 * k + 13], samples[17 * k + 14], samples[17 * k + 15]), Vec3(samples[17 * k], 2, 3));
   }
 }

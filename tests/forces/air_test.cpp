@@ -96,7 +96,7 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
       of_matrix += change[i].dot(product[i]);
       of_force -= rate * change[i].dot(f_after[i] - f_before[i]) / (2 * kEpsilon);
     }
-    // The law has a kink only in its second derivative: errors are ε² and rounding over ε.
+    // The law has a kink only in its second derivative. Errors: ε², and rounding over ε.
     if (trial < 3)
       EXPECT_NEAR(of_matrix, of_force, 1e-6 * of_matrix);
     else

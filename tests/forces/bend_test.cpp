@@ -54,8 +54,8 @@ TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
       return std::abs(Bend(grid, 0, {kRigidity, 0}).energy(cylinder(grid, angle)) / expected - 1);
     };
     for (int cells : {2, 4}) {
-      // A second difference of a circle is too small by l² / 12 R² of itself, the energy by twice that; by less if the
-      // differences are oblique.
+      // On a circle a second difference is too small by the fraction l² / 12 R², the energy by twice that. If the
+      // differences are oblique, the error is smaller.
       const double l = grid_of(cells).lu;
       EXPECT_LT(error_at(cells), 1.01 * l * l / (6 * kRadius * kRadius));
       EXPECT_NEAR(std::log2(error_at(cells) / error_at(2 * cells)), 2, 0.02) << "angle " << angle;

@@ -1,4 +1,4 @@
-// The membrane of crossed cells: exact for affine states, and equal to that of its triangles in flat parallelograms.
+// The membrane of crossed cells: exact for affine states, and equal to TriangleMembrane in flat parallelograms.
 #include "forces/crossed_membrane.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ Positions parallelograms(const mesh::Sheet& sheet, double size) {
   return x;
 }
 
-/// Shears each cell until its corners span `area_ratio` of their area.
+/// Shears each cell in its plane until its corners span `area_ratio` of their area.
 Positions fold_up(const mesh::Sheet& sheet, double area_ratio) {
   Positions x = crumpled(sheet, 0.001);
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -71,7 +71,7 @@ TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
       for (int axis = 0; axis < 3; ++axis) {
         Positions more = x, less = x;
         more[i][axis] += kStep, less[i][axis] -= kStep;
-        // Third derivatives times kStep², and the rounding of energies of 1e-2 J over kStep: 1e-9.
+        // Error of the difference: third derivatives × kStep², and rounding of 1e-2 J / kStep, 1e-9 N together.
         EXPECT_NEAR(f[i][axis], (membrane.energy(less) - membrane.energy(more)) / (2 * kStep), 1e-7 * largest);
       }
     }
@@ -80,8 +80,8 @@ TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
   }
 }
 
-// The diagonals of each cell span only 1e-6 of its area, so their normal is undefined. Its weight is twice that
-// fraction of a half, so forces differ by a few times 1e-6 of k over the side of a cell.
+// The diagonals of a cell span only 1e-6 of its area, so their normal is undefined. Its length is 1e-6 / (½ S₀) = 4e-6
+// instead of 1, with S₀ = 0.5 (kFoldedSize). Forces thus differ by a few times 1e-6 of stiffness × cell width.
 TEST(CrossedMembrane, IsThatOfItsTrianglesWhereCellsAreFoldedUp) {
   const mesh::Sheet sheet = crossed_sheet();
   const CrossedMembrane crossed(sheet, 0, stretch(0), shear(0));
@@ -98,7 +98,7 @@ TEST(CrossedMembrane, IsThatOfItsTrianglesWhereCellsAreFoldedUp) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((a[i] - b[i]).norm(), 1e-5 * largest);
 }
 
-// Threads of a cell folded about a diagonal, or of a saddle, keep their lengths.
+// In a cell that is folded about a diagonal the threads keep their lengths.
 TEST(CrossedMembrane, LetsThreadsAtOppositeSidesOfACellBeSkew) {
   const mesh::Sheet sheet =
       mesh::make_sheet_from_mesh(mesh::make_triangle_sheet({2, 2, 0.02, 0.02}, mesh::Pattern::crossed));
@@ -156,7 +156,7 @@ TEST(CrossedMembrane, MatrixIsTheJacobianWhereNothingIsStressedAndNeverIndefinit
       for (std::size_t j = 0; j < flat.size(); ++j) {
         const Vec3 difference = (f_less[j] - f_more[j]) / (2 * kStep);
         const auto row = 3 * static_cast<Eigen::Index>(j), column = 3 * static_cast<Eigen::Index>(i) + axis;
-        EXPECT_LT((k.block<3, 1>(row, column) - difference).norm(), 1e-4 * kStiffness);  // lateral stress by kStep
+        EXPECT_LT((k.block<3, 1>(row, column) - difference).norm(), 1e-4 * kStiffness);  // stress from kStep
       }
     }
   const Eigen::MatrixXd m = testing::stiffness_of(membrane, crumpled(sheet, 0.006), v, 0);

@@ -119,9 +119,9 @@ const Case kCases[] = {
 
 class Derivatives : public ::testing::TestWithParam<Case> {};
 
-// Central differences at ε = 4e-7 m and at half of it, extrapolated so that the error of order ε² cancels: the
-// direction of a slight curvature κ turns by ε / (l² κ), and an error of 1e-3 squared would be too large. The remaining
-// error is below 1e-10.
+// Central differences at ε = 4e-7 m and at half of it, extrapolated so that the error of order ε² cancels. The
+// direction of a slight curvature κ turns by ε / (l² κ) = 1e-3. Without extrapolation the error would be the square of
+// this, with it the error is below 1e-10.
 constexpr double kDifference = 4e-7;
 constexpr double kRelative = 5e-8;
 
@@ -194,7 +194,7 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
   const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate);
   const Eigen::MatrixXd exact = testing::jacobian_of(*force, x, testing::zeros(x), kRate);
   if (GetParam().name.starts_with("bend")) {
-    // The projected damping is as stiff across the curvature as along it: it only adds stiffness.
+    // The projected damping is as stiff across the curvature as along it: projecting only adds stiffness.
     const Eigen::MatrixXd added = definite - exact;
     EXPECT_GT(added.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * added.cwiseAbs().maxCoeff());
     return;
@@ -204,7 +204,7 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
 }
 
 TEST(DefiniteJacobian, OfTriangleBendingIsTheExactOneAlongTheNormal) {
-  // Over a plane all curvature vectors point up; the damping along them is the same in both forms.
+  // If the sheet was lifted from a plane, all curvature vectors point up. Damping along them is equal in both matrices.
   const mesh::Sheet sheet = mesh::make_sheet_from_mesh(testing::delaunay_sheet(kGrid, 0.3, 3));
   Positions x = sheet.rest;
   for (Vec3& point : x) point.z() = 3 * point.x() * point.x() - 5 * point.x() * point.y();

@@ -42,7 +42,7 @@ TEST(HeldBend, QuadsBendWithTheirOwnCurvatureFromTheClampOn) {
       return Vec3(u, v, in_front(s, clamp));
     });
     bend.hold(held);
-    // All of the free sheet but half a spacing at its end, which is flat.
+    // Area of the bent part: the free sheet, less half a spacing at its end, which is flat.
     const double area = (end - clamp - (along_weft ? grid.width_u(8) : grid.width_v(8))) * across;
     const double expected = 0.5 * kRigidity * kCurvature * kCurvature * area;
     EXPECT_NEAR(bend.energy(x), expected, 1e-12 * expected);
@@ -105,7 +105,7 @@ TEST(HeldBend, WhatIsLetGoBendsAsIfItHadNeverBeenHeld) {
   const Eigen::MatrixXd stiff = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0);
   clamp.bend.hold(clamp.none);
   EXPECT_GT(held, 1.05 * clamp.bend.energy(clamp.x));
-  // Equal up to weights of rounding size, which only stencils away from pins drop.
+  // Equal up to weights of rounding size, which the program drops only from stencils away from pins.
   EXPECT_NEAR(clamp.bend.energy(clamp.x), never.energy(clamp.x), 1e-12 * held);
   clamp.bend.hold(clamp.held);
   EXPECT_EQ(clamp.bend.energy(clamp.x), held);

@@ -41,8 +41,8 @@ TEST(SewnMembranes, HaveNoStressAtTheStartAndThatOfThePatternAtTheEnd) {
   EXPECT_EQ(testing::force_of(sewn, x, testing::zeros(x)), testing::force_of(pattern, x, testing::zeros(x)));
 }
 
-// The start is twice as long along weft and half as long along warp as the pattern. At the fraction s the strains are 2
-// / (2 − s) and 0.5 / (0.5 + s / 2), each less 1.
+// The start is twice as long along weft and half as long along warp as the pattern. At the fraction s of the sewing,
+// the strain is 2 / (2 − s) − 1 along weft and 0.5 / (0.5 + s / 2) − 1 along warp.
 TEST(SewnMembranes, AreStrainedByTheShareOfTheWay) {
   mesh::Sheet sheet = flat_sheet();
   sheet.sewn = true;
@@ -92,7 +92,7 @@ TEST(ElasticBands, OfSewnSheetsPullNothingAtTheStart) {
   EXPECT_NEAR(bands.energy(sheet.rest), 2 * 0.5 * 50 * 0.016 * strain * strain, 1e-12);
 }
 
-// A hem bent to a circle of radius R has the energy ½ E L / R², L its length.
+// A hem of length L and bending stiffness E, bent to a circle of radius R, has the energy ½ E L / R².
 TEST(Hems, ResistBendingAsRods) {
   mesh::Sheet sheet = flat_sheet();
   const int pieces = 40;

@@ -21,7 +21,7 @@ const double kSine = std::sin(0.5);
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr StretchParameters kBelow{2000, 1000};
 
-// A sheet with these thread lengths along weft and warp; `sine` is that of the deviation from the right angle.
+// A sheet with these thread lengths along weft and warp; `sine`: sine of their deviation from the right angle.
 Positions drawn(double weft, double warp, double sine = 0) {
   const double cosine = std::sqrt(1 - sine * sine);
   return testing::shaped(kGrid,

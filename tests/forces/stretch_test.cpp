@@ -72,7 +72,7 @@ TEST(Stretch, StrainOfAParticleIsTheLargestOfItsOwnEdges) {
   Positions x(3, Vec3::Zero());
   const Positions sheet = testing::flat(kGrid);
   x.insert(x.end(), sheet.begin(), sheet.end());
-  // Moves the corner (0, 0) outward by half an edge along weft.
+  // Moves the corner at (0, 0) outward by half an edge along weft.
   x[3].x() -= 0.5 * kGrid.lu;
   std::vector<float> heat(sheet.size(), 0);
   stretch.strain_per_particle(x, heat);

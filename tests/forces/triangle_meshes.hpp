@@ -69,7 +69,7 @@ inline mesh::Mesh delaunay_sheet(const mesh::Grid& grid, double jitter, unsigned
   return sheet;
 }
 
-/// A kind of mesh for a sheet of `size` metres, with `cells` cells along its shorter side or as many particles.
+/// A kind of mesh for a sheet of `size` metres with `cells` cells along its shorter side (crossed: as many particles).
 struct Meshing {
   const char* name;
   mesh::Mesh (*make)(const Vec2& size, int cells);

@@ -45,8 +45,9 @@ Wearer round_wearer() {
   return wearer;
 }
 
-// The shoulders are wider than the chest. Sections are 10 mm apart, which changes the girth by 19 mm where the radius
-// has a slope of 0.3; polygons of 96 corners are shorter than circles by 0.02 %.
+// The shoulders are wider than the chest and must not count as chest. Tolerances: sections are 10 mm apart, so that the
+// girth is off by up to 19 mm where the radius has a slope of 0.3; polygons of 96 corners are shorter than circles by
+// 0.02 %.
 TEST(Fit, MeasuresGirthsOfHipsWaistAndChestAndTheHeight) {
   const Measures measures = measure(round_wearer());
   EXPECT_NEAR(*measures.hip, 2 * std::numbers::pi * 0.16, 0.02);
@@ -70,7 +71,8 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheHeights) {
                         [&] { fit_factors(pattern, wearer, "cloth.c"); });
 }
 
-// A skirt for the waist of a hoodie fell to the feet. Garments that also hang from the shoulders do not fall.
+// If hips are hardly wider than the waist of a garment, the garment falls to the feet, unless it also hangs from the
+// shoulders.
 TEST(Fit, TellsOfHipsThatHoldNothingUp) {
   const Wearer wearer = round_wearer();
   const double hip = *measure(wearer).hip;

@@ -68,13 +68,14 @@ TEST(PanelMeshes, AreDelaunay) {
     Eigen::Matrix2d sides;
     sides << 2 * (b - a).transpose(), 2 * (c - a).transpose();
     const Vec2 centre = sides.inverse() * Vec2(b.squaredNorm() - a.squaredNorm(), c.squaredNorm() - a.squaredNorm());
-    // Where diagonals are chosen, rows are shifted by less than 1e-4 spacings in total.
+    // To make the choice of diagonals unique, the mesher shifts rows by less than 1e-4 spacings in total.
     const double radius = (a - centre).norm() - 1e-4 * 0.05;
     for (const Vec2& p : mesh.points) EXPECT_GT((p - centre).norm(), radius - 1e-9);
   }
 }
 
-// 0.3 / 0.1 is less than 3 in floating point. One row too few would leave strips of one and a half spacings.
+// In floating point 0.3 / 0.1 is less than 3. If it were rounded down to 2, the mesh would lack a row, and the strips
+// along the outline would be one and a half spacings wide.
 TEST(PanelMeshes, OfWholeSquaresAreSquaresUpToTheOutline) {
   const FlatMesh mesh = mesh_panel(cut_sides({{-0.2, 0}, {0.2, 0}, {0.2, 0.3}, {-0.2, 0.3}}, 0.1), {0, 1}, 0.1);
   EXPECT_EQ(mesh.points.size(), 5U * 4U);
@@ -96,7 +97,7 @@ TEST(PanelMeshes, InnerLatticePointsHaveSixNeighbours) {
   EXPECT_GT(inner, 150);
 }
 
-// Sharp corners of the outline keep their angles; all others are as large as the strip along the outline allows.
+// Triangles at corners of the outline may have smaller angles, because corners keep theirs.
 TEST(PanelMeshes, AnglesOfThePatternsThatShipAreAtLeast23Degrees) {
   for (const char* name : {"dress", "skirt", "tshirt"}) {
     const Pattern pattern = load_pattern(std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + name + ".toml", "a test");

@@ -36,7 +36,7 @@ TEST(Outlines, LinesInEveryFormGiveTheSamePolygon) {
 }
 
 TEST(Outlines, ArcsAreCircles) {
-  // A cubic that approximates a quarter circle is off by 2.7e-4 of the radius at most; the area by less.
+  // A cubic that approximates a quarter circle is off by 2.7e-4 of the radius at most. Areas have smaller errors.
   const double disc = std::numbers::pi * 0.25;
   EXPECT_NEAR(area_of("M -0.5 0 A 0.5 0.5 0 0 1 0.5 0 A 0.5 0.5 0 0 1 -0.5 0 Z"), disc, 3e-4 * disc);
   EXPECT_NEAR(area_of("M -0.5 0 A 0.5 0.5 0 1 0 0.5 0 A 0.5 0.5 0 1 0 -0.5 0 Z"), -disc, 3e-4 * disc);
@@ -52,7 +52,7 @@ TEST(Outlines, ArcsAreCircles) {
 TEST(Outlines, SmoothCommandsReflectTheHandleBefore) {
   EXPECT_NEAR(area_of("M0 0C1 1 2 1 3 0S5-1 6 0L6 2L0 2Z"), area_of("M0 0C1 1 2 1 3 0C4-1 5-1 6 0L6 2L0 2Z"), 1e-12);
   EXPECT_NEAR(area_of("M0 0Q1 1 2 0T4 0L4 2L0 2Z"), area_of("M0 0Q1 1 2 0Q3-1 4 0L4 2L0 2Z"), 1e-12);
-  // Area ∫ 2 s(1−s) 1 ds · 2: the area under a quadratic is two thirds of its control triangle.
+  // The area under a quadratic is two thirds of its control triangle.
   EXPECT_NEAR(area_of("M0 0Q1 1 2 0Z"), -2.0 / 3, 1e-4);
 }
 

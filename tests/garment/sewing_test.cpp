@@ -44,7 +44,7 @@ std::size_t openings(const mesh::Sheet& sheet) {
   return rims.size();
 }
 
-// A sphere with k holes has the Euler characteristic 2 − k.
+// Each garment has the expected number k of openings. A sphere with k holes has the Euler characteristic 2 − k.
 TEST(Garments, AreSurfacesWithTheOpeningsOfWhatTheyAre) {
   for (double spacing : {0.03, 0.02}) {
     for (const auto& [name, count] : {std::pair("dress", 4L), {"tshirt", 4L}, {"skirt", 2L}}) {
@@ -64,8 +64,9 @@ TEST(Garments, KeepAreaAndMeasuresOfTheirPanels) {
     EXPECT_GT(mesh::rest_area(garment.sheet, t), 0);
     area += mesh::rest_area(garment.sheet, t);
   }
-  // Two quarter rings. Chords of 10 mm remove (10 mm)² / (8 R) from an arc of radius R at the hem and add as much at
-  // the waist, relative to 0.45 m: below 1e-4. The curves are off their arcs by 2.7e-4 of a radius at most.
+  // Two quarter rings. Chords of c = 10 mm lie up to c² / (8 R) inside their arcs: the ring loses this width at the hem
+  // and gains it at the waist, below 1e-4 of its width of 0.45 m. The curves are off their arcs by at most 2.7e-4 of a
+  // radius.
   const double inner = 0.72 / std::numbers::pi, outer = inner + 0.45;
   EXPECT_NEAR(area, 0.5 * std::numbers::pi * (outer * outer - inner * inner), 3e-4 * area);
   ASSERT_EQ(garment.seams.size(), 2U);
@@ -84,7 +85,7 @@ TEST(Garments, StartWithoutIntersectionsWithFrontsOutside) {
       const support::Judgement judgement = support::judge(std::span(&object, 1));
       EXPECT_TRUE(judgement.pairs.empty()) << name << " at " << spacing << ": " << judgement.pairs.size();
       EXPECT_TRUE(judgement.degenerate.empty()) << name;
-      // Each triangle faces away from the coronal plane.
+      // Each triangle faces away from the plane y = 0, which separates front from back.
       std::size_t outside = 0;
       for (const mesh::Triangle& t : garment.sheet.triangles) {
         const auto x = [&](std::size_t k) -> const Vec3& { return garment.sheet.rest[t[k]]; };
@@ -209,7 +210,8 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
   expect_mistake(both_before, "panels that lie one on the other need side = \"front\" and side = \"back\"");
 }
 
-// The half is on the wearer's left. Its fold line is slanted, so that the reflection is not a change of sign of x.
+// The half is on the wearer's left. Its fold line is slanted, so that the reflection must do more than change the sign
+// of x.
 TEST_F(SewingText, AHalfCutOnTheFoldIsAWholePanel) {
   const auto panel = [&](const std::string& text) {
     support::write_bytes(folder_ / "p.toml", "[[panel]]\nname = 'p'\n" + text);
@@ -266,8 +268,8 @@ TEST_F(SewingText, WhatCannotBeSewnIsRefused) {
   std::string turned = kDart + kDartSeams;
   turned.replace(turned.find("grain = 90"), 10, "rotation = 180");
   expect_mistake(turned, "whose triangles face both ways");
-  // A quarter of a ring, sewn along its straight sides, which can meet only if the rest folds over. With eleven
-  // twelfths of a ring the gap closes as a dart does.
+  // A quarter of a ring, sewn along its straight sides: the sides can meet only if the rest folds over. Eleven twelfths
+  // of a ring are accepted: the gap closes as a dart does.
   const std::string ring =
       "[[seam]]\na = 'hat.a'\nb = 'hat.b'\n[[panel]]\nname = 'hat'\nedges = 'a low b top'\npath = ";
   expect_mistake(ring + "'M 0.1 0 L 0.3 0 A 0.3 0.3 0 0 1 0 0.3 L 0 0.1 A 0.1 0.1 0 0 0 0.1 0 Z'\n",

@@ -127,7 +127,8 @@ TEST_F(Specification, LimbsLieAlongTheirAxesWithTheTrunkAbove) {
   EXPECT_EQ(skirt.panels[0].around, Around::torso);
 }
 
-// The predecessor of GarmentCode: other units, quadratic curves as lists, heights measured from within the body.
+// Files of the predecessor of GarmentCode have other units, quadratic curves as lists, and heights relative to a point
+// of the body 1.12 m above the floor.
 TEST_F(Specification, OfTheForerunnerStandsOnTheFloorToo) {
   std::string old = changed(kSpecification, R"({ "type": "quadratic", "params": [[0.5, -0.1]] })", "[0.5, -0.1]");
   old = changed(old, R"("units_in_meter": 100)", R"("units_in_meter": 200)");
@@ -222,7 +223,7 @@ TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
   EXPECT_LT(front_faces.y(), -0.5 * front_faces.norm());
 }
 
-// Slivers beside an edge of 2 mm would be very stiff.
+// The outline has an edge of 2 mm, far shorter than the mesh. Narrow triangles at such an edge would be very stiff.
 TEST_F(Specification, EdgesShorterThanTheMeshBecomePoints) {
   const std::string with_corner = changed(
       changed(changed(kLegs, "[26, 80], [2, 80]]", "[26, 80], [2, 80], [2, 79.8]]"), R"({ "endpoints": [3, 0] } ] },

@@ -37,7 +37,7 @@ TEST_F(Drawings, LengthsAreThoseOfTheSheet) {
                  {{0.0254, -0.0508}, {0.2794, -0.0508}, {0.2794, -0.1778}});
   const double px = 0.0254 / 96;
   expect_corners("<svg>" + path, {{10 * px, -20 * px}, {110 * px, -20 * px}, {110 * px, -70 * px}});
-  // The smaller scale is used.
+  // If width and height give different scales, the smaller one is used.
   expect_corners("<svg width='420mm' height='297mm' viewBox='0 0 210 297'>" + path,
                  {{0.01, -0.02}, {0.11, -0.02}, {0.11, -0.07}});
 }
@@ -67,7 +67,8 @@ TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineColumnAndElement) {
 }
 
 TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
-  // A bodice, with its neck in two pieces and a hem that passes into the side without a corner, and another panel.
+  // A bodice and another panel. The neck of the bodice has two pieces; its hem continues into the side without a
+  // corner.
   const std::string sheet = R"(<svg width='1000mm' viewBox='0 0 1000 1000' xmlns:inkscape='x'>
     <g inkscape:label='front' transform='translate(100 0)'>
       <path class='fabric sa' d='M-10 -10H210V310H-10Z'/>
@@ -103,7 +104,7 @@ TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
   refused("odd", "text: expected edge: and a name of letters");
 }
 
-// As written by Valentina and Seamly.
+// Valentina and Seamly write paths without ids.
 TEST_F(Drawings, WithoutIdsGiveTheirPathsByNumber) {
   support::write_bytes(folder_ / "d.svg",
                        "<svg width='10mm' viewBox='0 0 10 10'><g><path d='M0 0L1 0L0 1Z'/></g><path d='M5 0L7 0L5 2Z'/>"

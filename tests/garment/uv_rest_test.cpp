@@ -26,7 +26,7 @@ struct Textured {
 };
 
 // A tube of two pleated panels. A pattern point (u, v) lies at arc length u along a regular zigzag around a circle, so
-// that all mesh edges along u or v are as long as in the pattern. The second panel is drawn from behind.
+// that all mesh edges along u or v are as long as in the pattern. The second panel is mirrored in the pattern.
 Textured pleated_tube() {
   constexpr int kAround = 24, kUp = 6;
   constexpr double kStep = 0.02;
@@ -96,7 +96,7 @@ TEST(UvRest, TheSizeIsMeasuredOrAUnitOrGiven) {
   EXPECT_NEAR(given.stretch_quantile_95, 1 - 1.0 / 3, 1e-9);
 }
 
-// A fold that is stretched far must not change the scale of the rest.
+// One row of edges that is stretched far must not change the scale of the rest shape.
 TEST(UvRest, SeamsThatAreStretchedDoNotCount) {
   Textured tube = pleated_tube();
   for (std::size_t v = 0; v < 24; ++v) tube.mesh.positions[v].z() -= 0.5;  // the lowest ring

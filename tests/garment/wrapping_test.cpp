@@ -39,7 +39,7 @@ Wearer stick_figure() {
   return wearer;
 }
 
-// A ring of 96 chords is shorter than its circle by 1.8e-4, that of the skin lies within its circle by up to 5.4e-4.
+// Relative errors: a ring of 96 chords is shorter than its circle by 1.8e-4, and lies up to 5.4e-4 inside it.
 constexpr double kChords = 1e-3;
 
 TEST(Tubes, HaveTheGirthOfWhatTheyAreAround) {
@@ -126,7 +126,7 @@ TEST_F(Wrapping, ASleeveStartsAtItsHoleAroundTheArmWithItsFrontOutside) {
     EXPECT_GT(normal.dot(out), 0);
     if (sleeve && middle.x() > 0.32) nearest = std::min(nearest, out.norm()), farthest = std::max(farthest, out.norm());
   }
-  // The sleeve is 0.36 m wide: a circle of 57 mm radius, from which chords and bending deviate by less than 15 mm.
+  // The sleeve is 0.36 m around, a circle of 57 mm radius. Chords and bending deviate from it by less than 15 mm.
   EXPECT_GT(nearest, kArm);
   EXPECT_LT(farthest, 0.072);
   // The middle of the cuff lies above the arm and 0.3 m from the cap, which is at the trunk.
@@ -219,7 +219,7 @@ TEST_F(Wrapping, MistakesSayWhatWouldBeRight) {
          "expected a wearer with the joints UpperLeg, LowerLeg and Foot for panels around left_leg");
 }
 
-// As in the gallery: before seams decided on which side hoods lie, 16 pairs of triangles crossed.
+// Garments as in the gallery. Seams decide on which side a hood lies; otherwise 16 pairs of triangles would cross.
 TEST(ShippedPatterns, StartOnTheMannequinWithoutIntersections) {
   for (const std::string name : {"jacket", "poncho"}) {
     const auto file = std::filesystem::path(WEFT_SOURCE_DIR) / "scenes/gallery" / (name + ".toml");

@@ -12,10 +12,10 @@ namespace {
 
 using testing::kMethods;
 
-// Above the rounding of x / h², and far below the measured errors.
+// Newton tolerance above the rounding of x / h², and far below the measured errors.
 constexpr NewtonParameters kAboveRounding{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
-// Motion of the hardening spring after a time t of either sign; classical Runge-Kutta with an error below 1e-14.
+// State of the hardening spring after a time t, which may be negative, by classical Runge-Kutta; error below 1e-14.
 State moved(State now, double t) {
   constexpr int kSteps = 200;
   const auto a = [](const Vec3& x) { return testing::HardeningSpring::force_at(x); };
@@ -49,7 +49,7 @@ Errors errors_of_one_step(Method method, double h, double r) {
 }
 
 TEST(LocalError, OfOneStepIsEstimatedUpToTermsOfTheNextOrder) {
-  // The next term of the error is h times the first, times a small factor.
+  // Tolerance: the next term of the error is h times the first, times a small factor.
   for (Method method : kMethods) {
     for (double r : {0.5, 1.0, 1.9}) {
       // The error of one BDF2 step grows by half in the steps that follow; the estimate includes this.
@@ -71,12 +71,12 @@ TEST(LocalError, WithoutAHistoryIsThatOfEuler) {
   EXPECT_NEAR(euler.estimated, euler.made, 0.05 * euler.made);
   EXPECT_NEAR(bdf2.estimated, 1.5 * bdf2.made, 0.05 * bdf2.made);
   EXPECT_EQ(bdf2.made, euler.made);
-  // For midpoint the estimate is a bound: it has no error of this order.
+  // For the midpoint rule the estimate is only a bound, because the rule has no error of this order.
   EXPECT_GT(midpoint.estimated, 100 * midpoint.made);
 }
 
 TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
-  // Free fall with Euler: every free particle leads by ½ h² g.
+  // In free fall Euler's method moves every free particle too far by ½ g h².
   testing::Spring nothing(0, {1, 3, 2});
   nothing.linear_system().parts = {{0, 2}, {2, 3}};
   const Vec3 g(0, 0, -10);
@@ -96,7 +96,7 @@ TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
   EXPECT_EQ(error_with({0, 1, 2}), 0);
 }
 
-// Lengths of the accepted steps if a step over h, from time t, has the error error(t, h).
+// Returns the lengths of the accepted steps, if a step over h that starts at time t has the error error(t, h).
 std::vector<double> lengths(Method method, double tolerance, const std::function<double(double t, double h)>& error,
                             double end) {
   StepControl control(method, tolerance, 1e-3);
@@ -122,14 +122,14 @@ TEST(StepControl, BringsTheErrorOfSmoothMotionJustBelowTheTolerance) {
     for (double tolerance : {1e-3, 1e-6}) {
       const double h = lengths(method, tolerance, error, 3).back();
       EXPECT_LE(error(0, h), tolerance);
-      // The target is 0.7; the controller keeps a length that would change by less than a tenth.
+      // The target is 0.7 of the tolerance. The controller keeps a length that would change by less than a tenth.
       EXPECT_GT(error(0, h), 0.7 / std::pow(1.1, power) * tolerance);
     }
   }
 }
 
 TEST(StepControl, NeverLetsAStepGrowByMoreThanBdf2Bears) {
-  // Errors that alternate by three decades.
+  // The factor of the error alternates between 50 and 0.05.
   const auto error = [](double t, double h) { return (std::fmod(t, 0.4) < 0.2 ? 50 : 0.05) * h * h * h; };
   const std::vector<double> steps = lengths(Method::bdf2, 1e-5, error, 5);
   double largest = 0;
@@ -139,8 +139,9 @@ TEST(StepControl, NeverLetsAStepGrowByMoreThanBdf2Bears) {
 }
 
 TEST(StepControl, PassesAJumpOfVelocityInABoundedNumberOfSteps) {
-  // From t = 0.5 to the end of the step that contains it, the error is that of a velocity jump of 10 m/s; only steps of
-  // 1e-5 s meet the tolerance. Each length falls to a fifth at most, or grows by half: 5 and 17 steps.
+  // The step that contains t = 0.5 has the error of a velocity jump of 10 m/s. Only steps below 5e-5 s meet the
+  // tolerance there. A try is at least a fifth as long as the rejected one before it, and a step at most 1.5 times as
+  // long as the accepted one: 5 tries down and 17 steps up.
   int tries = 0;
   const auto error = [&](double t, double h) {
     ++tries;
@@ -173,8 +174,8 @@ TEST(Bdf2Ratio, LongestStepFollowsTheLastOne) {
   EXPECT_EQ(bdf2.longest_step(), std::numeric_limits<double>::infinity());
 }
 
-// Change of the difference between two nearly equal states while steps grow by r each, from y = ω h = 1e-4 to 1e-2: by
-// the formula, and by the Stepper.
+// Starts BDF2 with a history that is wrong by kOff while steps grow by the factor r, from y = ω h = 1e-4 to 1e-2.
+// Returns the difference of the last two states relative to kOff: by the BDF2 formula, and by the Stepper.
 struct Growth {
   double formula, stepper;
   int steps;
@@ -182,7 +183,7 @@ struct Growth {
 Growth change_while_growing(double r) {
   constexpr double kOmega = 1e4, kOff = 0.1;
   testing::Spring spring(kOmega * kOmega);
-  // Here x − x̂ = −β² ω² x, to six digits above the rounding of x.
+  // The step solves for x − x̂ = −β² ω² x, about 1e-8 x. Six digits of it are above the rounding of x.
   Stepper stepper(Method::bdf2, {.tolerance = 1e-6, .max_iterations = 40, .linear_tolerance = 1e-12});
   double h = 1e-4 / kOmega, before = 1 + kOff, now = 1, v_before = 0, v_now = 0;
   stepper.return_to({{{Vec3(before, 0, 0)}, {Vec3::Zero()}}, h});
@@ -206,7 +207,7 @@ Growth change_while_growing(double r) {
 TEST(Bdf2Ratio, UpToTheBoundErrorsOfTheHistoryFadeAndBeyondTheyGrow) {
   for (double r : {1.5, Stepper::kMaxStepRatio, 1 + std::sqrt(2.0), 3.0}) {
     const Growth growth = change_while_growing(r);
-    // Each step keeps r² / (1 + 2r) of the difference; the motion itself changes it by at most y² / 2.
+    // Each step multiplies the difference by r² / (1 + 2r); the motion itself changes it by at most y² / 2.
     const double expected = std::pow(r * r / (1 + 2 * r), growth.steps);
     EXPECT_NEAR(growth.formula, expected, 0.01) << "r = " << r;
     if (r <= Stepper::kMaxStepRatio) {

@@ -9,7 +9,7 @@
 namespace weft::integrator {
 namespace {
 
-// Above the rounding of x / h² = 2e-11, and far below the remaining error of the method, 1e-6.
+// Newton tolerance above the rounding of x / h², 2e-11, and far below the error of the methods, 1e-6.
 constexpr NewtonParameters kSolved{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
 const Vec3 kStartX(1, 0.2, -0.3), kStartV(0.1, 0.8, 0.4);
@@ -49,7 +49,7 @@ std::vector<double> equal_steps(int count) {
   return std::vector<double>(static_cast<std::size_t>(count), kEnd / count);
 }
 
-// Long and short steps in turn, as when steps are halved and lengthened again.
+// Short and long steps in turn, with a ratio of two, as if steps were halved and lengthened again.
 std::vector<double> uneven_steps(int count) {
   std::vector<double> steps;
   for (int s = 0; s < count; ++s) steps.push_back(kEnd / count * (s % 2 ? 4.0 / 3 : 2.0 / 3));

@@ -1,4 +1,4 @@
-// Friction that a block as a whole cannot have, compared with the theory of a block on a floor.
+// Error of the friction on a diagonal block as a whole, compared with the theory of a block on a floor.
 #include "integrator/sliding.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ struct Contacts {
   double limit;
 };
 
-/// A block of two particles on a floor; each has half of these forces.
+/// A block of two particles on a floor. Each particle has half of the forces `whole`.
 class Block final : public System {
  public:
   explicit Block(const Contacts& whole) : whole_(whole) {}
@@ -37,7 +37,7 @@ class Block final : public System {
   solver::LinearSystem system_;
 };
 
-/// Wrong friction that results from this residual of the whole block.
+/// Error of friction [N] for the residual `missing` [N] of the whole block.
 double friction_error(const Contacts& contacts, const Vec3& missing) {
   const std::vector<Vec3> nothing(2, Vec3::Zero()), residual(2, 0.5 * missing);
   Sliding sliding;
@@ -45,10 +45,10 @@ double friction_error(const Contacts& contacts, const Vec3& missing) {
   return sliding.friction_error({0, 2}, residual);
 }
 
-// The friction limit is 0.3 of 10 N.
+// The normal force is 10 N, the friction limit 3 N (coefficient 0.3).
 TEST(Sliding, FrictionOfABlockAtRestIsRight) {
   EXPECT_EQ(friction_error({{0, 0, 10}, {-2, 0, 0}, 3}, Vec3::Zero()), 0);
-  // Whatever the residual, it hardly moves what sticks.
+  // A residual hardly moves a block that sticks; and without friction there is no error of friction.
   EXPECT_EQ(friction_error({{0, 0, 10}, {-2, 0, 0}, 3}, {-0.5, 0, 0}), 0);
   EXPECT_EQ(friction_error({{0, 0, 10}, Vec3::Zero(), 0}, {1, 0, 0}), 0);
 }

@@ -24,7 +24,7 @@ TEST(Stepper, FreeFallFollowsTheLawOfEachMethod) {
       stepper.accept(now, next, h);
       std::swap(now, next);
       const double t = n * h;
-      // Relative to ½ g t²: Euler leads by ½ g h t; BDF2 keeps the error of its first step, an Euler step.
+      // Relative to ½ g t²: Euler falls too far by ½ g h t; BDF2 keeps the error of its first step, an Euler step.
       Vec3 expected = x0 + t * v0 + 0.5 * t * t * g;
       if (method == Method::implicit_euler) expected += 0.5 * h * t * g;
       if (method == Method::bdf2) expected += 0.75 * h * h * (1 - std::pow(3, -n)) * g;
@@ -102,7 +102,7 @@ TEST(Stepper, LeavesAShareOfItsOwnErrorAndSaysHowMuch) {
     const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, next);
     ASSERT_EQ(report.verdict, Verdict::solved);
     EXPECT_LE(report.left, report.allowed);
-    // Printed errors are true within a factor of 3.
+    // Reported errors are true within a factor of 3.
     EXPECT_LT((next.v[0] - exact.v[0]).norm(), 3 * report.allowed) << tolerance;
     EXPECT_LE(report.solver_error, tolerance * report.local_error);
   }
@@ -189,14 +189,14 @@ TEST(Stepper, EndsUnfinishedForALookAndGoesOnFromThere) {
     EXPECT_EQ(rest.verdict, Verdict::solved);
     EXPECT_EQ(rest.newton_iterations, at_once.newton_iterations - 2);
     EXPECT_LT((continued.x[0] - whole.x[0]).norm(), 1e-12);
-    // Blocks that are solved already are not evaluated.
+    // If the last iteration before the pause solves the step, it counts as solved, not as unfinished.
     EXPECT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, continued, start, at_once.newton_iterations).verdict,
               Verdict::solved);
   }
 }
 
 TEST(Stepper, MatrixThatIsNotDefiniteIsReported) {
-  // The rate is 2 1/s, so the diagonal is 4.
+  // For h = 0.5 s the rate is 2 1/s and the diagonal 4 (see Saddle): s = 3 is definite, s = 400 is not.
   Stepper stepper(Method::implicit_euler, kTight);
   for (const auto& [s, verdict] : {std::pair{3.0, Verdict::solved}, std::pair{400.0, Verdict::indefinite}}) {
     State next;

@@ -151,7 +151,7 @@ TEST(LibrarySimulation, ThreadsDoNotDisturbEachOther) {
   EXPECT_EQ(two, expected);
 }
 
-// Keys of the scene and equivalent calls of move().
+// Keys of the scene and the equivalent calls of move() cause the same motion.
 TEST(LibraryMove, IsMotionBetweenLinearKeys) {
   const Scene scene = Scene::parse(kDrape);
   const auto written = [](double number) { return std::to_string(number); };
@@ -251,7 +251,7 @@ TEST(LibraryWarnings, GoToTheHandlerInsteadOfStandardError) {
   std::vector<std::string> warnings;
   set_warning_handler([&](std::string_view text) { warnings.emplace_back(text); });
   ::testing::internal::CaptureStderr();
-  // The pin starts at another place than its first key.
+  // This causes a warning: the pin starts at another place than its first key.
   Simulation(Scene::parse(kHanging +
                           "[[cloth]]\nname = \"b\"\nposition = [5, 0, 0]\n"
                           "pin = [{ low = [0, 0], high = [0, 1], keys = [{ time = 0, offset = [0.1, 0, 0] }, "

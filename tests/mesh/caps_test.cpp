@@ -31,7 +31,8 @@ TEST(Caps, CloseASphereThatWasCutTwice) {
   const TopologyReport report = inspect(kept, sphere.positions.size());
   EXPECT_TRUE(report.border.empty());
   EXPECT_TRUE(report.manifold());
-  // Sphere between -h and h: 2 π (h - h³/3). h is 0.5 to one row (7.5 degrees) more, 0.61; 48 corners reduce it by 1 %.
+  // Volume of a unit sphere between -h and h: 2 π (h - h³/3). h is between 0.5 and 0.61, one row of 7.5 degrees more.
+  // 48 segments reduce the volume by 1 %.
   EXPECT_GT(volume(kept, sphere.positions), 0.98 * 2 * 3.1416 * (0.5 - 0.125 / 3));
   EXPECT_LT(volume(kept, sphere.positions), 2 * 3.1416 * (0.61 - 0.61 * 0.61 * 0.61 / 3));
 }
@@ -53,10 +54,10 @@ TEST(Caps, AddNothingWhereNothingWasCut) {
   EXPECT_TRUE(kept.empty());
 }
 
-// Two corners cut off a subdivided tetrahedron touch in a vertex: both loops of the figure eight are closed separately.
+// Two openings touch in a vertex: both loops of the figure eight are closed separately.
 TEST(Caps, CloseRingsThatMeetInAVertex) {
   const std::vector<Vec3> x{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
-  // A double pyramid without one face on either side of vertex 5.
+  // A square pyramid with apex 5, whose base is split at vertex 0. Two opposite faces at the apex are missing.
   const std::vector<Triangle> whole{{1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {4, 1, 5},
                                     {2, 1, 0}, {3, 2, 0}, {4, 3, 0}, {1, 4, 0}};
   std::vector<Triangle> kept{whole[1], whole[3], whole[4], whole[5], whole[6], whole[7]};

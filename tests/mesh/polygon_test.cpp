@@ -86,7 +86,7 @@ void expect_each_corner_kept(const std::vector<Vec3>& corners) {
   EXPECT_EQ(std::ranges::count(kept, 0), 0) << "of " << corners.size();
 }
 
-// Some programs write a row of cells as one face; coordinates in single precision, as in files.
+// Some programs write a row of cells as one face. Coordinates are rounded to single precision, as in files.
 TEST(Polygon, WithCornersAlongStraightSidesKeepsThemAll) {
   for (const int along : {4, 13, 40})
     for (const double angle : {0.0, 0.3, 1.1}) {

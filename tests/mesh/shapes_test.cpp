@@ -120,7 +120,7 @@ TEST(Sphere, IsConvexAndMissesNoMoreVolumeThanOutsideTheBallItHolds) {
   for (const int segments : {3, 24, 48}) {
     const Mesh sphere = make_sphere(1, segments);
     EXPECT_LT(bulge_over_faces(sphere), kRoundingOfSums);
-    double depth = 1;  // distance of the nearest face: the convex polyhedron contains the ball of that radius
+    double depth = 1;  // distance of the nearest face: the convex polyhedron contains a ball of this radius
     for (const Triangle& t : sphere.topology.triangles) {
       depth = std::min(depth, area_vector(t, sphere.positions).normalized().dot(sphere.positions[t[0]]));
     }
@@ -162,7 +162,8 @@ TEST(Box, HasItsSizesVolumeAndTwelveTriangles) {
 TEST(Box, WithOneBevelFaceLosesPrismsAtEdgesAndTetrahedraAtCorners) {
   const double b = 0.1;
   const Mesh box = make_box({1, 2, 3}, b, 8);
-  // The bevel removes a prism over b²/2 from each edge; of the cube b³ at each corner a tetrahedron b³/6 remains.
+  // The bevel removes a prism with cross-section b²/2 from each edge. Of the cube b³ at each corner, a tetrahedron of
+  // b³/6 remains.
   const double edges = 4 * (1 + 2 + 3 - 3 * 2 * b) * b * b / 2;
   EXPECT_NEAR(volume(box), 6 - edges - 8 * (b * b * b * 5 / 6), kRoundingOfSums);
   EXPECT_LT(bulge_over_faces(box), kRoundingOfSums);
@@ -227,7 +228,8 @@ TEST(Torus, HasTheVolumeOfItsTurnedPolygon) {
   // The cell width at the outer equator fits 13.7 times around the tube; the nearest multiple of four is used.
   const int around_tube = 12;
   ASSERT_EQ(torus.positions.size(), 48u * around_tube);
-  // Pappus: path of the centroid times area. The 48 steps instead of a circle scale the squares of both radii alike.
+  // Pappus: length of the centroid's path times area. With 48 steps instead of a circle, the factor is 2 polygon(48)
+  // instead of 2 π.
   EXPECT_NEAR(volume(torus), 2 * polygon(48) * radius * polygon(around_tube) * tube * tube, kRoundingOfSums);
   for (const Vec3& x : torus.positions)
     EXPECT_NEAR(std::hypot(std::hypot(x.x(), x.y()) - radius, x.z()), tube, kRoundingOfSums);

@@ -254,13 +254,13 @@ TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
     }
   }
   EXPECT_GT(whole, 1000);
-  // At folds, half of so small a picture, the ordinary picture averages encoded colours, this pass linear ones.
+  // Pixels at folds, half of so small a picture, differ: the picture averages encoded colours, this pass linear ones.
   EXPECT_GT(same, 0.45 * whole);
   EXPECT_GT(partly, 100) << "outlines are smooth";
 }
 
-// Floor is black over a plate if a ray to the sun hits something, because this scene has no ambient light; other floor
-// leaves the plate unchanged. Pixels in the penumbra, a few percent, are excluded.
+// Composited over a background picture, floor is black where a ray to the sun hits something, because this scene has no
+// ambient light. Elsewhere it leaves the picture unchanged. Pixels in the penumbra, a few percent, are excluded.
 TEST_F(DataPassesTest, CaughtShadowsAreWhereNoSunGetsTo) {
   const Vec3 toward_sun = Vec3(0.3, -0.4, 1).normalized();
   int lit = 0, dark = 0, otherwise = 0;

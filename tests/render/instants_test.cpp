@@ -60,7 +60,7 @@ TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   EXPECT_NEAR(linear_at(image, 124) / white, 0.5, 0.06);
   EXPECT_NEAR(linear_at(image, 119) / white, 0.75, 0.06);
   EXPECT_NEAR(linear_at(image, 95) / white, 0.5, 0.06);
-  // The ramp has no steps: with four sharp pictures alone some pixels are off by 0.12.
+  // The ramp has no steps. (With four sharp pictures alone, some pixels would be off by 0.12.)
   for (int x = 116; x < 133; ++x) EXPECT_NEAR(linear_at(image, x) / white, (134.2 - x - 0.5) / 20, 0.05) << x;
   EXPECT_LT(linear_at(image, 84), 0.02);
   EXPECT_LT(linear_at(image, 136), 0.02);
@@ -138,8 +138,8 @@ TEST(Looks, ExposureIsInStops) {
   EXPECT_NEAR(light(-1) / light(0), 0.5, 0.005);
 }
 
-// Chords of a circle of 1 cm: the middle of each must lie on the circle, to fourth order of the angle; for 0.26
-// rad 1.1e-4 of the radius.
+// Chords of a circle of 1 cm: the middle of each must lie on the circle, to fourth order of the angle. For 0.26 rad the
+// error is 1.1e-4 of the radius.
 TEST(Refinement, MiddlesOfChordsLieOnTheCircle) {
   const double angle = std::numbers::pi / 12;
   const double radius = 0.01;  // m

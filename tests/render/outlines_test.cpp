@@ -128,8 +128,8 @@ TEST(Outlines, TheBackOfASheetEndsAgainstItsFront) {
   EXPECT_EQ(scene.red(41, 30), 0);
 }
 
-// A quad that covers the whole picture is split into triangles along a line through a sample, at many angles. To
-// rounding, the sample must not fall between the triangles.
+// A quad that covers the whole picture is split into triangles along a line through a sample, at many angles. In spite
+// of rounding, the sample must not fall between the triangles.
 TEST(Outlines, SampleOnACutBetweenTrianglesBelongsToOneOfThem) {
   const double x = 48 + 19 / 32.0, y = 32 + 19 / 32.0;
   for (int i = 0; i < 300; ++i) {
@@ -169,7 +169,7 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
   }
 }
 
-// Two sides of a box that meet in an upright edge, white and grey: the same surface, as far away there. The second edge
+// Two sides of a box, white and grey, meet in an upright edge: same surface, same distance there. The second edge
 // passes a hundredth of a pixel beside the pixel's centre, which therefore lies near the planes of both sides.
 TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
   for (const auto& [edge, white_samples] : {std::pair(40.25, 4), std::pair(40.51, 8)}) {

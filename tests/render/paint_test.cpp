@@ -68,7 +68,8 @@ testing::AssertionResult shows(const image::Image& image, double x, double y, co
   return testing::AssertionSuccess();
 }
 
-// With frontal light of full strength a surface shows its own colour (Picture.LitSurfaceHasItsOwnColor).
+// With frontal light of full strength a surface shows its own colour
+// (Picture.MatteSurfaceFacingTheLightShowsItsOwnColor).
 TEST(Paint, LiesWithItsTopUpwardAndItsLeftToTheLeft) {
   for (const auto kind : {frame::ObjectKind::cloth, frame::ObjectKind::character}) {
     const auto snapshot =

@@ -428,8 +428,8 @@ TEST(Picture, OddSnapshotsAreDrawn) {
   EXPECT_THROW(renderer.draw(broken), Error);
 }
 
-// Other threads do not count: the expected time is that of the process minus that of a busy thread. Idle TBB threads
-// that search for work add a few percent.
+// The expected CPU time is that of the process minus that of a busy thread, which must not count. Idle TBB threads that
+// search for work add a few percent.
 TEST(Picture, TimesAreThoseOfDrawingAlone) {
   Renderer renderer(settings());
   renderer.draw(busy_scene());  // compiles the shaders

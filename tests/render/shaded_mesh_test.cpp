@@ -32,7 +32,8 @@ double worst_sphere_normal(int n) {
   return worst;
 }
 
-// Second order in the mesh width: measured 0.0088 at n = 24, limit twice that; half the width, a quarter of the error.
+// The error is of second order: half the mesh width, a quarter of it. Measured 0.0088 at n = 24; the limit is twice
+// that.
 TEST(ShadedMesh, NormalsOfASphereAreRadialToSecondOrder) {
   const double coarse = worst_sphere_normal(24), fine = worst_sphere_normal(48);
   EXPECT_LT(coarse, 0.018);
@@ -96,8 +97,8 @@ TEST(ShadedMesh, OnlyASurfaceWithoutBordersIsClosed) {
   EXPECT_FALSE(is_closed({}));
 }
 
-// A sphere of 16 columns, its terminator in the middle of the picture: self-shadowing of coarse faces would darken
-// faces that still face the light, unless the light is evaluated on the smooth sphere.
+// A sphere of 16 columns, with its terminator in the middle of the picture. Light is evaluated on the smooth sphere.
+// Otherwise coarse faces would shadow themselves where they still face the light.
 TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();

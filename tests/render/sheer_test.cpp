@@ -140,8 +140,8 @@ TEST(Mirror, AViewFromBelowMeetsWhatTheFloorReflects) {
   }
 }
 
-// Under a ball that touches the floor, in the shadow of a sheet, half of the samples that average the noise of
-// occlusion are missing. Measured alternation from pixel to pixel: 1 level; 5 if the blur is done only once.
+// Where a ball touches the floor, in the shadow of a sheet, few pixels of floor are available to average the noise of
+// light. Levels must hardly alternate from pixel to pixel.
 TEST(Occlusion, HasNoStreaksWhereABallTouchesTheFloor) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();
@@ -165,8 +165,8 @@ TEST(Occlusion, HasNoStreaksWhereABallTouchesTheFloor) {
   EXPECT_LE(worst, 2);
 }
 
-// Along a column that crosses an edge once, light increases only: a line along a nearly horizontal edge would look
-// dashed. Measured decrease: 3 levels; 17 if the edge is blurred in some columns and searched for in others.
+// Along a column that crosses the edge of a shadow once, light must only increase. Otherwise an edge that is nearly
+// horizontal would look dashed.
 TEST(Shadows, EdgesThatRunNearlyLevelAreNotDashed) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();

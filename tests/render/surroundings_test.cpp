@@ -53,7 +53,8 @@ TEST(Surroundings, IrradianceIsTheSumOverAllDirections) {
   }
 }
 
-// Sums over 24 rows of cells: ground of 0.5, which a surface facing the sky does not see, adds 0.0015.
+// A flat surface receives the light of the style's sky. Tolerance: in sums over 24 rows of cells, the ground (0.5),
+// which a surface facing the sky does not see, adds 0.0015.
 TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
   for (const Look look : kLooks) {
     for (const double ground : {0.0, 0.5}) {
@@ -68,7 +69,7 @@ TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
   }
 }
 
-/// Bytes at the left border of a picture, which a sheet at this height neither covers nor shadows.
+/// Green levels at the left border of a picture, which a sheet at this height neither covers nor shadows.
 std::vector<int> left_border(double height) {
   frame::FrameSnapshot snapshot;
   add_floor(snapshot);
@@ -86,7 +87,7 @@ std::vector<int> left_border(double height) {
 
 TEST(Surroundings, AreThoseOfTheRunWhileASheetFalls) {
   const std::vector<int> high = left_border(2), low = left_border(0.2);
-  // Farther away by the sheet's width, it hides less than a 255th of the sky.
+  // At the left border, more than its own width away, the sheet hides less than a 255th of the sky.
   for (std::size_t y = 0; y < high.size(); ++y) EXPECT_NEAR(high[y], low[y], 1) << y;
 }
 
@@ -148,9 +149,9 @@ Vec3 light_on_floor(const image::Image& image) {
   return sum / 40;
 }
 
-// Floor without direct light receives the light that a lit wall reflects, within a tenth of the form factor, summed
-// over the wall here: noise of some hundred points with four rays each. As open floor is dark, the picture is exposed
-// with direct light at its limit of 1.8. A shelf in between leaves less than a third.
+// Floor without direct light receives the light that a lit wall reflects. Expected: the form factor, summed over the
+// wall; a tenth is for the noise of some hundred points with four rays each. As open floor is dark, the picture is
+// exposed with direct light at its limit of 1.8. A shelf in between leaves less than a third.
 TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
   for (const double height : {0.0, 0.4}) {
     double factor = 0;
@@ -210,8 +211,8 @@ double floor_before_a_lamp(double roughness, Quality quality) {
   return light_on_floor(Renderer(settings).draw(snapshot)).x();
 }
 
-// GGX facets with Smith masking (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014,
-// Eq. 99), for which the program uses Hammon's shorter form: 9 % less here.
+// Expected: GGX facets with Smith masking (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based
+// BRDFs", 2014, Eq. 99). The program uses Hammon's shorter form, which gives 9 % less here.
 TEST(Floor, MirrorsALampWhereItShinesMoreThanOthers) {
   const double roughness = 0.55, alpha = roughness * roughness, cosine = std::cos(50 * std::numbers::pi / 180);
   const double head_on = 0.04 * (1 - 0.9 * alpha), fresnel = head_on + (1 - head_on) * std::pow(1 - cosine, 5);

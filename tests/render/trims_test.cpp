@@ -60,8 +60,8 @@ TEST(Trims, PlacesAlongABorderGoOnFromEdgeToEdge) {
   EXPECT_EQ(jumps, 0) << "as each side has places of its own";
 }
 
-// Cells that are wider than high, split by either diagonal: the nearest border line near a corner changes within
-// triangles. Between the vertices both distances are linear, so that their minimum is exact everywhere.
+// Cells are wider than high and split by either diagonal, so that the nearest border changes within triangles near a
+// corner. Between the vertices both distances are linear, so their minimum is exact everywhere.
 TEST(Trims, LinesTurnSharplyAtCorners) {
   frame::Surface surface = sheet(6, false);
   for (Vec2& at : surface.uv) at.x() *= 3;
@@ -84,7 +84,8 @@ TEST(Trims, LinesTurnSharplyAtCorners) {
   }
 }
 
-// For edges and their middles, in any order of the triangles: at a vertex of a line two of its edges are equally near.
+// Tests edges and their middles, in several orders of triangles: at a vertex of a line two of its edges are equally
+// near.
 TEST(Trims, LinesGoOnThroughTheMiddlesOfTheirEdges) {
   frame::Surface surface = sheet(8, true);
   for (const std::size_t stride : {5U, 11U, 37U}) {

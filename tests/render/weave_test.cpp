@@ -61,7 +61,7 @@ double alike(const image::Image& image, int right, int up) {
   return product / square;
 }
 
-// The lines of a twill rise to the right, a plain weave is symmetric, stitches form columns.
+// Expected: the lines of a twill rise to the right, a plain weave is symmetric, stitches form columns.
 TEST(Weave, LiesAsTheThreadsOfTheFabricDo) {
   const double spacing = 8 * 2 * std::tan(15 * std::numbers::pi / 180) / 100;
   const auto seen = [&](Threads threads) { return drawn(leaning_cloth(1, spacing, threads, 0), 1); };

@@ -287,7 +287,7 @@ TEST_F(Review, LinksInFoldersOfRunsAreNotFollowed) {
     EXPECT_TRUE(!entry.is_regular_file() || support::read_bytes(entry.path()) != "-") << entry.path();
 }
 
-// Each bad value, in every place: the page names it, and shows the valid values and the other runs.
+// Puts each bad value in every place: the page names it, and shows the valid values and the other runs.
 TEST_F(Review, NoValueOfStatisticsKeepsThePageFromTheRest) {
   int k = 0;
   for (const char* value :

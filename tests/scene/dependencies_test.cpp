@@ -108,7 +108,7 @@ TEST_F(Dependencies, FoldersDoNotCount) {
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-// Moving a byte from the end of one file to the start of the next is a change.
+// If a byte moves from the end of one file to the start of the next, the hash changes.
 TEST_F(Dependencies, WhereOneFileEndsCounts) {
   const std::string scene =
       "obstacle = [{ name = 'a', shape = 'mesh', file = 'a.obj' }, { name = 'b', shape = 'mesh', file = 'b.obj' }]\n";

@@ -104,7 +104,7 @@ TEST(DamagedScenes, LoadOrAreRefusedAtAPlaceThatExists) {
     }
     if (testing::Test::HasFailure()) break;
   }
-  // The damage is neither too light nor too heavy to reach the parser, the rules and the checks.
+  // The damage is of the right amount: some scenes still load, and in others the rules find mistakes.
   EXPECT_GT(loaded, kScenes / 20);
   EXPECT_GT(misread, kScenes / 20);
 }

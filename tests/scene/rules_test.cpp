@@ -93,8 +93,8 @@ void expect_change(const std::string& text, const std::string& override_text) {
   EXPECT_NE(effective_scene(before.scene), effective_scene(after.scene)) << override_text;
 }
 
-/// True if any value of the key can be set alone. Names, references, files, and keys that require another key cannot;
-/// scene_test covers those.
+/// True if any value of the key can be set alone. This is false for names, references, files, and keys that require
+/// another key; scene_test covers those.
 bool is_plain_value(const std::string& path, const Rule& rule) {
   const bool needs_mass = path.starts_with("obstacle.") &&
                           (path.ends_with("velocity") || path.ends_with("spin") || path.ends_with("release"));
@@ -119,7 +119,7 @@ TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
   for_each_value(*root.find("cloth")->table, "cloth.c.", try_rule);
   for_each_value(*root.find("cloth")->table->find("pin")->table, "cloth.c.pin.0.",
                  [&](const auto& path, const auto& rule, const auto& now) {
-                   // The whole sheet without its first rows, so that some particles are held.
+                   // Leaves out a few rows at one side only, so that the pin still holds some particles.
                    if (rule.key == "low") return expect_change(kOneOfEach, path + "=[0.1, 0.2]");
                    if (rule.key == "high") return expect_change(kOneOfEach, path + "=[0.8, 0.9]");
                    try_rule(path, rule, now);

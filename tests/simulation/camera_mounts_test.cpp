@@ -1,4 +1,4 @@
-// Cameras that follow a body, and focal lengths in millimetres, as frames have them.
+// Cameras that follow a body, and focal lengths in millimetres, as snapshots contain them.
 #include "simulation/camera_mounts.hpp"
 
 #include <gtest/gtest.h>
@@ -127,7 +127,7 @@ TEST(FocalLength, OpensTheLensByItsNumber) {
       "focal_length = 50\naperture = 2\n");
   const environment::Environment environment(scene);
   const frame::Camera camera = SnapshotMaker(scene, environment).make(0, 0, environment, {}, {})->cameras[0];
-  // Aperture diameter: the focal length, half of 24 mm over the tangent of half of the angle, over the f-number.
+  // Aperture diameter = focal length / f-number. With a picture 24 mm high, the focal length is 12 mm / tan(angle / 2).
   EXPECT_NEAR(12 / std::tan(camera.field_of_view * kDegree / 2) / camera.aperture, 25, 1e-9);
 }
 

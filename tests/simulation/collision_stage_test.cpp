@@ -1,4 +1,4 @@
-// Which positions each party holds during a step.
+// CollisionStage: positions of particles, pins and bodies at both ends of a step, and the velocity of a push.
 #include "simulation/collision_stage.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 namespace weft::simulation {
 namespace {
 
-// A sheet over a floor, and a ball that passes under it at 4 m/s. At 0.21 s the ball's x coordinates are near zero,
-// where a differently rounded time shows.
+// A sheet over a floor, and a ball that passes under it at 4 m/s. At 0.21 s the ball's x coordinates are near zero, so
+// that a time that is rounded otherwise changes them.
 scene::Scene sheet_over_a_ball() {
   scene::Scene scene = testing::sheet_alone(0.4, 5, 1);
   scene.contact.obstacles = true;
@@ -81,7 +81,7 @@ TEST_F(CollisionStages, ExpectHeldParticlesWhereTheyAreHeld) {
   EXPECT_EQ(next_.x[7], Vec3(1, 2, 3));
 }
 
-// The solve leaves the sheet across the floor: pushing it out also changes its velocity.
+// The solved end of the sheet is 1 mm below the floor: pushing it out also changes its velocity.
 TEST_F(CollisionStages, GiveParticlesTheVelocityOfTheirPush) {
   stage_->begin_step(0.2, 0.01, {}, now_, next_);
   for (std::size_t i = 0; i < 25; ++i) {

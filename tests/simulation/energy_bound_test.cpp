@@ -70,7 +70,7 @@ TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
   Simulation simulation(scene);
   FrameReport report;
   for (int k = 0; k < 10; ++k) report = simulation.advance();
-  EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: it falls 3 m in a second
+  EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: its pin moves by 3 m in a second
   EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
 }
 
@@ -102,7 +102,7 @@ scene::Scene shaken(scene::Integrator integrator, double step, const Vec3& ampli
   return scene;
 }
 
-// Without the check the run gained 3e15 J in 246 frames.
+// Without the check, such a run gains 3e15 J in 246 frames (measured).
 TEST(EnergyBound, RunawayOfAShakenStripIsRefused) {
   for (const Vec3& amplitude : {Vec3(0, 0.02, 0), Vec3(0.01, 0, 0.005), Vec3(0, 0.1, 0)}) {
     Simulation simulation(shaken(scene::Integrator::implicit_midpoint, 0.04, amplitude));
@@ -112,7 +112,7 @@ TEST(EnergyBound, RunawayOfAShakenStripIsRefused) {
   }
 }
 
-// The work of pins equals the stored energy plus the damping of the method, to the order of the method.
+// Gain of stored energy = work of the pins − what the method dissipates, within 2 % of the largest work.
 TEST(EnergyBound, WorkOfPinsClosesTheBudget) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     const bool damps = integrator != scene::Integrator::implicit_midpoint;
@@ -139,7 +139,8 @@ TEST(EnergyBound, WorkOfPinsClosesTheBudget) {
   }
 }
 
-// A gain of rounding size (measured: 0.27 µJ) is no reason to refuse: a stiff sheet at rest has less in play.
+// A stiff sheet at rest has little energy in play. The check must tolerate gains by rounding (measured: 0.27 µJ), even
+// if they exceed it.
 TEST(EnergyBound, RoundingIsNoEnergy) {
   for (const double size : {0.02, 0.4})
     for (const scene::Integrator integrator : testing::kIntegrators) {
@@ -156,7 +157,8 @@ TEST(EnergyBound, RoundingIsNoEnergy) {
     }
 }
 
-// The run stays finite, but the sheet's centre is at -0.08 m instead of -0.33 m.
+// With threads of 1e8 N/m the run stays finite, but the residual of the solver holds the sheet back: its centre falls
+// by 0.08 m instead of 0.33 m.
 TEST(EnergyBound, MotionThatTheSolverHoldsBackIsWarnedOf) {
   const auto warnings_of = [](double stiffness) {
     scene::Scene scene = testing::sheet_alone(0.5, 9, 1);
@@ -183,8 +185,8 @@ TEST(EnergyBound, MotionThatTheSolverHoldsBackIsWarnedOf) {
   EXPECT_TRUE(warnings_of(1e4).empty());
 }
 
-// The sheet falls on a ball, with a step at which contacts shook the sheet under the midpoint rule (measured: 12 J from
-// a fall of 0.35 J). Without a warning a run may gain a tenth of the energy in play.
+// A sheet falls on a ball, with a step that is critical for contacts under the midpoint rule. The bound is what a run
+// may gain without a warning: a tenth of the energy in play.
 TEST(EnergyBound, ContactBringsNone) {
   for (scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.6, 13, 0.45);
@@ -224,8 +226,8 @@ double largest_gain(const scene::Scene& scene, int frames) {
   return gain;
 }
 
-// A rotation does not lengthen threads. With n·v as the rate of length, which includes the turn of a step, a viscosity
-// of 30 N·s/m shortened the threads of a swinging sheet until the run was refused.
+// Viscosity must not act on rotation. If it used n·v as the rate of length, which includes the rotation within a step,
+// a viscosity of 30 N·s/m would shorten the threads of a swinging sheet until the run is refused.
 TEST(EnergyBound, ViscosityOnlyTakesEnergy) {
   using Shape = scene::ClothShape;
   for (const auto integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2})
@@ -241,7 +243,7 @@ TEST(EnergyBound, ViscosityOnlyTakesEnergy) {
           left.low = left.high = {0, 0};
           right.low = right.high = {1, 0};
           scene.cloths[0].pins = {left, right};
-          // The solver may leave a small fraction in each of 40 steps; the measured gain is 0.
+          // The residual of the solver may leave a small gain in each of 40 steps. Measured: 0.
           EXPECT_LT(largest_gain(scene, 10), 0.01)
               << name_of(integrator) << ", shape " << static_cast<int>(shape) << ", viscosity " << viscosity
               << (of == &scene::Material::stretch_viscosity ? " of stretch" : " of shear");
@@ -268,7 +270,7 @@ scene::Scene falls_on(scene::Shape shape, double friction, double step) {
   return scene;
 }
 
-// Normal forces and friction must not amplify each other (measured once: 986,000 J from 0.46 J on the cone).
+// With a friction coefficient far above 1, normal forces and friction must not amplify each other.
 TEST(EnergyBound, FrictionOfManyTimesTheLoadBringsNone) {
   for (const double friction : {2.0, 10.0})
     for (const double step : {0.01, 0.02}) {
@@ -280,7 +282,7 @@ TEST(EnergyBound, FrictionOfManyTimesTheLoadBringsNone) {
     }
 }
 
-// Wrong friction can change at most the speed that the sheet has, for the 0.15 s over which a velocity residual counts.
+// An error of friction can be as large as the velocity of the sheet at most. A velocity residual counts for 0.15 s.
 TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
   constexpr double kCounts = 0.15;  // [s]
   for (const scene::Shape& shape :
@@ -295,7 +297,7 @@ TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
       solver += report.solver_error;
       steps += report.error_estimate;
     }
-    // Measured: 2.6 and 2.7 times as much if sliding of any size is accepted after ten iterations.
+    // If the solver accepted sliding of any size after ten iterations, `solver` would be 2.6 and 2.7 times as large.
     EXPECT_LT(solver, steps);
   }
 }
@@ -309,7 +311,7 @@ scene::Scene on_a_blade() {
   return scene;
 }
 
-// Pushing the sheet out after the solve stored 0.18 J in threads, from a fall of 0.068 J.
+// If the sheet were only pushed out after the solve, its threads would store 0.18 J, from a fall of 0.068 J.
 TEST(EnergyBound, WhatWouldPassAnEdgeIsSolvedWithTheContactsOfThatPlace) {
   Simulation simulation(on_a_blade());
   const FrameReport start = simulation.initial_report();
@@ -325,9 +327,8 @@ TEST(EnergyBound, WhatWouldPassAnEdgeIsSolvedWithTheContactsOfThatPlace) {
   EXPECT_LT(most_elastic, 0.3 * fall);
 }
 
-// A sheet slides over the edge of a box. A contact that appears at its rim, where cloth is close already, opens in 5 ms
-// at the fastest. In one step of 1 ms it threw a row of particles up at 1 m/s; of 0.3125 ms, with eight times the
-// energy in play.
+// A sheet slides over the edge of a box. A new contact at the edge may find cloth that is close already. It then pushes
+// the cloth out over 5 ms at least. If it did so in one step of 1 ms, it would throw a row of particles up at 1 m/s.
 TEST(EnergyBound, ContactsThatAppearLateThrowNothing) {
   scene::LoadResult loaded = scene::load_text(
       "[time]\nfps = 25\nintegrator = \"bdf2\"\n[solver]\nnewton_tolerance = 0.04\n"
@@ -339,12 +340,12 @@ TEST(EnergyBound, ContactsThatAppearLateThrowNothing) {
   ASSERT_TRUE(loaded.ok()) << loaded.describe();
   for (const double step : {1e-3, 3.125e-4}) {
     loaded.scene.time.step = step;
-    // What a method that damps gains here are errors of its steps.
+    // A damping method gains energy here only by the error of its steps.
     EXPECT_LT(largest_gain(loaded.scene, 4), 0.01) << step;
   }
 }
 
-// Uses invented figures: whether contact adds energy in a run depends on details of the solver.
+// Uses made-up reports, because it depends on details of the solver whether contact adds energy in a run.
 TEST(EnergyBound, EnergyThatContactBringsToAMethodThatDampsIsWarnedOfOnce) {
   const auto after_a_fall = [](double gained) {
     FrameReport report;  // 1 J was available, half of it is kinetic

@@ -12,7 +12,7 @@ namespace {
 class Energy {
  public:
   explicit Energy(const scene::Scene& scene) : scene_(scene) {
-    // Finds the rest with steps that damp.
+    // Finds the state of rest with implicit Euler, which damps.
     scene::Scene resting = scene;
     resting.time.integrator = scene::Integrator::implicit_euler;
     resting.time.step = 0.04;

@@ -66,7 +66,7 @@ Measures measure(const garment::Garment& garment, const std::vector<Vec3>& x) {
   return m;
 }
 
-// Requirement 4 of the garments: once sewn, area and seams are within 1 % of the pattern; no frame intersects.
+// Required of a garment: once it is sewn, area and seams are within 1 % of the pattern; no frame intersects.
 TEST_F(Garments, ATubeSewnRoundAPostFitsAndNeverIntersects) {
   const scene::Scene scene = dressed(kPost);
   const auto frames = support::run_scene(scene, {.keep_positions = true});
@@ -85,7 +85,7 @@ TEST_F(Garments, ATubeSewnRoundAPostFitsAndNeverIntersects) {
     EXPECT_NEAR(end.seams[s], end.seams_pattern[s], 0.01 * end.seams_pattern[s]);
   std::printf("area %.5f of %.5f m², seams %.5f and %.5f of %.5f m, largest strain %.4f\n", end.area, end.area_pattern,
               end.seams[0], end.seams[1], end.seams_pattern[0], frames.back().report.max_strain);
-  // Its band holds it up.
+  // The elastic band holds the skirt up.
   double lowest = 1e9;
   for (const Vec3& x : frames.back().cloths[0]) lowest = std::min(lowest, x.z());
   EXPECT_GT(lowest, 0);
@@ -102,8 +102,8 @@ TEST_F(Garments, NothingFallsBeforeItIsSewn) {
   };
   EXPECT_NEAR(height(15), height(0), 0.02);  // the band contracts the upper end
   const double fallen = 0.5 * 9.81 * 0.4 * 0.4;
-  // Implicit Euler leads by half a step of 10 ms, and the mean of the particles is not the centre of mass while the
-  // shape changes.
+  // Tolerance: implicit Euler is ahead by half a step of 10 ms, and the mean of the particles is not the centre of mass
+  // while the shape changes.
   EXPECT_NEAR(height(15) - height(25), fallen, 0.1 * fallen);
 }
 
@@ -178,7 +178,7 @@ TEST_F(Garments, AStartThatMeetsACharacterTellsHowArmsAreHeldOff) {
   const std::string message = refused(dressed, 0.5);
   EXPECT_NE(message.find("'rod'"), std::string::npos) << message;
   EXPECT_NE(message.find(hint), std::string::npos) << message;
-  // The hint is absent if nothing is dressed, and if the cloth touches another body.
+  // The message has no hint if nothing is dressed, or if the cloth touches another body.
   const std::string moving = refused("", 0.5), elsewhere = refused(dressed, 3);
   EXPECT_NE(moving.find("'rod'"), std::string::npos) << moving;
   EXPECT_EQ(moving.find(hint), std::string::npos) << moving;

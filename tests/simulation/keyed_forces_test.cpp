@@ -31,7 +31,7 @@ TEST(KeyedForces, GravityThatGrowsAddsItsIntegralToTheVelocity) {
   scene.time.integrator = scene::Integrator::implicit_midpoint;
   scene.physics.interpolation = scene::Interpolation::linear;
   scene.physics.keys = {{0.2, {0, 0, 0}, {0, 0, 0}}, {0.8, {0, 3, -6}, {0, 0, 0}}};
-  // The midpoint rule is exact for what is linear in time: ½ · 0.6 s of the last key, and 0.2 s of its full value.
+  // The midpoint rule is exact for accelerations that are linear in time: ½ · 0.6 s of the last key, then 0.2 s of it.
   EXPECT_LT((velocity_at_end(scene) - 0.5 * Vec3(0, 3, -6)).norm(), 1e-9);
 }
 
@@ -95,7 +95,7 @@ TEST(KeyedForces, SpinTurnsClothAboutItsCentreAndIsKept) {
   const Vec3 corner = simulation.state().positions[0];
   for (int frame = 1; frame < scene.frame_count(); ++frame) simulation.advance();
   EXPECT_LT((angular_momentum(simulation) - start).norm(), 0.01 * start.norm());
-  // It has turned by 36 degrees and moved by 0.1 m.
+  // The sheet has turned by 36 degrees and moved by 0.1 m.
   const Vec3 arm = corner - Vec3(0, 0, 0.4), there = simulation.state().positions[0] - Vec3(0.1, 0, 0.4);
   const double angle = std::atan2(arm.cross(there).z(), arm.dot(there)) * 180 / std::numbers::pi;
   EXPECT_NEAR(angle, 36, 1);

@@ -80,14 +80,15 @@ TEST_F(PinsOnACharacter, MoveAsOneWithABodyThatDoes) {
     }
 }
 
-// Also between key frames, on a surface that stretches, bends and shears.
+// The velocity of a pinned particle is that of its place, also between key frames, on a surface that stretches, bends
+// and shears.
 TEST_F(PinsOnACharacter, HaveTheVelocityOfTheirPlaces) {
   const Pinned pinned(scene_of(kBent));
   const double t = 0.1337, d = 1e-5;
   const auto before = pinned.at(t - d), now = pinned.at(t), after = pinned.at(t + d);
   for (std::size_t p = 0; p < now.size(); ++p) {
     const Vec3 difference = (after[p].x_end - before[p].x_end) / (2 * d);
-    // d² times a third derivative of some hundred m/s³, and rounding of 1e-16 / d.
+    // Error of the central difference: d² times a third derivative of some hundred m/s³, and rounding of 1e-16 m / d.
     EXPECT_LT((difference - now[p].v_end).norm(), 1e-7);
     EXPECT_GT(now[p].v_end.norm(), 0.5);
   }
@@ -110,7 +111,7 @@ TEST_F(PinsOnACharacter, KeepTheirDistanceFromTheSkin) {
     }
 }
 
-// The cape follows the body.
+// The free part of the cloth follows the body.
 TEST_F(PinsOnACharacter, CarryCloth) {
   const scene::Scene scene = scene_of(kRigid, "[contact]\nobstacles = false\n");
   const std::vector<Vec3> last = support::run_scene(scene, {.judged = false}).back().cloths[0];
@@ -121,7 +122,7 @@ TEST_F(PinsOnACharacter, CarryCloth) {
   }
 }
 
-// The mannequin walks away; if two pins share a corner, the first one holds it.
+// The mannequin walks away. If two pins share a corner, the first one holds it.
 TEST_F(PinsOnACharacter, FollowThePartsOfABodyWithBones) {
   const Pinned pinned(support::scene_of_text(
       "[time]\nduration = 2\n[[character]]\nname = 'body'\nsource = 'mannequin'\nedge_length = 0.05\nwalk = 1\n"

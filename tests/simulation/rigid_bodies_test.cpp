@@ -58,7 +58,7 @@ TEST(RigidBodies, FallFreely) {
         timed(0.4, "integrator = \"" + method + "\"") +
         box("box", "size = [0.1, 0.2, 0.3]\nmass = 2\nvelocity = [1, 0, 2]\nposition = [0, 0, 1]\n")));
     for (int frame = 0; frame < 10; ++frame) simulation.advance();
-    // Euler's method falls too far by g h t / 2; the first step of BDF2 is an Euler step.
+    // Euler's method falls too far by g h t / 2. BDF2 does too: its first step is an Euler step.
     const double late = method == "implicit_midpoint" ? 1e-9 : 0.5 * kGravity * 0.01 * 0.4 + 1e-9;
     const Vec3 at = middle(vertices(simulation, 0));
     EXPECT_NEAR(at.x(), 0.4, 1e-9) << method;
@@ -184,7 +184,8 @@ TEST(RigidBodies, AreMovedByKeysUntilTheirRelease) {
 }
 
 TEST(RigidBodies, AreThrownAtTheirReleaseWithEachMethod) {
-  // The history of BDF2 says that the bodies rest: used at the impact, it would make them leave half as fast again.
+  // The history of BDF2 says that the body rests. If BDF2 used it at the release, the body would leave 1.5 times as
+  // fast.
   for (const std::string method : {"implicit_euler", "bdf2", "implicit_midpoint"}) {
     Simulation simulation(support::scene_of_text(
         timed(0.4, "integrator = \"" + method + "\"") +
@@ -267,8 +268,8 @@ TEST(RigidBodies, DoNotBounce) {
 }
 
 TEST(RigidBodies, PassImpactsOnToWhatTheyTouch) {
-  // A ball strikes four others in a row, a millimetre apart. They move on together, with a fifth of the energy and of
-  // the velocity. BDF2 would part them if it took the force behind a ball that strikes the next one for smooth motion.
+  // A ball strikes four others in a row, a millimetre apart. All move on together, with a fifth of the energy and of
+  // the velocity. If BDF2 took an impact for smooth motion, the balls would separate.
   std::string balls = "[physics]\ngravity = [0, 0, 0]\nair_density = 0\n";
   for (int k = 0; k < 5; ++k)
     balls += fmt::format(
@@ -280,8 +281,9 @@ TEST(RigidBodies, PassImpactsOnToWhatTheyTouch) {
     std::string method;
     double step, most;
   };
-  // Of 0.25 J a fifth is left. Measured: 0.2000; 0.218, 0.205, 0.201. With impacts of single pairs BDF2 leaves 0.32,
-  // 0.28, 0.22; with impacts by the distance of closing, not its velocity, 0.27 at 1 ms.
+  // Fraction of 0.25 J that is left: a fifth. Measured: 0.2000 (Euler); 0.218, 0.205, 0.201 (BDF2). If pairs were
+  // solved one by one, BDF2 would leave 0.32, 0.28, 0.22; if an impact were found by distance instead of velocity, 0.27
+  // at 1 ms.
   for (const Run& run :
        {Run{"implicit_euler", 0.01, 0.201}, {"bdf2", 0.01, 0.22}, {"bdf2", 0.005, 0.22}, {"bdf2", 0.001, 0.202}}) {
     const std::string scene =
@@ -305,7 +307,7 @@ TEST(RigidBodies, DoNotThrowUpTheClothOnWhichTheyFall) {
     if (frame.report.frame < 5) continue;  // it lies on the floor by then
     for (const Vec3& x : frame.cloths.at(0)) highest = std::max(highest, x.z());
   }
-  // Measured: 1.4 mm; 8.8 mm with impacts of single pairs.
+  // Measured: 1.4 mm; 8.8 mm if impacts of pairs are solved one by one.
   EXPECT_LT(highest, 0.003);
 }
 
@@ -332,7 +334,7 @@ TEST(RigidBodies, MayTouchWhatTheyStandOn) {
                  "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, " + std::to_string(0.05 + 0.1 * i) + "]\n");
   Simulation simulation(support::scene_of_text(scene));
   for (int frame = 1; frame < 13; ++frame) simulation.advance();
-  // They rest within the contact thickness of each other, 0.5 mm, and half of it above the floor.
+  // The boxes rest within the contact thickness of each other, 0.5 mm, and half of it above the floor.
   EXPECT_GT(middle(vertices(simulation, 4)).z(), 0.35);
   EXPECT_LT(middle(vertices(simulation, 4)).z(), 0.35175);
   // A body inside another is refused.

@@ -320,7 +320,7 @@ ratio = 0.85
   EXPECT_EQ(continue_runs(scene, {17, {3, 9, 11, 14}}).difference, "");
 }
 
-// The garment closes at 0.3 s; states before and after must know the enclosed air.
+// The garment closes at 0.3 s. States before and after must contain the amount of enclosed air.
 TEST_F(SavedGarment, KeepsTheAirThatItWasClosedWith) {
   support::write_bytes(folder_ / "tube.toml", testing::kTube + R"([[seam]]
 a = "front.hem"

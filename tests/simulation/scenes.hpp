@@ -13,7 +13,7 @@ namespace weft::simulation::testing {
 inline constexpr scene::Integrator kIntegrators[] = {scene::Integrator::implicit_euler,
                                                      scene::Integrator::implicit_midpoint, scene::Integrator::bdf2};
 
-/// Not a fabric: the expected values of tests do not change when fabrics are measured again.
+/// A made-up material, so that expected values of tests do not change when fabrics are measured again.
 inline scene::Material test_material() {
   scene::Material material;
   material.density = 0.2;

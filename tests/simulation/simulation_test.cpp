@@ -218,7 +218,7 @@ TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
     EXPECT_EQ(support::judge(support::objects_of(*snapshot)).pairs.size(), 0u) << "frame " << k;
     lowest_so_far = std::min(lowest_so_far, lowest(sheet_of(snapshot)));
   }
-  // It fell and the ball held it up.
+  // The sheet fell, and the ball held it up.
   EXPECT_LT(lowest_so_far, 0.1);
   EXPECT_GT(proximities, 1000);
   EXPECT_GT(sheet_of(simulation.snapshot())[220].z(), 0.2);
@@ -237,11 +237,11 @@ TEST(Simulation, SheetOnABallIsSolvedDownToRounding) {
     EXPECT_LT(report.solver_error, 1e-9) << "frame " << k + 1;
     rejected += report.rejected_steps;
   }
-  EXPECT_LE(rejected, 4);  // measured 2; 69 with depths of tangents accurate to 1e-3 of their force
+  EXPECT_LE(rejected, 4);  // measured: 2; 69 if depths of tangents are accurate to 1e-3 of their force only
 }
 
-// All settings of contact.search find the same surfaces. The order of contacts differs, so the motion differs in its
-// last digits, and soon in more.
+// All settings of contact.search find the same near pairs, but in another order. Positions therefore differ in their
+// last digits, and later in more.
 class EverySearch : public ::testing::TestWithParam<void (*)(scene::Search&)> {};
 
 TEST_P(EverySearch, FindsTheFirstContactsThatTheDefaultFindsAndKeepsTheSheetApart) {
@@ -363,8 +363,8 @@ FrameReport swinging_strip(scene::Integrator integrator, int particles_across, i
 TEST(Simulation, NeedlesSwingAsASingleRowOfCells) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     const FrameReport row = swinging_strip(integrator, 2, 5), needles = swinging_strip(integrator, 101, 5);
-    // With default tolerances they are at most 0.1 % apart. (Measured with aggregates halved along both axes, or blocks
-    // shifted by 1e-9 of their trace: 10 % and more.)
+    // Measured with default tolerances: at most 0.1 % apart. If aggregates were halved along both axes, or blocks
+    // shifted by 1e-9 of their trace: 10 % and more.
     EXPECT_NEAR(needles.kinetic_energy, row.kinetic_energy, 0.01 * row.kinetic_energy);
     EXPECT_NEAR(needles.max_strain, row.max_strain, 0.05 * row.max_strain);
     EXPECT_LT(needles.linear_iterations, 100);
@@ -404,8 +404,8 @@ TEST(Simulation, FailureInTheMiddleOfAFrameTakesBackItsFirstSteps) {
   scene.cloths[0].pins[0].motion.keys[2].pose.position = {500, 3000, 2000};
   Simulation simulation(scene);
   for (int k = 1; k <= 3; ++k) simulation.advance();
-  // The message contains the residual of the failed step: if the first step of the frame were kept, a second attempt
-  // would fail with another value.
+  // The message contains the residual of the failed step. If the program kept the first step of the frame, a second
+  // attempt would fail with another value.
   const auto failure = [&]() -> std::string {
     try {
       simulation.advance();

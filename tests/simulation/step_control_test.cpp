@@ -29,7 +29,7 @@ double ahead_of_free_fall(const Simulation& simulation, int frames) {
 }
 
 TEST(StepTolerance, StepsEndOnFramesWhateverTheirLength) {
-  // The midpoint rule is exact in free fall, so every frame shows whether its steps add up to it.
+  // The midpoint rule is exact in free fall, so each frame shows whether its steps add up to the duration of the frame.
   Simulation simulation(falling_sheet(scene::Integrator::implicit_midpoint, 1e-5));
   int steps = 0;
   for (int k = 1; k <= 10; ++k) {
@@ -46,7 +46,7 @@ TEST(StepTolerance, StepsEndOnFramesWhateverTheirLength) {
 }
 
 TEST(StepTolerance, EstimateIsTheErrorInFreeFall) {
-  // Each Euler step over h leads by ½ h² g, and the lead stays.
+  // Each Euler step of length h falls too far by ½ g h², and this error stays.
   Simulation simulation(falling_sheet(scene::Integrator::implicit_euler, 1e-5));
   double estimate = 0;
   for (int k = 1; k <= 10; ++k) {
@@ -144,7 +144,7 @@ TEST(StepTolerance, StepThatCannotBeSolvedEndsTheRunWithTheStateBefore) {
     }
     EXPECT_NE(text.find("try a smaller time.tolerance"), std::string::npos) << text;
   }
-  // A second attempt from there fails in the same way.
+  // A second attempt from the kept state fails in the same way.
   EXPECT_EQ(said[0], said[1]);
 }
 
@@ -169,7 +169,7 @@ TEST(StepTolerance, RunThatIsStuckIsRefusedInsteadOfShorteningStepsForEver) {
   ASSERT_NE(at, std::string::npos) << text;
   ASSERT_EQ(std::sscanf(text.c_str() + at, "down to h = %lf", &h), 1);
   EXPECT_LT(h, numerics.steps.least);
-  // Each length is at least a fifth of the one before.
+  // Each length is at least a fifth of the previous one.
   EXPECT_GE(h, 0.2 * numerics.steps.least);
 }
 
@@ -209,7 +209,7 @@ double mean_height(const Simulation& simulation) {
 TEST(Rest, TakesOneStepAFrameAndMovesNothing) {
   scene::Scene scene = sheet_on_block();
   Simulation resting(scene);
-  // Another body moves inside the block: every step is taken.
+  // A body that moves inside the block prevents rest: every step is taken.
   scene.obstacles.push_back(testing::obstacle("inside", scene::Sphere{0.005}));
   scene.obstacles.back().motion.keys = {{0, {{0, 0, 0.09}, Quat::Identity()}},
                                         {9, {{0.01, 0, 0.09}, Quat::Identity()}}};
@@ -218,13 +218,13 @@ TEST(Rest, TakesOneStepAFrameAndMovesNothing) {
   EXPECT_EQ(steps.front(), 2);
   EXPECT_EQ(steps_of(stepping, 50), std::vector<int>(50, 2));
   for (int k = 40; k < 50; ++k) EXPECT_EQ(steps[static_cast<std::size_t>(k)], 1) << "frame " << k + 1;
-  // 0.01 m/s² over a frame of 40 ms is 8 µm; the bound is that of equal deviations in all resting frames.
+  // An acceleration of 0.01 m/s² causes 8 µm in a frame of 40 ms. The bound adds this deviation for each resting frame.
   const double farthest = 8e-6 * static_cast<double>(std::ranges::count(steps, 1));
   const auto &x = testing::sheet_of(resting.snapshot()), &expected = testing::sheet_of(stepping.snapshot());
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), farthest) << "particle " << i;
 }
 
-// Without gravity and air, a drifting sheet has settled; only its speed tells that it moves.
+// Without gravity and air, no force acts on a drifting sheet: only its speed shows that it moves.
 TEST(Rest, IsSlow) {
   for (const double speed : {0.01, 0.1}) {
     scene::Scene scene = testing::sheet_alone(0.3, 5, 1);
@@ -289,7 +289,7 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
 }
 
 // A strip of felt in cells of 3 by 27 mm, thrown while it hangs. Its bending friction alternates by some micrometres
-// per second; halving the step, even down to the minimum, left as much, so the visibility threshold must accept it.
+// per second. Shorter steps, even the shortest, leave as much, so the visibility threshold must accept it.
 TEST(StepThatStalls, LeavesWhatNobodySees) {
   Simulation simulation(support::scene_of_text(R"(
 time = { step = 0.002, integrator = 'bdf2' }

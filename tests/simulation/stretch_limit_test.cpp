@@ -29,7 +29,7 @@ radius = 0.1
 keys = [{ time = 0, position = [0, -0.2, 2] }, { time = 0.12, position = [0, 0.28, 2] }]
 )";
 
-// Its lower border is slowly pulled down to 1.5 times its length.
+// The lower border of a hanging sheet is slowly pulled down to 1.5 times the length of the sheet.
 constexpr const char* kPulledDown = R"(
 [time]
 duration = 0.8
@@ -51,7 +51,7 @@ high = [1, 0]
 keys = [{ time = 0, position = [0, 0, 0] }, { time = 0.8, position = [0, 0, -0.2] }]
 )";
 
-// Likewise, but a plate hits it at 30 m/s and moves on: 0.3 m per step.
+// A plate hits a hanging sheet at 30 m/s, which is 0.3 m per step, and moves on.
 std::string struck_by_a_plate(const char* gravity) {
   return std::string("[time]\nduration = 0.32\n[physics]\ngravity = [0, 0, ") + gravity + R"(]
 [[cloth]]
@@ -82,7 +82,7 @@ double max_stretch_ratio(const scene::Scene& scene, std::vector<std::string>& se
 }
 
 // Measured for 47 values of gravity from 9.6 to 10 m/s²: one run stretches to 1.1003 times the limit, in a step that
-// pushes it out of a contact; all others to at most 0.82.
+// pushes it out of a contact; all others stretch to at most 0.82 times the limit.
 TEST(StretchLimitInAScene, IsKeptWhereABallStrikesAHangingSheet) {
   std::vector<std::string> seen_warnings;
   int beyond = 0;
@@ -94,7 +94,7 @@ TEST(StretchLimitInAScene, IsKeptWhereABallStrikesAHangingSheet) {
   }
   EXPECT_LE(beyond, 1);
   EXPECT_LE(std::ssize(seen_warnings), beyond);
-  // Measured for gravity from 9.6 to 10 m/s²: 1.9 to 2.1 %, and 3.7 to 6.1 % if the limit is far away.
+  // Without the limit the sheet stretches by 3.7 to 6.1 %, with it by 1.9 to 2.1 % (gravity from 9.6 to 10 m/s²).
   EXPECT_GT(
       9 * max_stretch_ratio(support::scene_of_text(kImpact, {"cloth.sheet.material.max_stretch=9"}), seen_warnings),
       0.035);
@@ -105,8 +105,8 @@ TEST(StretchLimitInAScene, GoesOnFromASavedState) {
   EXPECT_EQ(continued.difference, "");
 }
 
-// Within one step of 10 ms the sheet cannot slip past the plate (measured: 23 and 22 times the limit). Shorter steps
-// keep the ratio to 3.5 and 4.9, in single steps.
+// Within one step of 10 ms the sheet cannot slip past the plate: it would stretch to 23 and 22 times the limit. Shorter
+// steps keep it to 3.5 and 4.9 times the limit, and this in single steps only (measured).
 TEST(StretchLimitInAScene, IsKeptBeforeAPlateThatComesAt30MetresASecond) {
   std::vector<std::string> seen_warnings;
   for (const char* gravity : {"-9.81", "-9.82"})

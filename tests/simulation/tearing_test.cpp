@@ -1,4 +1,4 @@
-// Seams that tear: the load that they bear, where they part, and saved states.
+// Seams that tear: the load that they bear, where they open, and saved states.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

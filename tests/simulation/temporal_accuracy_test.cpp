@@ -93,7 +93,7 @@ TEST_F(SwingingSheet, KeepsTheSecondOrderInAir) {
     const double coarse = rms_distance(end(integrator, 400), exact), fine = rms_distance(end(integrator, 800), exact);
     std::printf("%-18s in air, step 1/800: error %.2e m, order %.2f\n", name_of(integrator).c_str(), fine,
                 std::log2(coarse / fine));
-    // Measured: 2.01 and 2.00; with drag as a mean over the step 1.1, and 9 to 34 times the error.
+    // Measured order: 2.01 and 2.00. If drag were the mean over the step, 1.1, and the error 9 to 34 times as large.
     EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << name_of(integrator);
   }
 }
@@ -110,7 +110,8 @@ TEST_F(SwingingSheet, ErrorFollowsTheToleranceWithTheExponentOfEachMethod) {
       const double error = rms_distance(end.x, exact.x);
       std::printf("%-18s %11.2e %6d %8d %10.2e %8.2f %10.2f\n", name_of(integrator).c_str(), tolerance, end.steps,
                   end.rejected, error, before > 0 ? std::log2(before / error) : 0, end.estimate / error);
-      // The controller keeps a step that is right within a tenth, so one halving may deviate by a fifth.
+      // The controller keeps a step length that is right within a tenth, so the error of one halving may deviate by a
+      // fifth.
       if (before > 0) {
         EXPECT_LT(error, before);
       } else {

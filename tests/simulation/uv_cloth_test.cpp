@@ -129,7 +129,8 @@ TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
   double area = 0;
   for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t) area += mesh::rest_area(cloth.sheet, t);
   EXPECT_NEAR(area, 2 * 0.33 * 0.3, 1e-6);  // to the single precision of files in assimp
-  // Faces determine the numbering of vertices, so the test compares places: the distance to the nearest earlier one.
+  // The faces of the file determine the numbering of vertices. The test therefore takes the distance from each place to
+  // the nearest place of the earlier run.
   const auto off = [&] {
     Simulation again(read);
     for (int k = 0; k < kOn; ++k) again.advance();

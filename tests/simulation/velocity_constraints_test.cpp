@@ -59,7 +59,7 @@ TEST(VelocityConstraintsInScenes, ClothOnAPlaneRestsWithoutDrift) {
     furthest = std::max(furthest, (frames[50].cloths[0][i] - frames[0].cloths[0][i]).norm());
     moved = std::max(moved, (frames[50].cloths[0][i] - frames[25].cloths[0][i]).norm());
   }
-  // It slides for one or two steps, until friction knows the normal force.
+  // The patch slides for one or two steps, until friction knows the normal force.
   EXPECT_LT(furthest, 2e-4);
   // A sticking patch does not move; with springs it creeps by up to 1e-4 m in this time.
   EXPECT_LT(moved, 1e-9);
@@ -118,8 +118,8 @@ scene::Scene patch_on_tray(double friction, std::vector<scene::PoseKey> keys) {
   return scene;
 }
 
-// The patch must not stay in place because one half sticks while the other slides, in alternating steps (measured: up
-// to 40 degrees).
+// The patch must slip as a whole. If its halves stuck in turn, in alternating steps, it would stay in place (measured:
+// up to 40 degrees).
 TEST(VelocityConstraintsInScenes, ClothOnATiltingTraySlipsAsABlockDoes) {
   constexpr double kTurn = 10 * std::numbers::pi / 180;  // [rad/s]; the tray turns from 0.4 s on
   for (double mu : {0.1, 0.3, 0.6}) {
@@ -138,14 +138,14 @@ TEST(VelocityConstraintsInScenes, ClothOnATiltingTraySlipsAsABlockDoes) {
       const Vec3 down(std::cos(angle), 0, -std::sin(angle));
       double of_patch = 0;
       for (const Vec3& point : x) of_patch += down.dot(point) / static_cast<double>(x.size());
-      // Implicit Euler leads by half a step times the speed; sliding begins up to half a degree, 0.05 s, late.
+      // Implicit Euler is ahead by half a step times the speed. Sliding begins up to half a degree, 0.05 s, late.
       EXPECT_NEAR(of_patch, distance, 0.02 * distance + 0.05 * speed + 0.001)
           << "friction " << mu << ", " << angle / kTurn * 10 << " degrees";
     }
   }
 }
 
-// The same for a tray that starts with an acceleration [m/s²]; its key frames are piecewise linear.
+// The same for a tray that starts with an acceleration [m/s²]. Its key frames are piecewise linear.
 TEST(VelocityConstraintsInScenes, ClothOnATrayThatStartsLagsAsABlockDoes) {
   constexpr double kMu = 0.3;
   for (double acceleration : {0.9 * kMu * kGravity, 1.1 * kMu * kGravity, 2 * kMu * kGravity}) {
@@ -159,7 +159,7 @@ TEST(VelocityConstraintsInScenes, ClothOnATrayThatStartsLagsAsABlockDoes) {
     for (const Vec3& x : frames.back().cloths[0])
       distance += x.x() / static_cast<double>(frames.back().cloths[0].size());
     const double expected = 0.5 * std::min(acceleration, kMu * kGravity) * 0.8 * 0.8;
-    // Euler adds half of the last step's motion and half of the tray's first step: 1.25 and 2.5 %.
+    // Euler adds half of the last step's motion, 1.25 %, and half of the tray's first step, 2.5 %.
     EXPECT_NEAR(distance, expected, 0.04 * expected) << acceleration << " m/s²";
   }
 }
@@ -207,14 +207,14 @@ TEST(VelocityConstraintsInScenes, NothingIntersectsAndADrapeComesToRest) {
     for (const auto& frame : support::run_scene(scene)) {
       EXPECT_EQ(frame.pairs, 0u) << frame.between << " in frame " << frame.report.frame << " at " << step << " s";
       if (frame.report.frame >= 120) {
-        // A fold topples late, at 6.6 mm/s; then it creeps at 0.7 to 0.8 mm/s, less than anybody sees.
+        // A fold topples before frame 140, at 6.6 mm/s. Then it creeps at 0.7 to 0.8 mm/s, which is invisible.
         EXPECT_LT(frame.rms_speed, frame.report.frame < 140 ? 8e-3 : 1e-3)
             << "in frame " << frame.report.frame << " at " << step << " s";
         steps += frame.report.steps;
         iterations += frame.report.newton_iterations;
       }
     }
-    // Measured: 2.1 or 3.2, depending on the remaining fold; 13 per step of 40 ms if walls are not kept between steps.
+    // Measured per step: 2.1 or 3.2, depending on the remaining fold; 13 at 40 ms if walls were not kept between steps.
     EXPECT_LT(iterations, 4 * steps) << "at " << step << " s";
   }
 }

@@ -20,8 +20,8 @@ std::string hanging(double duration, const std::string& pin, const std::string& 
          pin + "\n" + more;
 }
 
-// At 1.3 m/s the edge returned in all of four runs; at 1 to 1.5 m/s it is chaotic whether the crushed edge curls and
-// hooks (2 of 9 runs).
+// At 1 to 1.5 m/s it is chaotic whether the crushed edge curls and hooks (2 of 9 runs). At 1.3 m/s the edge returned in
+// all of four runs.
 const std::string kIntoTheFloor = hanging(
     1.9,
     "keys = [{ time = 0 }, { time = 0.7, offset = [0, 0, -0.9] }, { time = 0.9 }, { time = 1.4, offset = [0, 0, 0] }]",
@@ -96,7 +96,7 @@ std::string taut(const std::string& name, const std::string& z) {
 }
 const std::string kIntoATautSheet = hem_into(taut("taut", "0.6"));
 const std::string kIntoTwoLayers = hem_into(taut("one", "0.6") + taut("two", "0.595"));
-// The hems may hook and stay so (one of fifteen values of gravity from 9.7 to 9.88 m/s²: 9.81).
+// Gravity is 9.8 m/s²: at 9.81, one of fifteen values from 9.7 to 9.88 m/s², the hems hook and stay hooked.
 const std::string kIntoAnotherHem =
     "[physics]\ngravity = [0, 0, -9.8]\n" + hem_into(
                                                 "[[cloth]]\nname = 'other'\nsize = [0.3, 0.3]\nparticles = [13, "
@@ -137,7 +137,7 @@ TEST_P(PressingPin, LagsBehindBeforeItStretchesWhatItPressesOn) {
     }
   }
   EXPECT_GT(lagging, 4);
-  // Measured: 1.5 to 3.6 times as many.
+  // Measured: a frame in which a pin lags takes 1.5 to 3.6 times as many iterations.
   EXPECT_LT(iterations_lagging * free, 5 * iterations_free * lagging) << "frames in which it lags take longer";
 }
 
@@ -153,9 +153,9 @@ INSTANTIATE_TEST_SUITE_P(SlowOn, PressingPin,
                                            Obstructed{"layers", kIntoTwoLayers}),
                          name_of_obstructed);
 
-// The edge starts 0.15 m above the floor, turns by 90 degrees, half of it below the floor, and turns back. The threads
-// of what is already held pull at its last corner: with only its fraction of the pin's force the corner would stay 1 mm
-// off for good.
+// The edge starts 0.15 m above the floor, turns by 90 degrees, half of it below the floor, and turns back. Threads of
+// particles that have returned pull at the last corner. With only its fraction of the pin's force, the corner would
+// stay 1 mm off.
 TEST(LaggingCorner, ReturnsAgainstTheThreadsThatHangOnIt) {
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 2\n[[cloth]]\nname = 'sheet'\nsize = [0.5, 0.5]\nparticles = [21, 21]\n"
@@ -175,7 +175,7 @@ TEST(LaggingPin, IsHeldAgainWhileItMovesOn) {
               "[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.6, 0.4, 0.6]\nposition = [0, 0.4, 0.6]\n"));
   const auto frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
   EXPECT_EQ(frames[10].report.lagging_particles, 13);
-  // From a quarter of a second after it has left the box; it moves by 50 mm per frame.
+  // Frames from a quarter of a second after the edge has left the box; it moves by 50 mm per frame.
   for (std::size_t k = 19; k < frames.size(); ++k) {
     EXPECT_EQ(frames[k].report.lagging_particles, 0) << "frame " << k;
     const double y = 0.4 - (static_cast<double>(k) / 25 - 0.3);
@@ -196,9 +196,9 @@ TEST(SoftPin, GivesUnderTheWeightByItsStrength) {
   EXPECT_NEAR(sag, weight / (13 * 5), 0.02 * weight / (13 * 5));
 }
 
-// The upper row is held. A pull that fades over 0.2 m moves particles below it to where the motion of that row takes
-// them: at the end of a fast swing they are closer to that place than without the pull, the more so the nearer they are
-// to the row. Farther below nothing is pulled.
+// The upper row is held. A pull that fades over 0.2 m draws the particles below to where the rigid motion of that row
+// takes them. At the end of a fast swing they are closer to these places than without the pull, the more so the nearer
+// they are to the row. Farther below nothing is pulled.
 TEST(FadingPin, DrawsWhatIsAroundAndLeavesTheRest) {
   const std::string keys = "keys = [{ time = 0 }, { time = 0.2, offset = [0.1, 0.6, 0.1], rotation = [0, 0, 60] }]\n";
   const auto distances = [&](const std::string& pin) {
@@ -289,7 +289,8 @@ TEST(Doubts, NamePinsThatDrawFartherApartThanTheClothIs) {
     return find_warnings(
         support::scene_of_text(hanging(1, "keys = [{ time = 0 }, { time = 1, " + upper_keys + " }]", more)));
   };
-  // 0.19 m more than 0.4 m; 10 % of that after a fifth of the time, detected at the next of 100 samples.
+  // The pins are 0.4 m apart and separate by 0.19 m. That is 10 % after a fifth of the time, found at the next of 100
+  // samples.
   const auto apart = of("offset = [0, 0, 0.19]", lower);
   ASSERT_EQ(apart.size(), 1u);
   EXPECT_EQ(

@@ -38,7 +38,7 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
     expected.block<3, 3>(3 * i, 3 * i) += (0.5 + i) * Mat3::Identity();
   }
   assembly.keep_constant();
-  // start() clears what was added before, except for the constant part.
+  // Rows are assembled twice: start() clears what the first time added, except for the constant part.
   for (int time = 0; time < 2; ++time) {
     assembly.start(0, 4);
     assembly.start(4, kRows);
@@ -59,7 +59,7 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
   Eigen::MatrixXd written = Eigen::MatrixXd::Zero(3 * kRows, 3 * kRows);
   matrix.for_each_block(0, kRows,
                         [&](Index i, Index j, const auto& block) { written.block<3, 3>(3 * i, 3 * j) = block; });
-  // The sums of a row have another order: measured 1e-15.
+  // Tolerance: the summands of a row are added in another order (measured: 1e-15).
   EXPECT_LT((written - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 

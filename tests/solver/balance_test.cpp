@@ -26,7 +26,7 @@ Vec3 sum_of(const Eigen::VectorXd& forces, Index begin, Index end) {
 
 struct Left {
   Eigen::VectorXd forces;  // residual in the free directions
-  double work = 0;         // of the residual along the motion with the solution
+  double work = 0;         // of the residual along `motion` plus the solution
   double error = 0;        // in the energy norm
 };
 
@@ -89,7 +89,7 @@ TEST(Balance, LeavesConstrainedDirectionsAndOtherPartsAsTheyAre) {
   }
 }
 
-// If the motion is a translation, two of the conditions are the same.
+// If the motion is a translation, no work along it means no resultant along it: two of the conditions coincide.
 TEST(Balance, OfATranslationIsThatOfItsForcesAlone) {
   for (const bool single : {false, true}) {
     Random random(8);
@@ -104,7 +104,7 @@ TEST(Balance, OfATranslationIsThatOfItsForcesAlone) {
     cg.prepare(system);
     cg.solve(b, {}, 4, x, {.motion = motion});
     const Left left = left_by(system, b, std::vector<Vec3>(b.size(), Vec3::Zero()), x);
-    // As above, for a motion that is a thousand times as large.
+    // Rounding as in the first test, for a motion that is a thousand times as large.
     for (Index begin : {0, 20, 40}) EXPECT_LT(sum_of(left.forces, begin, begin + 20).norm(), single ? 0.01 : 1e-9);
     for (const Vec3& v : x) EXPECT_LT(v.norm(), 10);
   }

@@ -98,7 +98,7 @@ TEST(BlockMatrix, WithIsotropicBlocksIsTheDenseMatrix) {
   const auto x = random.vectors(kRows);
   std::vector<Vec3> y(kRows), pieces(kRows);
   matrix.multiply<Vec3>(x, y, 0, kRows);
-  // As above.
+  // The same tolerance as in the test of the product above.
   EXPECT_LT((testing::flat(y) - expected * testing::flat(x)).cwiseAbs().maxCoeff(), 2e-13);
   matrix.multiply<Vec3>(x, pieces, 0, 5);
   matrix.multiply<Vec3>(x, pieces, 5, kRows);

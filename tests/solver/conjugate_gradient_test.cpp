@@ -40,7 +40,7 @@ TEST(ConjugateGradient, AgreesWithTheDirectSolutionUnderContactsAndConstraints) 
     EXPECT_TRUE(report.converged);
     EXPECT_TRUE(report.definite);
     const Eigen::VectorXd expected = direct_solution(system, b);
-    // 1e-13 in the energy norm, times the root of the condition number, about 30, and rounding.
+    // Tolerance: 1e-13 in the energy norm, times about 30, the root of the condition number, plus rounding.
     EXPECT_LT((testing::flat(x) - expected).norm(), 1e-10 * expected.norm()) << "seed " << seed;
   }
 }
@@ -57,7 +57,7 @@ TEST(ConjugateGradient, WithGroupsAgreesWithTheDirectSolutionUnderContactsAndCon
     cg.prepare(system);
     EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x).converged);
     const Eigen::VectorXd expected = direct_solution(system, b);
-    // As above, with a factor of ten for rounding: a held aggregate has a small substitute value.
+    // Tolerance of the previous test, times ten for rounding: a held aggregate has a small substitute value.
     EXPECT_LT((testing::flat(x) - expected).norm(), 1e-9 * expected.norm()) << counts.size() << " levels";
     for (const ParticleConstraint& c : system.constraints) {
       if (c.free.isZero(0)) {
@@ -103,7 +103,7 @@ TEST(ConjugateGradient, APartWithAnotherVersionIsReadAnew) {
 }
 
 TEST(ConjugateGradient, GroupsCarryAPushAlongAStiffChainInFewerIterations) {
-  // A chain of 200 particles; its springs are a million times stiffer than what holds each particle in place.
+  // A chain of 200 particles. Its springs are a million times stiffer than those that hold each particle in place.
   constexpr Index kRows = 200;
   std::vector<std::pair<Index, Index>> links;
   for (Index i = 1; i < kRows; ++i) links.emplace_back(i - 1, i);
@@ -219,7 +219,8 @@ TEST(ConjugateGradient, KnowsTheErrorThatItLeavesFromItsOwnSteps) {
       const LinearReport report = cg.solve(b, {}, iterations, x);
       EXPECT_EQ(report.iterations, iterations);
       EXPECT_FALSE(report.converged);
-      // The estimate is of an earlier iterate, so at least the remaining error; a digit takes four iterations here.
+      // The estimate is that of an earlier iterate, so it is at least the remaining error. Four iterations gain a digit
+      // here.
       const double error = energy_norm(system, testing::flat(x) - expected);
       EXPECT_GT(report.errors[0], error);
       EXPECT_LT(report.errors[0], 100 * error);
@@ -245,7 +246,8 @@ TEST(ConjugateGradient, EndsWhereTheErrorIsSmallEnoughForEachPart) {
 }
 
 TEST(ConjugateGradient, ErrorsCountAsFarAsTheyShowInTheMetric) {
-  // Particles of weight 1 on springs of 1e8 and of 1: in the mass-weighted norm the first hardly move.
+  // Particles of weight 1, half of them on springs of 1e8, half on springs of 1. In the mass-weighted norm only the
+  // latter count, because the former hardly move.
   LinearSystem system;
   constexpr Index kRows = 40;
   system.matrix = BlockMatrix(kRows, {});
@@ -364,7 +366,7 @@ TEST(ConjugateGradient, MotionThatAllShareIsExactInSinglePrecisionHoweverStiffTh
   cg.prepare(system);
   const LinearReport report = cg.solve(b, {0.1}, 100, x, {.start = b});
   EXPECT_LE(report.iterations, 1);
-  // Sums of eight blocks in double leave 1e-10 of 1e6; numbers are rounded by 6e-8.
+  // Sums of eight blocks of size 1e6 have a rounding error of 1e-10 in double. Single precision rounds results by 6e-8.
   for (const Vec3& v : x) EXPECT_LT((v - Vec3(1, 2, 3)).norm(), 1e-6);
 }
 
@@ -408,7 +410,7 @@ TEST(ConjugateGradient, NeedsNoMoreIterationsThanThereAreEigenvalues) {
   cg.prepare(system);
   const LinearReport report = cg.solve(b, {1e-8}, 1000, x);
   EXPECT_TRUE(report.converged);
-  // The error of an iterate is known a fifth of all iterations later.
+  // Conjugate gradients know the error of an iterate only a fifth of all iterations later.
   EXPECT_LE(report.iterations, kRows + kRows / 4);
 }
 

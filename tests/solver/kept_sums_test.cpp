@@ -14,7 +14,7 @@ using testing::norm;
 using testing::Random;
 using testing::system_of_parts;
 
-// Sums of an earlier matrix must not outlive the step: a run that resumes there does not have them.
+// Sums of an earlier matrix must not outlive the step, because a run that resumes after it does not have them.
 TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
   Random random(37);
   LinearSystem system = system_of_parts(random);

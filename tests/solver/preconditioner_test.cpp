@@ -47,7 +47,7 @@ Eigen::MatrixXd threefold(const Eigen::MatrixXd& a) {
   return result;
 }
 
-// For each particle, the stiffness of the terms if all particles on its side of a term move with it.
+// For each particle, the stiffness of its terms if all particles with weights of the same sign move together.
 Eigen::MatrixXd lumped_terms(const LinearSystem& system) {
   const Eigen::Index rows = system.matrix.rows();
   Eigen::MatrixXd lumped = Eigen::MatrixXd::Zero(3 * rows, 3 * rows);
@@ -61,7 +61,7 @@ Eigen::MatrixXd lumped_terms(const LinearSystem& system) {
   return lumped;
 }
 
-// The sum of the header; the blocks of A_l are used on all levels but the last.
+// The sum stated in preconditioner.hpp. On all levels but the last, A_l has diagonal blocks only.
 Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
   const Eigen::Index rows = system.matrix.rows();
   const Eigen::MatrixXd s = testing::projection(system), identity = Eigen::MatrixXd::Identity(s.rows(), s.cols());
@@ -106,8 +106,8 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
   return s * sum * s;
 }
 
-// Contacts of one to four particles, as stiff as the springs, within aggregates and across them, and constraints: with
-// one particle per aggregate, some aggregates are held.
+// A system with constraints, and with contacts of one to four particles, as stiff as the springs, within aggregates and
+// across them. With one particle per aggregate, constraints hold some aggregates.
 LinearSystem system_with_contacts(Random& random) {
   LinearSystem system = testing::random_system(kSystemRows, 30, random);
   for (Index i = 0; i < kSystemRows; ++i) system.norm_weights.push_back(random.number(0.01, 0.1));
@@ -137,16 +137,16 @@ TEST(Preconditioner, IsTheSumOverLevelsWithContactsInAll) {
       Random random(41);
       LinearSystem system = system_with_contacts(random);
       testing::cut_groups(system, counts);
-      // Relative to so little mass, all threads are stiff.
+      // With so little mass, all threads count as stiff (see `stiff_particle` in preconditioner.hpp).
       if (stiff)
         for (double& weight : system.norm_weights) weight *= 1e-6;
       const Eigen::MatrixXd expected = dense_preconditioner(system, stiff);
       std::vector<Vec3> r = random.vectors(kSystemRows);
       for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
       const Eigen::VectorXd wanted = expected * testing::flat(r);
-      // The shift is 1e-13 of the trace, times the condition number of the blocks, about 1e2.
+      // Tolerance: the blocks are shifted by 1e-13 of their trace; their condition number is about 1e2.
       EXPECT_LT((applied<double>(system, r) - wanted).norm(), 1e-10 * wanted.norm()) << counts.size() << " levels";
-      // Rounding of 6e-8 of entries that may cancel, times a factor of ten.
+      // Tolerance: single precision rounds by 6e-8, and entries may cancel: a factor of ten.
       EXPECT_LT((applied<float>(system, r) - wanted).norm(), 1e-6 * wanted.norm()) << counts.size() << " levels";
     }
 }
@@ -155,12 +155,12 @@ TEST(Preconditioner, InterpolatesWhereASingleParticleIsLight) {
   Random random(47);
   LinearSystem system = system_with_contacts(random);
   testing::cut_groups(system, {20, 6});
-  // A finer mesh has lighter particles: that is no reason for aggregates to move as a whole.
+  // A single light particle, as in a finer region of a mesh, must not make aggregates move as wholes.
   system.norm_weights[7] *= 1e-6;
   std::vector<Vec3> r = random.vectors(kSystemRows);
   for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
   const Eigen::VectorXd wanted = dense_preconditioner(system, false) * testing::flat(r);
-  // As above.
+  // The same tolerance as in the previous test.
   EXPECT_LT((applied<double>(system, r) - wanted).norm(), 1e-10 * wanted.norm());
 }
 

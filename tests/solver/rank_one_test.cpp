@@ -73,7 +73,7 @@ TEST(RankOneTerms, OfOtherPartsDoNotCountAndThoseOfOwnPartsDo) {
   cg.prepare(system);
   const std::vector<std::size_t> chosen{1};
   EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, {}, chosen).converged);
-  // As if all other particles were held.
+  // Expected: the solution of the same system with all particles of other diagonal blocks held.
   LinearSystem held = system;
   held.constraints.clear();
   for (const ParticleConstraint& c : system.constraints)

@@ -14,7 +14,8 @@ using testing::Random;
 
 constexpr Index kRows = 60;  // of the first block; two bodies follow
 
-// Springs of 1e4 N/m between the particles of each body.
+// A soft block and two bodies of four particles, with springs of 1e4 N/m between the particles of each body. Wide terms
+// connect a particle of the soft block to a body.
 LinearSystem system_with_bodies(Random& random) {
   const BlockMatrix soft = testing::random_matrix(kRows, random);
   std::vector<std::pair<Index, Index>> pairs;
@@ -77,7 +78,7 @@ TEST(WideTerms, AreSolvedWithStiffBodies) {
   const LinearReport report = cg.solve(b, {1e-6}, 1000, x);
   EXPECT_TRUE(report.definite);
   EXPECT_LT(energy(testing::flat(x) - expected), 1e-5 * energy(expected));
-  // Without wide terms the coarsest level solves the bodies: iterations as for two or three eigenvalues.
+  // Without wide terms, the coarsest level solves the bodies exactly, and only a few distinct eigenvalues remain.
   LinearSystem bodies = system;
   std::erase_if(bodies.wide_terms, [](const WideTerm&) { return true; });
   std::vector<Vec3> of_bodies(b.size(), Vec3::Zero()), y(b.size());

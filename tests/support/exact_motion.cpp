@@ -324,7 +324,7 @@ Roots::Polynomial_1 in_z(const Polynomial<Integer>& p) {
 }
 
 // A time at which all conditions hold. If `zero` vanishes identically, contact exists at t = 0, or it begins where
-// another condition reaches zero: that is a contact of simpler features, which are tested as well.
+// another condition reaches zero. The latter is a contact of simpler features, which are tested as well.
 std::optional<double> decide(const Conditions<Integer>& k) {
   if (k.impossible) return {};
   if (fulfilled(k, [](const auto& p) { return sure_sign(p.at_start()); })) return 0.0;

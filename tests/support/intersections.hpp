@@ -39,7 +39,7 @@ struct IntersectingPair {
 
 struct Judgement {
   std::vector<IntersectingPair> pairs;  ///< sorted, each pair once
-  std::vector<JudgedFace> degenerate;   ///< faces without area: they have no interior to intersect and are not judged
+  std::vector<JudgedFace> degenerate;   ///< triangles without area and pieces of rope without length: not judged
 };
 
 /// A face (a, b, b) is a piece of rope: the segment between its ends.

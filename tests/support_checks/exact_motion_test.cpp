@@ -213,8 +213,8 @@ TEST(ExactMotion, AgreesWithStandingTrianglesAtSampledTimes) {
       // Finds every intersection at sampled times. Times k/32 keep the coordinates exact.
       for (int k = 0; k <= 32 && !contact.found; ++k)
         ASSERT_FALSE(intersect_at(a, b, k / 32.0)) << "query " << query << " at " << k / 32.0;
-      // A contact that is found is real: at that time they intersect, or are apart by rounding only (1e-7 from the
-      // rounding of the time of a double root; 1e-14 otherwise).
+      // A contact that is found is real: at its time the triangles intersect, or are apart by rounding only (1e-7 by
+      // rounding the time of a double root; 1e-14 otherwise).
       if (contact.found && !intersect_at(a, b, contact.time)) {
         ASSERT_LE(distance_at(a, b, contact.time), 1e-7) << "query " << query;
       }

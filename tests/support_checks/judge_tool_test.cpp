@@ -18,7 +18,7 @@ struct Outcome {
 
 class JudgeToolTest : public TestFolder {
  protected:
-  // Writes one face with its lowest corner at height z over the inside of the face of `floor`.
+  // Writes one face with its lowest corner at height z over the inside of the face of write_floor().
   void write_spike(const std::string& name, double z) {
     mesh::write_ply(folder_ / name, std::vector<Vec3>{{0.25, 0.25, z}, {0.25, 0.25, z + 1}, {0.5, 0.25, z + 1}},
                     std::vector<std::array<Index, 3>>{{0, 1, 2}});

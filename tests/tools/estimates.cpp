@@ -1,5 +1,5 @@
-// Compares the error that runs report (weft run --error) with their true error: twelve scenes, three integrators, five
-// steps. `weft_estimates DIR` writes estimates.md, estimates.csv and estimates.svg there.
+// Compares the error that runs report (weft run --error) with their true error, for twelve scenes, three integrators
+// and five step lengths. `weft_estimates DIR` writes estimates.md, estimates.csv and estimates.svg to DIR.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ namespace {
 constexpr double kSteps[] = {0.04, 0.02, 0.01, 0.005, 0.0025};  // [s]
 // Reference runs use an eighth of the shortest step, and a tenth of newton_tolerance.
 constexpr double kTruthCut = 8, kTruthNewton = 0.1;
-constexpr double kShift = 1e-6;  // shift of the start of every second reference run [m]
-constexpr double kFactor = 3;    // goal: estimates are within this factor
+constexpr double kShift = 1e-6;  // start noise of the second half of the reference runs [m]
+constexpr double kFactor = 3;    // goal: estimates are within this factor of the true error
 
 struct Case {
   const char *name, *cloth, *rest;
@@ -73,8 +73,8 @@ scene::Scene scene_of(const Case& one) {
   return loaded.scene;
 }
 
-/// Reference runs of the scene: both second-order methods, each from the start and from a start moved by a micrometre.
-/// If the motion is chaotic, they are samples of possible results.
+/// Reference runs of the scene: both second-order methods, each from the start and from a start with noise of a
+/// micrometre. If the motion is chaotic, they are samples of possible results.
 std::vector<Trajectory> reference_runs_of(scene::Scene scene) {
   scene.time.step = std::end(kSteps)[-1] / kTruthCut;
   scene.solver.newton_tolerance *= kTruthNewton;
@@ -89,7 +89,7 @@ std::vector<Trajectory> reference_runs_of(scene::Scene scene) {
   return references;
 }
 
-// Root mean square of the difference between the run and the reference runs.
+// Root mean square, over the reference runs, of their differences from the run.
 double distance(const Trajectory& run, const std::vector<Trajectory>& references, Quantity quantity) {
   double sum = 0;
   for (const Trajectory& reference : references) sum += std::pow(at(compare(run, reference), quantity), 2);
@@ -102,7 +102,7 @@ struct Row {
   double step;
   std::string failure = {};
   bool is_lower_bound = false;
-  // Estimate; distance to the reference runs; distance of one reference run to all [m].
+  // Estimated error; distance to the reference runs; distance of the first reference run to all of them [m].
   double reported = 0, actual = 0, reference_spread = 0;
   double centre_reported = 0, centre_actual = 0;
   std::array<double, kErrorSources> parts{};

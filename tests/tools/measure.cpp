@@ -1,5 +1,5 @@
-// weft_measure: simulates scenes without rendering and prints cost and measures of each frame; with --table one row per
-// scene, as Markdown.
+// weft_measure: simulates scenes without rendering and prints cost and measures of each frame. With --table, prints one
+// row per scene, as Markdown.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -97,7 +97,7 @@ void print_row(const std::string& scene, const std::vector<MeasuredFrame>& frame
   std::fflush(stdout);
 }
 
-// Heights are from the last frame.
+// Heights of cloths are those of the last frame.
 void print_summary(const std::vector<MeasuredFrame>& frames) {
   const Summary sum(frames);
   const double steps = static_cast<double>(frames.size()) - 1;

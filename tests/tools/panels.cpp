@@ -29,7 +29,8 @@ std::array<Vec2, 3> corners_of(const garment::Garment& garment, std::size_t t) {
   return {m[0], m[1], m[2]};
 }
 
-/// Smallest angles of all triangles, in classes of 5 degrees, and the fraction of triangles that are halves of squares.
+/// Text with the smallest angles of all triangles, in classes of 5 degrees, and the fraction of the area in triangles
+/// that are halves of squares.
 std::string quality(const garment::Garment& garment, double spacing) {
   std::array<int, 12> classes{};
   double min_angle = 180, mean = 0, squares = 0, area = 0;
@@ -112,7 +113,7 @@ int main(int count, char** arguments) try {
   }
   const double spacing = std::stod(arguments[2]);
   const garment::Pattern pattern = garment::load_pattern(arguments[1], arguments[1]);
-  // The place of the start is not drawn, so any wearer will do.
+  // Only the flat panels are drawn, so any wearer will do.
   scene::Scene scene;
   scene.characters.emplace_back().source = scene::Mannequin{};
   environment::Wearers wearers(scene);

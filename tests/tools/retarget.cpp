@@ -40,11 +40,11 @@ struct Follows {
   double slip = 0;                   // largest horizontal displacement of the toe joint during a contact [m]
   double theirs = 0;                 // the same for the motion itself, scaled by the ratio of leg lengths [m]
   double toes = 0;                   // the same for the middle of the skin of the toes, or of the foot without toes [m]
-  double below = 0, above = 0;       // of the lowest vertex below and above the floor, while a foot is on it [m]
+  double below = 0, above = 0;       // extreme heights of the lowest vertex of the feet while one stands [m]
   std::size_t steps = 0, keys = 0;
   double when = 0;
-  // Root mean square of the difference between the hand's offset to the other hand, or to the hips, and that of the
-  // motion scaled to the body, over the keys in which the hand is near it [m].
+  // Offsets of a hand from the other hand, and from the hips: root mean square of the difference to the same offset of
+  // the motion, scaled to the body [m]. Only keys at which the hand is near the other hand or the hips count.
   double hands = 0, hips = 0;
   std::size_t hands_keys = 0, hips_keys = 0;
 };
@@ -236,7 +236,7 @@ Character without_names(Character character) {
   return character;
 }
 
-/// Prints which joints of a skeleton differ if its nodes have no names, and returns the joints found without names.
+/// Finds joints without names of nodes. Prints those that differ from the joints found with names; returns all.
 std::vector<Index> compare_without_names(const Character& character) {
   const auto named = find_joints(character), found = find_joints(without_names(character));
   const auto name = [&](Index node) { return node < 0 ? "none" : character.nodes[node].name.c_str(); };

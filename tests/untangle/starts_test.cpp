@@ -66,8 +66,8 @@ double max_displacement(const frame::FrameSnapshot& a, const frame::FrameSnapsho
   return max_distance;
 }
 
-/// Expects that the given start intersects, by the exact judge, but neither the first frame nor the following ones; and
-/// that the scene is refused without `start`.
+/// Expects that the given start intersects, and that neither the first frame nor the next three do, by the exact judge.
+/// Expects that the scene is refused without `start`.
 frame::SnapshotPtr expect_untangled(const scene::Scene& scene, std::size_t least_before = 1) {
   const frame::SnapshotPtr given = simulation::view_start(scene).snapshot;
   EXPECT_GE(judged_pairs(*given), least_before);
@@ -94,14 +94,15 @@ TEST(UntangledStart, ASheetThroughABallGoesOverToTheSmallerSide) {
     scene.cloths.push_back(sheet("sheet", {0, 0, height}));
     add_obstacle(scene, "ball", scene::Sphere{0.2});
     const frame::SnapshotPtr first = expect_untangled(scene, 50);
-    // The middle particle is at that pole, no farther away than the cloth's thickness.
+    // The middle particle is at the pole of that side, no farther from it than the thickness of the cloth.
     const Vec3& middle = first->states[0].positions[12 + 25 * 12];
     EXPECT_NEAR(middle.z(), std::copysign(0.2, height), 0.004);
     EXPECT_LT(max_displacement(*first, *simulation::view_start(scene).snapshot), 0.2);
   }
 }
 
-// A region of one particle has the size of the cells around it: as a point it would be inside a piercing body.
+// A region inside a body may consist of one particle. Its size includes half of the cells around it: as a point, the
+// region would be so small that the body would count as passing through the cloth.
 TEST(UntangledStart, OneParticleOfACoarseMeshGetsOutOfABall) {
   scene::Scene scene = empty_scene();
   scene.cloths.push_back(sheet("sheet", {0, 0, 0.02}, 0.6, 7));

@@ -21,7 +21,7 @@ TEST(CantileverStrip, LightOrHeavyFollowsTheElastica) {
     }
 }
 
-// Pinned as a user pins it: the border cell is held, and the clamp acts at its inner row.
+// The strip is pinned as a user pins it: the border cell is held, and the clamp acts at its inner row.
 TEST(CantileverStrip, ComesToTheElasticaInSecondOrder) {
   const testing::ElasticaPoint& point = testing::kHeavyElastica[4];
   for (ClothShape shape : {ClothShape::quads, ClothShape::aligned_triangles, ClothShape::crossed_triangles}) {

@@ -48,8 +48,8 @@ class Cusick : public support::TestFolder {
   }
 };
 
-// The rim of a plate with ν = 0, clamped at 9 cm and free at 15 cm, sags by 1.940715e-6 m⁴ q / B: the radial solution A
-// + B r² + C ln r + D r² ln r + q r⁴ / 64 B.
+// A plate with ν = 0, clamped at a radius of 9 cm and free at 15 cm, sags at its rim by 1.940715e-6 m⁴ q / B, from the
+// radial solution A + B r² + C ln r + D r² ln r + q r⁴ / 64 B.
 TEST_F(Cusick, PlatesClampAtTheirEdge) {
   constexpr double kSag = 1.940715e-6;
   for (int free : {8, 12, 16}) {
@@ -99,7 +99,7 @@ TEST_F(Cusick, CoefficientIsThatOfAFinerMesh) {
       found.back() += 0.5 * d.coefficient;
     }
   }
-  // Measured: 66.9, 73.0 and 76.4 %. Finer cells keep narrower folds by bending friction.
+  // Measured: 66.9, 73.0 and 76.4 %. In finer cells bending friction keeps narrower folds.
   EXPECT_NEAR(found[1], found[2], 0.05);
 }
 
@@ -108,7 +108,7 @@ TEST_F(Cusick, CoefficientIsThatOfAFinerMesh) {
 scene::Scene square(ClothShape shape, const scene::Material& material) {
   const int particles = shape == ClothShape::crossed_triangles ? 41 : 57;
   scene::Scene scene = testing::sheet_alone(kSpecimenRadius * std::sqrt(std::numbers::pi), particles, 0);
-  // A plate tilted by 0.3 degrees makes all of them fold to the same side.
+  // Gravity tilted by 0.3 degrees makes all specimens fold to the same side.
   scene.physics.gravity = 9.81 * Vec3(0.005, 0.003, -1).normalized();
   scene::Cloth& cloth = scene.cloths[0];
   cloth.shape = shape;
@@ -123,7 +123,7 @@ scene::Scene square(ClothShape shape, const scene::Material& material) {
   return scene;
 }
 
-// Measured: aligned within 2.4 points; crossed, whose cells are 1.4 times as wide, within 5.4; both for leather.
+// Measured, both for leather: aligned triangles within 2.4 points; crossed, with cells 1.4 times as wide, within 5.4.
 TEST_F(Cusick, QuadsDrapeAsTrianglesDo) {
   for (const char* fabric : {"silk", "wool", "leather", "denim"}) {
     std::printf("%s, square:", fabric);

@@ -12,9 +12,9 @@ TEST_P(FirstFrames, HaveNoIntersection) {
   testing::expect_no_intersections(GetParam());
 }
 
-// Runs until the band has folded, the ball is through, the sheet lies, and the first of the eight sheets have landed,
-// in steps of four times the length, where contacts are harder to hold. Whole runs test all with their own step and
-// with twice that.
+// Each run includes the main event of its scene: the band has folded, the ball is through, the sheet lies, the first of
+// the eight sheets have landed. Steps are four times as long as in the scene, which makes contacts harder to solve.
+// every_frame_slow.cpp runs all frames, with steps of the scene and of twice that.
 INSTANTIATE_TEST_SUITE_P(Of, FirstFrames,
                          ::testing::Values(SceneRun{"falling_band", 4, 36}, SceneRun{"ball_through_cloth", 4, 36},
                                            SceneRun{"sphere_drape", 4, 20}, SceneRun{"multi_sheet", 4, 40}),

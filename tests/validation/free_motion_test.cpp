@@ -1,4 +1,4 @@
-// Free cloth conserves what mechanics demands, and falls and drifts in wind as a rigid body does, at default settings.
+// Free cloth conserves its momentum. At default settings it falls, and drifts in wind, as a rigid body does.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,7 +74,7 @@ TEST_P(FreeFall, LeavesAFlatSheetFlatByEveryMethodAtDefaultSettings) {
     // Residuals relative to the weight would allow 0.1 to 0.5 m.
     for (std::size_t i = 0; i < end.size(); ++i)
       ASSERT_LT((end[i] - start[i] - Vec3(0, 0, fallen)).norm(), 1e-6) << name_of(integrator) << ' ' << i;
-    // Euler's method leads by half a step.
+    // Euler's method is ahead by half a step.
     EXPECT_NEAR(fallen, -0.5 * 9.81, 0.5 * 9.81 * 0.011);
   }
 }
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(, FreeFall,
                                                               scene::ClothShape::crossed_triangles)));
 
 TEST(ReleasedCloth, FallsAsFromAStart) {
-  // The history of a step at rest would cost BDF2 half a step of gravity permanently: 20 mm here.
+  // If BDF2 used the history of a body at rest, it would lose half a step of gravity permanently: 20 mm here.
   for (scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.3, 5, 0);
     scene.time.step = 0.01;
@@ -126,8 +126,8 @@ TEST(SteadyAir, TerminalVelocityHangsNotOnTheStep) {
       }
 }
 
-// The gusts are so large that they are the same everywhere on the sheet's path of two seconds: it falls relative to
-// them as in still air.
+// The gusts are so large that they are equal along the sheet's path of two seconds: relative to them the sheet falls as
+// in still air.
 TEST(GustsInARun, CarryASheetThatFalls) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.2, 5, 0);

@@ -92,9 +92,9 @@ constexpr double kDegree = 0.017453292519943295;
 
 class Incline : public ::testing::TestWithParam<scene::Response> {};
 
-// Just above the angle of friction the driving force is a hundredth of the weight. A fall costs a block nothing: of the
-// height that the slope gives it before it rests, friction takes the fraction mu, and during the fall it gains mu times
-// that height. Euler's method leads by half a step in 1.6 s.
+// Just above the angle of friction the driving force is a hundredth of the weight. A fall onto the slope costs a block
+// nothing: in the air it gains the speed that friction takes at the impact. Euler's method is ahead by half a step in
+// 1.6 s, hence the factor 1.61.
 void slide(scene::Response response, const std::vector<std::pair<int, double>>& meshes_and_falls) {
   for (double mu : {0.1, 0.3, 0.6})
     for (double steeper : {0.5, 1.0, 5.0, 45 - std::atan(mu) / kDegree})
@@ -107,7 +107,7 @@ void slide(scene::Response response, const std::vector<std::pair<int, double>>& 
         cloth.pose.position += cloth.pose.rotation * Vec3(0, 0, fall);
         const auto distance = distances_down(scene, 40);
         const double expected = 0.5 * kGravity * (std::sin(angle) - mu * std::cos(angle)) * 1.6 * 1.61;
-        // Measured: at most 0.74 % off Euler's own distance, where friction 0.6 stops a fall.
+        // Measured: at most 0.74 % from this distance, for friction 0.6 after a fall.
         EXPECT_NEAR(distance[40] - distance[0], expected, 0.01 * expected)
             << "friction " << mu << ", " << angle / kDegree << " degrees, after a fall of " << fall << " m, "
             << particles;

@@ -68,8 +68,8 @@ double onset(ClothShape shape, const Strip& cells) {
   return 0.5 * (low + high);
 }
 
-// The clamp prevents warping of the strip's end, which adds a stiffness in proportion to w / L: the narrowest strip is
-// within 3 %, and the line through the last two meets the theory at w = 0.
+// The clamp prevents the end of the strip from warping, which adds a stiffness in proportion to w / L. The narrowest
+// strip is within 3 %, and the line through the last two meets the theory at w = 0.
 TEST(LateralBuckling, BeginsAtTheWeightOfTheory) {
   for (ClothShape shape : {ClothShape::quads, ClothShape::aligned_triangles, ClothShape::crossed_triangles}) {
     std::printf("%s: w/L, onset\n", testing::name_of(shape));

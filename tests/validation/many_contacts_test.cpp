@@ -38,8 +38,8 @@ class ManyContacts : public support::TestFolder {
   }
 
   /// Runs the scene and judges all frames with exact predicates. Without contact the same scene must have
-  /// intersections, otherwise the test would show nothing. One of its 80 to 120 steps may be halved: one of six starts
-  /// of the ribbons, 0.7 mm apart in height, has such a step.
+  /// intersections, otherwise the test would show nothing. One of its 80 to 120 steps may be halved. (This happens to
+  /// the ribbons in one of six starts, 0.7 mm apart in height.)
   static void expect_apart(const std::string& text) {
 #ifndef NDEBUG
     GTEST_SKIP() << "takes long with sanitizers";
@@ -113,8 +113,7 @@ TEST_F(ManyContacts, OfNineRibbonsThatFallIntoAHalfPipeKeepThemApart) {
 TEST_F(ManyContacts, OfABeltRoundThreeTurningRollersKeepThemApart) {
   constexpr double kRing = 0.3, kRoller = 0.06;  // radii [m]
   constexpr double kInside = kRing - kRoller - 0.005;
-  // Distance from the middle at which the path around the rollers is as long as the ring, solving 2 pi kRing = 2 pi
-  // kRoller + 3 sqrt(3) taut.
+  // At this distance from the middle the path around the rollers, 2 π kRoller + 3 √3 taut, is as long as the ring.
   const double taut = 2 * std::numbers::pi * (kRing - kRoller) / (3 * std::numbers::sqrt3);
   std::string text = "[time]\nduration = 1.2\n" + tube(kRing, 0.12, 64, 5) + "material = { friction = 0.6 }\n";
   for (int i = 0; i < 3; ++i) {

@@ -21,7 +21,7 @@ constexpr Point kElastica[] = {
     {0.01, 0.044854}, {0.05, 0.103545}, {0.15, 0.195916}, {0.25, 0.280705}, {0.33, 0.356079}};
 
 constexpr double kFreeLength = 0.5;  // from the tip to the clamp [m]
-constexpr int kStripCells = 20;      // thresholds are 0.5 to 0.9 % low; 1.4 to 2.1 % with half as many cells
+constexpr int kStripCells = 20;      // thresholds are 0.5 to 0.9 % too low; 1.4 to 2.1 % with half as many cells
 constexpr double kFps = 25;
 constexpr int kLowered = 25;   // frame at which the clamp has reached its depth
 constexpr int kReleased = 35;  // frame at which the tip, held until then, is left to friction
@@ -31,7 +31,7 @@ scene::Scene pressed_strip(double depth, double friction) {
   scene::Scene scene = testing::sheet_alone(1, 3, 0);
   scene.time = {.duration = 3, .fps = kFps, .step = 0.01};
   scene.physics.gravity = Vec3::Zero();
-  // Relative to the inertia only, because nothing has weight.
+  // The tolerance is relative to the inertia only, because nothing has weight.
   scene.solver.newton_tolerance = 1e-4;
   scene.solver.linear_tolerance = 1e-3;
   scene.contact.obstacles = true;
@@ -44,7 +44,7 @@ scene::Scene pressed_strip(double depth, double friction) {
   strip.size = {2 * spacing, height};
   strip.particles_weft = 3;
   strip.particles_warp = kStripCells + 2;
-  // The force of 22 B / L² shortens it by 2e-5 of its length; the smallest depth is 1e-2.
+  // The force of 22 B / L² shortens the strip by 2e-5 of its length; the smallest depth is 1e-2.
   strip.material.stretch_weft = strip.material.stretch_warp = 5000;
   strip.material.bend = 1e-3;
   strip.material.bend_viscosity = 2e-4;

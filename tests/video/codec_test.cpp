@@ -68,7 +68,6 @@ TEST_F(CodecTest, LosslessOnesKeepEveryByte) {
   }
 }
 
-// 10 bits and half of the chroma columns: a ramp is decoded to within 3 levels (measured: 2).
 TEST_F(CodecTest, SamePicturesGiveTheSameBytesInEveryKindOfFile) {
   const std::vector<image::Image> pictures{ramp(), ramp()};
   for (const auto& [codec, ending] : {std::pair{Codec::automatic, ".mkv"},
@@ -82,6 +81,7 @@ TEST_F(CodecTest, SamePicturesGiveTheSameBytesInEveryKindOfFile) {
   }
 }
 
+// ProRes has 10 bits and half of the chroma columns. A ramp is decoded to within 3 levels (measured: 2).
 TEST_F(CodecTest, ProResKeepsRamps) {
   write((folder_ / "cut.mov"), Codec::automatic, {ramp()});
   Decoder decoder((folder_ / "cut.mov"));

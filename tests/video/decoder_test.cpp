@@ -36,8 +36,8 @@ class DecoderTest : public support::TestFolder {
   }
 };
 
-// The formula of BT.709 with the nearest chroma sample. Tolerance 5 levels: half a pixel of a slope of 2 levels a
-// pixel, weighted by up to 1.9, and rounding.
+// Expected: the formula of BT.709 with the nearest chroma sample (decode.hpp), without interpolation. Tolerance 5
+// levels: half a pixel with a slope of 2 levels per pixel, weighted by up to 1.9, plus rounding.
 TEST_F(DecoderTest, PicturesAreThoseOfTheFormulaInOrder) {
   write("a.mp4", 7);
   const DecodedVideo expected = decode(folder_ / "a.mp4");

@@ -195,7 +195,7 @@ TEST_F(EncoderTest, SameFramesSameBytes) {
   EXPECT_EQ(read_bytes(folder_ / "a.mp4"), read_bytes(folder_ / "b.mp4"));
 }
 
-// The macroblock tree of x264 depends on uninitialised memory, at sizes such as these.
+// The encoder turns off the macroblock tree of x264, which reads uninitialised memory at sizes such as these.
 TEST_F(EncoderTest, WhatWasInMemoryBeforeHasNoInfluence) {
   for (const auto& [width, height] : {std::pair{64, 36}, {160, 90}, {400, 226}, {720, 404}}) {
     Settings settings;
@@ -233,13 +233,13 @@ TEST_F(EncoderTest, TheFinalNameAppearsOnlyWhenFinished) {
 }
 
 TEST_F(EncoderTest, WhatIsOnDiskBeforeTheEndCanBePlayed) {
-  // A killed process leaves its temporary file in the state of the middle of the run.
+  // A killed process leaves its temporary file as it is in the middle of the run.
   Encoder encoder(folder_ / "a.mp4", small());
   for (int k = 0; k < 100; ++k) encoder.add(numbered(k));
   ASSERT_EQ(files().size(), 1u);
   std::filesystem::copy_file(folder_ / files()[0], folder_ / "killed.mp4");
   const DecodedVideo video = decode(folder_ / "killed.mp4");
-  // The preset of x264 looks 10 frames ahead and keeps 3 for reordering.
+  // The preset of x264 holds back 10 frames to look ahead, and 3 to reorder them.
   ASSERT_GE(video.frames.size(), 85u);
   for (std::size_t k = 0; k < video.frames.size(); ++k) {
     EXPECT_EQ(number_of(video.frames[k].image), static_cast<int>(k));

@@ -48,7 +48,7 @@ TEST(FrameConverter, ColoursFollowTheStandardInLimitedRange) {
 }
 
 TEST(FrameConverter, ChromaLiesOnTheLeftColumnAndBetweenTwoRows) {
-  // Blue increases by 8 per column or per row, so that half a pixel changes Cb by 1.76 levels.
+  // Blue increases by 8 levels per column or per row. A shift by half a pixel then changes Cb by 1.76 levels.
   FrameConverter converter(32, 32, "test");
   const FramePtr frame = converter.make_frame();
   for (const bool along_x : {true, false}) {

@@ -23,11 +23,11 @@
 
 namespace weft::collision {
 
-/// Measured on falling_band and multi_sheet with tests/bench: leaves of 8 instead of 1 gain a factor of 3, 8 children
-/// instead of 2 gain a fifth, separation lists at most a tenth; velocity and normal cones cost as much as they save or
-/// more. 18 directions take longer to refit and traverse than 6 but list a quarter fewer candidates. With the narrow
-/// phase they gain 4 to 9 % in all, a fifth if layers are slanted to the axes. 26 directions, the seed's choice, list
-/// the fewest; 14 were worse than 6 or 18.
+/// Measured on falling_band and multi_sheet (tests/bench): leaves of 8 instead of 1 make the search 3 times faster, and
+/// 8 children instead of 2 save a fifth. Separation lists save at most a tenth. Velocity and normal cones cost at least
+/// as much as they save. 18 directions take longer to refit and traverse than 6, but list a quarter fewer candidates.
+/// Together with the narrow phase they save 4 to 9 %, or a fifth if layers are slanted to the axes. 26 directions, the
+/// seed's choice, list the fewest.
 struct BroadPhaseOptions {
   /// Directions of the bounds: 6, 18 or 26. More directions cost more and list fewer pairs. Boxes (6) list every pair
   /// that 18 or 26 directions list.
@@ -43,8 +43,8 @@ struct BroadPhaseOptions {
   /// traversals.
   bool separation_list = false;
   /// Give the bounds of slow vertices slack (at most an eighth of the margin) and keep them while the vertices stay
-  /// inside. Lists all pairs within 2 · margin, and some that bounds without slack would exclude. CoherentDetection
-  /// (collision/proximity/coherence.hpp) reuses whole detection results by velocity cones.
+  /// inside. Lists all pairs within 2 · margin, and some that bounds without slack would exclude. (Another use of
+  /// velocity cones is CoherentDetection, which keeps whole detection results.)
   bool velocity_cones = false;
   /// Skip pairs in regions of a surface that are provably flat enough. Lists all other pairs.
   bool normal_cones = false;
@@ -60,9 +60,9 @@ class BroadPhase {
   /// the broad phase. Throws Error(internal) if an option or index is out of range.
   BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options = {});
 
-  /// As Tree::refit: bounds for this motion, enlarged by margin [m]. The pairs also include those of every motion whose
-  /// starts and ends differ from these by vectors of at most that length; with 6 directions, of at most the margin
-  /// along each axis.
+  /// As Tree::refit: bounds for this motion, enlarged by margin [m]. The pairs then include all that meet on any motion
+  /// whose starts and ends differ from these by vectors no longer than the margin. With 6 directions, the vectors may
+  /// be as long as the margin along each axis.
   void refit(std::size_t surface, const Motion& motion, double margin);
   void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit(surface, {x_t0, x_t1}, margin);

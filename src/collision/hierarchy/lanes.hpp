@@ -92,7 +92,7 @@ inline std::uint32_t sign_mask(const Lanes8& lanes) {
 #endif
 }
 
-/// Bit l is set if lane l is negative. A comparison of integer vectors sets all bits of each lane where it holds.
+/// Bit l is set if lane l is negative. A comparison of integer vectors sets all bits of each lane for which it is true.
 inline std::uint32_t sign_mask(const IntLanes8& lanes) {
   return sign_mask(reinterpret_cast<const Lanes8&>(lanes));
 }

@@ -26,17 +26,18 @@ namespace weft::collision {
 /// v to the other feature leaves the triangles around v, which surround it by 1, through an edge opposite to v, so it
 /// is at least an altitude long. Distances in space are no smaller than their projections.
 ///
-/// The cone test over a step uses the Bernstein coefficients of the normal, which is quadratic in time (Tang, Curtis,
-/// Yoon & Manocha, "ICCD", 2009); so does the contour test. A degenerate triangle does not meet condition 2.
+/// The normal of a triangle is quadratic in time. Over a step, the cone test and the contour test therefore use
+/// Bernstein coefficients (Tang, Curtis, Yoon & Manocha, "ICCD", 2009). A degenerate triangle does not meet condition
+/// 2.
 ///
-/// Provot (1997; the seed's choice) requires only condition 2, for P instead of P⁺. This skips near pairs of parts that
-/// overlap in projection (a spiral stair) or meet across a border or slit (measured: 0.6 to 25 % of the skipped pairs
-/// were near).
+/// Provot (1997; the seed's choice) requires only condition 2, for P instead of P⁺. That would also skip near pairs of
+/// parts that overlap in projection (a spiral stair) or meet across a border or slit (measured: 0.6 to 25 % of the
+/// skipped pairs were near).
 template <int K>
 class NormalCones {
  public:
   NormalCones() = default;
-  /// Reads the tree; does not keep it.
+  /// Reads the tree, but keeps no reference to it.
   explicit NormalCones(const Tree<K>& tree);
 
   /// Finds the flat regions for the motion from x_t0 to x_t1 (global arrays, [m]). Features closer than

@@ -13,7 +13,7 @@ namespace weft::collision {
 /// costs one overlap test per traversal until the list is rebuilt. A rebuild is due
 ///   - after kWalks traversals, or
 ///   - once the list has grown by more than half.
-/// Both limits bound the useless tests to about half of the useful ones.
+/// These limits keep the useless tests to about half of the useful ones.
 class SeparationList {
  public:
   using Ref = std::int32_t;  ///< node number (≥ 0) or ~leaf number (< 0), as in Tree

@@ -12,7 +12,7 @@ namespace weft::collision {
 
 namespace {
 
-/// Beyond this depth sets are halved by number, because each centre split may split off only one triangle.
+/// Beyond this depth, sets are halved by the number of triangles, because a centre split may split off only one.
 constexpr int kMaxCentreSplits = 64;
 
 void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {

@@ -45,7 +45,8 @@ class Walk {
  private:
   static std::size_t index(Ref ref) { return static_cast<std::size_t>(ref); }
 
-  /// Lists the same pairs as from_roots() in the same order. Descends until there are enough deferred calls.
+  /// Lists the same pairs as from_roots() in the same order. Descends until there are enough deferred calls, which the
+  /// threads then share.
   void from_roots_in_threads() {
     const bool is_large = a_.leaves().size() + b_.leaves().size() >= kMinLeavesForThreads;
     if (thread_count() == 1 || !is_large) {

@@ -44,7 +44,7 @@ ClosestPoints choose_closer(const ClosestPoints& boundary, const ClosestPoints& 
 }  // namespace
 
 ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2) {
-  // Relative to t0, so that large coordinates cost no digits.
+  // Use coordinates relative to t0, so that large coordinates cost no digits.
   const Vec3 e1 = t1 - t0, e2 = t2 - t0, w = p - t0;
   const Vec3 n = e1.cross(e2);
   const double n_sq = n.squaredNorm(), sizes = e1.squaredNorm() * e2.squaredNorm();
@@ -66,7 +66,7 @@ ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1,
   keep_closer(best, {1, -(1 - s02), 0, -s02}, w - s02 * e2, s02);
   if (!inside) return best;
 
-  // A needle: one step of refinement of the residual.
+  // The triangle is a needle: refine the solution by one step, from its residual.
   const Vec3 rest = w - u1 * e1 - u2 * e2;
   u1 = std::clamp(u1 + rest.cross(e2).dot(n) / n_sq, 0.0, 1.0);
   u2 = std::clamp(u2 + e1.cross(rest).dot(n) / n_sq, 0.0, 1 - u1);

@@ -94,7 +94,8 @@ void CoherentDetection::update_cones(std::span<const Vec3> x_t0, std::span<const
   }
   for (std::vector<Group>& groups : groups_) {
     for (Group& group : groups) {
-      // Compare start and end of the step each with its own reference, so that a steady motion counts once.
+      // Compare the start of the step with the start of the reference step, and the end with its end. The motion during
+      // a step then does not count.
       Vec3 mean = Vec3::Zero();
       group.low.setConstant(INFINITY);
       group.high.setConstant(-INFINITY);

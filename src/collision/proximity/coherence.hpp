@@ -5,15 +5,15 @@
 //               detection.proximities()
 //
 // Each surface is divided into groups of triangles. Each group has a velocity cone: its motion since a common
-// reference. For two groups, let R be the bound that the cones give on how far a point of one has moved relative to a
-// point of the other since their pair of surfaces was searched. Distances, and gaps of bounds along any direction,
-// change by at most R. A result is valid while, for each two groups, either R ≤ budget, or their boxes were more than D
-// + R apart at that search, with D = detection_distance. While a result is valid:
+// reference. For two groups, let R be how far a point of one can have moved relative to a point of the other since
+// their pair of surfaces was searched, by these cones. Distances, and gaps of bounds along any direction, have then
+// changed by at most R. Let D be the detection distance. A result is valid while for each two groups R ≤ budget, or
+// their boxes were more than D + R apart at that search. While a result is valid:
 //   - every two triangles whose bounds with margin D / 2 overlap now are among the candidates;
 //   - the kept closest points of two features, with unchanged weights, are at most 2 R farther apart than the features,
 //     and never closer;
-//   - for every pair of features within D, a listed pair is at most 2 R farther apart (see ProximityFinder:
-//     they were within D + R then, and the pair that represented them was no farther).
+//   - for every two features within D of each other, some listed pair is at most 2 R farther apart. (They were within
+//     D + R at that search, and the listed pair that represented them was no farther; see ProximityFinder.)
 // A pair of surfaces is searched as a whole, because a near pair may represent others in neighbouring groups.
 #pragma once
 
@@ -77,7 +77,7 @@ class CoherentDetection {
     CandidatePairs candidates;
     std::vector<Proximity> proximities;
     std::vector<GroupSnapshot> groups_a, groups_b;
-    double motion = 0;
+    double motion = 0;  ///< largest R of groups that are not far apart [m]
   };
 
   void add_groups(const Surface& surface, std::span<const Vec3> x);

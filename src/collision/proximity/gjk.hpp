@@ -23,9 +23,9 @@ struct ConvexClosest {
 };
 
 /// Each set has 1 to 8 corners in any order: a triangle, convex quad (a warped one counts as the tetrahedron of its
-/// corners), edge or point. The distance is accurate to 5e-14 of the largest coordinate difference ("size") of the
-/// corners, needles included; the lower bound likewise, less 1e-15 size² / distance
-/// (tests/collision/proximity/gjk_test.cpp).
+/// corners), edge or point. Let `size` be the largest coordinate difference of the corners. The distance is accurate to
+/// 5e-14 size, needles included. The lower bound is less than the distance by at most as much plus 1e-15 size² /
+/// distance (tests/collision/proximity/gjk_test.cpp).
 ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b);
 
 }  // namespace weft::collision

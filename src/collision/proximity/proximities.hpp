@@ -16,9 +16,10 @@ namespace weft::collision {
 
 /// Two features closer than the detection distance, with their closest points: Σ weights x = distance · normal.
 struct Proximity : FeaturePair {
-  /// For an edge pair: sine of the angle between the normal and the wedge of edge a and of edge b. The wedge of an edge
-  /// is the set of directions, perpendicular to it, in which no face at the edge is closer than the edge itself (≤ 0).
-  /// Above 0 a neighbouring pair is closer, and the response may skip this one. 0 for vertex-face.
+  /// For an edge pair, one value for edge a and one for edge b: sine of the angle from the wedge of that edge to the
+  /// direction towards the other edge; negative inside the wedge. The wedge of an edge is the set of directions,
+  /// perpendicular to the edge, in which no face at the edge is closer than the edge. If a value is above 0, a
+  /// neighbouring pair is closer, and the response may skip this one. For vertex-face pairs: 0.
   std::array<double, 2> outside_wedge{};
 };
 
@@ -40,10 +41,10 @@ class ProximityFinder {
   /// `triangles`: of all surfaces in their global numbering; must outlive this object.
   ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
 
-  /// Lists all pairs of features closer than `radius` [m] at x [m], and some others. The candidates must include every
-  /// pair of triangles closer than `radius`; pairs with a common edge are added here, for each surface of `deformable`.
-  /// An edge pair is skipped if the sines of half the fold angles along both edges add up to less than `min_fold`:
-  /// between two smooth layers, vertices and faces suffice, and four of five pairs are edge pairs.
+  /// Gathers all pairs of features closer than `radius` [m] at x [m], and some others. The candidates must include
+  /// every pair of triangles closer than `radius`; pairs with a common edge are added here, for each surface of
+  /// `deformable`. An edge pair is skipped if the sines of half the fold angles along both edges add up to less than
+  /// `min_fold`. Between two smooth layers, four of five pairs are edge pairs, but vertices and faces suffice there.
   void gather(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
               double radius, double min_fold = 0);
   /// As above, with candidates without a common vertex only. Pairs that share one or two vertices are added here, for
@@ -51,8 +52,8 @@ class ProximityFinder {
   void gather(const PairList& apart, std::span<const Surface> deformable, std::span<const Vec3> x, double radius,
               double min_fold, std::span<const std::uint8_t> clear);
 
-  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m], in their order. Complete as
-  /// long as no vertex is farther than (radius − detection_distance) / 2 from its position in gather().
+  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m], in their order. The list is
+  /// complete as long as no vertex is farther than (radius − detection_distance) / 2 from its position in gather().
   void find(std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out) const;
 
   /// Gathers and finds.

@@ -10,7 +10,7 @@
 namespace weft::collision {
 namespace {
 
-// Below this distance the line to the nearest point has no direction [m].
+// Below this distance, the line to the nearest point counts as having no direction [m].
 constexpr double kMinDirectionLength = 1e-10;
 // Minimum cosine between a face normal and a given direction for the face to count as facing that way.
 constexpr double kMinFacingCosine = 0.5;
@@ -117,7 +117,7 @@ bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase
                std::span<const Vec3> x) {
   Eigen::Index axis = 0;
   towards.cwiseAbs().maxCoeff(&axis);
-  // The ray begins slightly aside: through an edge or a corner it could hit two faces or none.
+  // The ray begins slightly beside p. Otherwise it could go through an edge or a corner, and hit two faces or none.
   const Vec3 from = p + kRayOffset * Vec3(0.918, 0.637, 0.781);
   Vec3 to = from;
   to[axis] += towards[axis] < 0 ? -kRayLength : kRayLength;

@@ -1,4 +1,4 @@
-// Start positions of a step in the frame of a moving obstacle: as if it had carried everything along.
+// Start positions of a step in the frame of a moving obstacle: as if the obstacle had carried all particles along.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,8 @@ class CarriedStarts {
 
   /// Whether a body moves rigidly in this step.
   bool carries(std::size_t body) const { return body < motions_.size() && motions_[body].moves(); }
-  /// Starts carried along by such a body; its own vertices are at their end [m].
+  /// Starts of particles, carried along by such a body [m]. The own vertices of the body are at their end, those of
+  /// other obstacles at their start.
   std::span<const Vec3> by(std::size_t body) const;
   /// Computes all starts that of() can return, so that threads can call of() at the same time.
   void make() const;

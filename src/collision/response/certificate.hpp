@@ -22,19 +22,21 @@ struct CornerPair {
 /// min_a n·x − max_b n·x [m]: how far side a lies above side b along the unit direction n.
 double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x);
 
-/// Whether a plane normal to n that translates with the pair separates it during the linear motion from x_t0 to x_t1.
-/// The gap along n must be at least kRoundoff at the start, so that touching vertices never count as separated, and
-/// Numerics::Separation::least_gap at the end. Every n·x is linear in time, so the gap is a minimum of linear
-/// functions, hence concave, hence positive in between. No root is sought.
+/// Whether a plane with the constant normal n, which translates with the pair, separates both sides during the linear
+/// motion from x_t0 to x_t1. The gap along n must be at least kRoundoff at the start, so that touching vertices never
+/// count as separated, and Numerics::Separation::least_gap at the end. Every n·x is linear in time, so the gap is a
+/// minimum of linear functions, hence concave, hence positive in between.
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-/// Which planes are tried: of constant direction; or also those that turn in the step; or also one for each part of the
-/// step.
+/// Which planes are tried. `constant`: those of constant direction. `turning`: also those that turn during the step.
+/// `all`: also several planes one after the other, each for a part of the step.
 enum class PlaneKinds { constant, turning, all };
 
-/// Searches for a separating plane, cheap ones first. Directions are face normals (for layers) and the line between the
-/// centres (for neighbours in one plane), first constant, then turning with the pair; then the closest direction,
-/// constant and turning; then all again in each half of the trajectory, at most Numerics::Separation::halvings times.
+/// Searches for a separating plane, cheap ones first:
+///   1. constant directions: face normals (for layers) and the line between the centres (for neighbours in one plane);
+///   2. the same directions, turning with the pair;
+///   3. the line between the closest points, constant, then turning;
+///   4. all again in each half of the trajectory, which is halved at most Numerics::Separation::halvings times.
 ///
 /// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, t from 0 to 1. For two linearly moving corners with the
 /// difference δ(t), n·δ is quadratic in time, with Bernstein coefficients n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and n₁·δ₁; it is

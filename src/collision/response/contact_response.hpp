@@ -15,8 +15,9 @@ namespace weft::collision {
 
 enum class ResponseForm { springs, velocity_constraints };
 
-/// The contacts of one step as the solver sees them. With velocity constraints, the walls (see VelocityConstraints) are
-/// set and released between solves of one step. All other contacts are springs in either form.
+/// The contacts of one step as the solver sees them. With velocity constraints, a contact of a single particle with an
+/// obstacle is a wall (see VelocityConstraints), which is set and released between the solves of a step. All other
+/// contacts are springs.
 class ContactResponse {
  public:
   /// `masses`: of the particles [kg]. `stick_speed`: of the springs [m/s].

@@ -15,8 +15,9 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
-// Limits of the search for the depth of a tangent: iterations, and relative tolerance of the force. The error of the
-// depth enters the tangent's force squared, below rounding (measured: 1e-3 made the solver miss newton_tolerance 1e-6).
+// Limits of depth_for_force(): iterations, and relative tolerance of the force. The force of the tangent contains the
+// square of the error of the depth, which is below rounding (measured: with 1e-3 the solver misses newton_tolerance
+// 1e-6).
 constexpr int kDepthIterations = 30;
 constexpr double kDepthTolerance = 1e-8;
 
@@ -57,8 +58,9 @@ Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
   return weighted_sum(contact, x_end) + contact.obstacle_end;
 }
 
-// Friction / (normal force · slip), for a slip in units of the stick slip: with friction coefficient μ, μ (2 − slip)
-// below 1, μ / slip above. If both coefficients are equal, it is continuously differentiable.
+// Friction / (normal force · slip), for a slip in units of the stick slip: μ (2 − slip) below 1, μ / slip above, where
+// the coefficient μ falls from static to sliding beyond 1. If both coefficients are equal, it is continuously
+// differentiable.
 double friction_over_slip(const Contact& contact, double slip) {
   if (slip < 1) return contact.static_friction * (2 - slip);
   const double sliding = std::min(1.0, (slip - 1) / (numerics.contact.slide_velocity - 1));
@@ -122,7 +124,7 @@ Vec3 tangential_jump(const Contact& contact, std::span<const Vec3> x_end, const 
   return size > max_friction ? Vec3(max_friction / size * across) : across;
 }
 
-// Adds a force on the points of a contact, and its stiffness.
+// Adds a force on the points of a contact, and the stiffness of that force.
 void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, std::span<Vec3> force,
               solver::LinearSystem& system) {
   int involved = 0, last = 0;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNoFaces = std::numeric_limits<double>::infinity();
 
-// Distance from the place to the obstacle's faces that point this way; infinite if there are none.
+// Distance [m] from the place to those faces of the obstacle that point in this direction; infinite if there are none.
 double distance_facing(const Vec3& place, const Vec3& direction, const BroadPhase& surfaces, std::size_t obstacle,
                        std::span<const Vec3> x) {
   const SurfacePoint point = nearest_point(place, surfaces, obstacle, x, direction);

@@ -22,7 +22,8 @@ struct Pinch {
 std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodies, const BroadPhase& surfaces,
                                 std::span<const Vec3> x);
 
-/// A pair of `pinched` whose obstacle did not pinch that cloth in `before`, with an arbitrary face of the obstacle.
+/// A pair of `pinched` whose obstacle did not pinch that cloth in `before`, with an arbitrary face of the obstacle;
+/// nullopt if there is none.
 std::optional<CornerPair> find_new_pinch(const PinchedPairs& pinched, const PinchedPairs& before,
                                          const BroadPhase& surfaces);
 

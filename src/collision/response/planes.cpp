@@ -58,7 +58,7 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
         raise_to(rounding, -coordinate);
       }
   rounding = rounding * 0x1p-19F + static_cast<float>(1.5 * numerics.separation.least_gap);
-  // Relative to a corner, so that the dot products round at the size of the triangles.
+  // Use coordinates relative to a corner, so that the rounding of dot products scales with the size of the triangles.
   const Points8 origin = a.corner[0];
   for (int c = 0; c < 3; ++c) a.corner[c] = minus(a.corner[c], origin), b.corner[c] = minus(b.corner[c], origin);
 

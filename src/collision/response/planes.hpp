@@ -16,20 +16,20 @@
 
 namespace weft::collision {
 
-/// For each watched pair, a direction and the gap along it at the reference positions. The gap shrinks by at most the
-/// motion of the two triangles. While they have moved less than the gap, the pair is separated without a test, so cloth
-/// resting on cloth costs one comparison per pair and step. A pair whose corners are all where they were at its last
-/// successful test is not tested again either, because pushing apart tests all pairs again after it has moved a few
-/// vertices.
+/// Stores for each watched pair of triangles a direction, and the gap along it at the reference positions. The gap
+/// shrinks by at most the sum of the motions of both triangles. While that sum is less than the gap, the pair is
+/// separated without a test, so cloth resting on cloth costs one comparison per pair and step. A pair whose corners are
+/// all where they were at its last successful test is not tested again either, because pushing apart tests all pairs
+/// again after it has moved a few vertices.
 class Planes {
  public:
   Planes() = default;
-  /// Vertices from `obstacles_from` on are of obstacles.
+  /// Vertices from `obstacles_from` on belong to obstacles.
   explicit Planes(std::span<const Triangle> triangles, Index obstacles_from = 0)
       : triangles_(triangles), obstacles_from_(obstacles_from) {}
 
-  /// The planes that are sought for a pair. With PlaneKinds::turning, pairs with an obstacle get all: obstacles move
-  /// fast and turn (measured: without, a ball that hits a cloth takes 1.13 times the iterations).
+  /// Which planes are sought for a pair: `which`, but `all` instead of `turning` for pairs with an obstacle, because
+  /// obstacles move fast and turn (measured without: a ball that hits a cloth takes 1.13 times the iterations).
   PlaneKinds kinds_of(const CornerPair& pair, PlaneKinds which) const {
     const bool with_obstacle = pair.a[0] >= obstacles_from_ || pair.b[0] >= obstacles_from_;
     return which == PlaneKinds::turning && with_obstacle ? PlaneKinds::all : which;

@@ -95,7 +95,7 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
 // target / 2, without moving their common centre of mass (measured: a plane midway lost 1e-4 of the momentum).
 double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const {
   struct Corner {
-    double limit, mass;  // c from which (of a) or up to which (of b) it is pushed [m]; [kg]
+    double limit, mass;  // pushed if c is above (corner of a) or below (of b) this limit [m]; [kg]
     bool is_of_a;
   };
   std::array<Corner, 6> all;
@@ -323,7 +323,7 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
         changed = true;
       }
     }
-    // Nothing that could still move is left: the pair is forced together.
+    // No vertex can move any more: the remaining pairs are forced together.
     if (!changed && is_final) {
       step.report.stuck = failing_.front();
       return step.report;

@@ -44,12 +44,12 @@ struct RigidGroup {
 /// Triangles that share an edge are not tested: they meet only if folded exactly onto each other.
 ///
 /// If a pair has no separating plane, enforce() pushes its end positions apart along n, the closest direction at the
-/// start, until a gap remains; obstacles and held particles do not move. It tests again what was moved, until nothing
-/// fails. Particles that keep failing are backtracked, finally all the way to their start or, if they fail with an
-/// obstacle that moves rigidly, to where the obstacle would have carried them. Nothing met at the start, so particles
-/// that end at their start, or where one obstacle carries them all, are as far apart as they were. The set of
-/// backtracked particles grows until nothing fails. Pairs that remain are forced together by obstacles that move
-/// differently or by held particles; cloth can then be exempted from obstacles.
+/// start, until a gap remains; obstacles and held particles do not move. It then tests the moved vertices again, until
+/// no pair fails. Particles that keep failing are backtracked, finally all the way to their start or, if they fail with
+/// an obstacle that moves rigidly, to where the obstacle would have carried them. No pair met at the start. So two
+/// triangles whose vertices all end at their start, or where one obstacle carries them, are as far apart as they were.
+/// The set of backtracked particles grows until no pair fails. A pair that still fails is forced together by obstacles
+/// that move differently, or by held particles. Its cloth can then be exempted from the obstacle.
 ///
 /// Between cloth and a rigid body, the cloth is pushed as by an obstacle. Rigid bodies are translated away from
 /// obstacles and from each other, the lighter one farther.
@@ -65,8 +65,8 @@ class Separation {
   void set_rigid(std::vector<RigidGroup> groups, Index vertices);
 
   /// Watches these pairs without a common vertex, and all vertex stars, with x [m] as the reference for motion. The
-  /// pairs must include all that can meet. If motion or a correction moves a vertex out of the bounds that they were
-  /// collected with, collect and watch again.
+  /// pairs must include all that can meet. If a vertex moves out of the bounds for which the pairs were collected,
+  /// collect and watch again.
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
   /// Watches the pairs received by exchange().
   void watch(std::span<const Vec3> x);
@@ -82,20 +82,20 @@ class Separation {
 
   /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1; changes no positions. x_t0 must
   /// be free of intersections except those of `pinched`, which are skipped. Pairs with an obstacle that turns are
-  /// tested in its frame (`carried`). `which` restricts the planes for pairs that must be tested: results of earlier
-  /// calls with unchanged ends are reused.
+  /// tested in its frame (`carried`). `which` restricts the planes of pairs that must be tested. For pairs whose
+  /// vertices have not moved since the last call, the result of that call is reused.
   std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                            const PinchedPairs* pinched = nullptr,
                                            const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
 
   /// Changes x_t1 of movable vertices until every pair has a separating plane. If that fails, adds pairs of cloth and
-  /// obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last call; keeps
-  /// which obstacle carries which vertex.
+  /// obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last call. It is
+  /// then kept which obstacle carries which vertex.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                            PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
                            bool is_continued = false, PlaneKinds which = PlaneKinds::all);
 
-  /// Saves what was found since watch(), for an object that watches the same pairs from the same positions.
+  /// Saves the planes found since watch(), for an object that watches the same pairs from the same positions.
   template <class Archive>
   void serialize(Archive& archive) {
     planes_.serialize(archive, reference_);

@@ -9,7 +9,8 @@
 namespace weft::collision {
 namespace {
 
-// Distance beyond a wall at which to probe whether it holds; penetration that is worth another solve [m].
+// Distance beyond a wall at which to probe whether the wall holds, and smallest penetration that is worth another solve
+// [m].
 double probe_distance() {
   return 0.5 * numerics.separation.restored_gap;
 }
@@ -290,7 +291,7 @@ PrescribedParticle VelocityConstraints::prescription(const TouchingParticle& par
     result.v_end = walls_[main_wall(particle)].motion / step_;
     return result;
   }
-  // Set v_r along each normal, without changing it along the earlier ones.
+  // Set v_end to v_r along each normal, without changing v_end along the earlier ones.
   Mat3 free = Mat3::Identity();
   for (int k = 0; k < particle.held.count; ++k) {
     const Wall& wall = walls_[particle.held.walls[k]];

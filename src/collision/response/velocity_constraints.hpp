@@ -30,12 +30,13 @@ struct PrescribedParticle {
 /// ones stay; if d < d_min, a fraction c = Numerics::Walls::correction of the missing distance is restored: γ d_min = d
 /// + c (d_min − d).
 ///
-/// A wall holds its particle (equality, one direction less in the CG) while it has to push, and releases it if the
-/// residual shows that it would pull. Up to three walls hold a particle at once. A held particle also sticks in the
-/// tangent plane, moving with the obstacle, while the force that this takes lies in the friction cone. Otherwise it
-/// slides, with friction μ times the normal force against the slip, smooth below the stick velocity as in ContactSet.
-/// If it ends a step slower than the stick velocity, it sticks from the next step on. Friction is implicit: an explicit
-/// friction force reversed the motion of neighbours that began to slide together.
+/// A wall holds its particle while it has to push: the inequality is then an equality, and the CG has one direction
+/// less. The wall releases the particle if the residual shows that the wall would pull. Up to three walls hold a
+/// particle at once. A held particle also sticks in the tangent plane, moving with the obstacle, while the force
+/// required for that lies in the friction cone. Otherwise it slides, with friction μ times the normal force against the
+/// slip, smooth below the stick velocity as in ContactSet. If it ends a step slower than the stick velocity, it sticks
+/// from the next step on. Friction is implicit: an explicit friction force would reverse the motion of neighbours that
+/// begin to slide together.
 ///
 /// The state is revised between the solves of a step (revise) and kept for the next step (accept).
 class VelocityConstraints {
@@ -56,9 +57,9 @@ class VelocityConstraints {
            double static_friction = 0);
 
   /// Whether some particles were held by walls at the end of the last step and have no wall now. These are corners of
-  /// triangles, whose walls are found only where the triangle would meet an obstacle; without a prediction the first
-  /// solve would release them in every step. `predicted`: x_t1, these particles moved by `by` [m] towards their former
-  /// wall.
+  /// triangles, whose walls are found only where the triangle would meet an obstacle; without a prediction, the first
+  /// solve of every step would release them. `predicted`: x_t1, but with these particles moved by `by` [m] towards
+  /// their former wall.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const;
 
   /// Chooses the walls that hold in the first solve: those that held at the end of the last step, and those that the
@@ -78,7 +79,7 @@ class VelocityConstraints {
 
   /// force += friction of the sliding particles at x_end [N].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  /// Adds that friction, its normal forces, and its maximum for these normal forces [N].
+  /// Adds, for the sliding particles: normal forces (`push`), friction, and the maximum friction (`limit`) [N].
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
                                       std::span<double> limit) const;
   /// As add_forces; also adds −∂f/∂x to the matrix, in the definite form of ContactSet::linearise. `end_rate`: change

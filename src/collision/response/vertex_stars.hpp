@@ -42,8 +42,8 @@ class VertexStars {
   void mark_clear(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const;
 
   /// Appends the edge-triangle pairs without a separating plane on the trajectory from x_t0 to x_t1. `moved`: per
-  /// vertex, a bound of its distance from the reference at both times [m]. `changed`: per vertex, x_t0 or x_t1 has
-  /// changed.
+  /// vertex, a bound of its distance from the reference at both times [m]. `changed`: per vertex, whether x_t0 or x_t1
+  /// differs from the last call.
   void find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
                     std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing,
                     PlaneKinds which = PlaneKinds::all);

@@ -13,7 +13,7 @@ namespace weft::render {
 /// All functions of one context. Stored per context, because each backend brings its own copies of the functions.
 using Gl = GladGLContext;
 
-/// An OpenGL 4.5 core context. It has no usable default framebuffer: draw into own framebuffers only.
+/// An OpenGL 4.5 core context. It has no usable default framebuffer: draw only into framebuffers made in it.
 class Context {
  public:
   virtual ~Context() = default;
@@ -38,10 +38,10 @@ class Context {
   std::string description_;
 };
 
-/// Makes a context, bound to the calling thread. `automatic` takes OSMesa, or EGL if there is no OSMesa. `threads`: of
-/// the software rasteriser (0: its default). The driver reads this once per process, so the first context decides.
-/// `automatic` throws Error(usage) that names each library tried and its error if neither works; else Error(usage) for
-/// an absent library, Error(internal) for a failed call.
+/// Makes a context, bound to the calling thread. `automatic` takes OSMesa, or EGL if there is no OSMesa. `threads`:
+/// number of threads of the software rasteriser (0: its default); the driver reads it once per process, so the first
+/// context decides. Throws Error(usage) if a library is absent, Error(internal) if a call fails. If `automatic` finds
+/// that neither library works, it throws Error(usage), which names each library and its error.
 std::unique_ptr<Context> make_context(Backend backend, int threads);
 
 /// CPU seconds that the threads of llvmpipe have used so far in all contexts; 0 for other drivers.

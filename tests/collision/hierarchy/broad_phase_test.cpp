@@ -156,7 +156,8 @@ Pairs near_during_motion(const MovingScene& scene, std::span<const Vec3> x_t0, s
   return near;
 }
 
-// For a trajectory to any place in the boxes between two corners, starting and ending within the margin.
+// The pairs are complete for any trajectory that starts within the margin and ends, within the margin, anywhere in the
+// boxes between two corners.
 TYPED_TEST(BroadPhasePairs, HoldAllThatComeNearOnTheWayToAnywhereBetweenTwoCorners) {
   const FoldingSlidingFlying motion(5);
   const std::vector<Surface> surfaces = motion.scene().surfaces();

@@ -190,7 +190,7 @@ TEST(NormalCones, MissNothingAcrossANotchInAStarShapedBorder) {
   }
 }
 
-// Normals of half a ball and the ring around it point in all directions; those of small patches do not.
+// Half a ball and the ring around it: all normals together point in all directions, those of small patches do not.
 TEST(NormalCones, EndAtARightAngle) {
   const mesh::Mesh ball = mesh::make_sphere(0.5, 24);
   const TestMesh mesh{ball.positions, {ball.topology.triangles.begin(), ball.topology.triangles.end()}};

@@ -23,9 +23,8 @@ Quad dot(const QuadVec& a, const QuadVec& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Squared distance from point `w` to the plane (line, point) through 0 spanned by u and v. It counts if the foot of
-/// the perpendicular has positive weights with a sum below `limit` (1 for a triangle; for a pair of edges each weight
-/// is limited).
+/// Foot of the perpendicular from point `w` to the plane (line) through 0 spanned by u and v. `inside`: its weights are
+/// positive; for a triangle their sum is below 1, for a pair of edges each is below 1.
 struct Foot {
   bool inside;
   Quad distance_sq;

@@ -138,7 +138,7 @@ TEST_F(CoherentDetectionTest, MissesNothingWithinReachAndKeepsClosestPointsWithi
       EXPECT_TRUE(std::ranges::any_of(detection.proximities(), stands_for));
     }
   }
-  // The first two move together and the third arrives: both kinds of steps occur, and the reuse bound has an effect.
+  // The first two move together and the third arrives, so that steps with and without a new search occur.
   EXPECT_GT(45 * 6 - found_anew, 60);
   EXPECT_GT(found_anew, 20);
   EXPECT_GT(largest_error, 1e-6);
@@ -158,7 +158,7 @@ TEST_F(CoherentDetectionTest, HoldsForAnySteadyCommonMotionAndNotForARelativeOne
   EXPECT_EQ(update(passing, moved({3, 0, 0}), moved({6, 0, 0})), 1);
 }
 
-// Results predicted at the start of the step stay valid for the solved end only within the velocity cones.
+// Near pairs that are reused for the predicted end hold for the solved end only within the velocity cones.
 TEST_F(CoherentDetectionTest, UpdatedWithinAStepHoldsAllCandidatesOfTheMotionThatCameOut) {
   CoherentDetection detection = make_detection(kAllPairs);
   const std::vector<Vec3> x_t0 = motion_.at(30);

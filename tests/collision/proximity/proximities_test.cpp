@@ -263,7 +263,7 @@ bool has_one(const Triangle& t, const Triangle& s) {
   return std::ranges::any_of(s, [&](Index v) { return has_vertex(t, v); });
 }
 
-// Triangles for which gather() can skip the neighbours, by the clearance of the vertex stars.
+// gather() can skip the neighbours of these triangles, by the clearance of the vertex stars.
 TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
   int open_of_all = 0, creased_of_all = 0;
   for (const double roughness : {0.005, 0.02, 0.04}) {

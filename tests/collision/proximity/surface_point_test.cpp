@@ -55,8 +55,8 @@ testing::TestMesh as_test_mesh(const mesh::Mesh& mesh) {
   return {mesh.positions, {mesh.topology.triangles.begin(), mesh.topology.triangles.end()}};
 }
 
-/// Still boxes with many equally near faces; spheres and sheets, one of them one-sided; a soup with triangles that are
-/// equal or have no area.
+/// Still boxes with many equally near faces; a sphere and a box; a folded sheet and a sphere; a flat open sheet alone;
+/// a soup with triangles that are equal or have no area.
 std::vector<Fitted> fitted() {
   const auto box = as_test_mesh(mesh::make_box(Vec3(0.8, 0.6, 0.4), 0, 4)),
              sphere = as_test_mesh(mesh::make_sphere(0.5, 16));
@@ -106,7 +106,7 @@ TEST(NearestPoint, LooksAtFacesOfOneDirectionAloneWhereThereAreAny) {
   EXPECT_GT(none, 50);
 }
 
-// The point is deep inside and near a side, but the way back leads through the bottom, where the cloth entered.
+// The point is deep inside and near a side. The query asks for the bottom, where the cloth entered.
 TEST(NearestPoint, OfOneDirectionIsNotThatOfTheNearestSide) {
   const Fitted scene({as_test_mesh(mesh::make_box(Vec3(0.2, 0.2, 0.1), 0, 1))}, 1, 0, 0);
   const SurfacePoint found = nearest_point({0.09, 0, -0.02}, scene.broad_phase, 0, scene.x, -Vec3::UnitZ());
@@ -137,7 +137,7 @@ TEST(TrianglesNear, AreThoseWhoseBoxesAreWithinReachInTheirOrder) {
   EXPECT_GT(max_ties, 10U);
 }
 
-// An edge from below pierces the middle of a face, halfway along the edge, wherever the face is split.
+// A point is inside if a ray from it leaves the surface more often than it enters. The surface may overlap itself.
 TEST(IsInside, CountsWhatLetsOutOverWhatLetsInSoThatPartsMayOverlap) {
   // Two boxes that overlap for x in [-0.1, 0.1], as one surface, and another box below.
   testing::TestMesh both = as_test_mesh(mesh::make_box(Vec3(0.4, 0.2, 0.2), 0, 2));

@@ -203,7 +203,8 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKee
   };
   contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * normal_force_at(0.6), 1e-12);
-  // The law itself uses the present normal force: the residual shows the effect of lagging as long as it is followed.
+  // The law itself uses the present normal force. Until updates stop, the residual therefore contains the effect of
+  // lagging.
   const Vec3 itself = forces_of(contacts, x, lag)[0];
   EXPECT_NEAR(itself.dot(pair.contact.normal.unitOrthogonal()), -mu * normal_force_at(0.2), 1e-12);
   contacts.update(x, lag);
@@ -215,7 +216,7 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKee
   for (int k = 2; k < numerics.newton.patience - 1; ++k) contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * normal_force_at(0.2),
               1e-3 * mu * normal_force_at(0.2));  // accuracy of the depth search
-  // The number of updates is limited, so that normal force and slip cannot alternate for ever, until the next step.
+  // Within a step the number of updates is limited, so that normal force and slip cannot alternate for ever.
   contacts.update(x, lag);
   const double last = tangential();
   x[0] -= 0.2 * kRange * pair.contact.normal;
@@ -301,7 +302,7 @@ TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
     // Rounding: 1e-17 of a coordinate over 1e-10 m, times the stiffness.
     EXPECT_LT((spring - differences(smooth.set(), x, rate)).cwiseAbs().maxCoeff(), 1e-5 * spring.maxCoeff());
     const Eigen::MatrixXd sticking = assembled(linearised(rough.set(), rough.x, rate));
-    // 2/ε − s/ε² changes by ε_difference / ε = 3e-5 over the difference.
+    // The secant 2/ε − s/ε², for a slip s and the stick slip ε, changes by 3e-5 of itself over the difference of s.
     EXPECT_LT((sticking - differences(rough.set(), rough.x, rate)).cwiseAbs().maxCoeff(), 1e-4 * sticking.maxCoeff());
     EXPECT_GT(sticking.maxCoeff(), 2 * spring.maxCoeff());
   }

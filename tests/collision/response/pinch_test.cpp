@@ -80,7 +80,7 @@ TEST_F(PinchedTriangle, IsPushedThroughTheFaceThatCameUponItHoweverThatHasTurned
   for (const auto& [push, has_room] : pushes) EXPECT_LT((push.normal - Vec3::UnitX()).norm(), 1e-12);
 }
 
-// The box above comes down into the one below: then pushing the cloth up leads into it.
+// The upper box comes down into the lower one. Cloth that is pushed up out of the lower box would enter the upper one.
 TEST_F(PinchedTriangle, HasNoRoomWhereTheWayBackLeadsIntoAnotherObstacle) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
@@ -110,7 +110,8 @@ TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
   EXPECT_TRUE(pinched_.empty());
 }
 
-// Another triangle with the same corners: cloth that passes through a limb has no certificate beside it either.
+// Another cloth triangle has the same corners. Cloth that passes through a limb has no separating plane beside it
+// either, so pairs of other triangles with that limb are exempt too.
 TEST_F(PinchedTriangle, TakesInWhatMeetsTheLimbBesideIt) {
   pinched_.add(with(1));
   const std::vector<Triangle> cloth{{0, 1, 2}, {0, 2, 1}};

@@ -123,7 +123,8 @@ TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
   EXPECT_THROW(planes.serialize(reader, pairs.x), std::runtime_error);
 }
 
-// A first guess needs no planes for parts of a step, except beside obstacles.
+// A first guess checks pairs of cloth with turning planes only, pairs with obstacles also with planes for parts of the
+// step.
 TEST(Planes, ThatTurnAreAllThatIsSoughtForClothAlone) {
   RandomPairs pairs(3000);
   const auto vertices = static_cast<Index>(pairs.x.size());

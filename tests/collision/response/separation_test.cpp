@@ -104,7 +104,7 @@ TEST(Separation, PairsInSlowMotionAreNearlyAllCertified) {
   EXPECT_LT(failing(pairs).size(), 2 * meeting(pairs).size() + 20);
 }
 
-// The result for vertex stars depends on positions only: what is remembered must equal a fresh check.
+// The result for vertex stars depends on positions only: the remembered result must equal that of a fresh check.
 TEST(Separation, WhatIsRememberedOfALookIsWhatANewOneFinds) {
   constexpr Index kSide = 6;
   std::vector<Triangle> triangles;

@@ -11,7 +11,7 @@
 
 namespace weft {
 
-/// A checked scene. It never changes; copies share one scene, and any thread may read them.
+/// A checked scene. It never changes. Copies share the data of one scene, and any thread may read them.
 class WEFT_API Scene {
  public:
   /// Reads a file. `changes`: "path.to.key=value", as for `--set` on the command line, such as
@@ -28,7 +28,7 @@ class WEFT_API Scene {
   int frames() const;               ///< number of frames; frame k is the state at time k / fps, frame 0 the start
   std::vector<std::string> cloths() const;     ///< names, in the order of the scene
   std::vector<std::string> obstacles() const;  ///< names, in the order of the scene
-  /// The scene as TOML, with the default value of every key that it leaves out.
+  /// The scene as TOML. Keys that the scene leaves out have their default values.
   std::string text() const;
 
   struct Data;

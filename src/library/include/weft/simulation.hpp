@@ -49,7 +49,7 @@ struct EnclosedAir {
   double pressure = 0;  ///< gauge pressure: above that outside [Pa]
 };
 
-/// What the computation of a frame took, and what it measured. In frame 0: the energies of the start.
+/// Cost and measured values of a frame. In frame 0, the energies are those of the start.
 struct Report {
   double wall_s = 0, cpu_s = 0;  ///< of simulating this frame [s]
   int steps = 0;                 ///< accepted time steps
@@ -57,7 +57,7 @@ struct Report {
   int newton_iterations = 0;
   int linear_iterations = 0;    ///< of conjugate gradients
   int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, in the last step
-  int constraints = 0;          ///< contacts that push, and held particles, at the end
+  int constraints = 0;          ///< contacts that push, and held particles, in the last step
   double min_distance = 0;      ///< between two surfaces [m]; infinite if none is within the detection distance
   double max_strain = 0;        ///< largest |length / rest length - 1|, in all steps
   double stretch_ratio = 0;     ///< largest ratio of extension to the fabric's `max_stretch`, in all steps
@@ -66,15 +66,15 @@ struct Report {
   double elastic_energy = 0;    ///< stretch, shear, bending, attachments [J]
   double air_energy = 0;        ///< of enclosed air [J]
   double pin_work = 0;          ///< work of pins on the cloth in this frame [J]
-  double error_estimate = 0;    ///< estimated sum of the local errors of positions over the steps [m]
-  double solver_error = 0;      ///< the same, of errors of the solver [m]
-  int pinched_pairs = 0;        ///< largest number of cloth triangles, per obstacle limb, without space at once
+  double error_estimate = 0;    ///< estimated sum, over the steps, of the local errors of positions [m]
+  double solver_error = 0;      ///< the same sum of the errors due to the solver [m]
+  int pinched_pairs = 0;        ///< largest number of cloth triangles at once that bodies pinch, per obstacle limb
   int lagging_particles = 0;    ///< largest number of particles at once that something keeps from their pins' targets
   std::vector<EnclosedAir> enclosed_air;  ///< of each cloth with pressure
   std::vector<std::string> warnings;
 };
 
-/// One frame. It never changes; copies share one frame, and any thread may read them.
+/// One frame. It never changes. Copies share the data of one frame, and any thread may read them.
 class WEFT_API Frame {
  public:
   int number() const;            ///< counted from 0
@@ -120,8 +120,8 @@ class WEFT_API Simulation {
   /// std::invalid_argument if the obstacle is not driven, or the pose is not finite or has no unit quaternion.
   void move(std::string_view obstacle, const Pose& pose);
 
-  /// Returns all that later frames depend on, for the same scene, options, library version and kind of machine. Not
-  /// allowed after a failed advance().
+  /// Returns everything on which later frames depend. It can be restored with the same scene, options, library version
+  /// and kind of machine. Not allowed after a failed advance().
   std::string save() const;
 
  private:

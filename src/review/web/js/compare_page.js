@@ -41,7 +41,7 @@
       return h("div.page-head", {}, h("h1", {}, "Comparison"), h("ul.members", {}, members),
         h("div.page-tools", {}, this.buildSides(), rest.length > 0 && add));
     }
-    // Which two the viewer shows.
+    // Selects the two runs that the viewer shows.
     buildSides() {
       const shown = this.runs.filter((run) => run.hasPictures);
       if (shown.length < 3) return null;

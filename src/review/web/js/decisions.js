@@ -87,7 +87,7 @@
   };
 
   const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
-  /** What makes the pictures of the run the reference, with the last note of an approval as reason; null where it has none. */
+  /** The command that makes the run's pictures the reference; an approval's last note is the reason. null: no pictures. */
   review.acceptLine = (run) => {
     const { file, prefix, reference } = run.accept ?? {};
     if (!file && !prefix) return null;

@@ -165,7 +165,7 @@
   }
 
   review.Plots = class {
-    /** `curvesOf(plot)` gives the curves of one entry of PLOTS; those without any are left out. */
+    /** `curvesOf(plot)` gives the curves of one entry of PLOTS; plots without curves are left out. */
     constructor(curvesOf, { sync, onSeek, caption = () => undefined }) {
       this.plots = review.PLOTS.map((definition) => ({ definition, curves: curvesOf(definition) }))
         .filter(({ curves }) => curves.length > 0)
@@ -176,7 +176,7 @@
     get empty() {
       return this.plots.length === 0;
     }
-    /** Once the element is in the document, and again when colours have changed. */
+    /** Call it once the element is in the document, and again when colours have changed. */
     draw() {
       for (const plot of this.plots) plot.draw();
       this.observer.observe(this.element);

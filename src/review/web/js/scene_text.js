@@ -4,7 +4,7 @@
   const { h } = review;
   const { plural } = review.format;
 
-  // [class, pattern], tried in order at the start of what is left of a line.
+  // [class, pattern], tried in order at the start of the rest of a line.
   const TOKENS = [
     ["comment", /^#.*/],
     ["key", /^[\w."-]+(?=\s*=)/],
