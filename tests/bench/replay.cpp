@@ -36,7 +36,7 @@ struct Recording {
   int steps() const { return static_cast<int>(frames.size() - 1) * kSteps; }
 };
 
-/// Whether the shape changes: then the object is cloth.
+/// Whether the shape changes from the first frame to the last. Such an object counts as cloth.
 bool deforms(const support::PlyMesh& first, const support::PlyMesh& last) {
   for (const auto& t : first.triangles) {
     const auto length = [&](const support::PlyMesh& m) {
@@ -47,7 +47,7 @@ bool deforms(const support::PlyMesh& first, const support::PlyMesh& last) {
   return false;
 }
 
-/// Reads the frames; objects are in the order of their names, cloth first.
+/// Reads the frames. Cloth comes first, then obstacles, each in the order of names.
 Recording read(const std::filesystem::path& folder, int first, int count) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -114,7 +114,8 @@ Costs run(const Recording& recording, const BroadPhaseOptions& options, double r
   return costs;
 }
 
-/// Reuses results between steps, with the default tree. Reports all costs as those of near pairs.
+/// Like run(), with the default tree and CoherentDetection, which reuses results of earlier steps. All costs are summed
+/// in Costs::proximities.
 Costs run_with_reuse(const Recording& recording, double reach, double budget, int& reused, int& asked) {
   const std::vector<Surface> surfaces = recording.scene.surfaces();
   std::vector<SurfacePair> wanted;
@@ -150,7 +151,8 @@ void print_row(const std::string& name, const std::vector<Costs>& runs, int step
              runs[0].found / static_cast<std::size_t>(steps));
 }
 
-/// Counts the pairs of a frame that normal cones skip, and those of them within the detection distance.
+/// Counts the pairs of every second frame that normal cones skip, and how many of these are within the detection
+/// distance.
 void count_skipped_pairs(const Recording& recording, double reach) {
   const std::vector<Surface> surfaces = recording.scene.surfaces();
   std::size_t left_out = 0, missed = 0;
@@ -209,7 +211,7 @@ void replay(const std::filesystem::path& meshes, int first_frame, int frames, do
       "|\n|---|---|---|---|---|---|---|\n");
   constexpr int kRuns = 3;
   const auto all = settings();
-  // Runs alternate, so that a busy machine slows all of them.
+  // Runs of the options alternate, so that a busy machine slows all of them alike.
   std::vector<std::vector<Costs>> costs(all.size());
   for (int r = 0; r < kRuns; ++r)
     for (std::size_t i = 0; i < all.size(); ++i) costs[i].push_back(run(recording, all[i].second, reach));

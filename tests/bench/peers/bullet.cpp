@@ -1,6 +1,6 @@
-// bench_bullet: simulates a scene of one cloth, a sphere and a floor with Bullet's soft body, for comparison: prints
-// the cost of a frame, and writes meshes for weft_judge. Mesh, masses, obstacles and friction are those of the scene;
-// the material is Bullet's, with rigid threads and soft bending, as usual for soft bodies.
+// bench_bullet: for comparison, simulates a scene of one cloth, a sphere and a floor with Bullet's soft body. Prints
+// the cost of a frame, and writes meshes for weft_judge. Mesh, masses, obstacles and friction are those of the scene.
+// The material is Bullet's, with rigid threads and soft bending, as usual for its soft bodies.
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>

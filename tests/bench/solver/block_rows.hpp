@@ -21,7 +21,8 @@ struct BlockRows {
   Index rows() const { return static_cast<Index>(start.size()) - 1; }
 };
 
-/// S (A + terms) S + (I − S), both triangles.
+/// Assembles S (A + terms) S + (I − S), both triangles. S: projection on the directions that the constraints leave
+/// free.
 BlockRows<Mat3> assembled(const solver::LinearSystem& system);
 
 inline double transposed(double weight) {

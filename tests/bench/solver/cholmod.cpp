@@ -27,7 +27,7 @@ class Cholmod final : public Inverse {
   Cholmod(const Cholmod&) = delete;
   Cholmod& operator=(const Cholmod&) = delete;
 
-  // Orders by nested dissection of the particles, three unknowns each.
+  // Orders the particles by nested dissection (METIS). Each particle has three unknowns.
   void analyse(const SheetSystem& sheet) override {
     const BlockRows<Mat3> a = assembled(sheet.system);
     make_pattern(a);
@@ -76,7 +76,7 @@ class Cholmod final : public Inverse {
   }
 
  private:
-  // Stores the lower triangle by columns, which equals the upper one by rows.
+  // Pattern of the lower triangle by columns. As the matrix is symmetric, it equals the upper triangle by rows.
   void make_pattern(const BlockRows<Mat3>& a) {
     const std::size_t size = 3 * static_cast<std::size_t>(a.rows());
     matrix_ = cholmod_allocate_sparse(size, size, (9 * a.column.size() + size) / 2, 1, 1, -1, CHOLMOD_REAL, &common_);

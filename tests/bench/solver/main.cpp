@@ -1,8 +1,8 @@
 // Linear solvers on systems of 10³ to 2·10⁵ particles, one thread, as CSV and Markdown tables:
 //   bench_solver FILE.csv [MOST_PARTICLES [SOLVER]]
-// The speed of CHOLMOD depends on its BLAS, which is named below the tables: with the Debian package
-// libopenblas0-serial it is five times that with the reference BLAS. Solves that take more than 120 s, or would do so
-// by extrapolation from the smaller system, are omitted.
+// The speed of CHOLMOD depends on its BLAS, which is named below the tables: the Debian package libopenblas0-serial is
+// five times as fast as the reference BLAS. Solves are omitted if they take more than 120 s, or are expected to by
+// extrapolation from the smaller system.
 #include <fmt/core.h>
 #include <malloc.h>
 
@@ -44,7 +44,8 @@ struct Solution {
   double residual = 0;  // computed from b and x, not by recurrence
 };
 
-// Conjugate gradients from zero until ‖b − A x‖₂ is below each of these fractions of ‖b‖₂.
+// Conjugate gradients from zero. Returns a solution for each tolerance: the first with ‖b − A x‖₂ below that fraction
+// of ‖b‖₂.
 std::vector<Solution> solve(const SheetSystem& sheet, Inverse& inverse, std::span<const double> tolerances) {
   const std::size_t n = sheet.b.size();
   std::vector<Vec3> x(n, Vec3::Zero()), r = sheet.b, z(n), p(n), q(n);
@@ -81,7 +82,7 @@ std::vector<Solution> solve(const SheetSystem& sheet, Inverse& inverse, std::spa
   return solutions;
 }
 
-// ConjugateGradient itself, which chooses between the two solvers above it in the table.
+// solver::ConjugateGradient itself, with its own choice of precision and its own stopping test.
 constexpr const char* kProgram = "the program";
 constexpr const char* kDirect = "CHOLMOD, supernodal";
 
@@ -97,7 +98,7 @@ struct Row {
   int particles;
   double megabytes, analysis, setup;
   Solution loose, tight;
-  // Contacts change the pattern: only without contacts the analysis of the previous step is valid.
+  // Contacts change the pattern in each step. Without contacts the analysis of an earlier step is reused.
   double total(const Solution& s) const {
     return setup + (pose == Pose::lying && solver == kDirect ? analysis : 0) + s.seconds;
   }
@@ -144,7 +145,8 @@ Row measure_program(const SheetSystem& sheet, Pose pose, double stiffness) {
     // Sets up the multigrid levels of this precision, which are kept from step to step.
     solver.prepare(system);
     solver.solve(sheet.b, {tolerance}, 1, x);
-    // ConjugateGradient stops by error: first finds the tolerance that gives the required residual.
+    // ConjugateGradient stops by error, not by residual: the loop lowers its tolerance until the residual is as
+    // required, and the last solve counts.
     double relative_error = tolerance;
     do {
       ++system.parts.front().version;

@@ -10,7 +10,7 @@ namespace weft::bench {
 namespace {
 
 constexpr Index kMaxDenseBlocks = 100;   // maximum number of blocks on the last level
-constexpr double kSingularShift = 1e-9;  // for motions that constraints forbid; relative to the mean diagonal
+constexpr double kSingularShift = 1e-9;  // keeps motions that constraints forbid regular; relative to the mean diagonal
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -228,7 +228,8 @@ class Aggregation final : public Multigrid<N, Eigen::Matrix<double, 3, N>, Squar
   }
 
  private:
-  // Displacements of particles or finer aggregates for rigid motions of aggregates. Replaces side and centres.
+  // P₀: motions of particles, or of finer aggregates, for rigid motions of aggregates. Replaces `side` and `centres` by
+  // those of the aggregates.
   template <int M>
   static BlockRows<Eigen::Matrix<double, M, N>> tentative(int& side, std::vector<Vec3>& centres,
                                                           const solver::LinearSystem* system) {

@@ -9,7 +9,7 @@
 namespace weft::bench {
 namespace {
 
-// Converts vectors to the padded form of the program's inner loops, and back.
+// Applies `body` to vectors in the padded form of the program's inner loops.
 class InPaddedVec3s {
  public:
   template <class Body>

@@ -9,7 +9,8 @@
 
 namespace weft::bench {
 
-/// z = P⁻¹ r; r must satisfy the constraints, and z does too.
+/// A preconditioner or factorisation P. apply() computes z = P⁻¹ r; r must satisfy the constraints, and z then does
+/// too.
 class Inverse {
  public:
   virtual ~Inverse() = default;
@@ -22,7 +23,7 @@ class Inverse {
 std::unique_ptr<Inverse> block_jacobi();
 /// The program's preconditioner, in double.
 std::unique_ptr<Inverse> additive_multilevel();
-/// Block IC(0): has the pattern of the matrix.
+/// Block IC(0): the factor has the pattern of the matrix.
 std::unique_ptr<Inverse> incomplete_cholesky();
 /// One V-cycle; coarse grids have every second particle, with bilinear interpolation.
 std::unique_ptr<Inverse> geometric_multigrid();

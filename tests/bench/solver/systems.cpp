@@ -19,7 +19,8 @@ constexpr double kContactStiffness = 100;  // of one contact, as in scenes [N/m]
 constexpr double kShearOfStretch = 0.03;   // shear stiffness of soft cloth relative to its stretch stiffness
 constexpr double kMaxShear = 30;           // [N/m]; even inextensible threads can rotate against each other
 
-// A fold is an arc of known angle, so chords keep their length: the sheet bends but does not stretch along u.
+// The direction of each edge along u follows a sine, and its length is that at rest: the sheet bends but does not
+// stretch along u. Along v it is stretched by its weight.
 std::vector<Vec3> folded(const mesh::Grid& grid, double weight, double stiffness) {
   std::vector<Vec3> x(static_cast<std::size_t>(grid.size()));
   Vec3 at_u = Vec3::Zero();
@@ -36,7 +37,7 @@ std::vector<Vec3> folded(const mesh::Grid& grid, double weight, double stiffness
   return x;
 }
 
-// Waves across the folds, 12 cm long and 6 mm high: threads of both directions bend, and stretch by up to 5 %.
+// Adds waves across the folds, 12 cm long and 6 mm high: threads of both directions bend, and stretch by up to 5 %.
 void crumple(const mesh::Grid& grid, std::span<Vec3> x) {
   for (int j = 0; j < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i)
@@ -44,8 +45,8 @@ void crumple(const mesh::Grid& grid, std::span<Vec3> x) {
           0.006 * std::sin(2 * M_PI * (4 * i * grid.lu + 7 * j * grid.lv)) * Vec3(1, 1, 0);
 }
 
-// Adds contacts where folds touch the floor behind the sheet (minimum y), and of each crest with a side of the next
-// fold in every second row.
+// Adds contacts of folds with a floor behind the sheet (minimum y). In every second row, adds contacts of each crest
+// with the side of the next fold.
 void add_contacts(const mesh::Grid& grid, std::span<const Vec3> x, solver::LinearSystem& system) {
   const Mat3 along_y = kContactStiffness * Vec3::UnitY() * Vec3::UnitY().transpose();
   const Mat3 along_x = kContactStiffness * Vec3::UnitX() * Vec3::UnitX().transpose();

@@ -16,14 +16,14 @@ struct SheetSystem {
 
 enum class Pose {
   hanging,  ///< hangs from two corners
-  lying,    ///< lies in folds on a floor and against itself: contacts, nothing held
+  lying,    ///< lies in folds on a floor and touches itself; no particle is held
 };
 
-/// A cotton sheet of 1 m × 1 m with side × side particles, this thread stiffness [N/m] and steps of 10 ms, in folds of
-/// 17 cm and stretched along the warp by its own weight.
+/// Makes the system of a step of 10 ms for a cotton sheet of 1 m × 1 m with side × side particles, in folds of 17 cm
+/// and stretched along the warp by its own weight. `stiffness`: of the threads [N/m].
 SheetSystem sheet_system(int side, double stiffness, Pose pose);
 
-/// q = S (A + terms) p, with S the constraints of the system.
+/// q = S (A + terms) p. S: projection on the directions that the constraints leave free.
 void multiply(const solver::LinearSystem& system, std::span<const Vec3> p, std::span<Vec3> q);
 
 }  // namespace weft::bench
