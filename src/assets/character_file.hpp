@@ -31,7 +31,8 @@ struct LoadedCharacter {
 LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
                                const MeshChoice& choice = {});
 
-/// Reads only the skeleton and the clips, of which there must be one. Arguments and exceptions as for load_character().
+/// Reads only the skeleton and the clips. The file must have at least one clip. Arguments and exceptions are those of
+/// load_character().
 LoadedCharacter load_motion(const std::filesystem::path& file, const FileAxes& axes, const std::string& where);
 
 /// Whether the extension of a file is .bvh, in upper or lower case.
@@ -40,7 +41,7 @@ bool is_bvh(const std::filesystem::path& file);
 /// Scales every length of a character by `scale` and rotates every direction by `axes`, a signed permutation.
 void transform(character::Character& character, double scale, const Mat3& axes);
 
-/// The rotation from axes with the up axis `up` (0 x, 1 y, 2 z) to the axes of the scene.
+/// The rotation to the axes of the scene, for a file whose up axis is `up` (0 x, 1 y, 2 z).
 Mat3 turn_up(int up, scene::UpAxis scene_up);
 
 }  // namespace weft::assets

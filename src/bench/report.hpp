@@ -21,7 +21,7 @@ std::string markdown(const Table& table);
 class Tally {
  public:
   void add(Verdict verdict) { ++of_[static_cast<std::size_t>(verdict)]; }
-  /// Number of outcomes with unexplained energy and no warning, or with positions that are not finite.
+  /// Number of outcomes that are `unbounded` (more energy than allowed, but no warning) or `not_finite`.
   int wrong() const;
   std::string text() const;
 
@@ -30,8 +30,8 @@ class Tally {
 };
 
 Table map_table(const std::vector<MapCell>& cells);
-/// The stability map as SVG: one panel per integrator; stiffness increases upward, the step to the right; cells are
-/// coloured by verdict.
+/// The stability map as SVG: one panel per integrator; stiffness increases upward, the time step increases
+/// to the right. Cells are coloured by verdict.
 std::string map_svg(const std::vector<MapCell>& cells);
 
 }  // namespace weft::bench

@@ -115,7 +115,7 @@ class Sweep {
       std::erase_if(running, [&](Job* job) {
         int status = 0;
         if (::waitpid(job->process, &status, WNOHANG) == 0) return false;
-        // A process that did not exit was killed from outside or for lack of memory.
+        // A process that ended without an exit code was killed by a signal: from outside or for lack of memory.
         job->code = WIFEXITED(status) ? static_cast<ExitCode>(WEXITSTATUS(status)) : ExitCode::internal;
         const std::string how = job->code == ExitCode::ok
                                     ? "done"
@@ -157,7 +157,7 @@ class Sweep {
                             results.size()));
       return ExitCode::interrupted;
     }
-    std::vector<std::string> made;  // the sheet may be absent: no run has a picture
+    std::vector<std::string> made;  // there is no sheet if no run has a picture
     for (const char* file : {"sheet.png", "table.md", "table.csv", "page/index.html"})
       if (fs::exists(options_.output / file)) made.emplace_back(file);
     log::info(fmt::format("{}: {}", options_.output.string(), fmt::join(made, ", ")));

@@ -1,10 +1,10 @@
-// Folders of reference pictures. Pictures depend slightly on Mesa and on the vector width of the processor, and motion
-// on the processor for which the program is built. If such differences exceed the limits, a class of machines has its
-// own references:
+// Folders of reference pictures. Pictures depend slightly on Mesa and on the vector width of the processor. The
+// simulated motion depends slightly on the processor for which the program is built. If such differences exceed the
+// limits, a class of machines has its own references:
 //
-//     references/mesa-22.3-256bit/name.png   references of this class of machines
-//     references/default/name.png            references of all other classes
-//     references/name.png                    used if there are no classes
+//     references/mesa-22.3-256bit/name.png   used for this class of machines
+//     references/default/name.png            used for names that the folder of the class does not have
+//     references/name.png                    used for names that neither of these folders has
 //
 // Names may contain folders: references/default/front/name.png is the reference of front/name.png.
 #pragma once
@@ -23,7 +23,7 @@ std::string machine_class(const std::string& gl);
 /// The class of the machine that drew a picture or video; empty for files of other programs and unreadable ones.
 std::string machine_class_of(const std::filesystem::path& file);
 
-/// The reference of this name in `folder`: of the class, else of `default`, else in the folder itself.
+/// The reference of this name: in the folder of the class, else in `default`, else in `folder` itself.
 std::optional<std::filesystem::path> find_reference(const std::filesystem::path& folder, const std::string& name,
                                                     const std::string& machine);
 

@@ -17,7 +17,8 @@ namespace {
 /// 4 layers, 13 of 51 frames of such a shirt were pinched).
 constexpr double kLayersBetweenLimbs = 8;
 
-/// Largest distance from cloth at which skin moves [m].
+/// Skin counts as near cloth up to this distance [m]. character::Room moves limbs apart only if cloth is near one of
+/// them.
 constexpr double kNearCloth = 0.05;
 
 /// Largest distance between samples on cloth [m].

@@ -34,8 +34,7 @@ namespace {
 /// Vertices per task; a task takes some ten microseconds.
 constexpr std::size_t kPlacedPerTask = 4096;
 
-// A pseudorandom number in [−1, 1), the same for the same argument on every machine: the mixing function of splitmix64
-// (Steele, Lea & Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
+// A pseudorandom number in [−1, 1) that depends only on the argument: splitmix64 mixing (Steele, Lea & Flood, 2014).
 double noise(std::uint64_t z) {
   z = (z + 1) * 0x9E3779B97F4A7C15U;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
@@ -91,7 +90,7 @@ mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
 }
 
 /// Makes cloth from a pattern. Garments stand upright along z, like shapes; those with panels around parts of a wearer
-/// are made where the wearer stands. `fractions` are those of width and height.
+/// are made where the wearer stands. object.fractions: place in the garment's bounding box, from 0 to 1 across and up.
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
                  ClothObject& object) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
@@ -137,12 +136,13 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
     }
 }
 
-// Largest ratio of a cloth's longest edge to the smallest height of its triangles, or smallest spacing of its quads, if
-// it touches obstacles. Measured with a row of flat triangles in an even sheet that falls on a ball, at default
-// settings: at 71, eight of nine runs succeeded, at 141 none; of rectangles graded by 50 all did, by 100 none.
+// Largest allowed ratio of a cloth's longest edge to its smallest triangle height or quad spacing, if it may meet
+// obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin triangles, eight of
+// nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading of 50, none at 100.
 constexpr double kMaxUnevenness = 80;
 
-/// The axes of a mesh file. If a character uses the same file, those of the character; y is up if nothing states it.
+/// The axes of a mesh file. If a character uses the same file, the character's up axis applies unless `up` states one.
+/// If nothing states the up axis, it is y for the file of a character, and the scene's up axis for other files.
 assets::MeshAxes axes_of(const scene::Scene& scene, const std::filesystem::path& file, double scale, scene::FileUp up) {
   assets::MeshAxes axes{scale, up, scene.up};
   std::error_code ignored;
@@ -222,7 +222,7 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
 }
 
 /// Makes cloth from a file. It starts as the mesh; its rest shape is the mesh, or the flat panels given by its UVs.
-/// Returns the other data of the vertices in the file.
+/// Moves the mesh into `object`, and returns the rest of the file's data, such as colours and vertex groups.
 assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
                                  ClothObject& object) {
   assets::LoadedMesh loaded = load_sheet(scene, cloth, where, object);
@@ -232,7 +232,7 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
   if (cloth.rest == scene::ClothRest::mesh) object.rest_from = "the mesh: the scene says so";
   const bool panels = cloth.rest != scene::ClothRest::mesh && uses_uv(cloth, rest, where, object);
   if (panels) {
-    constexpr double kMaxSeamGap = 0.1;  // relative to the edges there; gaps at the seams of files are narrower
+    constexpr double kMaxSeamGap = 0.1;  // relative to the shortest border edge there; gaps in files are smaller
     if (const assets::Welded welded = assets::weld_borders(loaded, kMaxSeamGap); welded.vertices > 0)
       object.rest_from += fmt::format("; {} vertices of its borders are joined to others, at most {:.2g} mm away",
                                       welded.vertices, 1e3 * welded.widest);
@@ -246,7 +246,6 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
     for (std::size_t t = object.sheet.triangles.size(); t-- > 0;)
       for (std::size_t k = 0; k < 3; ++k)
         object.mesh.uv[static_cast<std::size_t>(object.sheet.triangles[t][k])] = object.sheet.material[t][k];
-    object.paint_uv = object.sheet.material;
   }
   return loaded;
 }
@@ -257,7 +256,7 @@ bool meets_obstacles(const scene::Scene& scene) {
           std::ranges::any_of(scene.characters, [](const scene::Character& c) { return c.collide; }));
 }
 
-/// Throws Error(scene_invalid) if triangles are too flat, with their number and the flattest one.
+/// Throws Error(scene_invalid) if triangles are too flat. The message states how many, and the flattest one.
 void check_triangles(const mesh::Sheet& sheet, const std::string& where) {
   double longest = 0;
   for (const auto& m : sheet.material)
@@ -395,8 +394,8 @@ struct Place {
   void operator()(const KeyFrames& keys) const { keys.at(t, positions); }
 };
 
-/// Lists the triangles that do not collide, and closes the surface of the others; lists none if all collide. A body
-/// without any triangle that collides does not collide.
+/// Unless all parts collide, fills body.passed_through (per triangle: 1 if it does not collide) and body.colliding (the
+/// other triangles, with the cuts between them closed). A body without any colliding triangle does not collide.
 void list_colliding_triangles(BodyObject& body) {
   if (std::ranges::all_of(body.parts, &Part::collide)) return;
   std::vector<std::uint8_t> collides(body.mesh.positions.size(), 1);

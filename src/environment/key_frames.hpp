@@ -1,4 +1,5 @@
-// Bodies whose vertices are stored as key frames before the simulation starts (seed, "System").
+// Bodies whose vertices are stored as key frames before the simulation starts (section "System" of the seed, the paper
+// by Etzmuß et al. of 2001).
 #pragma once
 
 #include <functional>
@@ -19,8 +20,9 @@ struct VertexMotion {
 /// derivative. Before the first key and after the last one, the body stands still.
 class KeyFrames {
  public:
-  /// `from_rest`: the spline starts with zero velocity, because the body stands still before the first key; otherwise
-  /// it starts with zero acceleration, as it ends. Needs at least one key and a positive `interval` [s].
+  /// `from_rest`: the spline starts with zero velocity, because the body stands still before the first key. Otherwise
+  /// its acceleration is zero at the start. At the end, its acceleration is always zero. Needs at least one key and a
+  /// positive `interval` [s].
   KeyFrames(scene::Interpolation interpolation, double first_time, double interval, std::vector<std::vector<Vec3>> keys,
             bool from_rest);
 

@@ -7,13 +7,15 @@
 
 namespace weft::forces {
 
-/// The plate of Bend on triangles: energy ½ B A Σ_ab ‖s_ab − κ_ab n‖², summed over uu, vv and twice uv, with the
-/// rigidity B, the area A, the curvature vectors s_ab of CurvatureStencil, the triangle's unit normal n and the signed
-/// rest curvature κ_ab, positive if the sheet bends toward its front. If the rest shape is curved, the in-plane
-/// components of its s_ab are subtracted along s_u and s_v, so that the rest shape has no energy.
+/// The plate model of class Bend (for grids), for triangles: energy ½ B A Σ_ab ‖s_ab − κ_ab n‖², where ab is uu, vv, uv
+/// and vu. B is the rigidity, A the area, s_ab the curvature vectors of CurvatureStencil, n the triangle's unit normal,
+/// and κ_ab the signed rest curvature, positive if the sheet bends toward its front. If the rest shape is curved, its
+/// own s_ab also have in-plane components. The stencil subtracts these as multiples of the triangle's current tangents
+/// s_u and s_v. So they turn with the triangle, and the rest shape has no energy.
 ///
 /// The part without κ_ab is quadratic with a constant, definite Jacobian, as for grids. Triangles with rest curvature
-/// have another part, −B A Σ_ab κ_ab n·s_ab, which every evaluation adds. For viscosity and friction see BendDamping.
+/// have another part, −B A Σ_ab κ_ab n·s_ab. Every evaluation computes its forces and its matrix anew. For viscosity
+/// and friction see BendDamping.
 class TriangleBend final : public Force {
  public:
   /// `pinned`: per particle of all cloths, whether hold() may hold it; these particles start held. Empty: none.

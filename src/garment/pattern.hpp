@@ -26,23 +26,26 @@ struct PanelEdge {
 /// A flat piece of cloth. It is drawn as seen from in front of the wearer if it has a side, else from outside.
 struct Panel {
   std::string name;
-  std::optional<Side> side;      ///< empty: the front, or as `angle` states
-  std::string path;              ///< SVG path data of the outline in metres, y upward; empty: see `file`
-  std::filesystem::path file;    ///< SVG drawing that holds the outline; empty: see `path`
-  std::string id;                ///< id of the element of the drawing
-  std::string edge_names;        ///< one name per curve, separated by spaces, in drawing order; empty: 1 2 3 ...
-  std::string fold;              ///< edge at which the outline is half of the panel; empty: the outline is whole
-  double grain = 0;              ///< of the warp, counter-clockwise from the panel's y axis [degrees]
-  std::string mirror_of;         ///< panel whose mirrored outline this one has, instead of its own
-  Around around = Around::none;  ///< part of the wearer around which the panel starts bent; none for all panels: flat
+  std::optional<Side> side;    ///< empty: the front, or as `angle` states
+  std::string path;            ///< SVG path data of the outline in metres, y upward; empty: see `file`
+  std::filesystem::path file;  ///< SVG drawing that holds the outline; empty: see `path`
+  std::string id;              ///< id of the element of the drawing
+  std::string edge_names;      ///< one name per curve, separated by spaces, in drawing order; empty: 1 2 3 ...
+  std::string fold;            ///< edge at which the outline is half of the panel; empty: the outline is whole
+  double grain = 0;            ///< angle of the warp, counter-clockwise from the panel's y axis [degrees]
+  std::string mirror_of;       ///< panel whose mirrored outline this one has, instead of its own
+  /// Part of the wearer around which the panel starts bent; `none` means the torso. If no panel of the pattern has a
+  /// part or an `angle`, all panels start in front of and behind the wearer instead.
+  Around around = Around::none;
   std::optional<double> angle;   ///< of the panel's origin around the part, from front to left [degrees]
   int layer = 0;                 ///< number of cloth layers between the panel and the same part of the wearer
   std::optional<Vec2> position;  ///< start position of the panel's origin: across and up the wearer [m]
   double rotation = 0;           ///< at the start, counter-clockwise seen from in front [degrees]
   Vec2 scale{1, 1};              ///< at the start, across and up, before the rotation
-  bool turned = false;           ///< folded over as a lapel: its right side continues the wrong side of its neighbour
+  /// Whether the panel is folded over as a lapel: its outer side continues the inner side of its neighbour.
+  bool turned = false;
 
-  mesh::Reinforcement reinforcement;  ///< fusing, or a heavier fabric
+  mesh::Reinforcement reinforcement;  ///< such as an ironed-on lining (fusing), or a heavier fabric
 
   std::vector<PanelEdge> edges;  ///< around the outline, counter-clockwise
 
@@ -50,9 +53,9 @@ struct Panel {
   bool from_inside() const { return (side == Side::back) != turned; }
 };
 
-/// Sews two edges together, each named "panel.edge". Both get the same points, at the same fractions of their lengths;
-/// the longer edge is eased in. With buttons or times, or if it tears, the seam is a closure: its points are held
-/// together while it is closed.
+/// Sews two edges together, each named "panel.edge". Both get the same points, at the same fractions of their lengths,
+/// so the surplus length of the longer edge is spread evenly along the seam (eased in). A seam with `buttons`, `open`,
+/// `closed` or `tearing_load` is a closure: its points are held together while it is closed.
 struct Seam {
   std::string a, b;
   int buttons = 0;                     ///< number of buttons that hold the seam; 0: all points hold it, as in a zip
@@ -85,10 +88,11 @@ struct Measures {
 
 struct Pattern {
   std::filesystem::path file;
-  Measures measures;    ///< of the body that the pattern is drawn for, as far as stated
-  double depth = 0.16;  ///< distance at the start of front and back panels from the wearer's coronal plane (which
-                        ///< separates front from back), far from the seams that join these panels [m]
-  double gap = 0.015;   ///< distance of bent panels from the skin at the start [m]
+  Measures measures;  ///< of the body that the pattern is drawn for, as far as stated
+  /// Start distance of front and back panels from the wearer's coronal plane, which separates front from back [m]. It
+  /// decreases to 0 toward the seams that join front and back.
+  double depth = 0.16;
+  double gap = 0.015;  ///< distance of bent panels from the skin at the start [m]
   std::vector<Panel> panels;
   std::vector<Seam> seams;
   std::vector<Elastic> elastics;

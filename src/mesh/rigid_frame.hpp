@@ -10,10 +10,10 @@
 
 namespace weft::mesh {
 
-/// Four particles of equal mass with the mass, the centre and the moments of inertia of a body. The particles are at c
-/// + R diag(s) t_k: c is the centre of mass, the columns of R are the principal axes, s are the standard deviations of
-/// the mass along them, and t_k = corner(k). Every point of an affine body (Lan et al., "Affine Body Dynamics", 2022)
-/// is a weighted sum of the four, so the inertia of the body is exactly that of the particles.
+/// Four particles of equal mass that together have the mass, the centre and the moments of inertia of a body. The
+/// particles are at c + R diag(s) t_k: c is the centre of mass, the columns of R are the principal axes, s are the
+/// standard deviations of the mass along them, and t_k = corner(k). Every point of an affine body (Lan et al., "Affine
+/// Body Dynamics", 2022) is a weighted sum of the four, so the inertia of the body is exactly that of the particles.
 class RigidFrame {
  public:
   static constexpr std::size_t kParticles = 4;

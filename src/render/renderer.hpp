@@ -34,7 +34,8 @@ struct DrawTimes {
   double wall_seconds = 0, cpu_seconds = 0;
 };
 
-/// Owns one OpenGL context, and copies in it of data that stay the same over a run. Use from a single thread.
+/// Owns one OpenGL context and, inside it, copies of the data that do not change during a run. Use from a single
+/// thread.
 class Renderer {
  public:
   /// Throws as make_context() does, and Error(usage) for a bad size.
@@ -47,9 +48,10 @@ class Renderer {
   void set_camera_path(CameraPath path);
   /// `before`: the frame from which layers() computes motion.
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
-  /// The last picture for compositors, linear. R, G, B, A: the surfaces alone, premultiplied. picture.R, .G, .B: with
-  /// floor and backdrop. caught.A, if there is a floor: alpha of surfaces and of their shadow on the floor (black).
-  /// Then all layers of DataPasses.
+  /// The last picture as linear layers for compositors. Channels R, G, B and A hold the surfaces alone, premultiplied.
+  /// Channels picture.R, picture.G and picture.B hold the picture with floor and backdrop. If there is a floor, channel
+  /// caught.A holds the alpha of the surfaces together with the shadow on the floor, as black. All layers of DataPasses
+  /// follow.
   image::Layers layers();
   /// The last picture with 16 bits per channel.
   image::Image16 deep();

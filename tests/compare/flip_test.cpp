@@ -67,8 +67,9 @@ double gain(int channel, double cycles_per_degree) {
   return static_cast<double>(flip::as_seen(plane, channel).row(4)[200]);
 }
 
-// Without discretisation, the Gaussians of Table 1 multiply a grating by exp(-b f²), and two Gaussians by the mean of
-// both factors, weighted with a sqrt(b). Tolerance 0.01: kernels are sampled at pixels and end at three sigmas of the
+// Without discretisation, a channel with one Gaussian of Table 1 of the paper multiplies a grating by exp(-b f²). A
+// channel with two Gaussians multiplies it by the weighted mean of their factors; the weights are the products of the
+// table's a and sqrt(b). Tolerance 0.01: kernels are sampled at pixels and end at three sigmas of the
 // widest Gaussian, which omits 0.3 %.
 TEST(Flip, GratingsAreDampedByTheContrastSensitivity) {
   for (const double f : {0.5, 2.0, 5.0, 10.0, 20.0}) {
@@ -88,8 +89,8 @@ TEST(Flip, FlatPlanesPassTheFilterUnchanged) {
   }
 }
 
-// The positive half of the edge filter has the sum 1 and lies on one side. Its response to a step from 0 to 1 is 1, and
-// the difference from an empty plane is (1/sqrt 2)^(1/2).
+// The positive weights of the edge filter sum to 1 and all lie on one side of its centre. So its response to a step
+// from 0 to 1 is 1, and the difference from an empty plane is (1/sqrt 2)^(1/2).
 TEST(Flip, StepAgainstNothingIsTheLargestFeatureOfOneDirection) {
   Plane<float> step(81, 41), nothing(81, 41);
   for (int y = 0; y < step.height; ++y) {
@@ -101,10 +102,12 @@ TEST(Flip, StepAgainstNothingIsTheLargestFeatureOfOneDirection) {
   EXPECT_NEAR(difference.row(20)[5], 0, 1e-3);
 }
 
-// Without edges the map is the remapped distance. Black to white: HyAB 100, and 100^0.7 = 25.12 is beyond the bend.
+// Without edges the map is the remapped distance. Black to white: HyAB 100, and 100^0.7 = 25.12 is beyond the
+// point `bend` where the two lines of the curve meet. 203.3 is the HyAB distance of green and blue, from the shrunk
+// L*a*b* values of the test of the primaries.
 TEST(Flip, BlackAgainstWhiteIsTheDistanceOfItsColours) {
   const Plane<float> map = flip_map(plain(40, 30, 0, 0, 0), plain(40, 30, 255, 255, 255));
-  const double largest = std::pow(203.3, 0.7), bend = 0.4 * largest;  // green to blue, from the table above
+  const double largest = std::pow(203.3, 0.7), bend = 0.4 * largest;
   const double expected = 0.95 + 0.05 * (std::pow(100, 0.7) - bend) / (largest - bend);
   for (const float value : map.values) ASSERT_NEAR(value, expected, 1e-4);
 }
@@ -185,7 +188,7 @@ TEST(Flip, FeaturesAreThoseOfThePapersKernels) {
   const paper::Picture size{40, 32};
   Plane<float> planes[] = {{size.width, size.height}, {size.width, size.height}};
   Noise noise(7);
-  // Blocks, a line, points: edges of all lengths, between 0 and 1.
+  // Six random blocks per plane, 1 to 9 pixels wide and 1 to 7 high. Each row of a block has its own value from 0 to 1.
   for (Plane<float>& plane : planes) {
     std::fill(plane.values.begin(), plane.values.end(), 0.2f);
     for (int block = 0; block < 6; ++block) {
@@ -221,7 +224,7 @@ TEST(Flip, ExchangingTheImagesChangesNothing) {
   EXPECT_EQ(flip_map(a, b).values, flip_map(b, a).values);
 }
 
-// The filter has the sum 1 by construction. A small bright spot is blurred, and still counts as a point feature.
+// The contrast filter sums to 1, so it only blurs a small bright spot. The spot still counts as a point feature.
 TEST(Flip, SpotIsSeenWhereItIsAndNotFarFromIt) {
   const image::Image black = plain(81, 81, 0, 0, 0);
   image::Image spot = black;

@@ -72,7 +72,7 @@ inline Positions zeros(const Positions& like) {
   return Positions(like.size(), Vec3::Zero());
 }
 
-/// The point of evaluation, and the forces there.
+/// Positions and velocities at which a force is evaluated, and the resulting forces.
 struct Place {
   std::vector<solver::PaddedVec3<double>> x, v, force;
 
@@ -152,7 +152,7 @@ inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const P
   EXPECT_EQ(dense(in_ranges), dense(at_once));
 }
 
-/// The exact Jacobian of the same quantity, without projection.
+/// −(∂f/∂x + rate ∂f/∂v) as in stiffness_of(), but exact: not projected to a definite matrix.
 inline Eigen::MatrixXd jacobian_of(const Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
   force.couple(pairs);

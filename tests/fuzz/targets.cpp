@@ -88,7 +88,7 @@ void may_refuse(std::initializer_list<ExitCode> codes, const Read& read) {
   }
 }
 
-// In the folder of the files that the scenes of the corpus reference.
+// This file need not exist. The scenes of the corpus name files relative to its folder.
 constexpr const char* kSceneFile = WEFT_SOURCE_DIR "/tests/scene/fuzz.toml";
 
 void read_scene(Bytes bytes) {
@@ -133,7 +133,9 @@ int depth_of(const nlohmann::ordered_json& json) {
   return deepest;
 }
 
-// Headers and the keys below them nest separately; each header of an array of tables adds two levels.
+// nests_too_deep() limits the parts of a header to kMaxDepth, and separately the keys and values below it. Each part
+// of a header can be an array of tables, which has two levels. The 3 allows for levels that the check does not count,
+// such as the first part of a key.
 void read_toml(Bytes bytes) {
   try {
     require(depth_of(parse_toml(text_of(bytes))) <= 3 * kMaxDepth + 3, "TOML nests as deep as it may");
@@ -169,7 +171,7 @@ void read_statistics(Bytes bytes) {
   (void)review::script_json(data);
 }
 
-/// Reads lists of runs in both formats, and the values of one key.
+/// Reads lists of runs of `weft sweep`, as TOML and as CSV, and an argument such as `key=a,b,c`.
 void read_list(Bytes bytes) {
   const std::string text(text_of(bytes));
   for (const char* file : {"fuzz.toml", "fuzz.csv"}) {
@@ -201,7 +203,7 @@ void check_outline(const garment::Outline& outline) {
   }
 }
 
-// All drawings of the corpus use this name for the element.
+// In all drawings of the corpus, the id of the panel's element is "front".
 void read_svg(Bytes bytes) {
   may_refuse({ExitCode::asset_unreadable},
              [&] { check_outline(garment::load_svg_panel(MemoryFile(bytes).path(), "front").outline); });
@@ -253,7 +255,8 @@ void read_layers(Bytes bytes) {
   });
 }
 
-// Reads the answer of a Weft child process that has read a file, which may have corrupted it.
+// Decodes the answer of a Weft child process. The child reads arbitrary files, which may corrupt the child, so its
+// answer is not trusted.
 template <auto decode>
 void read_answer(Bytes bytes) {
   try {

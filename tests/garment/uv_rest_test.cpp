@@ -133,7 +133,8 @@ TEST(UvRest, ChartsOfABodyAreNoPanels) {
 TEST(UvRest, OfTrianglesThatAreTooFlatForTheRestIsTheMesh) {
   Textured tube = pleated_tube();
   UvCorners& needle = tube.uv[30];
-  needle[2] = needle[0] + 0.3 * (needle[1] - needle[0]) + Vec2(0, 2.5e-4);  // 0.25 mm high in edges of 28 mm
+  // The needle is 0.25 mm high. The longest edge of all triangles is 28 mm, so 1/80 of it is 0.35 mm.
+  needle[2] = needle[0] + 0.3 * (needle[1] - needle[0]) + Vec2(0, 2.5e-4);
   ASSERT_EQ(rest_from_uv(tube.mesh, tube.uv, Vec2(1, 1)).unusable, 0U);
   const UvRest rest = rest_from_uv(tube.mesh, tube.uv, Vec2(1, 1), 1.0 / 80);
   EXPECT_EQ(rest.unusable, 1U);

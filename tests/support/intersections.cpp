@@ -76,7 +76,7 @@ std::vector<Box> boxes_of(const std::vector<Face>& faces) {
   return boxes;
 }
 
-// The number of vertices that two faces share, and the corner (of a, of b) of the last shared one.
+// The number of vertices that two faces a and b share. The last shared vertex is corner of_a of a and corner of_b of b.
 struct Shared {
   int count = 0;
   std::size_t of_a = 0, of_b = 0;
@@ -99,8 +99,8 @@ bool reaches(const Segment& edge, const Face& face) {
   return CGAL::do_overlap(edge.bbox(), triangle.bbox()) && CGAL::do_intersect(edge, triangle);
 }
 
-// Pieces of rope. Two pieces with a common end meet elsewhere if the other end of one lies on the other, that is, if
-// one is folded onto the other.
+// `segment` is a piece of rope; `other` is a triangle or a piece of rope. Two pieces with a common end meet elsewhere
+// if the other end of one lies on the other, that is, if one is folded onto the other.
 bool intersect_with_segment(const Face& segment, const Face& other) {
   const Segment own = segment.segment();
   if (!other.is_segment()) return CGAL::do_intersect(own, other.triangle());

@@ -9,7 +9,8 @@ namespace weft::collision {
 
 namespace {
 
-/// The search ends if the distance is known to this fraction of the size of the two sets: a few roundings.
+/// The search ends if the distance is known to this fraction of the size of the two sets. This is a few rounding
+/// errors.
 constexpr double kTolerance = 1e-14;
 /// Polygons of a few corners need 3 to 8 rounds. For needles, rounding can prevent the search from ending by itself.
 constexpr int kMaxRounds = 40;
@@ -56,8 +57,8 @@ std::size_t furthest(std::span<const Vec3> points, const Vec3& d) {
   return best;
 }
 
-/// Sets the nearest point to that of the triangle with corners i, j, k, if that is nearer than the best one so far. The
-/// closed form of closest_vertex_face also handles needles, segments and points.
+/// Finds the point of triangle i, j, k that is nearest to the origin. If it is nearer than the best point so far, it
+/// becomes simplex.nearest. The closed form of closest_vertex_face also handles needles, segments and points.
 void try_face(Simplex& simplex, double& least_sq, std::size_t i, std::size_t j, std::size_t k) {
   const auto& c = simplex.corner;
   const ClosestPoints points = closest_vertex_face(Vec3::Zero(), c[i].w, c[j].w, c[k].w);
