@@ -94,7 +94,7 @@ struct RayScene::Tree {
   template <class Number>
   Number* allocate(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) const {
     void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, 3 * sizeof(Number), count);
-    if (buffer == nullptr) check();
+    if (buffer == nullptr) throw std::bad_alloc();
     return static_cast<Number*>(buffer);
   }
 
@@ -118,7 +118,8 @@ struct RayScene::Tree {
 };
 
 RayScene::RayScene() : tree_(std::make_unique<Tree>()) {
-  if (tree_->device == nullptr) tree_->check();
+  if (tree_->device == nullptr)
+    throw Error(ExitCode::internal, "Embree: no device, error {}", static_cast<int>(rtcGetDeviceError(nullptr)));
 }
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;

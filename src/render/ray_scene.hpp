@@ -58,8 +58,8 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  /// Replaces the surfaces. Holes that meshes refer to must stay valid; positions and triangles are copied. Throws
-  /// std::bad_alloc, or Error(internal) with Embree's reason.
+  /// Replaces the surfaces. Positions and triangles are copied, but a mesh with holes must stay valid for all later
+  /// rays. Throws std::bad_alloc, or Error(internal) with Embree's reason.
   void build(std::span<const DrawnMesh> meshes);
 
   /// 1 for each wanted ray that meets a surface, else 0. A surface with holes or an opacity below 1 stops a random

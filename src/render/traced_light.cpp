@@ -216,7 +216,7 @@ void TracedLight::trace_shadows(const ReflectedLight& light) {
     lit_[i].fill(1);
     if (i < light.lamps().size()) trace_lamp(light, light.lamps()[i], lit_[i]);
   }
-  upload(lit_, points, lit_texture_, 0);
+  upload(lit_, points, lit_texture_, 0, Eigen::Vector4f::Ones());
 }
 
 /// Traces one ray from each point to the lamp. Points that may lie in a penumbra get half of all rays, and those of
@@ -326,7 +326,7 @@ void TracedLight::trace_surroundings(const ReflectedLight& light) {
     }
   });
   for (const int step : {1, 2, 4}) smooth(open_, open_scratch_, points, step);
-  upload(open_, points, open_texture_, 1);
+  upload(open_, points, open_texture_, 1, {0, 0, 0, 1});
 }
 
 /// Traces rays about the mirrored direction of view; they spread more widely from rougher surfaces.
@@ -373,12 +373,12 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
   });
   smooth(mirrored_, open_scratch_, points, 1);
   if (!mirrored_texture_) mirrored_texture_ = make_texture(*gl_, GL_RGBA32F, width_, height_, GL_NEAREST);
-  upload(mirrored_, points, *mirrored_texture_, 2);
+  upload(mirrored_, points, *mirrored_texture_, 2, Eigen::Vector4f::Zero());
 }
 
-/// Interpolates four planes at all pixels, and marks the tiles in which they change the light of the floor.
-void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& points, const Texture& texture,
-                         GLuint unit) {
+/// Interpolates four planes at all pixels, and marks the tiles in which floor has other values than `on_open_floor`.
+void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& points, const Texture& texture, GLuint unit,
+                         const Eigen::Vector4f& on_open_floor) {
   texels_.resize(seen_.size());
   if (points.divisor() > 1) {
     values_.resize(static_cast<std::size_t>(points.width()) * points.height());
@@ -387,7 +387,6 @@ void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& point
         for (std::size_t k = 0; k < 4; ++k)
           values_[static_cast<std::size_t>(y) * points.width() + x][k] = planes[k].row(y)[x];
   }
-  const bool of_lamps = unit == 0;
   const int tiles = (width_ + kFloorTile - 1) / kFloorTile;
   drawing_for(static_cast<std::size_t>(height_), std::size_t{kFloorTile}, [&](std::size_t begin, std::size_t end) {
     if (points.divisor() > 1)
@@ -399,8 +398,7 @@ void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& point
         for (std::size_t k = 0; k < 4; ++k) row[x][k] = planes[k].row(y)[x];
       for (int x = 0; x < width_; ++x) {
         if (pixels_.kind(x, y) != Kind::floor) continue;
-        const bool shaded = of_lamps ? row[x].minCoeff() < 1
-                                     : row[x].w() < 1 - kUnseen || row[x].head<3>().cwiseAbs().maxCoeff() > kUnseen;
+        const bool shaded = (row[x] - on_open_floor).cwiseAbs().maxCoeff() > kUnseen;
         if (shaded) shaded_[static_cast<std::size_t>(y / kFloorTile) * tiles + x / kFloorTile] = 1;
       }
     }

@@ -44,7 +44,8 @@ class TracedLight {
   void trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plane& lit);
   void trace_surroundings(const ReflectedLight& light);
   void trace_mirrors(const ReflectedLight& light, std::span<const Surface> surfaces, const Eigen::Vector3f& eye);
-  void upload(std::span<const Plane> planes, const PixelPoints& points, const Texture& texture, GLuint unit);
+  void upload(std::span<const Plane> planes, const PixelPoints& points, const Texture& texture, GLuint unit,
+              const Eigen::Vector4f& on_open_floor);
 
   const Gl* gl_;
   QualitySettings quality_;
