@@ -1,11 +1,15 @@
 #include "simulation/attachments.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "collision/proximity/surface_point.hpp"
 #include "core/archive.hpp"
+#include "simulation/pin_warnings.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -101,6 +105,7 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
     if (attachment.frame >= 0) move_to_frame(attachment, spring);
   }
   attachment.state = State::tied;
+  attachment.begins = true;
 }
 
 void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
@@ -199,13 +204,25 @@ double Attachments::energy(std::span<const Vec3> x_end) const {
   return sum;
 }
 
-void Attachments::accept(std::span<const Vec3> x) {
+std::vector<std::string> Attachments::accept(std::span<const Vec3> x, std::span<const Vec3> v) {
+  std::vector<std::string> warnings;
   for (Attachment& attachment : attachments_) {
     attachment.load = 0;
     if (!attachment.holds) continue;
-    for (const Spring& spring : attachment.springs) attachment.load += compute_tension(attachment, spring, x).force;
+    double speed = 0;  // of the particles in tension, toward their places
+    for (const Spring& spring : attachment.springs) {
+      const Tension tension = compute_tension(attachment, spring, x);
+      attachment.load += tension.force;
+      if (tension.force > 0) speed = std::max(speed, tension.direction.dot(v[spring.particle]));
+    }
+    if (std::exchange(attachment.begins, false) && speed > kMaxSpeedOfHolds)
+      warnings.push_back(
+          fmt::format("attach.{}: throws the cloth at its target with {:.3g} m/s when it is tied, which tears cloth; "
+                      "tie it where both are nearer, or with less stiffness",
+                      attachment.name, speed));
     if (attachment.breaking_load && attachment.load > *attachment.breaking_load) attachment.state = State::broken;
   }
+  return warnings;
 }
 
 std::vector<frame::AttachmentLoad> Attachments::measure() const {
@@ -220,6 +237,7 @@ void Attachments::copy_state_from(const Attachments& there, std::span<const std:
     const auto found = std::ranges::find(attachments_, before.name, &Attachment::name);
     if (found == attachments_.end()) continue;
     found->state = before.state, found->holds = before.holds, found->load = before.load;
+    found->begins = before.begins;
     for (std::size_t s = 0; s < before.springs.size(); ++s) {
       Spring& spring = found->springs[s];
       const Index particle = spring.particle;

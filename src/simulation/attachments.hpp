@@ -45,8 +45,9 @@ class Attachments {
   /// Energy of the springs [J].
   double energy(std::span<const Vec3> x_end) const;
 
-  /// Accepts the step that ends at x [m]: measures forces, and breaks attachments above their breaking load.
-  void accept(std::span<const Vec3> x);
+  /// Accepts the step that ends at x [m] with velocities v [m/s]: measures forces, and breaks attachments above their
+  /// breaking load. Returns warnings of attachments that began in this step and throw their particles at their target.
+  std::vector<std::string> accept(std::span<const Vec3> x, std::span<const Vec3> v);
   std::vector<frame::AttachmentLoad> measure() const;
 
   /// Copies the state of attachments of the same name. `cloths[k]`: number in this object of cloth k of `there`.
@@ -76,8 +77,9 @@ class Attachments {
     std::optional<double> length, breaking_load;
     std::vector<Spring> springs;
     State state = State::open;
-    bool holds = false;  // in the current step
-    double load = 0;     // sum of the spring forces at the end of the last accepted step [N]
+    bool holds = false;   // in the current step
+    bool begins = false;  // tied, but no step has been accepted since
+    double load = 0;      // sum of the spring forces at the end of the last accepted step [N]
   };
   struct Tension {
     Vec3 direction;    // unit vector from the particle to its point

@@ -16,8 +16,6 @@
 namespace weft::simulation {
 namespace {
 
-// Largest speed of a pin that cloth can follow [m/s]; a hand reaches 10.
-constexpr double kMaxPinSpeed = 20;
 // Smallest jump of a pin at the start that is reported [m].
 constexpr double kMinJump = 1e-3;
 // Maximum distance of a pin, at the start, from the body that it follows [m]; more causes a warning. Capes are 5 cm
@@ -164,7 +162,7 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
       const double speed = std::max(particle.v_end.norm(), mean);
       x = particle.x_end;
       const scene::Pin& pin = moving.pin(scene, number);
-      if (speed <= kMaxPinSpeed || !(has_keys(pin) || follows(pin)) || !fast.insert(number).second) continue;
+      if (speed <= kMaxSpeedOfHolds || !(has_keys(pin) || follows(pin)) || !fast.insert(number).second) continue;
       found.push_back(fmt::format(
           "{}: moves at {:.3g} m/s at {:.4g} s, which tears cloth along{}", moving.name(scene, number), speed, t,
           has_keys(pin)

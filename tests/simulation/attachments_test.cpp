@@ -88,6 +88,21 @@ TEST(Attachments, DrawTheirEndsTogetherToALength) {
   EXPECT_NEAR(highest, 0.97, 0.005);
 }
 
+TEST(Attachments, WarnOnceIfTheyThrowTheClothAtTheirTarget) {
+  scene::Scene scene = towel("length = 0\nbegin = 0.1\n");
+  const auto warnings = [&] {
+    std::string all;
+    for (const FrameReport& report : hang_up(scene).reports)
+      for (const std::string& text : report.warnings) all += text + "\n";
+    return all;
+  };
+  EXPECT_EQ(warnings().find("attach.peg"), std::string::npos) << warnings();
+  scene.cloths[0].pose.position.z() = 0.4;  // 0.5 m below the rail
+  const std::string far = warnings();
+  EXPECT_NE(far.find("frame 3: attach.peg: throws the cloth at its target with 4"), std::string::npos) << far;
+  EXPECT_EQ(far.find("attach.peg"), far.rfind("attach.peg")) << far;
+}
+
 TEST(Attachments, FollowTheirBody) {
   Simulation simulation(
       towel("release = 0\n",
