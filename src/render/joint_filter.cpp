@@ -15,10 +15,6 @@ constexpr float kNoise = 0.05f;      // difference of values that halves a weigh
 constexpr float kPlaneSlack = 0.5f;  // distance from the tangent plane that halves a weight [points]
 constexpr float kWide = 6;           // distance along it that halves a weight; large for floors seen obliquely [steps]
 
-float square(float a) {
-  return a * a;
-}
-
 /// Data of one row of points.
 struct Rows {
   const float *surface, *x, *y, *z, *nx, *ny, *nz, *density;
@@ -32,53 +28,57 @@ struct Rows {
         nz(points.normal(2, row)),
         density(points.densities(row)) {}
 };
-/// Weight of point k of a row for the mean at point i of another row. `wide`: distance along the surface that halves
-/// the weight [points].
-float likeness(const Rows& here, int i, const Rows& there, int k, float wide) {
-  const float same = here.surface[i] == there.surface[k] ? 1.0f : 0.0f;
-  float agree = here.nx[i] * there.nx[k] + here.ny[i] * there.ny[k] + here.nz[i] * there.nz[k];
-  agree = std::max(agree, 0.0f);
-  agree *= agree;
-  const float dx = there.x[k] - here.x[i], dy = there.y[k] - here.y[i], dz = there.z[k] - here.z[i];
-  const float off = std::abs(here.nx[i] * dx + here.ny[i] * dy + here.nz[i] * dz) * here.density[i] / kPlaneSlack;
-  const float along = (dx * dx + dy * dy + dz * dz) * square(here.density[i] / wide);
-  return same * agree * agree / ((1 + off) * (1 + along));
+/// Values of neighbouring points of a row: eight, or one.
+template <int kCount>
+using Values = Eigen::Array<float, kCount, 1>;
+
+/// Weights of the points from k on of a row for the means at the points from i on of another row. `wide`: distance
+/// along the surface that halves the weight [points].
+template <int kCount>
+Values<kCount> likeness(const Rows& here, int i, const Rows& there, int k, float wide) {
+  using Real = Values<kCount>;
+  const auto own = [&](const float* row) { return Real(Eigen::Map<const Real>(row + i)); };
+  const auto other = [&](const float* row) { return Real(Eigen::Map<const Real>(row + k)); };
+  const Real same = (own(here.surface) == other(there.surface)).template cast<float>();
+  const Real nx = own(here.nx), ny = own(here.ny), nz = own(here.nz), density = own(here.density);
+  const Real agree = (nx * other(there.nx) + ny * other(there.ny) + nz * other(there.nz)).max(0.0f);
+  const Real dx = other(there.x) - own(here.x), dy = other(there.y) - own(here.y), dz = other(there.z) - own(here.z);
+  const Real off = (nx * dx + ny * dy + nz * dz).abs() * density / kPlaneSlack;
+  const Real along = (dx * dx + dy * dy + dz * dz) * (density / wide).square();
+  return same * agree.square() * agree.square() / ((1 + off) * (1 + along));
+}
+
+Lanes load(const float* from) {
+  return Eigen::Map<const Lanes>(from);
 }
 
 template <bool kAlongRows>
 void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& points, int step) {
+  constexpr std::size_t kMostPlanes = 4;
   const int width = points.width(), height = points.height();
   const float wide = kWide * static_cast<float>(step);
   drawing_for(static_cast<std::size_t>(height), std::size_t{8}, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> weights(static_cast<std::size_t>(width)), total(weights.size()), differences(weights.size());
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const Rows here(points, y);
-      std::ranges::fill(total, 0.0f);
-      for (Plane& plane : to) std::fill_n(plane.row(y), width, 0.0f);
-      for (int k = -kFilterReach; k <= kFilterReach; ++k) {
-        const int dy = kAlongRows ? 0 : k * step, dx = kAlongRows ? k * step : 0;
-        if (y + dy < 0 || y + dy >= height) continue;
-        const Rows there(points, y + dy);
-        for (int x = 0; x < width; ++x) weights[x] = likeness(here, x, there, x + dx, wide);
-        if (step > 1 && k != 0) {
-          // After the pass with step 1, a difference larger than the remaining noise is a feature, to be kept.
-          std::ranges::fill(differences, 0.0f);
-          for (const Plane& plane : from) {
-            const float *a = plane.row(y), *b = plane.row(y + dy) + dx;
-            for (int x = 0; x < width; ++x) differences[x] += std::abs(a[x] - b[x]);
+      for (int x = 0; x < width; x += kLanes) {
+        Lanes total = Lanes::Zero();
+        std::array<Lanes, kMostPlanes> sums;
+        sums.fill(Lanes::Zero());
+        for (int k = -kFilterReach; k <= kFilterReach; ++k) {
+          const int dy = kAlongRows ? 0 : k * step, dx = kAlongRows ? k * step : 0;
+          if (y + dy < 0 || y + dy >= height) continue;
+          Lanes weights = likeness<kLanes>(here, x, Rows(points, y + dy), x + dx, wide);
+          if (step > 1 && k != 0) {
+            // After the pass with step 1, a difference larger than the remaining noise is a feature, to be kept.
+            Lanes differences = Lanes::Zero();
+            for (const Plane& plane : from)
+              differences += (load(plane.row(y) + x) - load(plane.row(y + dy) + x + dx)).abs();
+            weights /= 1 + (differences / kNoise).square();
           }
-          for (int x = 0; x < width; ++x) weights[x] /= 1 + square(differences[x] / kNoise);
+          total += weights;
+          for (std::size_t p = 0; p < from.size(); ++p) sums[p] += weights * load(from[p].row(y + dy) + x + dx);
         }
-        for (int x = 0; x < width; ++x) total[x] += weights[x];
-        for (std::size_t p = 0; p < from.size(); ++p) {
-          const float* values = from[p].row(y + dy) + dx;
-          float* sums = to[p].row(y);
-          for (int x = 0; x < width; ++x) sums[x] += weights[x] * values[x];
-        }
-      }
-      for (Plane& plane : to) {
-        float* sums = plane.row(y);
-        for (int x = 0; x < width; ++x) sums[x] /= std::max(total[x], 1e-6f);
+        for (std::size_t p = 0; p < to.size(); ++p) Eigen::Map<Lanes>(to[p].row(y) + x) = sums[p] / total.max(1e-6f);
       }
     }
   });
@@ -98,33 +98,24 @@ void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane
   const int width = points.width(), height = points.height(), reach = kFilterReach * step;
   const float wide = kNarrow * static_cast<float>(step);
   drawing_for(static_cast<std::size_t>(height), std::size_t{8}, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> sums(static_cast<std::size_t>(width)), totals(sums.size());
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const Rows here(points, y);
-      const float *asked = wanted.row(y), *own = from.row(y);
-      // Processes runs of wanted points; a gap shorter than a packet is processed too.
-      for (int first = 0; first < width; ++first) {
-        if (!(asked[first] > 0)) continue;
-        int last = first + 1;
-        for (int x = last; x < std::min(last + kLanes, width); ++x)
-          if (asked[x] > 0) last = x + 1;
-        std::fill(sums.begin() + first, sums.begin() + last, 0.0f);
-        std::fill(totals.begin() + first, totals.begin() + last, 0.0f);
+      for (int x = 0; x < width; x += kLanes) {
+        const Lanes asked = load(wanted.row(y) + x), own = load(from.row(y) + x);
+        if (!(asked > 0).any()) continue;
+        Lanes sum = Lanes::Zero(), total = sum;
         for (int v = std::max(y - reach, y % step); v <= std::min(y + reach, height - 1); v += step) {
           const Rows there(points, v);
           for (int dx = -reach; dx <= reach; dx += step) {
-            const float *values = from.row(v) + dx, *counts = known.row(v) + dx;
-            for (int x = first; x < last; ++x) {
-              const float difference = step > 1 ? (values[x] - own[x]) / kNoise : 0;
-              const float weight = counts[x] * likeness(here, x, there, x + dx, wide) / (1 + square(difference));
-              sums[x] += weight * values[x];
-              totals[x] += weight;
-            }
+            const Lanes values = load(from.row(v) + x + dx);
+            Lanes weights = load(known.row(v) + x + dx) * likeness<kLanes>(here, x, there, x + dx, wide);
+            if (step > 1) weights /= 1 + ((values - own) / kNoise).square();
+            sum += weights * values;
+            total += weights;
           }
         }
-        for (int x = first; x < last; ++x)
-          if (asked[x] > 0 && totals[x] > 0) plane.row(y)[x] = sums[x] / totals[x];
-        first = last - 1;
+        Eigen::Map<Lanes> result(plane.row(y) + x);
+        result = (asked > 0 && total > 0).select(sum / total, result);
       }
     }
   });
@@ -158,8 +149,8 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       constexpr float kAlike = 0.95f;
       for (int x = 0; x < few.width(); ++x) {
         const int next = std::min(x + 1, few.width() - 1);
-        alike[x] = std::min({likeness(there[0], x, there[0], next, kAny), likeness(there[0], x, there[1], x, kAny),
-                             likeness(there[0], x, there[1], next, kAny)}) > kAlike;
+        const auto to = [&](const Rows& points, int k) { return likeness<1>(there[0], x, points, k, kAny).value(); };
+        alike[x] = std::min({to(there[0], next), to(there[1], x), to(there[1], next)}) > kAlike;
       }
     }
     Eigen::Vector4f* result = results.data() + static_cast<std::size_t>(y) * many.width();
@@ -177,8 +168,8 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       float total = 0;
       for (int k = 0; k < 4; ++k) {
         constexpr float kLeast = 0.01f;  // least weight: the only point of the surface counts at any distance
-        const float weight =
-            (plain[k] + kLeast) * likeness(here, x, there[k >> 1], (k & 1) != 0 ? column.high : column.low, kAny);
+        const float weight = (plain[k] + kLeast) *
+                             likeness<1>(here, x, there[k >> 1], (k & 1) != 0 ? column.high : column.low, kAny).value();
         sum += weight * *corners[k], total += weight;
         any += 0.25f * *corners[k];
       }
