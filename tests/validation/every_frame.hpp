@@ -32,10 +32,7 @@ inline std::string name_of_run(const ::testing::TestParamInfo<SceneRun>& run) {
 inline std::vector<std::string> coarser(const std::string& scene) {
   if (scene == "falling_band") return {"cloth.band.particles=[17,161]"};
   if (scene == "ball_through_cloth") return {"cloth.sheet.particles=61"};
-  if (scene != "multi_sheet") return {};
-  std::vector<std::string> all;
-  for (int i = 0; i < 8; ++i) all.push_back("cloth." + std::to_string(i) + ".particles=31");
-  return all;
+  return {};
 }
 
 inline scene::Scene scene_of(const SceneRun& run) {
