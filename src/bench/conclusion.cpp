@@ -247,9 +247,12 @@ std::string recommendation(const Accuracy& accuracy) {
   if (best == nullptr) {
     const auto exact = front(accuracy, quantity);
     if (exact.empty()) return "No setting that was tried reaches the end of the scene.";
-    return fmt::format("No setting that was tried is known to keep the {} within {}. The most exact one is {}: {}; {}.",
-                       name_of(quantity), wanted, keys_text(exact.back()->setting),
-                       off_text(accuracy, *exact.back(), quantity), stands_text(accuracy, stands, quantity));
+    const bool reaches = bound_of(accuracy, *exact.back(), quantity) <= target;
+    return fmt::format(
+        "No setting that was tried is known to keep the {} within {}. The most exact one is {}: {}{}; {}.",
+        name_of(quantity), wanted, keys_text(exact.back()->setting), off_text(accuracy, *exact.back(), quantity),
+        reaches ? ", which may be chance, as runs that are solved more exactly are farther off" : "",
+        stands_text(accuracy, stands, quantity));
   }
   best = most_exact_at_cost(accuracy, quantity, target, best->work.cpu_s);
   if (stands != nullptr && stands->work.cpu_s <= kEqualRatio * best->work.cpu_s &&

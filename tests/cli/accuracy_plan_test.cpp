@@ -151,6 +151,17 @@ TEST(Recommendation, IsTheFirstLineAndNamesKeysAndCosts) {
       recommendation(accuracy).ends_with("the settings of the scene were not measured, or do not reach its end."));
 }
 
+TEST(Recommendation, SaysThatASettingMayBeExactByChance) {
+  Accuracy accuracy = accuracy_of_one_metre();
+  for (bench::Run& run : accuracy.runs) run.errors.fill(0.02);
+  EXPECT_EQ(recommendation(accuracy).find("chance"), std::string::npos) << recommendation(accuracy);
+  accuracy.runs[0].errors.fill(0.005);
+  EXPECT_NE(recommendation(accuracy).find("off by at most 5 mm, which may be chance, as runs that are solved more "
+                                          "exactly are farther off; the settings of the scene take 4 CPU s"),
+            std::string::npos)
+      << recommendation(accuracy);
+}
+
 TEST(Recommendation, LeavesTheSolverAsItIsAtTheSameCost) {
   Accuracy accuracy = accuracy_of_one_metre();
   for (bench::Run& run : accuracy.runs) run.setting.newton_tolerance = 0.01;
