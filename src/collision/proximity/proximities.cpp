@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
 
 #include "collision/proximity/closest_points.hpp"
 #include "core/parallel_append.hpp"
@@ -143,8 +144,9 @@ class ProximityFinder::Gathering {
         const std::uint32_t common = same[i][j] | same[i][j1] | same[i1][j] | same[i1][j1];
         const std::uint32_t near_pairs = near(a.edge[i].low, a.edge[i].high, b.edge[j], radius) & together & ~common;
         for_each_bit(near_pairs & a.owned[3 + i] & b.owned[3 + j], [&](std::size_t l) {
-          keep_edges({number_a[l], number_b[l], static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)},
-                     {a.corner[i][l], a.corner[i1][l], b.corner[j][l], b.corner[j1][l]});
+          EdgeEdge edges{number_a[l], number_b[l], static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)};
+          if (edges.face_a > edges.face_b) edges = {edges.face_b, edges.face_a, edges.edge_b, edges.edge_a};
+          keep_edges(edges, {a.corner[i][l], a.corner[i1][l], b.corner[j][l], b.corner[j1][l]});
         });
       }
     }
@@ -364,6 +366,9 @@ void ProximityFinder::find(std::span<const Vec3> x, double detection_distance, s
     Search search(features_, x, detection_distance, list);
     for (std::size_t p = begin; p < end; ++p) search.edges(edge_edges[p]);
   });
+  // The order of candidates depends on the shape of the trees. Sums over contacts in that order would differ by
+  // rounding.
+  std::ranges::sort(out, {}, [](const Proximity& near) { return std::tie(near.kind, near.vertices); });
 }
 
 }  // namespace weft::collision

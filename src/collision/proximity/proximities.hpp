@@ -52,8 +52,9 @@ class ProximityFinder {
   void gather(const PairList& apart, std::span<const Surface> deformable, std::span<const Vec3> x, double radius,
               double min_fold, std::span<const std::uint8_t> clear);
 
-  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m], in their order. The list is
-  /// complete as long as no vertex is farther than (radius − detection_distance) / 2 from its position in gather().
+  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m], ordered by kind and by
+  /// the numbers of their vertices, whatever the order of the candidates. The list is complete as long as no vertex is
+  /// farther than (radius − detection_distance) / 2 from its position in gather().
   void find(std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out) const;
 
   /// Gathers and finds.
@@ -73,7 +74,7 @@ class ProximityFinder {
   struct VertexFace {
     Index vertex, face;
   };
-  /// Edge i of a triangle connects corners i and i + 1.
+  /// Edge i of a triangle connects corners i and i + 1. face_a has the lower number.
   struct EdgeEdge {
     Index face_a, face_b;
     std::uint8_t edge_a, edge_b;
