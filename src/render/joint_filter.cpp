@@ -1,7 +1,7 @@
 #include "render/joint_filter.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 
 #include "render/drawing_time.hpp"
 
@@ -28,12 +28,13 @@ struct Rows {
         nz(points.normal(2, row)),
         density(points.densities(row)) {}
 };
+
 /// Values of neighbouring points of a row: eight, or one.
 template <int kCount>
 using Values = Eigen::Array<float, kCount, 1>;
 
-/// Weights of the points from k on of a row for the means at the points from i on of another row. `wide`: distance
-/// along the surface that halves the weight [points].
+/// Weights of kCount points of row `there`, from k on, in the means at kCount points of row `here`, from i on. `wide`:
+/// distance along the surface that halves the weight [points].
 template <int kCount>
 Values<kCount> likeness(const Rows& here, int i, const Rows& there, int k, float wide) {
   using Real = Values<kCount>;
@@ -54,7 +55,8 @@ Lanes load(const float* from) {
 
 template <bool kAlongRows>
 void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& points, int step) {
-  constexpr std::size_t kMostPlanes = 4;
+  constexpr std::size_t kMaxPlanes = 4;
+  assert(from.size() <= kMaxPlanes && to.size() == from.size() && kFilterReach * step <= Plane::kBorder);
   const int width = points.width(), height = points.height();
   const float wide = kWide * static_cast<float>(step);
   drawing_for(static_cast<std::size_t>(height), std::size_t{8}, [&](std::size_t begin, std::size_t end) {
@@ -62,7 +64,7 @@ void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& p
       const Rows here(points, y);
       for (int x = 0; x < width; x += kLanes) {
         Lanes total = Lanes::Zero();
-        std::array<Lanes, kMostPlanes> sums;
+        std::array<Lanes, kMaxPlanes> sums;
         sums.fill(Lanes::Zero());
         for (int k = -kFilterReach; k <= kFilterReach; ++k) {
           const int dy = kAlongRows ? 0 : k * step, dx = kAlongRows ? k * step : 0;
@@ -149,8 +151,9 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       constexpr float kAlike = 0.95f;
       for (int x = 0; x < few.width(); ++x) {
         const int next = std::min(x + 1, few.width() - 1);
-        const auto to = [&](const Rows& points, int k) { return likeness<1>(there[0], x, points, k, kAny).value(); };
-        alike[x] = std::min({to(there[0], next), to(there[1], x), to(there[1], next)}) > kAlike;
+        const auto likeness_to = [&](const Rows& at, int k) { return likeness<1>(there[0], x, at, k, kAny).value(); };
+        alike[x] =
+            std::min({likeness_to(there[0], next), likeness_to(there[1], x), likeness_to(there[1], next)}) > kAlike;
       }
     }
     Eigen::Vector4f* result = results.data() + static_cast<std::size_t>(y) * many.width();

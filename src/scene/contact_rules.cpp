@@ -7,7 +7,9 @@ namespace {
 
 const Table& search_rules() {
   static const Table kTable =
-      TableBuilder<Search>("Methods of collision detection. They change the speed, not the result.")
+      TableBuilder<Search>(
+          "Methods of collision detection. They change the speed, not the result; coherence, and seldom bounds, change "
+          "it by rounding.")
           .choice("bounds", &Search::bounds, {"box", "18-dop", "26-dop"},
                   "bounding volumes of the hierarchy: box is the cheapest to update, 18-dop is the fastest for layers "
                   "at a slant to the axes, 26-dop gives the fewest candidate pairs")

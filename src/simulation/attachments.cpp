@@ -24,7 +24,9 @@ int object_named(const Objects& objects, const std::string& name) {
 
 Attachments::Attachments(const scene::Scene& scene, const environment::Environment& environment,
                          std::span<const Index> first_particle, std::span<const Index> first_of_frames)
-    : environment_(&environment), first_particle_(first_particle.begin(), first_particle.end()) {
+    : environment_(&environment),
+      step_(scene.time.step),
+      first_particle_(first_particle.begin(), first_particle.end()) {
   std::vector<std::size_t> seen(environment.cloths.size(), 0);  // attachments so far, per cloth
   for (const scene::Attachment& of_scene : scene.attachments) {
     const int own = object_named(environment.cloths, of_scene.cloth);
@@ -76,7 +78,8 @@ void Attachments::move_to_frame(const Attachment& attachment, Spring& spring) co
 }
 
 // Ties each spring to the nearest point on the target at time t; `x`: particles [m].
-void Attachments::tie_to_target(Attachment& attachment, double t, std::span<const Vec3> x) const {
+void Attachments::tie_to_target(Attachment& attachment, double t, std::span<const Vec3> x,
+                                std::span<const double> masses) const {
   std::vector<Vec3> of_target;
   const bool is_cloth = attachment.cloth >= 0;
   const Index first = is_cloth ? first_particle_[attachment.cloth] : 0;
@@ -101,20 +104,23 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
       spring.weights[k] = nearest.weights[k];
       place += nearest.weights[k] * of_target[nearest.face[k]];
     }
-    spring.length = attachment.length.value_or((place - own).norm());
+    const double distance = (place - own).norm();
+    spring.length = attachment.length.value_or(distance);
+    // A spring alone moves its particle at gap √(k/m), but implicit steps by no more than the gap.
+    const double rate = std::min(std::sqrt(spring.stiffness / masses[spring.particle]), 1 / step_);
+    attachment.speed = std::max(attachment.speed, rate * (distance - spring.length));
     if (attachment.frame >= 0) move_to_frame(attachment, spring);
   }
   attachment.state = State::tied;
-  attachment.begins = true;
 }
 
-void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
+void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x, std::span<const double> masses) {
   for (Attachment& attachment : attachments_) {
     // A longer, rejected attempt has tied the attachment, but this step ends before it begins.
     if (attachment.state == State::tied && t1 < attachment.begin) attachment.state = State::open;
     attachment.holds = holds_at(attachment, t1);
     if (!attachment.holds) continue;
-    if (attachment.state == State::open) tie_to_target(attachment, t0, x);
+    if (attachment.state == State::open) tie_to_target(attachment, t0, x, masses);
     if (attachment.target_has_particles()) continue;
     for (Spring& spring : attachment.springs) {
       spring.place.setZero();
@@ -204,22 +210,17 @@ double Attachments::energy(std::span<const Vec3> x_end) const {
   return sum;
 }
 
-std::vector<std::string> Attachments::accept(std::span<const Vec3> x, std::span<const Vec3> v) {
+std::vector<std::string> Attachments::accept(std::span<const Vec3> x) {
   std::vector<std::string> warnings;
   for (Attachment& attachment : attachments_) {
     attachment.load = 0;
     if (!attachment.holds) continue;
-    double speed = 0;  // of the particles in tension, toward their places
-    for (const Spring& spring : attachment.springs) {
-      const Tension tension = compute_tension(attachment, spring, x);
-      attachment.load += tension.force;
-      if (tension.force > 0) speed = std::max(speed, tension.direction.dot(v[spring.particle]));
-    }
-    if (std::exchange(attachment.begins, false) && speed > kMaxSpeedOfHolds)
+    for (const Spring& spring : attachment.springs) attachment.load += compute_tension(attachment, spring, x).force;
+    if (const double speed = std::exchange(attachment.speed, 0); speed > kMaxHoldSpeed)
       warnings.push_back(
-          fmt::format("attach.{}: throws the cloth at its target with {:.3g} m/s when it is tied, which tears cloth; "
-                      "tie it where both are nearer, or with less stiffness",
-                      attachment.name, speed));
+          fmt::format("attach.{}: pulls cloth to its target at {:.3g} m/s when it is tied, where cloth can follow at "
+                      "{:g} m/s; move both nearer to each other before `begin`, or reduce `stiffness`",
+                      attachment.name, speed, kMaxHoldSpeed));
     if (attachment.breaking_load && attachment.load > *attachment.breaking_load) attachment.state = State::broken;
   }
   return warnings;
@@ -237,7 +238,7 @@ void Attachments::copy_state_from(const Attachments& there, std::span<const std:
     const auto found = std::ranges::find(attachments_, before.name, &Attachment::name);
     if (found == attachments_.end()) continue;
     found->state = before.state, found->holds = before.holds, found->load = before.load;
-    found->begins = before.begins;
+    found->speed = before.speed;
     for (std::size_t s = 0; s < before.springs.size(); ++s) {
       Spring& spring = found->springs[s];
       const Index particle = spring.particle;

@@ -31,9 +31,9 @@ class Attachments {
 
   bool empty() const { return attachments_.empty(); }
 
-  /// Begins a step from t0 to t1 [s of the scene] with particles at x [m]: selects the attachments that hold in the
-  /// step, ties new ones, and computes where their points on key-framed bodies are at t1.
-  void begin_step(double t0, double t1, std::span<const Vec3> x);
+  /// Begins a step from t0 to t1 [s of the scene] with particles at x [m] of these masses [kg]: selects the attachments
+  /// that hold in the step, ties new ones, and computes where their points on key-framed bodies are at t1.
+  void begin_step(double t0, double t1, std::span<const Vec3> x, std::span<const double> masses);
   /// Whether the same attachments hold at t0 and t1 [s], and their triangles on key-framed bodies are at the same
   /// places.
   bool are_constant_between(double t0, double t1) const;
@@ -45,9 +45,9 @@ class Attachments {
   /// Energy of the springs [J].
   double energy(std::span<const Vec3> x_end) const;
 
-  /// Accepts the step that ends at x [m] with velocities v [m/s]: measures forces, and breaks attachments above their
-  /// breaking load. Returns warnings of attachments that began in this step and throw their particles at their target.
-  std::vector<std::string> accept(std::span<const Vec3> x, std::span<const Vec3> v);
+  /// Accepts the step that ends at x [m]: measures forces, and breaks attachments above their breaking load. Returns
+  /// warnings of attachments that were tied in this step and pull too fast for cloth to follow.
+  std::vector<std::string> accept(std::span<const Vec3> x);
   std::vector<frame::AttachmentLoad> measure() const;
 
   /// Copies the state of attachments of the same name. `cloths[k]`: number in this object of cloth k of `there`.
@@ -77,9 +77,9 @@ class Attachments {
     std::optional<double> length, breaking_load;
     std::vector<Spring> springs;
     State state = State::open;
-    bool holds = false;   // in the current step
-    bool begins = false;  // tied, but no step has been accepted since
-    double load = 0;      // sum of the spring forces at the end of the last accepted step [N]
+    bool holds = false;  // in the current step
+    double speed = 0;    // at which it pulls its particles, until a step has been accepted since it was tied [m/s]
+    double load = 0;     // sum of the spring forces at the end of the last accepted step [N]
   };
   struct Tension {
     Vec3 direction;    // unit vector from the particle to its point
@@ -89,7 +89,7 @@ class Attachments {
   Vec3 place_of(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const;
   Tension compute_tension(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const;
   bool holds_at(const Attachment& attachment, double t) const;
-  void tie_to_target(Attachment& attachment, double t, std::span<const Vec3> x) const;
+  void tie_to_target(Attachment& attachment, double t, std::span<const Vec3> x, std::span<const double> masses) const;
   Vec3 corner_position(std::size_t body, Index vertex, double t) const;
   const mesh::RigidFrame& frame_of(const Attachment& attachment) const;
   void move_to_frame(const Attachment& attachment, Spring& spring) const;
@@ -97,6 +97,7 @@ class Attachments {
   void for_each_tension(std::span<const Vec3> x, const Visit& visit) const;
 
   const environment::Environment* environment_;
+  double step_;                        // of the scene [s]
   std::vector<Index> first_particle_;  // of each cloth
   std::vector<Attachment> attachments_;
 };

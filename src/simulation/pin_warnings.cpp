@@ -162,7 +162,7 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
       const double speed = std::max(particle.v_end.norm(), mean);
       x = particle.x_end;
       const scene::Pin& pin = moving.pin(scene, number);
-      if (speed <= kMaxSpeedOfHolds || !(has_keys(pin) || follows(pin)) || !fast.insert(number).second) continue;
+      if (speed <= kMaxHoldSpeed || !(has_keys(pin) || follows(pin)) || !fast.insert(number).second) continue;
       found.push_back(fmt::format(
           "{}: moves at {:.3g} m/s at {:.4g} s, which tears cloth along{}", moving.name(scene, number), speed, t,
           has_keys(pin)

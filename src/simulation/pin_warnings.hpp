@@ -9,8 +9,8 @@
 
 namespace weft::simulation {
 
-/// Largest speed of a pin, or of what an attachment draws together, that cloth can follow [m/s]; a hand reaches 10.
-inline constexpr double kMaxSpeedOfHolds = 20;
+/// Largest speed at which a pin or an attachment can move cloth without tearing it [m/s]; a hand reaches 10.
+inline constexpr double kMaxHoldSpeed = 20;
 
 /// One warning ("cloth.a.pin.0: ...") for each key-framed pin that jumps at the start, and for each pin, key-framed or
 /// following a body, that moves too fast for cloth to follow. Computes nothing if no pin moves.

@@ -42,7 +42,7 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   if (releases) stepper_.restart();
   pinned_ = held_.size();
   problem_.begin_step(t + h - start_, progress_.now.particles(), held_, pins_.pulls());
-  attachments_.begin_step(t, t + h, progress_.now.particles());
+  attachments_.begin_step(t, t + h, progress_.now.particles(), cloth_.masses());
   Start start = Start::unchanged_velocity;
   if (collisions_) {
     const Stopwatch watch(report.collide);

@@ -233,7 +233,7 @@ void StepLoop::accept(double h, FrameReport& report) {
   count_work(measure_work(stepper_, std::span(held_).first(pinned_), cloth_.masses(), progress_.now, next_), report);
   stepper_.accept(progress_.now, next_, h);
   pins_.accept();
-  for (const std::string& text : attachments_.accept(next_.particles(), next_.v))
+  for (const std::string& text : attachments_.accept(next_.particles()))
     report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
   cloth_.accept(next_.particles());
   if (collisions_) collisions_->accept();

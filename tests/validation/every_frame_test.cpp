@@ -17,7 +17,7 @@ TEST_P(FirstFrames, HaveNoIntersection) {
 // every_frame_slow.cpp runs all frames, with steps of the scene and of twice that.
 INSTANTIATE_TEST_SUITE_P(Of, FirstFrames,
                          ::testing::Values(SceneRun{"falling_band", 4, 36}, SceneRun{"ball_through_cloth", 4, 36},
-                                           SceneRun{"sphere_drape", 4, 20}, SceneRun{"multi_sheet", 4, 40}),
+                                           SceneRun{"sphere_drape", 4, 20}, SceneRun{"multi_sheet", 4, 60}),
                          testing::name_of_run);
 
 }  // namespace

@@ -70,11 +70,20 @@ struct AllPairs {
   }
 };
 
-std::vector<Proximity> find(const TestMesh& mesh, double reach) {
+/// `shuffle`: gives the candidates another order, and half of the pairs their other one.
+std::vector<Proximity> find(const TestMesh& mesh, double reach, std::mt19937* shuffle = nullptr) {
   Tree<6> tree(mesh.surface(), mesh.x);
   tree.refit(mesh.x, mesh.x, reach / 2);
   CandidatePairs candidates;
   self_pairs(tree, candidates);
+  if (shuffle != nullptr)
+    for (PairList* list : {&candidates.apart, &candidates.one_shared}) {
+      std::vector<TrianglePair> pairs(list->begin(), list->end());
+      std::shuffle(pairs.begin(), pairs.end(), *shuffle);
+      for (std::size_t p = 0; p < pairs.size(); p += 2) std::swap(pairs[p].a, pairs[p].b);
+      list->clear();
+      list->append(pairs);
+    }
   ProximityFinder finder(mesh.triangles, static_cast<Index>(mesh.x.size()));
   const Surface surface = mesh.surface();
   std::vector<Proximity> out;
@@ -116,6 +125,19 @@ TEST(Proximities, AreConsistentAndEachPairOfFeaturesIsListedOnce) {
       for (std::size_t i = 0; i < 4; ++i) (i < on_a ? sum_a : sum_b) += p.weights[i];
       EXPECT_NEAR(sum_a, 1, 1e-15);
       EXPECT_NEAR(sum_b, -1, 1e-15);
+    }
+  }
+}
+
+TEST(Proximities, HaveAnOrderOfTheirOwn) {
+  std::mt19937 generator(5);
+  for (const TestMesh& mesh : scenes()) {
+    const std::vector<Proximity> expected = find(mesh, 0.05), found = find(mesh, 0.05, &generator);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t p = 0; p < found.size(); ++p) {
+      EXPECT_EQ(found[p].vertices, expected[p].vertices) << p;
+      EXPECT_EQ(found[p].weights, expected[p].weights) << p;
+      EXPECT_EQ(found[p].normal, expected[p].normal) << p;
     }
   }
 }
