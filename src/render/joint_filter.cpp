@@ -49,6 +49,8 @@ Values<kCount> likeness(const Rows& here, int i, const Rows& there, int k, float
   return same * agree.square() * agree.square() / ((1 + off) * (1 + along));
 }
 
+// The filters treat eight points at a time: compilers do not vectorise loops over so many rows (measured: the drape in
+// final quality takes 322 CPU ms a picture for 352).
 Lanes load(const float* from) {
   return Eigen::Map<const Lanes>(from);
 }

@@ -95,6 +95,7 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
   }
   const auto& triangles = is_cloth ? environment_->cloths[attachment.cloth].mesh.topology.triangles
                                    : environment_->bodies[attachment.body].mesh.topology.triangles;
+  attachment.speed = 0;
   for (Spring& spring : attachment.springs) {
     const Vec3& own = x[spring.particle];
     const collision::SurfacePoint nearest = collision::nearest_point(own, triangles, of_target);
