@@ -89,8 +89,9 @@ TEST(Attachments, DrawTheirEndsTogetherToALength) {
 }
 
 TEST(Attachments, WarnOnceIfTheyPullFasterThanClothCanFollowWhateverTheStep) {
-  const auto warnings = [](double gap, const std::string& keys) {
+  const auto warnings = [](double gap, const std::string& keys, double step = 0.01) {
     scene::Scene scene = towel(keys);
+    scene.time.step = step;
     scene.cloths[0].pose.position.z() = 0.97 - gap - 0.15;  // of the towel's upper edge below the rail
     scene.physics.gravity.setZero();
     scene.time.duration = 0.16;
@@ -104,6 +105,8 @@ TEST(Attachments, WarnOnceIfTheyPullFasterThanClothCanFollowWhateverTheStep) {
   EXPECT_NE(far.find("frame 3: attach.peg: pulls cloth to its target at 50 m/s when it is tied"), std::string::npos)
       << far;
   EXPECT_EQ(far.find("attach.peg"), far.rfind("attach.peg")) << far;
+  const std::string in_short_steps = warnings(0.5, "length = 0\nbegin = 0.1\n", 0.002);
+  EXPECT_NE(in_short_steps.find("at 250 m/s"), std::string::npos) << in_short_steps;
   // A soft spring is slow: 0.5 m √(0.1 N/m / 0.25 g).
   EXPECT_EQ(warnings(0.5, "length = 0\nbegin = 0.1\nstiffness = 0.1\n").find("attach.peg"), std::string::npos);
 }
