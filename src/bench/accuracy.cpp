@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "simulation/collision_stage.hpp"
-#include "simulation/simulation.hpp"
+#include "production/plan.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::bench {
 namespace {
@@ -128,7 +128,7 @@ class Campaign {
 
 Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan)
     : scene_(scene), each_(each), plan_(plan) {
-  result_.contact = simulation::CollisionStage::needed(scene);
+  result_.contact = production::can_collide(scene);
   result_.starts = plan.starts.value_or(result_.contact ? kMinStartsWithContact : 1);
   if (result_.contact && result_.starts < kMinStartsWithContact)
     throw Error(ExitCode::usage, "--starts: expected at least {}, as surfaces may touch in this scene, got {}",
@@ -139,7 +139,7 @@ Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const Accurac
                   "--meshes: expected factors that give whole numbers of cells along each side, got {:g}", refinement);
   result_.frames = scene.frame_count() - 1;
   result_.duration = result_.frames / scene.time.fps;
-  result_.cloth_size = cloth_size(*simulation::Simulation(scene).snapshot());
+  result_.cloth_size = cloth_size(*production::SceneSimulation(scene).snapshot());
   best_ = result_.contact ? Integrator::bdf2 : Integrator::implicit_midpoint;
   other_ = result_.contact ? Integrator::implicit_euler : Integrator::bdf2;
   integrators_ = plan.integrators.value_or(std::vector<Integrator>(std::begin(kIntegrators), std::end(kIntegrators)));

@@ -8,7 +8,7 @@
 
 #include "bench/shadow.hpp"
 #include "core/temporary_file.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::bench {
 namespace {
@@ -31,7 +31,7 @@ scene::Scene sheet_alone(const Vec2& size, int particles_weft, int particles_war
   return scene;
 }
 
-const std::vector<Vec3>& positions_of(const simulation::Simulation& simulation) {
+const std::vector<Vec3>& positions_of(const production::SceneSimulation& simulation) {
   return simulation.snapshot()->states[0].positions;
 }
 
@@ -113,14 +113,14 @@ Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, So
   scene.time = {.duration = 1.5, .fps = 10, .step = 0.01};
   scene.contact.self = true;
   if (solved == Solved::exactly) scene.solver.newton_tolerance = kExact;
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const auto overhang = [&] {
     return shadow_area(triangles, positions_of(simulation), Vec3::UnitZ()) - kPi * kPlateRadius * kPlateRadius;
   };
   const double whole = overhang();
   Drape result;
   for (int k = 1; k < scene.frame_count(); ++k) {
-    const frame::FrameReport report = simulation.advance();
+    const simulation::FrameReport report = simulation.advance();
     result.cpu_s += report.simulate.cpu_s;
     result.strain = report.max_strain;
     result.kinetic_energy = report.kinetic_energy;
@@ -145,7 +145,7 @@ double droop(const scene::Material& material, double overhang) {
   scene::Pin clamp;
   clamp.high = {1.1 / (kCells + 1), 1};
   cloth.pins = {clamp};
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 1; k < scene.frame_count(); ++k) simulation.advance();
   const Vec3& tip = positions_of(simulation)[2 * (kCells + 2) - 1];
   return -tip.z() / tip.x();
@@ -188,7 +188,7 @@ double extension(const scene::Material& material, Direction direction, double lo
     weight.mass = width / (kThreads - 1) * load * kWidth / kGravity;
     cloth.weights.push_back(weight);
   }
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 1; k < scene.frame_count(); ++k) simulation.advance();
   const std::vector<Vec3>& x = positions_of(simulation);
   return (x.back() - x.front()).dot(warp ? Vec3::UnitY() : Vec3::UnitX()) / kLength - 1;

@@ -9,7 +9,7 @@
 #include "bench/trajectory.hpp"
 #include "core/error.hpp"
 #include "core/timer.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::bench {
 namespace {
@@ -103,7 +103,7 @@ void find_broken(const simulation::FrameReport& report, std::set<std::string>& b
   }
 }
 
-bool is_finite(const simulation::Simulation& simulation) {
+bool is_finite(const production::SceneSimulation& simulation) {
   return std::ranges::all_of(simulation.state().positions, [](const Vec3& x) { return x.allFinite(); });
 }
 
@@ -123,7 +123,7 @@ void run(const scene::Scene& scene, double max_cpu_s, const std::function<bool()
     if (stop()) throw Error(ExitCode::interrupted, "interrupted");
     return process_cpu_seconds() - begin < max_cpu_s;
   };
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   bool in_time = simulation.run_preroll(may_continue);
   for (int k = 1; k < scene.frame_count() && in_time; ++k) {
     note(simulation.advance());
@@ -242,7 +242,7 @@ SceneStability measure_scene_stability(const scene::Scene& scene,
     if (each) each(trial, static_cast<double>(result.trials.size() + 1) / static_cast<double>(plan.size() + 1));
   };
   // Throws the error of the scene if it cannot be built at all.
-  { const simulation::Simulation whole(scene); }
+  { const production::SceneSimulation whole(scene); }
   result.as_is = try_factors(scene, {1, 1, 1, 1, 1, 1}, std::numeric_limits<double>::infinity(), {}, stop);
   report_trial(result.as_is);
   const double max_cpu_s = kSlowRatio * result.as_is.cpu_s + kSlowSeconds;

@@ -8,7 +8,7 @@
 
 #include "core/archive.hpp"
 #include "core/memory.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::bench {
 namespace {
@@ -98,7 +98,7 @@ SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, c
   set_thread_count(setting.threads);
   charge_all_threads = true;
   SpeedRun run{.setting = setting, .memory_before = memory_bytes()};
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   simulation.run_preroll();
   Drawing draw;
   if (open_drawing) draw = open_drawing();

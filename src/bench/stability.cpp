@@ -6,7 +6,7 @@
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::bench {
 namespace {
@@ -21,7 +21,7 @@ double mechanical_energy(const simulation::FrameReport& report) {
 /// Tracks finiteness, speed and energy of a run from frame to frame.
 class Watch {
  public:
-  Watch(const scene::Scene& scene, const simulation::Simulation& simulation, const EnergyLimit& limit)
+  Watch(const scene::Scene& scene, const production::SceneSimulation& simulation, const EnergyLimit& limit)
       : cloths_(scene.cloths.size()), fps_(scene.time.fps), limit_(limit), before_(simulation.snapshot()) {
     const simulation::FrameReport start = simulation.initial_report();
     start_energy_ = mechanical_energy(start);
@@ -62,7 +62,7 @@ class Watch {
 };
 
 void run(const scene::Scene& scene, int frames, const EnergyLimit& limit, Outcome& outcome) {
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   Watch watch(scene, simulation, limit);
   bool warned = false;
   for (int k = 0; k < frames; ++k) {

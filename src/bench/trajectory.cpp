@@ -7,7 +7,7 @@
 #include "core/error.hpp"
 #include "core/timer.hpp"
 #include "mesh/geometry.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::bench {
 namespace {
@@ -47,7 +47,7 @@ std::string_view unit_of(Quantity quantity) {
   return kUnits[static_cast<std::size_t>(quantity)];
 }
 
-Recorder::Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const frame::FrameReport& report)
+Recorder::Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const simulation::FrameReport& report)
     : cloths_(scene.cloths.size()),
       up_(up_of(scene)),
       start_area_(area_of(start, cloths_, Vec3::Zero())),
@@ -56,7 +56,7 @@ Recorder::Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start,
       low_(report.potential_energy),
       high_(report.potential_energy) {}
 
-void Recorder::see(const frame::SnapshotPtr& snapshot, const frame::FrameReport& report,
+void Recorder::see(const frame::SnapshotPtr& snapshot, const simulation::FrameReport& report,
                    std::span<const Vec3> velocities) {
   kinetic_ = std::max(kinetic_, report.kinetic_energy);
   elastic_ = std::max(elastic_, report.elastic_energy);
@@ -97,7 +97,7 @@ Trajectory Recorder::finish(std::span<const double> masses) {
 }
 
 Trajectory follow(const scene::Scene& scene, const FollowLimits& limits) {
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const auto proceed = [&] { return !limits.proceed || limits.proceed(); };
   if (!simulation.run_preroll(proceed)) throw Error(ExitCode::interrupted, "interrupted before frame 0");
   Recorder recorder(scene, *simulation.snapshot(), simulation.initial_report());

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "frame/frame_report.hpp"
 #include "frame/frame_snapshot.hpp"
 #include "scene/scene.hpp"
+#include "simulation/frame_report.hpp"
 
 namespace weft::bench {
 
@@ -69,9 +69,10 @@ struct Trajectory {
 class Recorder {
  public:
   /// `start` and `report` are those of frame 0.
-  Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const frame::FrameReport& report);
+  Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const simulation::FrameReport& report);
   /// Adds the next frame, in order. `velocities`: those of all particles, or empty.
-  void see(const frame::SnapshotPtr& snapshot, const frame::FrameReport& report, std::span<const Vec3> velocities = {});
+  void see(const frame::SnapshotPtr& snapshot, const simulation::FrameReport& report,
+           std::span<const Vec3> velocities = {});
   /// Returns the trajectory. `masses`: those of all particles [kg].
   Trajectory finish(std::span<const double> masses);
 

@@ -242,7 +242,7 @@ void serialize(Archive& archive, frame::Light& light) {
 // The frame and time of the report are not stored here, since the snapshot has them. All members are named, so that a
 // new member causes a compile error: then serialise it and raise kFormatVersion.
 template <class Archive>
-void serialize(Archive& archive, frame::FrameReport& report) {
+void serialize(Archive& archive, simulation::FrameReport& report) {
   auto& [frame, time, simulate, collide, forces, preconditioner, linear, steps, rejected_steps, inexact_steps,
          error_estimate, solver_error, newton_iterations, linear_iterations, proximities, constraints, min_distance,
          max_strain, stretch_ratio, kinetic_energy, potential_energy, elastic_energy, air_energy, pin_work, solver_work,
@@ -255,14 +255,14 @@ void serialize(Archive& archive, frame::FrameReport& report) {
                    lagging_particles);
   serialize_each(
       archive, enclosed,
-      [&](frame::EnclosedAir& air) {
+      [&](simulation::EnclosedAir& air) {
         serialize_plain(archive, air.cloth);
         serialize_values(archive, air.volume, air.pressure);
       },
       3 * sizeof(double));
   serialize_each(
       archive, attachments,
-      [&](frame::AttachmentLoad& attachment) {
+      [&](simulation::AttachmentLoad& attachment) {
         serialize_plain(archive, attachment.name);
         serialize_values(archive, attachment.load, attachment.holds);
       },
@@ -276,7 +276,7 @@ struct FrameHead {
   double time = 0;
   std::vector<frame::Camera> cameras;
   std::vector<frame::Light> lights;
-  frame::FrameReport report;
+  simulation::FrameReport report;
 };
 
 template <class Archive>
@@ -367,7 +367,7 @@ Surfaces decode_surfaces(std::string_view payload) {
   return surfaces;
 }
 
-std::string encode_frame(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report,
+std::string encode_frame(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report,
                          const Surfaces& surfaces) {
   ByteWriter writer;
   FrameHead head{snapshot.time, snapshot.cameras, snapshot.lights, report};

@@ -21,8 +21,8 @@
 #include <string_view>
 #include <vector>
 
-#include "frame/frame_report.hpp"
 #include "frame/frame_snapshot.hpp"
+#include "simulation/frame_report.hpp"
 
 namespace weft::cache {
 
@@ -35,7 +35,7 @@ struct Surfaces {
 
 struct CachedFrame {
   frame::SnapshotPtr snapshot;
-  frame::FrameReport report;
+  simulation::FrameReport report;
   std::uint64_t scene_hash = 0;  ///< of the scene whose colours, cameras and lights the frame has; set by Reader
 };
 
@@ -46,7 +46,7 @@ std::string encode_surfaces(const Surfaces& surfaces);
 Surfaces decode_surfaces(std::string_view payload);
 
 /// `surfaces` must be those of the snapshot.
-std::string encode_frame(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report,
+std::string encode_frame(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report,
                          const Surfaces& surfaces);
 
 /// Throws std::runtime_error with the defect.

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "frame/frame_report.hpp"
+#include "frame/frame_snapshot.hpp"
 
 namespace weft::cache {
 

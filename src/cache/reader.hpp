@@ -39,7 +39,7 @@ class Reader {
 
   CachedFrame read(int frame) const;
   frame::SnapshotPtr snapshot(int frame) const { return read(frame).snapshot; }
-  frame::FrameReport report(int frame) const { return read(frame).report; }
+  simulation::FrameReport report(int frame) const { return read(frame).report; }
 
   /// Checks the file of a frame without decompressing it.
   void verify(int frame) const;

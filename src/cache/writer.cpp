@@ -141,7 +141,7 @@ Writer::Writer(const Lock& lock, Manifest manifest, std::string_view scene_text)
   write(kSceneFile, std::string(scene_text));
 }
 
-void Writer::add(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report) {
+void Writer::add(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report) {
   if (snapshot.frame == 0) {
     surfaces_ = surfaces_of(snapshot);
     const std::string content = pack({Kind::surfaces, 0, manifest_.scene_hash}, encode_surfaces(*surfaces_));

@@ -46,7 +46,7 @@ class Writer {
 
   /// Adds a frame. Frame 0 must come first, unless the folder already has it. A file of this frame that existed when
   /// the writer was created is replaced. If another program has created the file since, throws Error(output_failed).
-  void add(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report);
+  void add(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report);
 
   /// Replaces the stored state by that of `frame`. All frames up to it must have been added.
   void save_state(int frame, std::string_view bytes);

@@ -18,9 +18,10 @@
 #include "core/log.hpp"
 #include "environment/environment.hpp"
 #include "garment/pattern.hpp"
+#include "production/plan.hpp"
+#include "production/scene_simulation.hpp"
 #include "scene/document.hpp"
 #include "scene/loader.hpp"
-#include "simulation/simulation.hpp"
 
 namespace weft::cli {
 namespace {
@@ -28,7 +29,7 @@ namespace {
 std::string plan_table(const scene::Scene& scene) {
   std::vector<std::vector<std::string>> rows;
   for (const bool used : {true, false}) {
-    for (const simulation::PlanItem& item : simulation::plan(scene)) {
+    for (const production::PlanItem& item : production::plan(scene)) {
       if (item.used == used) rows.push_back({used ? "uses" : "leaves out", item.part, item.reason});
     }
   }
@@ -66,7 +67,7 @@ std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes)
   for (const scene::Cloth& cloth : scene.cloths) try {
       environment::check_spacing(scene, cloth);
       const auto known = static_cast<std::size_t>(rectangle_particles(cloth));
-      particles += known > 0 ? known : environment::make_cloth(scene, cloth, wearers).mesh.positions.size();
+      particles += known > 0 ? known : environment::make_cloth(scene, cloth, wearers).cloth.mesh.positions.size();
     } catch (const Error& error) {
       mistakes.add(error.code(), error.what());
     }
@@ -106,9 +107,9 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
   if (options.estimate)
     estimate = estimate_run(loaded.scene, render_settings(loaded.scene, {}));
   else
-    enclosed = find_enclosed(loaded.scene, *simulation::Simulation(loaded.scene).snapshot());
+    enclosed = find_enclosed(loaded.scene, *production::SceneSimulation(loaded.scene).snapshot());
   print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
-  for (const std::string& warning : simulation::find_warnings(loaded.scene))
+  for (const std::string& warning : production::find_warnings(loaded.scene))
     print("{}: note: {}\n", file.string(), warning);
   for (const std::string& note : enclosed) print("{}: note: {}\n", file.string(), note);
   if (!options.against.empty()) print_changes(file, loaded.scene, options.against);

@@ -7,7 +7,7 @@
 #include "cli/scene_input.hpp"
 #include "core/memory.hpp"
 #include "core/timer.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::cli {
 namespace {
@@ -30,7 +30,7 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
   estimate.simulated = preroll + scene.frame_count() - 1;
   const WallTimer wall;
   double begin = process_cpu_seconds();
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   estimate.setup = process_cpu_seconds() - begin;
 
   begin = process_cpu_seconds();
@@ -49,7 +49,7 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
   }
   estimate.simulate = (process_cpu_seconds() - begin) / std::max(1, estimate.tried);
 
-  const frame::SnapshotPtr picture = shown ? simulation.snapshot() : simulation::view_start(scene).snapshot;
+  const frame::SnapshotPtr picture = shown ? simulation.snapshot() : production::view_start(scene).snapshot;
   render::Renderer renderer(settings);
   renderer.draw(*picture);  // compiles the shaders
   begin = process_cpu_seconds();

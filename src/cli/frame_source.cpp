@@ -49,7 +49,7 @@ MadeFrame SceneSource::simulate() {
 }
 
 void SceneSource::prepare_simulation() {
-  simulation_ = std::make_unique<simulation::Simulation>(scene_);
+  simulation_ = std::make_unique<production::SceneSimulation>(scene_);
   if (!store_.resumes()) return;
   try {
     simulation_->restore(store_.start().bytes);

@@ -9,10 +9,10 @@
 #include "cli/frame_range.hpp"
 #include "cli/store.hpp"
 #include "core/progress.hpp"
+#include "production/scene_simulation.hpp"
+#include "production/snapshots.hpp"
 #include "render/camera_path.hpp"
 #include "scene/scene.hpp"
-#include "simulation/simulation.hpp"
-#include "simulation/snapshots.hpp"
 
 namespace weft::cli {
 
@@ -50,8 +50,8 @@ class SceneSource : public FrameSource {
   Store& store_;
   const std::atomic<bool>& stop_;
   Progress& progress_;
-  std::unique_ptr<simulation::Simulation> simulation_;
-  std::optional<simulation::Looks> looks_;  // current looks of the scene, if stored frames have others
+  std::unique_ptr<production::SceneSimulation> simulation_;
+  std::optional<production::Looks> looks_;  // current looks of the scene, if stored frames have others
   int next_ = 0;
 };
 

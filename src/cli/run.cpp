@@ -227,7 +227,7 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
 void Session::estimate_error(const scene::Scene& scene, bench::Recorder& recorder) {
   if (report_.exit_code != ExitCode::ok) return;
   log::info("simulating comparison runs to estimate the error");
-  const simulation::Simulation particles(scene);
+  const production::SceneSimulation particles(scene);
   const bench::CompanionOptions options{.mesh = options_.mesh_error, .proceed = [this] { return !stop(); }};
   try {
     report_.error = bench::estimate_error(scene, recorder.finish(particles.state().masses), options);

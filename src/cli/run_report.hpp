@@ -10,7 +10,7 @@
 #include "cli/frame_range.hpp"
 #include "core/error.hpp"
 #include "core/timer.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::cli {
 
@@ -22,13 +22,13 @@ struct FrameRecord {
 };
 
 /// Number of particles of all cloths.
-std::size_t count_particles(const std::vector<simulation::ObjectInfo>& objects);
+std::size_t count_particles(const std::vector<frame::ObjectInfo>& objects);
 
 struct RunReport {
   std::string scene;  ///< its name
   std::string scene_file;
   std::uint64_t scene_hash = 0;
-  std::vector<simulation::ObjectInfo> objects;
+  std::vector<frame::ObjectInfo> objects;
   std::size_t particles = 0;
   double cloth_size = 0;  ///< longest side of the box around the largest cloth, in the first frame [m]; 0: no cloth
   int threads = 0;

@@ -123,7 +123,7 @@ void outline(image::Image& image, const frame::FrameSnapshot& snapshot, const fr
 
 }  // namespace
 
-std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, const render::Settings& settings,
+std::vector<image::SheetPicture> draw_start(const production::StartView& start, const render::Settings& settings,
                                             FramePainter& painter) {
   const frame::FrameSnapshot& snapshot = *start.snapshot;
   const double aspect = settings.aspect();

@@ -5,15 +5,15 @@
 
 #include "cli/stages.hpp"
 #include "image/contact_sheet.hpp"
+#include "production/scene_simulation.hpp"
 #include "render/renderer.hpp"
-#include "simulation/simulation.hpp"
 
 namespace weft::cli {
 
 /// Draws the whole scene (from its camera, or framed automatically), and close-ups of the places with the most pairs of
 /// touching or crossing triangles. These triangles are outlined in red, also if they are hidden. `painter` must use the
 /// first camera of each snapshot.
-std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, const render::Settings& settings,
+std::vector<image::SheetPicture> draw_start(const production::StartView& start, const render::Settings& settings,
                                             FramePainter& painter);
 
 }  // namespace weft::cli

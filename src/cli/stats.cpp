@@ -66,9 +66,9 @@ Json totals_json(const RunReport& report) {
 
 }  // namespace
 
-std::size_t count_particles(const std::vector<simulation::ObjectInfo>& objects) {
+std::size_t count_particles(const std::vector<frame::ObjectInfo>& objects) {
   std::size_t particles = 0;
-  for (const simulation::ObjectInfo& object : objects)
+  for (const frame::ObjectInfo& object : objects)
     if (object.kind == frame::ObjectKind::cloth || object.kind == frame::ObjectKind::rope) particles += object.vertices;
   return particles;
 }
@@ -103,11 +103,11 @@ StepTotals total_steps(const std::vector<FrameRecord>& frames) {
 Json frame_json(const FrameRecord& record) {
   const simulation::FrameReport& report = record.report;
   Json enclosed = Json::array();
-  for (const frame::EnclosedAir& air : report.enclosed)
+  for (const simulation::EnclosedAir& air : report.enclosed)
     enclosed.push_back(
         {{"cloth", air.cloth}, {"volume_m3", finite(air.volume)}, {"pressure_pa", finite(air.pressure)}});
   Json attachments = Json::array();
-  for (const frame::AttachmentLoad& one : report.attachments)
+  for (const simulation::AttachmentLoad& one : report.attachments)
     attachments.push_back({{"name", one.name}, {"load_n", finite(one.load)}, {"holds", one.holds}});
   return {{"frame", report.frame},
           {"time_s", report.time},
@@ -146,7 +146,7 @@ Json frame_json(const FrameRecord& record) {
 
 Json stats_json(const RunReport& report) {
   Json objects = Json::array();
-  for (const simulation::ObjectInfo& object : report.objects) {
+  for (const frame::ObjectInfo& object : report.objects) {
     objects.push_back({{"name", object.name},
                        {"kind", kind_name(object.kind)},
                        {"vertices", object.vertices},

@@ -7,7 +7,7 @@
 #include "cli/cached_frames.hpp"
 #include "cli/scene_input.hpp"
 #include "core/error.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::cli {
 namespace {
@@ -54,7 +54,7 @@ class SceneStills : public Stills {
   }
 
   const scene::Scene input_;
-  std::optional<simulation::Simulation> simulation_;
+  std::optional<production::SceneSimulation> simulation_;
   int frame_ = 0;  // current frame of the simulation
 };
 

@@ -158,11 +158,11 @@ void Store::keep_last_state() {
   }
 }
 
-void Store::save_if_cheap(const simulation::Simulation& simulation, int frame) {
+void Store::save_if_cheap(const production::SceneSimulation& simulation, int frame) {
   if (!saved_frame_ || save_seconds_ <= kMaxSaveTimeRatio * since_save_.seconds()) save(simulation, frame);
 }
 
-void Store::save(const simulation::Simulation& simulation, int frame) {
+void Store::save(const production::SceneSimulation& simulation, int frame) {
   if (saved_frame_ == frame) return;
   attempt([&] {
     const WallTimer timer;

@@ -12,7 +12,7 @@
 #include "cache/writer.hpp"
 #include "cli/run_report.hpp"
 #include "core/timer.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::cli {
 
@@ -20,8 +20,8 @@ namespace weft::cli {
 struct MadeFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  bool fresh = false;                                  ///< not yet in the cache, or there with former looks
-  const simulation::Simulation* simulation = nullptr;  ///< in the state of this frame; null if the frame was read
+  bool fresh = false;                                       ///< not yet in the cache, or there with former looks
+  const production::SceneSimulation* simulation = nullptr;  ///< in the state of this frame; null if the frame was read
 };
 
 class Store {
@@ -71,8 +71,8 @@ class Store {
   /// Saves the state of the last frame. If this fails, an earlier state remains.
   void keep_last_state();
   /// Saves the state if the last save took at most 1 % of the simulation time since then.
-  void save_if_cheap(const simulation::Simulation& simulation, int frame);
-  void save(const simulation::Simulation& simulation, int frame);
+  void save_if_cheap(const production::SceneSimulation& simulation, int frame);
+  void save(const production::SceneSimulation& simulation, int frame);
 
   const std::filesystem::path& folder() const { return lock_.folder(); }
   /// Removes the folder. Must not be called while frames are added.
@@ -101,7 +101,7 @@ class Store {
   WallTimer since_save_;
   double save_seconds_ = 0;  // of the last save
   std::optional<int> saved_frame_;
-  const simulation::Simulation* simulation_ = nullptr;  // in the state of frame last_
+  const production::SceneSimulation* simulation_ = nullptr;  // in the state of frame last_
   int last_ = 0;
   StageTime time_;
 };

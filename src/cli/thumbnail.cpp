@@ -13,8 +13,8 @@
 #include "core/parallel.hpp"
 #include "image/contact_sheet.hpp"
 #include "image/png.hpp"
+#include "production/scene_simulation.hpp"
 #include "render/saliency.hpp"
-#include "simulation/simulation.hpp"
 
 namespace weft::cli {
 namespace {
@@ -83,7 +83,7 @@ void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   const std::unique_ptr<Stills> stills = open_stills(options.common);
   const std::filesystem::path file =
       still_file(*stills, options.output, picture_name(options, *stills), options.common.overwrite);
-  const simulation::StartView start = simulation::view_start(load_scene(options.common));
+  const production::StartView start = production::view_start(load_scene(options.common));
   render::Settings settings = stills->settings();
   if (!start.places.empty() && !options.common.size) settings.height /= 2, settings.width /= 2;
   settings.camera.clear();  // each picture has its own camera

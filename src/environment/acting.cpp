@@ -31,6 +31,8 @@
 namespace weft::environment {
 namespace {
 
+using motion::KeyFrames;
+
 /// Bounds of the rate of key frames that follows from the rate of a clip [1/s].
 constexpr double kMinKeyRate = 10, kMaxKeyRate = 120;
 

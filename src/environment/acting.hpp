@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "character/parts.hpp"
-#include "environment/key_frames.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/topology.hpp"
+#include "motion/key_frames.hpp"
 #include "scene/scene.hpp"
 
 namespace weft::environment {
@@ -43,7 +43,7 @@ struct ClothAtStart {
 /// A body that moves by key frames of its vertices, computed before the simulation starts.
 struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
-  KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the particles of all following pins
+  motion::KeyFrames keys;    ///< of the vertices; then, for a body with bones, of the particles of all following pins
   std::vector<Part> parts;   ///< those of the scene, and those that pins follow
   std::vector<Index> limbs;  ///< per vertex: number of its character::Limb; of a sequence: its connected component
   std::vector<std::string> warnings;

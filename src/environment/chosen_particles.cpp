@@ -18,6 +18,8 @@
 namespace weft::environment {
 namespace {
 
+using model::Chosen;
+
 // Smallest fraction that counts: half a level of an 8-bit picture.
 constexpr double kMinFraction = 0.5 / 255;
 // Smallest fraction at which a pin without a strength holds a particle (then fully).
@@ -44,19 +46,19 @@ double grey_at(const image::Picture& picture, const Vec2& uv) {
 /// Finds the particles of regions of one cloth.
 class ParticleFinder {
  public:
-  ParticleFinder(const scene::Cloth& cloth, const assets::LoadedMesh& file, const ClothObject& object)
-      : from_file_(cloth.shape == scene::ClothShape::mesh), file_(file), object_(object) {}
+  ParticleFinder(const scene::Cloth& cloth, const assets::LoadedMesh& file, const MadeCloth& made)
+      : from_file_(cloth.shape == scene::ClothShape::mesh), file_(file), cloth_(made.cloth), details_(made.details) {}
 
   /// Particles of a region, with their fractions. `key`: of the region, for messages.
   std::vector<Chosen> part(const scene::ClothPart& part, const std::string& key) const {
-    std::vector<double> fractions(object_.fractions.size());
+    std::vector<double> fractions(details_.fractions.size());
     if (part.at) {
       along_rope(*part.at, fractions);
     } else if (!part.panel.empty()) {
       on_panel(part, key, fractions);
     } else {
       for (std::size_t i = 0; i < fractions.size(); ++i)
-        fractions[i] = part.holds(object_.fractions[i].x(), object_.fractions[i].y()) ? 1 : 0;
+        fractions[i] = part.holds(details_.fractions[i].x(), details_.fractions[i].y()) ? 1 : 0;
       if (part.mask) under_mask(image::read_picture(*part.mask), key, fractions);
     }
     if (!part.edge.empty()) on_edge(part.edge, key, fractions);
@@ -70,7 +72,7 @@ class ParticleFinder {
 
  private:
   void on_edge(const std::string& name, const std::string& key, std::vector<double>& fractions) const {
-    const std::vector<Index>& edge = named(object_.edges, name, key, "edge", "an edge of its pattern");
+    const std::vector<Index>& edge = named(details_.edges, name, key, "edge", "an edge of its pattern");
     std::vector<double> on(fractions.size());
     for (const Index i : edge) on[static_cast<std::size_t>(i)] = 1;
     multiply(on, fractions);
@@ -78,7 +80,7 @@ class ParticleFinder {
 
   // Selects the particles nearest to both ends, and all particles between them.
   void along_rope(const Vec2& at, std::vector<double>& fractions) const {
-    const auto pieces = static_cast<double>(object_.lengths.size());
+    const auto pieces = static_cast<double>(cloth_.rope->lengths.size());
     const auto nearest = [&](double fraction) { return static_cast<std::size_t>(std::lround(fraction * pieces)); };
     for (std::size_t i = nearest(at.x()); i <= nearest(at.y()); ++i) fractions[i % fractions.size()] = 1;
   }
@@ -86,14 +88,15 @@ class ParticleFinder {
   // Selects the particles of one panel within the bounds and the mask. If a vertex has several UVs, as at darts, the
   // largest fraction counts.
   void on_panel(const scene::ClothPart& part, const std::string& key, std::vector<double>& fractions) const {
-    const auto found = std::ranges::find(object_.panels, part.panel);
-    if (found == object_.panels.end()) refuse_name(part.panel, object_.panels, key, "panel", "a panel of its pattern");
-    const auto number = found - object_.panels.begin();
+    const auto found = std::ranges::find(details_.panels, part.panel);
+    if (found == details_.panels.end())
+      refuse_name(part.panel, details_.panels, key, "panel", "a panel of its pattern");
+    const auto number = found - details_.panels.begin();
     Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
     const auto each_corner = [&](const auto& visit) {
-      for (std::size_t t = 0; t < object_.panel_of.size(); ++t)
-        for (std::size_t k = 0; k < 3 && object_.panel_of[t] == number; ++k)
-          visit(object_.paint_uv[t][k], fractions[static_cast<std::size_t>(object_.mesh.topology.triangles[t][k])]);
+      for (std::size_t t = 0; t < details_.panel_of.size(); ++t)
+        for (std::size_t k = 0; k < 3 && details_.panel_of[t] == number; ++k)
+          visit(details_.paint_uv[t][k], fractions[static_cast<std::size_t>(cloth_.mesh.topology.triangles[t][k])]);
     };
     each_corner([&](const Vec2& uv, double&) { low = low.cwiseMin(uv), high = high.cwiseMax(uv); });
     std::optional<image::Picture> mask;
@@ -108,12 +111,12 @@ class ParticleFinder {
   void under_mask(const image::Picture& picture, const std::string& key, std::vector<double>& fractions) const {
     std::vector<double> greys(fractions.size());
     if (!from_file_) {
-      for (std::size_t i = 0; i < greys.size(); ++i) greys[i] = grey_at(picture, object_.fractions[i]);
+      for (std::size_t i = 0; i < greys.size(); ++i) greys[i] = grey_at(picture, details_.fractions[i]);
     } else {
       if (file_.uv.empty()) refuse(key, "mask", "a mesh with texture coordinates (UVs) to lay it on, got none");
       for (std::size_t t = 0; t < file_.uv.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
-          double& grey = greys[static_cast<std::size_t>(object_.mesh.topology.triangles[t][k])];
+          double& grey = greys[static_cast<std::size_t>(cloth_.mesh.topology.triangles[t][k])];
           if (file_.uv[t][k].allFinite()) grey = std::max(grey, grey_at(picture, file_.uv[t][k]));
         }
     }
@@ -159,13 +162,14 @@ class ParticleFinder {
 
   bool from_file_;
   const assets::LoadedMesh& file_;
-  const ClothObject& object_;
+  const model::Cloth& cloth_;
+  const ClothDetails& details_;
 };
 
 /// Shortest distances along a cloth at rest, along edges of triangles, and edges and diagonals of quads.
 class RestDistances {
  public:
-  explicit RestDistances(const ClothObject& cloth) : neighbours_(cloth.fractions.size()) {
+  explicit RestDistances(const model::Cloth& cloth) : neighbours_(cloth.mesh.positions.size()) {
     const auto join = [&](Index a, Index b, double length) {
       neighbours_[static_cast<std::size_t>(a)].emplace_back(b, length);
       neighbours_[static_cast<std::size_t>(b)].emplace_back(a, length);
@@ -222,12 +226,12 @@ class RestDistances {
 };
 
 /// Text that proposes other bounds for a region between two rows of particles; empty for regions not given by bounds.
-std::string nearest_row(const scene::ClothPart& part, const ClothObject& object) {
+std::string nearest_row(const scene::ClothPart& part, const ClothDetails& details) {
   if (!part.panel.empty() || !part.edge.empty() || part.mask || part.vertex_color != scene::VertexColor::none ||
-      !part.vertex_group.empty() || object.fractions.empty())
+      !part.vertex_group.empty() || details.fractions.empty())
     return {};
   const auto distance = [&](const Vec2& at) { return (at - at.cwiseMax(part.low).cwiseMin(part.high)).norm(); };
-  const Vec2& nearest = *std::ranges::min_element(object.fractions, {}, distance);
+  const Vec2& nearest = *std::ranges::min_element(details.fractions, {}, distance);
   const Vec2 low = part.low.cwiseMin(nearest), high = part.high.cwiseMax(nearest);
   return fmt::format(
       " between low = [{:.4g}, {:.4g}] and high = [{:.4g}, {:.4g}]; the nearest particle is at [{:.4g}, {:.4g}]: low = "
@@ -240,15 +244,15 @@ std::string nearest_row(const scene::ClothPart& part, const ClothObject& object)
 }  // namespace
 
 void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,
-                      const std::string& where, ClothObject& object) {
-  const ParticleFinder finder(cloth, file, object);
+                      const std::string& where, MadeCloth& made) {
+  const ParticleFinder finder(cloth, file, made);
   const auto part_at = [&](const scene::ClothPart& part, const std::string& key, double min_fraction) {
     std::vector<Chosen> chosen = finder.part(part, key);
     std::erase_if(chosen, [&](const Chosen& one) { return one.share < min_fraction; });
     if (chosen.empty())
       throw Error(ExitCode::scene_invalid,
                   "{}: expected a part that holds at least one particle, got one that holds none{}", key,
-                  nearest_row(part, object));
+                  nearest_row(part, made.details));
     return chosen;
   };
   const auto part_of = [&](const scene::ClothPart& part, const char* kind, std::size_t number, double min_fraction) {
@@ -256,15 +260,17 @@ void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, cons
   };
   for (std::size_t p = 0; p < cloth.pins.size(); ++p) {
     const scene::Pin& pin = cloth.pins[p];
-    std::vector<Chosen>& chosen =
-        object.pins.emplace_back(part_of(pin, "pin", p, pin.strength ? kMinFraction : kMinHeldFraction));
-    if (pin.fade > 0) RestDistances(object).fade(pin.fade, chosen);
+    model::Pin& made_pin = made.cloth.pins.emplace_back();
+    made_pin.particles = part_of(pin, "pin", p, pin.strength ? kMinFraction : kMinHeldFraction);
+    if (pin.fade > 0) RestDistances(made.cloth).fade(pin.fade, made_pin.particles);
+    made_pin.release = pin.release;
+    made_pin.strength = pin.strength;
   }
   for (std::size_t w = 0; w < cloth.weights.size(); ++w)
-    object.weights.push_back(part_of(cloth.weights[w], "weight", w, kMinFraction));
+    made.cloth.weights.push_back({part_of(cloth.weights[w], "weight", w, kMinFraction), cloth.weights[w].mass});
   for (const scene::Attachment& attachment : scene.attachments)
     if (attachment.cloth == cloth.name)
-      object.attachments.push_back(
+      made.attachments.push_back(
           part_at(attachment, fmt::format("{}: attach.{}", scene.file.string(), attachment.name), kMinFraction));
 }
 

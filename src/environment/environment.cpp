@@ -3,334 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <variant>
 
-#include "assets/mending.hpp"
-#include "assets/mesh_file.hpp"
-#include "core/error.hpp"
-#include "core/grading.hpp"
 #include "core/log.hpp"
-#include "core/nearest.hpp"
-#include "core/parallel.hpp"
-#include "environment/acting.hpp"
-#include "environment/chosen_particles.hpp"
+#include "environment/dynamics.hpp"
 #include "environment/followers.hpp"
-#include "environment/rope_object.hpp"
-#include "garment/fit.hpp"
-#include "garment/garment.hpp"
-#include "garment/uv_rest.hpp"
+#include "environment/orientation.hpp"
 #include "mesh/caps.hpp"
-#include "mesh/geometry.hpp"
-#include "mesh/quads.hpp"
 #include "mesh/shapes.hpp"
+#include "scene/layers.hpp"
 
 namespace weft::environment {
-namespace {
-
-/// Vertices per task; a task takes some ten microseconds.
-constexpr std::size_t kPlacedPerTask = 4096;
-
-// A pseudorandom number in [−1, 1) that depends only on the argument: splitmix64 mixing (Steele, Lea & Flood, 2014).
-double noise(std::uint64_t z) {
-  z = (z + 1) * 0x9E3779B97F4A7C15U;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
-  z ^= z >> 31;
-  return static_cast<double>(z >> 11) * 0x1p-52 - 1;
-}
-
-// Positions of the particles at the start: the rest shape, scaled about the position of the cloth's pose, with noise.
-std::vector<Vec3> start_positions(const scene::Cloth& cloth, const mesh::Mesh& rest) {
-  std::vector<Vec3> x = rest.positions;
-  if (cloth.start_scale == Vec2(1, 1) && cloth.start_noise == 0) return x;
-  const Mat3 axes = cloth.pose.rotation.toRotationMatrix();
-  const Mat3 scale = axes * Vec3(cloth.start_scale.x(), cloth.start_scale.y(), 1).asDiagonal() * axes.transpose();
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] = cloth.pose.position + scale * (x[i] - cloth.pose.position);
-    for (int axis = 0; axis < 3; ++axis)
-      x[i][axis] += cloth.start_noise * noise(3 * i + static_cast<std::size_t>(axis));
-  }
-  return x;
-}
-
-void use_quads(const mesh::Grid& grid, ClothObject& object) {
-  object.grid = grid;
-  object.mesh = mesh::make_sheet(grid);
-  object.spacing = grid.min_spacing();
-  for (int j = 0; j < grid.nv; ++j)
-    for (int i = 0; i < grid.nu; ++i)
-      object.fractions.emplace_back(graded_fraction(i, grid.nu, grid.weft_grading),
-                                    graded_fraction(j, grid.nv, grid.warp_grading));
-}
-
-void use_triangles(mesh::Mesh mesh, ClothObject& object) {
-  object.sheet = mesh::make_sheet_from_mesh(mesh);
-  object.spacing = std::numbers::sqrt2 * mesh::min_height(object.sheet);
-  const Box3 box = mesh::bounding_box(mesh.positions);
-  const Vec3 size = box.sizes();
-  mesh.uv.clear();
-  for (const Vec3& x : mesh.positions) {
-    const Vec3 from_corner = x - box.min();
-    mesh.uv.emplace_back(from_corner.x(), from_corner.y());
-    object.fractions.emplace_back(size.x() > 0 ? from_corner.x() / size.x() : 0,
-                                  size.y() > 0 ? from_corner.y() / size.y() : 0);
-  }
-  object.mesh = std::move(mesh);
-}
-
-/// Shapes are made with their axis along z. If y is up, turns them by −90° about x: z becomes y, x stays.
-mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
-  if (up == scene::UpAxis::y)
-    for (Vec3& x : mesh.positions) x = Vec3(x.x(), x.z(), -x.y());
-  return mesh;
-}
-
-/// Makes cloth from a pattern. Garments stand upright along z, like shapes; those with panels around parts of a wearer
-/// are made where the wearer stands. object.fractions: place in the garment's bounding box, from 0 to 1 across and up.
-void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
-                 ClothObject& object) {
-  garment::Pattern pattern = garment::load_pattern(cloth.file, where);
-  const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(cloth, where) : nullptr;
-  Vec2 factors(cloth.scale, cloth.scale);
-  if (cloth.fit) {
-    const garment::Wearer& body = wearer != nullptr ? *wearer : wearers.of(cloth, where);
-    const Vec2 fit = garment::fit_factors(pattern, body, where);
-    const garment::Measures own = garment::measure(body);
-    object.fitted = fmt::format(
-        "{:.3g} times as wide and {:.3g} times as long as drawn; its wearer has {:.2f} m around the chest, {:.2f} "
-        "around "
-        "the waist, {:.2f} around the hips, and is {:.2f} m tall",
-        fit.x(), fit.y(), *own.chest, *own.waist, *own.hip, *own.height);
-    factors = factors.cwiseProduct(fit);
-    if (const std::string doubt = garment::warn_if_hips_do_not_hold(pattern, factors, body);
-        !doubt.empty() && cloth.pins.empty())
-      object.warnings.push_back(fmt::format("{}: {}", where, doubt));
-  }
-  pattern.scale_by(factors);
-  garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);
-  const Box3 box = mesh::bounding_box(garment.sheet.rest);
-  for (const Vec3& x : garment.sheet.rest) {
-    const Vec3 fraction = (x - box.min()).cwiseQuotient(box.sizes());
-    object.fractions.emplace_back(fraction.x(), fraction.z());
-  }
-  object.mesh.topology.triangles = garment.sheet.triangles;
-  object.mesh.positions = garment.sheet.rest;
-  object.mesh.uv = std::move(garment.uv);
-  object.edges = std::move(garment.edges);
-  for (const garment::Panel& panel : pattern.panels) object.panels.push_back(panel.name);
-  object.panel_of = std::move(garment.panel_of);
-  object.paint_uv = garment.sheet.material;
-  if (wearer == nullptr) object.mesh = turned_up(std::move(object.mesh), scene.up);
-  object.sheet = std::move(garment.sheet);
-  object.spacing = std::numbers::sqrt2 * mesh::min_height(object.sheet);
-  for (const scene::PanelPaint& panel : cloth.look.panels)
-    if (std::ranges::find(object.panels, panel.name) == object.panels.end()) {
-      const std::string nearest = nearest_name(panel.name, object.panels);
-      throw Error(ExitCode::scene_invalid, "{}.look.panel: expected a panel of its pattern, such as {}, got \"{}\"{}",
-                  where, object.panels.front(), panel.name,
-                  nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
-    }
-}
-
-// Largest allowed ratio of a cloth's longest edge to its smallest triangle height or quad spacing, if it may meet
-// obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin triangles, eight of
-// nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading of 50, none at 100.
-constexpr double kMaxUnevenness = 80;
-
-/// The axes of a mesh file. If a character uses the same file, the character's up axis applies unless `up` states one.
-/// If nothing states the up axis, it is y for the file of a character, and the scene's up axis for other files.
-assets::MeshAxes axes_of(const scene::Scene& scene, const std::filesystem::path& file, double scale, scene::FileUp up) {
-  assets::MeshAxes axes{scale, up, scene.up};
-  std::error_code ignored;
-  for (const scene::Character& character : scene.characters) {
-    const auto* source = std::get_if<scene::CharacterFile>(&character.source);
-    if (source == nullptr || !std::filesystem::equivalent(source->path, file, ignored)) continue;
-    if (up == scene::FileUp::as_file) axes.up = character.up;
-    axes.default_up = scene::FileUp::y;
-  }
-  return axes;
-}
-
-/// Loads the triangles of a cloth's file and mends them to a sheet. Throws Error(asset_unreadable) if that fails.
-assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
-                              ClothObject& object) {
-  assets::LoadedMesh loaded =
-      assets::load_mesh(cloth.file, axes_of(scene, cloth.file, cloth.scale, cloth.up), where, cloth.object);
-  mesh::Mesh& mesh = loaded.mesh;
-  mesh.topology.quads.clear();
-  if (loaded.lost_vertices > 0)
-    object.warnings.push_back(
-        fmt::format("{}: mesh file {}: {} of {} vertices are in no triangle that has an area; faces there cross "
-                    "themselves or have all corners on a line",
-                    where, cloth.file.string(), loaded.lost_vertices, mesh.positions.size()));
-  if (const assets::MendingReport mended = assets::mend_sheet(loaded, 1 / kMaxUnevenness); mended.any())
-    object.warnings.push_back(
-        fmt::format("{}: mesh file {}: repaired to a sheet: {}", where, cloth.file.string(), mended.describe()));
-  const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
-  if (!report.manifold())
-    throw Error(
-        ExitCode::asset_unreadable,
-        "{}: mesh file {}: expected edges of one or two triangles that face the same way, got {} of more and {} "
-        "that face both ways",
-        where, cloth.file.string(), report.non_manifold.size(), report.misoriented.size());
-  return loaded;
-}
-
-/// Whether the panels given by UVs are the rest shape of a cloth. Notes the choice and its reason, warns of UVs that do
-/// not fit, and throws Error(asset_unreadable) if the scene asks for UVs that are missing or unusable.
-bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::string& where, ClothObject& object) {
-  constexpr double kMaxUnusableArea = 0.1;  // fraction of the area
-  const std::string in_file = fmt::format("{}: mesh file {}", where, cloth.file.string());
-  const bool asked = cloth.rest == scene::ClothRest::uv;
-  if (rest.islands == 0) {
-    if (asked)
-      throw Error(ExitCode::asset_unreadable, "{}: expected texture coordinates (UVs) for rest = \"uv\", got none",
-                  in_file);
-    object.rest_from = "the mesh: it has no UVs";
-    return false;
-  }
-  if (asked && rest.unusable_area > kMaxUnusableArea)
-    throw Error(ExitCode::asset_unreadable,
-                "{}: expected UVs in which triangles have an area, for rest = \"uv\", got {} of {} without, {:.0f} % "
-                "of the surface",
-                in_file, rest.unusable, rest.material.size(), 100 * rest.unusable_area);
-  const bool takes = asked || (cloth.rest == scene::ClothRest::automatic && rest.has_panel_lengths());
-  object.rest_from = fmt::format("{}{}: {}", takes ? "UVs" : "the mesh",
-                                 cloth.rest != scene::ClothRest::automatic ? ""
-                                 : takes                                   ? ", which fit it as panels do"
-                                                                           : ", which its UVs do not fit as panels do",
-                                 rest.describe());
-  if (!takes) return false;
-  constexpr double kMaxDrapeStretch = 0.25;  // relative to the panels; draped cloth is stretched less
-  if (!rest.has_panel_lengths())
-    object.warnings.push_back(
-        fmt::format("{}: its UVs may not be the pattern that it was sewn from: {}; rest = \"mesh\" uses the shape of "
-                    "the mesh instead",
-                    in_file, rest.describe()));
-  else if (rest.stretch_quantile_95 > kMaxDrapeStretch && cloth.sewing == 0)
-    object.warnings.push_back(
-        fmt::format("{}: the mesh differs much from its UVs: {}; sewing = 1 gives it a second to change to them",
-                    in_file, rest.describe()));
-  if (rest.unusable > 0)
-    object.warnings.push_back(fmt::format("{}: {} of {} triangles have no area in its UVs and keep that of the mesh",
-                                          in_file, rest.unusable, rest.material.size()));
-  return true;
-}
-
-/// Makes cloth from a file. It starts as the mesh; its rest shape is the mesh, or the flat panels given by its UVs.
-/// Moves the mesh into `object`, and returns the rest of the file's data, such as colours and vertex groups.
-assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
-                                 ClothObject& object) {
-  assets::LoadedMesh loaded = load_sheet(scene, cloth, where, object);
-  garment::UvRest rest;
-  if (cloth.rest != scene::ClothRest::mesh)
-    rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / kMaxUnevenness);
-  if (cloth.rest == scene::ClothRest::mesh) object.rest_from = "the mesh: the scene says so";
-  const bool panels = cloth.rest != scene::ClothRest::mesh && uses_uv(cloth, rest, where, object);
-  if (panels) {
-    constexpr double kMaxSeamGap = 0.1;  // relative to the shortest border edge there; gaps in files are smaller
-    if (const assets::Welded welded = assets::weld_borders(loaded, kMaxSeamGap); welded.vertices > 0)
-      object.rest_from += fmt::format("; {} vertices of its borders are joined to others, at most {:.2g} mm away",
-                                      welded.vertices, 1e3 * welded.widest);
-  }
-  use_triangles(std::move(loaded.mesh), object);
-  if (panels) {
-    object.sheet.material = std::move(rest.material);
-    object.sheet.sewn = true;
-    object.paint_uv = object.sheet.material;
-    object.spacing = std::numbers::sqrt2 * mesh::min_height(object.sheet);
-    for (std::size_t t = object.sheet.triangles.size(); t-- > 0;)
-      for (std::size_t k = 0; k < 3; ++k)
-        object.mesh.uv[static_cast<std::size_t>(object.sheet.triangles[t][k])] = object.sheet.material[t][k];
-  }
-  return loaded;
-}
-
-bool meets_obstacles(const scene::Scene& scene) {
-  return scene.contact.obstacles &&
-         (std::ranges::any_of(scene.obstacles, [](const scene::Obstacle& o) { return o.collide; }) ||
-          std::ranges::any_of(scene.characters, [](const scene::Character& c) { return c.collide; }));
-}
-
-/// Throws Error(scene_invalid) if triangles are too flat. The message states how many, and the flattest one.
-void check_triangles(const mesh::Sheet& sheet, const std::string& where) {
-  double longest = 0;
-  for (const auto& m : sheet.material)
-    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, (m[(k + 1) % 3] - m[k]).norm());
-  const double least_allowed = longest / kMaxUnevenness;
-  std::size_t flattest = 0, flat = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
-    const double height = mesh::height(sheet, t);
-    flat += height < least_allowed;
-    if (height < least) least = height, flattest = t;
-  }
-  if (flat == 0) return;
-  const Vec3& at = sheet.rest[static_cast<std::size_t>(sheet.triangles[flattest][0])];
-  throw Error(
-      ExitCode::scene_invalid,
-      "{}: expected triangles at least {:.3g} mm high, a {:g}th of the longest edge ({:.4g} mm), where cloth "
-      "meets obstacles; got {} flatter, the flattest number {} at ({:.4g}, {:.4g}, {:.4g}) with {:.3g} mm; mesh "
-      "it evenly or merge vertices that are closer",
-      where, 1e3 * least_allowed, kMaxUnevenness, 1e3 * longest, flat, flattest + 1, at.x(), at.y(), at.z(),
-      1e3 * least);
-}
-
-}  // namespace
-
-void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth) {
-  if (!meets_obstacles(scene) || scene::rectangle_particles(cloth) == 0) return;
-  const mesh::Grid grid = grid_of(cloth);
-  const double longest = std::max({grid.du(0), grid.du(grid.nu - 2), grid.dv(0), grid.dv(grid.nv - 2)});
-  if (longest <= kMaxUnevenness * grid.min_spacing()) return;
-  throw Error(ExitCode::scene_invalid,
-              "{}:{}:{}: cloth.{}: expected cells at least a {:g}th as long as the longest ({:.4g} mm), where cloth "
-              "meets obstacles; got {:.3g} mm; choose a grading closer to 1, or particles that are as far apart along "
-              "weft as along warp",
-              scene.file.string(), cloth.line, cloth.column, cloth.name, kMaxUnevenness, 1e3 * longest,
-              1e3 * grid.min_spacing());
-}
-
-ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers) {
-  check_spacing(scene, cloth);
-  ClothObject object;
-  object.name = cloth.name;
-  const std::string where = fmt::format("{}:{}:{}: {}.{}", scene.file.string(), cloth.line, cloth.column,
-                                        cloth.rope ? "rope" : "cloth", cloth.name);
-  const mesh::Grid grid = grid_of(cloth);
-  assets::LoadedMesh file;
-  switch (cloth.shape) {
-    case scene::ClothShape::quads:
-      use_quads(grid, object);
-      break;
-    case scene::ClothShape::aligned_triangles:
-      use_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::aligned), object);
-      break;
-    case scene::ClothShape::crossed_triangles:
-      use_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::crossed), object);
-      break;
-    case scene::ClothShape::mesh:
-      file = use_mesh_file(scene, cloth, where, object);
-      break;
-    case scene::ClothShape::pattern:
-      use_pattern(scene, cloth, where, wearers, object);
-      break;
-    case scene::ClothShape::rope:
-      use_rope(scene, *cloth.rope, object);
-      break;
-  }
-  choose_particles(scene, cloth, file, where, object);
-  if (meets_obstacles(scene) && scene::rectangle_particles(cloth) == 0) check_triangles(object.sheet, where);
-  for (Vec3& x : object.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
-  object.start = start_positions(cloth, object.mesh);
-  object.velocity = cloth.velocity;
-  return object;
-}
-
 namespace {
 
 /// Makes the mesh of a shape in the body's own coordinates. Boxes have their sizes along the scene's axes, and files
@@ -365,66 +50,92 @@ struct MakeMesh {
   }
 };
 
-BodyObject make_obstacle(const scene::Scene& scene, const scene::Obstacle& obstacle) {
-  BodyObject object;
-  object.name = obstacle.name;
-  object.mesh = std::visit(MakeMesh{scene, obstacle}, obstacle.shape);
-  object.moving = obstacle.motion.keys.size() > 1;
-  object.collide = obstacle.collide;
-  object.friction = obstacle.friction;
-  object.look = obstacle.look;
+model::Body make_obstacle(const scene::Scene& scene, const scene::Obstacle& obstacle) {
+  model::Body body;
+  body.name = obstacle.name;
+  body.mesh = std::visit(MakeMesh{scene, obstacle}, obstacle.shape);
+  body.mover = std::make_shared<const model::Mover>(motion::Track(obstacle.motion, obstacle.pose));
+  body.moving = obstacle.motion.keys.size() > 1;
+  body.collide = obstacle.collide;
+  body.friction = obstacle.friction;
   const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
-  object.infinite_floor = plane != nullptr && plane->infinite;
-  if (scene::is_dynamic(obstacle)) object.dynamics = make_dynamics(scene, obstacle, object.mesh);
-  return object;
+  body.infinite_floor = plane != nullptr && plane->infinite;
+  if (scene::is_dynamic(obstacle)) body.dynamics = make_dynamics(scene, obstacle, body.mesh);
+  return body;
 }
 
-/// Writes the positions of the vertices of a body, for each kind of motion.
-struct Place {
-  const std::vector<Vec3>& mesh;
-  double t;
-  std::span<Vec3> positions;
-
-  void operator()(const PoseSample& pose) const {
-    const Mat3 rotation = pose.rotation.toRotationMatrix();
-    parallel_for(mesh.size(), kPlacedPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) positions[i] = pose.position + rotation * mesh[i];
-    });
-  }
-  void operator()(const KeyFrames& keys) const { keys.at(t, positions); }
-};
-
-/// Unless all parts collide, fills body.passed_through (per triangle: 1 if it does not collide) and body.colliding (the
-/// other triangles, with the cuts between them closed). A body without any colliding triangle does not collide.
-void list_colliding_triangles(BodyObject& body) {
-  if (std::ranges::all_of(body.parts, &Part::collide)) return;
+/// Unless all parts collide, fills details.passed_through (per triangle: 1 if it does not collide) and body.colliding
+/// (the other triangles, with the cuts between them closed). A body without any colliding triangle does not collide.
+void list_colliding_triangles(model::Body& body, BodyDetails& details) {
+  if (std::ranges::all_of(details.parts, &Part::collide)) return;
   std::vector<std::uint8_t> collides(body.mesh.positions.size(), 1);
-  for (const Part& part : body.parts)
+  for (const Part& part : details.parts)
     for (std::size_t v = 0; v < collides.size(); ++v)
       if (part.vertices[v] != 0) collides[v] = part.collide;
   for (const mesh::Triangle& t : body.mesh.topology.triangles) {
     const bool left_out = collides[t[0]] + collides[t[1]] + collides[t[2]] < 2;
-    body.passed_through.push_back(left_out);
+    details.passed_through.push_back(left_out);
     if (!left_out) body.colliding.push_back(t);
   }
   mesh::close_cuts(body.mesh.topology.triangles, body.mesh.positions, body.colliding);
   if (body.colliding.empty()) body.collide = false;
 }
 
-BodyObject make_character(const scene::Character& character, const Actor& actor) {
-  BodyObject object;
-  object.name = character.name;
-  object.mesh = actor.mesh;
-  object.character = true;
-  object.moving = actor.keys.moving();
-  object.collide = character.collide;
-  object.friction = character.friction;
-  object.look = character.look;
-  object.parts = actor.parts;
-  object.limbs = actor.limbs;
-  object.coloring = actor.coloring;
-  list_colliding_triangles(object);
-  return object;
+/// Where something touches a character with hanging arms, which are in the way of most skirts.
+std::string advice_for(const scene::Character& character) {
+  const auto* file = std::get_if<scene::CharacterFile>(&character.source);
+  const bool arms_hang = file != nullptr && !file->stance_arms && character.dressing > 0;
+  return arms_hang ? "where arms are in the way, stance_arms = 45 holds them off the body" : "";
+}
+
+model::Body make_character(const scene::Character& character, Actor actor, BodyDetails& details) {
+  model::Body body;
+  body.name = character.name;
+  body.mesh = std::move(actor.mesh);
+  body.moving = actor.keys.moving();
+  body.collide = character.collide;
+  body.friction = character.friction;
+  body.limbs = std::move(actor.limbs);
+  body.advice = advice_for(character);
+  for (const Part& part : actor.parts)
+    if (part.is_patch()) body.patches.push_back({part.vertices, part.thickness, part.friction.value_or(body.friction)});
+  details = {.look = character.look,
+             .coloring = std::move(actor.coloring),
+             .parts = std::move(actor.parts),
+             .passed_through = {}};
+  list_colliding_triangles(body, details);
+  body.mover = std::make_shared<const model::Mover>(std::move(actor.keys));
+  return body;
+}
+
+/// The number of an object of this name; absent if there is none.
+template <class Objects>
+std::optional<std::size_t> number_of(const std::string& name, const Objects& objects) {
+  const auto found = std::ranges::find(objects, name, [](const auto& object) { return object.name; });
+  if (found == objects.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - objects.begin());
+}
+
+/// Mean start position of the region of a pin, including particles that another pin holds.
+Vec3 middle_of(std::span<const model::Chosen> particles, std::span<const Vec3> start) {
+  Vec3 middle = Vec3::Zero();
+  std::size_t count = 0;
+  for (const model::Chosen& chosen : particles) {
+    if (chosen.faded) break;  // those of the fade come last
+    middle += start[static_cast<std::size_t>(chosen.particle)];
+    ++count;
+  }
+  return middle / static_cast<double>(count);
+}
+
+/// Motion of the middle of a pin's region through its keys.
+motion::PoseTrack motion_of(const scene::PinTrack& keyed, const Vec3& middle) {
+  motion::PoseTrack track{keyed.interpolation, {}};
+  for (const scene::PinKey& key : keyed.keys) {
+    track.keys.push_back({key.time, key.pose});
+    if (!key.in_world) track.keys.back().pose.position += middle;
+  }
+  return track;
 }
 
 }  // namespace
@@ -437,63 +148,95 @@ assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obs
   return made;
 }
 
-mesh::Grid grid_of(const scene::Cloth& cloth) {
-  return {.nu = cloth.particles_weft,
-          .nv = cloth.particles_warp,
-          .lu = cloth.size.x() / (cloth.particles_weft - 1),
-          .lv = cloth.size.y() / (cloth.particles_warp - 1),
-          .weft_grading = cloth.grading.x(),
-          .warp_grading = cloth.grading.y()};
+Environment::Environment(const scene::Scene& scene) {
+  model.source = scene.file.string();
+  model.up = scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+  model.time = {.fps = scene.time.fps,
+                .preroll_frames = scene.preroll_frames(),
+                .step = scene.time.step,
+                .tolerance = scene.time.tolerance,
+                .integrator = scene.time.integrator};
+  model.physics = scene.physics;
+  model.fans = scene.fans;
+  model.solver = scene.solver;
+  model.contact = scene.contact;
+  model.layers = scene::list_layers(scene);
+  const std::vector<Attached> attached = add_cloths(scene);
+  for (const scene::Obstacle& obstacle : scene.obstacles) {
+    model.bodies.push_back(make_obstacle(scene, obstacle));
+    bodies.push_back({.look = obstacle.look, .coloring = nullptr, .parts = {}, .passed_through = {}});
+  }
+  add_parents(scene);
+  add_characters(scene);
+  add_pin_motions(scene);
+  add_attachments(scene, attached);
 }
 
-Environment::Environment(const scene::Scene& scene) {
+std::vector<Environment::Attached> Environment::add_cloths(const scene::Scene& scene) {
+  std::vector<Attached> attached;
   Wearers wearers(scene);
   for (const scene::Cloth& cloth : scene.cloths) {
-    cloths.push_back(make_cloth(scene, cloth, wearers));
-    for (const std::string& warning : cloths.back().warnings) log::warn(warning);
+    MadeCloth made = make_cloth(scene, cloth, wearers);
+    for (const std::string& warning : made.details.warnings) log::warn(warning);
+    model.cloths.push_back(std::move(made.cloth));
+    cloths.push_back(std::move(made.details));
+    attached.push_back(std::move(made.attachments));
   }
-  for (const scene::Obstacle& obstacle : scene.obstacles) {
-    bodies.push_back(make_obstacle(scene, obstacle));
-    movers_.push_back(std::make_shared<const Mover>(Track(obstacle.motion, obstacle.pose)));
-  }
+  for (const model::Layer& layer : model.layers)
+    for (const std::size_t c : layer.cloths) {
+      model.cloths[c].put_on = (layer.first_frame + scene.preroll_frames()) / scene.time.fps;
+      for (const scene::Cloth& inner : scene.cloths)
+        if (scene::worn_over(scene, scene.cloths[c].name, inner.name)) model.cloths[c].over.push_back(inner.name);
+    }
+  return attached;
+}
+
+void Environment::add_characters(const scene::Scene& scene) {
   std::vector<ClothAtStart> at_start;
-  for (const ClothObject& cloth : cloths)
+  for (const model::Cloth& cloth : model.cloths)
     at_start.push_back({cloth.start, cloth.mesh.topology.triangles, cloth.put_on});
-  add_parents(scene);
   for (const scene::Character& character : scene.characters) {
-    Followers followers = followers_of(scene, cloths, character.name);
+    Followers followers = followers_of(scene, model.cloths, character.name);
     Actor actor = make_actor(scene, character, followers.points, at_start);
     for (const std::string& warning : actor.warnings) log::warn(warning);
     for (const std::string& note : actor.notes) log::note(note);
-    bodies.push_back(make_character(character, actor));
-    const bool has_bones = scene::acting_of(character) != nullptr;
     const std::size_t vertices = actor.mesh.positions.size();
-    for (BodyObject::Follower& follower : followers.pins) follower.first_vertex += vertices;
     for (PartFollower& follower : followers.rigid) follower.first += vertices;
     add_part_parents(scene, character, followers, actor.keys);
-    if (has_bones) bodies.back().followers = std::move(followers.pins);
-    movers_.push_back(std::make_shared<const Mover>(std::move(actor.keys)));
+    if (scene::acting_of(character) != nullptr)  // a body with bones, whose keys move the particles of pins
+      for (const PinFollower& follower : followers.pins)
+        model.cloths[follower.cloth].pins[follower.pin].first_vertex = vertices + follower.first;
+    model.bodies.push_back(make_character(character, std::move(actor), bodies.emplace_back()));
   }
 }
 
-Environment Environment::with_cloths(std::span<const std::size_t> numbers) const {
-  Environment part = *this;
-  part.cloths.clear();
-  for (const std::size_t number : numbers) part.cloths.push_back(cloths[number]);
-  for (BodyObject& body : part.bodies) {
-    std::erase_if(body.followers, [&](const BodyObject::Follower& follower) {
-      return std::ranges::find(numbers, follower.cloth) == numbers.end();
-    });
-    for (BodyObject::Follower& follower : body.followers)
-      follower.cloth = static_cast<std::size_t>(std::ranges::find(numbers, follower.cloth) - numbers.begin());
-  }
-  return part;
+void Environment::add_pin_motions(const scene::Scene& scene) {
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p) {
+      const scene::Pin& given = scene.cloths[c].pins[p];
+      model::Pin& pin = model.cloths[c].pins[p];
+      if (!given.follow.empty()) pin.body = number_of(scene::followed(given.follow).body, model.bodies);
+      pin.middle = middle_of(pin.particles, model.cloths[c].start);
+      pin.motion = motion_of(given.motion, pin.middle);
+    }
 }
 
-void Environment::place(std::size_t body, double t, std::span<Vec3> positions) const {
-  const Place place{bodies[body].mesh.positions, bodies[body].moving ? t : 0, positions};
-  if (const auto* keys = std::get_if<KeyFrames>(movers_[body].get())) return place(*keys);
-  place(pose(body, place.t));
+void Environment::add_attachments(const scene::Scene& scene, const std::vector<Attached>& attached) {
+  std::vector<std::size_t> seen(model.cloths.size(), 0);  // attachments so far, per cloth
+  for (const scene::Attachment& given : scene.attachments) {
+    const auto own = number_of(given.cloth, model.cloths);
+    if (!own) continue;
+    model.attachments.push_back({.name = given.name,
+                                 .cloth = *own,
+                                 .particles = attached[*own][seen[*own]++],
+                                 .to_cloth = number_of(given.to, model.cloths),
+                                 .to_body = number_of(given.to, model.bodies),
+                                 .stiffness = given.stiffness,
+                                 .length = given.length,
+                                 .begin = given.begin,
+                                 .release = given.release,
+                                 .breaking_load = given.breaking_load});
+  }
 }
 
 }  // namespace weft::environment

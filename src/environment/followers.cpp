@@ -1,5 +1,7 @@
 #include "environment/followers.hpp"
 
+#include "environment/parents.hpp"
+
 namespace weft::environment {
 namespace {
 
@@ -16,7 +18,7 @@ const Vec3& place_of(const scene::Obstacle& obstacle) {
 
 }  // namespace
 
-Followers followers_of(const scene::Scene& scene, const std::vector<ClothObject>& cloths,
+Followers followers_of(const scene::Scene& scene, const std::vector<model::Cloth>& cloths,
                        const std::string& character) {
   Followers followers;
   std::size_t first = 0;
@@ -29,7 +31,8 @@ Followers followers_of(const scene::Scene& scene, const std::vector<ClothObject>
       const scene::Followed followed = scene::followed(scene.cloths[c].pins[p].follow);
       if (followed.body != character) continue;
       FollowingPin pin{followed.part, {}};
-      for (const Chosen& chosen : cloths[c].pins[p]) pin.places.push_back(cloths[c].start[chosen.particle]);
+      for (const model::Chosen& chosen : cloths[c].pins[p].particles)
+        pin.places.push_back(cloths[c].start[chosen.particle]);
       followers.pins.push_back({c, p, first});
       add(std::move(pin));
     }

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "environment/environment.hpp"
+#include "environment/acting.hpp"
+#include "model/model.hpp"
+#include "scene/scene.hpp"
 
 namespace weft::environment {
 
@@ -16,12 +18,19 @@ struct PartFollower {
   std::size_t first = 0;   ///< index of the first of its four points among all points that follow the character
 };
 
+/// A pin that follows a character.
+struct PinFollower {
+  std::size_t cloth = 0, pin = 0;
+  std::size_t first = 0;  ///< index of the point of its first particle among all points that follow the character
+};
+
 struct Followers {
-  std::vector<FollowingPin> points;        ///< of the pins, then four points on the skin for each obstacle or camera
-  std::vector<BodyObject::Follower> pins;  ///< first_vertex: index among all points
+  std::vector<FollowingPin> points;  ///< of the pins, then four points on the skin for each obstacle or camera
+  std::vector<PinFollower> pins;
   std::vector<PartFollower> rigid;
 };
 
-Followers followers_of(const scene::Scene& scene, const std::vector<ClothObject>& cloths, const std::string& character);
+Followers followers_of(const scene::Scene& scene, const std::vector<model::Cloth>& cloths,
+                       const std::string& character);
 
 }  // namespace weft::environment

@@ -50,7 +50,7 @@ std::optional<std::string> warn_of_missing_skin(const character::Character& body
       body.nodes[holder].name, idle);
 }
 
-std::optional<std::string> warn_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
+std::optional<std::string> warn_of_speed(const motion::KeyFrames& keys, double begin, double rate, std::size_t count,
                                          std::size_t vertices) {
   std::vector<Vec3> x(vertices);
   const auto middle = [&](std::size_t k) -> Vec3 {

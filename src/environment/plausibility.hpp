@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "character/character.hpp"
-#include "environment/key_frames.hpp"
+#include "motion/key_frames.hpp"
 
 namespace weft::environment {
 
@@ -20,7 +20,7 @@ std::optional<std::string> warn_of_missing_skin(const character::Character& body
 
 /// Warns of an implausible speed of a body: of the mean position of its vertices. `vertices`: their number. The speed
 /// is measured over `count` key frames from `begin` [s] on, `rate` per second.
-std::optional<std::string> warn_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
+std::optional<std::string> warn_of_speed(const motion::KeyFrames& keys, double begin, double rate, std::size_t count,
                                          std::size_t vertices);
 
 /// Warns of a body in or above the only floor. `lowest`: height of its lowest vertex over the floor at each key frame

@@ -7,6 +7,6 @@ namespace weft::environment {
 
 /// Fills in the particles of a rope and its pieces. A piece is a triangle whose last two corners are equal, so that
 /// code for triangles treats it as an edge.
-void use_rope(const scene::Scene& scene, const scene::Rope& rope, ClothObject& object);
+void use_rope(const scene::Scene& scene, const scene::Rope& rope, MadeCloth& made);
 
 }  // namespace weft::environment

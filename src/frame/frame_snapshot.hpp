@@ -16,6 +16,13 @@ namespace weft::frame {
 
 enum class ObjectKind { cloth, obstacle, character, rope };
 
+/// An object of a run, for lists.
+struct ObjectInfo {
+  std::string name;
+  ObjectKind kind;
+  std::size_t vertices = 0, faces = 0;
+};
+
 /// A picture for surfaces: rows from the top, bytes R G B A per pixel, colours in sRGB, alpha not premultiplied.
 struct Texture {
   int width = 0, height = 0;  ///< pixels, from 1

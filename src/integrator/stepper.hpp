@@ -11,13 +11,12 @@
 
 #include "core/archive.hpp"
 #include "core/timer.hpp"
+#include "integrator/method.hpp"
 #include "integrator/sliding.hpp"
 #include "integrator/system.hpp"
 #include "solver/conjugate_gradient.hpp"
 
 namespace weft::integrator {
-
-enum class Method { implicit_euler, implicit_midpoint, bdf2 };
 
 struct NewtonParameters {
   /// Error that Newton's method and the linear solver may leave, relative to the local truncation error of the step,

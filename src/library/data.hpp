@@ -9,9 +9,9 @@
 #include <weft/simulation.hpp>
 
 #include "core/error.hpp"
-#include "frame/frame_report.hpp"
 #include "frame/frame_snapshot.hpp"
 #include "scene/scene.hpp"
+#include "simulation/frame_report.hpp"
 
 namespace weft {
 
@@ -35,7 +35,7 @@ struct Frame::Data {
 
 namespace weft::library {
 
-Report report_of(const frame::FrameReport& report);
+Report report_of(const simulation::FrameReport& report);
 
 /// Makes a frame. Its objects are views of `data`.
 Frame make_frame(Frame::Data data);

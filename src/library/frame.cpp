@@ -62,9 +62,9 @@ const Object& Frame::object(std::string_view name) const {
 
 namespace weft::library {
 
-Report report_of(const frame::FrameReport& report) {
+Report report_of(const simulation::FrameReport& report) {
   std::vector<EnclosedAir> enclosed;
-  for (const frame::EnclosedAir& air : report.enclosed) enclosed.push_back({air.cloth, air.volume, air.pressure});
+  for (const simulation::EnclosedAir& air : report.enclosed) enclosed.push_back({air.cloth, air.volume, air.pressure});
   return {.wall_s = report.simulate.wall_s,
           .cpu_s = report.simulate.cpu_s,
           .steps = report.steps,

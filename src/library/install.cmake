@@ -5,8 +5,8 @@ include(CMakePackageConfigHelpers)
 # Links the objects of the modules that the simulation needs, not the modules, which would bring in image libraries.
 # The linker reports whatever is missing as undefined.
 set(objects "")
-foreach(module core mesh scene character assets garment environment solver forces integrator collision untangle
-               simulation library)
+foreach(module core mesh solver forces integrator collision untangle motion model simulation scene character assets
+               garment environment production library)
   list(APPEND objects $<TARGET_OBJECTS:weft_${module}>)
 endforeach()
 add_library(weft_shared SHARED library/host_pictures.cpp image/color.cpp image/picture.cpp ${objects})

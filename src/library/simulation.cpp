@@ -1,5 +1,3 @@
-#include "simulation/simulation.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "core/nearest.hpp"
 #include "core/version.hpp"
 #include "library/data.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft {
 namespace {
@@ -32,12 +31,12 @@ struct Simulation::Impl {
   Impl(const Scene& public_scene, const SimulationOptions& options);
 
   std::size_t obstacle(std::string_view name) const;
-  void update_current_frame(const frame::FrameReport& report);
+  void update_current_frame(const simulation::FrameReport& report);
 
   scene::Scene scene;
   std::string heading;              // first line of a saved state
   std::vector<std::size_t> driven;  // numbers of the driven obstacles
-  std::unique_ptr<simulation::Simulation> simulation;
+  std::unique_ptr<production::SceneSimulation> simulation;
   std::optional<Frame> current;
 };
 
@@ -47,7 +46,7 @@ Simulation::Impl::Impl(const Scene& public_scene, const SimulationOptions& optio
     driven.push_back(obstacle(name));
     add_keys(scene, scene.obstacles[driven.back()]);
   }
-  simulation = std::make_unique<simulation::Simulation>(scene);
+  simulation = std::make_unique<production::SceneSimulation>(scene);
   if (options.state.empty()) {
     simulation->run_preroll();
     update_current_frame(simulation->initial_report());
@@ -75,7 +74,7 @@ std::size_t Simulation::Impl::obstacle(std::string_view name) const {
       fmt::format("expected an obstacle of the scene ({}), got {}", fmt::join(names, ", "), name));
 }
 
-void Simulation::Impl::update_current_frame(const frame::FrameReport& report) {
+void Simulation::Impl::update_current_frame(const simulation::FrameReport& report) {
   Frame::Data data;
   data.snapshot = simulation->snapshot();
   data.report = library::report_of(report);

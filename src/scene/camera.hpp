@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/types.hpp"
-#include "scene/keyed.hpp"
+#include "motion/interpolation.hpp"
 
 namespace weft::scene {
 
@@ -31,7 +31,7 @@ struct Camera {
   std::string name;
   CameraKind kind = CameraKind::placed;
   std::vector<CameraKey> keys;  ///< at least one; one: still. Computed cameras have one that gives the field of view
-  Interpolation interpolation = Interpolation::cubic;
+  motion::Interpolation interpolation = motion::Interpolation::cubic;
   std::vector<std::string> subjects =
       {};                  ///< names; empty: `whole`: all but infinite floors; else the characters or, without, cloths
   double azimuth = 33;     ///< of the camera position, from the front to the right [degrees]

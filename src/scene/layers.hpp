@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "model/model.hpp"
 #include "scene/scene.hpp"
 
 namespace weft::scene {
@@ -14,12 +15,7 @@ bool worn_over(const Scene& scene, const std::string& outer, const std::string& 
 /// For each cloth, the number of layers below it (longest chain of cloths, one over the other); 0: next to the skin.
 std::vector<std::size_t> layer_depths(const Scene& scene);
 
-/// A layer of cloths that is put on together.
-struct Layer {
-  int first_frame = 0;               ///< first frame of dressing; negative in the preroll
-  std::vector<std::size_t> cloths;   ///< indices of the cloths of this layer
-  std::vector<std::size_t> dressed;  ///< indices of the cloths of this and all lower layers, ascending
-};
+using model::Layer;
 
 /// All layers from the skin outward, at least one. They are put on one after the other, each in an equal number of
 /// frames, from the start of the preroll until the first character with `dressing` moves.

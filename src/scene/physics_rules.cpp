@@ -1,7 +1,7 @@
 #include "scene/physics_rules.hpp"
 
+#include "model/air.hpp"
 #include "scene/common_rules.hpp"
-#include "scene/physics.hpp"
 #include "scene/table_builder.hpp"
 
 namespace weft::scene {

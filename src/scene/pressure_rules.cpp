@@ -1,7 +1,7 @@
 #include "scene/pressure_rules.hpp"
 
+#include "model/pressure.hpp"
 #include "scene/common_rules.hpp"
-#include "scene/pressure.hpp"
 #include "scene/table_builder.hpp"
 
 namespace weft::scene {

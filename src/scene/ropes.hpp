@@ -36,8 +36,9 @@ struct RopeShape {
 /// Start shape of a rope. A slack rope without points hangs as a catenary. `up`: of the scene.
 RopeShape start_shape(const Rope& rope, UpAxis up);
 
-/// Default and minimum length of a piece [diameters].
-inline constexpr double kRopePiece = 3, kMinRopePiece = 1.5;
+/// Default length of a piece [diameters].
+inline constexpr double kRopePiece = 3;
+using model::kMinRopePiece;
 /// Minimum horizontal distance between the ends of a slack rope without points [diameters].
 inline constexpr double kMinRopeSpan = 4;
 /// Whether a rope has no points and is longer than the distance of its ends.

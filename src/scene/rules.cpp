@@ -44,7 +44,7 @@ const Table& time_rules() {
                   "each cloth; step lengths follow from it")
           .by_default("none: `step` sets the step length")
           .excludes("step")
-          .choice("integrator", &Time::integrator, kIntegratorNames,
+          .choice("integrator", &Time::integrator, integrator::kMethodNames,
                   "method of time integration; implicit_midpoint has no damping, therefore steps with contacts use "
                   "bdf2 instead")
           .build();

@@ -13,25 +13,47 @@
 
 #include "core/threads.hpp"
 #include "core/types.hpp"
+#include "integrator/method.hpp"
+#include "model/air.hpp"
+#include "model/contact.hpp"
+#include "model/material.hpp"
+#include "model/pressure.hpp"
+#include "model/rope.hpp"
+#include "model/settings.hpp"
+#include "motion/pose.hpp"
 #include "scene/camera.hpp"
-#include "scene/keyed.hpp"
-#include "scene/physics.hpp"
-#include "scene/pressure.hpp"
 #include "scene/shapes.hpp"
 
 namespace weft::scene {
 
-enum class UpAxis { y, z };
-enum class Integrator { implicit_euler, implicit_midpoint, bdf2 };
+// Values that the physics takes as a scene gives them.
+using Integrator = integrator::Method;
+using model::Bounds;
+using model::Contact;
+using model::Fan;
+using model::FanKey;
+using model::FrictionPair;
+using model::Gusts;
+using model::Material;
+using model::Physics;
+using model::PhysicsKey;
+using model::Pressure;
+using model::PressureControl;
+using model::PressureKey;
+using model::Response;
+using model::RopeKey;
+using model::Search;
+using model::Solver;
+using model::TreeKind;
+using motion::change_of_angles;
+using motion::Interpolation;
+using motion::Pose;
+using motion::PoseKey;
+using motion::PoseTrack;
 
-/// Names in scenes and reports, in the order of the enumeration.
-inline const std::vector<std::string> kIntegratorNames = {"implicit_euler", "implicit_midpoint", "bdf2"};
-inline const std::string& name_of(Integrator integrator) {
-  return kIntegratorNames[static_cast<std::size_t>(integrator)];
-}
+enum class UpAxis { y, z };
 
 enum class HeatQuantity { none, strain, speed };
-enum class Response { springs, velocity_constraints };
 
 struct Time {
   double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
@@ -41,66 +63,6 @@ struct Time {
   std::optional<double> tolerance =
       std::nullopt;  ///< replaces `step`: allowed local error of a cloth's positions in one step [m]
   Integrator integrator = Integrator::implicit_euler;
-};
-
-struct Solver {
-  double newton_tolerance = 0.4;  ///< error that the solver may leave / local truncation error of the step
-  int newton_iterations = 60;     ///< maximum per step; a step that needs more is halved
-  double linear_tolerance = 0.1;  ///< allowed error of a linear solve / its solution, in the energy norm
-  int linear_iterations = 1000;   ///< maximum of conjugate gradients in one linear solve
-  int halvings = 8;               ///< how often a rejected step is halved before the run ends with an error
-};
-
-enum class Bounds { box, dop18, dop26 };
-enum class TreeKind { binary, quad, oct };
-
-/// Methods that find surfaces close to each other (seed, "Collision Detection"). They change the speed, not the result.
-struct Search {
-  Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
-  TreeKind tree = TreeKind::oct;  ///< two, four or eight children per node
-  int leaf = 8;                   ///< maximum number of triangles per leaf
-  bool open_longer_side = false;  ///< of two nodes, open only the longer one
-  bool separation_lists = false;  ///< start each traversal where the previous one stopped
-  bool velocity_cones = false;    ///< keep the bounds of slow nodes while their vertices stay inside
-  bool normal_cones = false;      ///< skip regions that are provably too flat to touch themselves
-  bool coherence = false;         ///< keep closest points of surfaces with little relative motion
-  bool reuse = true;              ///< keep candidate pairs and close features until something moves far
-};
-
-/// Coulomb friction between two objects; replaces the mean of their own coefficients.
-struct FrictionPair {
-  std::string first, second;              ///< names of cloths or obstacles; equal names: a cloth with itself
-  double friction = 0.3;                  ///< coefficient of kinetic friction
-  std::optional<double> static_friction;  ///< coefficient of static friction, at least `friction`; absent: equal to it
-};
-
-/// Contact of all surfaces.
-struct Contact {
-  bool self = true;        ///< cloth against itself and other cloths
-  bool obstacles = true;   ///< cloth against obstacles
-  double stiffness = 100;  ///< stiffness of one contact [N/m]
-  std::vector<FrictionPair> pairs;
-  Search search;
-  Response response = Response::springs;
-};
-
-/// A fabric in continuum units (seed, "Elastic Model").
-struct Material {
-  std::string fabric = "cotton";  ///< the named fabric that supplies the default values
-  double density = 0.15;          ///< [kg/m²]
-  double stretch_weft = 800;      ///< k1 [N/m]
-  double stretch_warp = 2100;     ///< k2 [N/m]
-  double shear = 130;             ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
-  double bend = 1e-5;             ///< B [N·m]
-  double max_stretch = 0.1;       ///< extension at which threads lock (stiffen) [1]; 0: never
-  double max_shear = 0;           ///< change of the angle between weft and warp at which they lock [degrees]; 0: never
-  double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
-  double shear_viscosity = 0;     ///< [N·s/m]
-  double bend_viscosity = 1e-6;   ///< [N·m·s]
-  double bend_friction = 5e-4;    ///< moment per width that must be overcome to change the curvature [N]
-  double thickness = 0.002;       ///< contact distance between two layers [m]
-  double friction = 0.3;          ///< Coulomb coefficient; a contact uses the geometric mean of both objects
-  double drag = 1.0;              ///< air resistance coefficient, for motion normal to the cloth; 0: none
 };
 
 /// Colours of a cloth or of one of its panels, and a picture on it, aligned with the grain.
@@ -142,26 +104,6 @@ struct Look : Paint {
   bool checker = false;               ///< floors only
   bool strands = true;                ///< ropes only: drawn with twisted strands
   bool visible = true;
-};
-
-/// A rigid placement: rotation, then translation.
-struct Pose {
-  Vec3 position{0, 0, 0};  ///< [m]
-  Quat rotation{1, 0, 0, 0};
-  std::optional<Vec3> angles{};  ///< the rotation as given by angles [degrees], may contain whole turns; absent: not so
-};
-
-/// Difference of the angles of two poses [degrees]; empty if one of them has no angles.
-std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to);
-
-struct PoseKey {
-  double time = 0;  ///< [s], strictly increasing
-  Pose pose;
-};
-
-struct PoseTrack {
-  Interpolation interpolation = Interpolation::cubic;
-  std::vector<PoseKey> keys;  ///< empty: keeps the object's own pose
 };
 
 /// Pose in which a pin holds its particles at one time. They rotate about their centroid.
@@ -273,12 +215,6 @@ inline long rectangle_particles(const Cloth& cloth) {
   if (cloth.shape > ClothShape::crossed_triangles) return 0;
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
-
-/// Rest length of a rope at one time. A change of length is distributed evenly over the rope.
-struct RopeKey {
-  double time = 0;    ///< [s], strictly increasing
-  double length = 1;  ///< rest length [m]
-};
 
 /// A thin chain of particles. It is simulated as a one-dimensional cloth; see as_cloth().
 struct Rope {

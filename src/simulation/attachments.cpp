@@ -9,42 +9,34 @@
 
 #include "collision/proximity/surface_point.hpp"
 #include "core/archive.hpp"
-#include "simulation/pin_warnings.hpp"
+#include "simulation/pins.hpp"
 
 namespace weft::simulation {
 namespace {
 
-template <class Objects>
-int object_named(const Objects& objects, const std::string& name) {
-  const auto found = std::ranges::find(objects, name, [](const auto& object) { return object.name; });
-  return found == objects.end() ? -1 : static_cast<int>(found - objects.begin());
+/// An optional number as an index; −1 if it is absent.
+int index_of(std::optional<std::size_t> number) {
+  return number ? static_cast<int>(*number) : -1;
 }
 
 }  // namespace
 
-Attachments::Attachments(const scene::Scene& scene, const environment::Environment& environment,
-                         std::span<const Index> first_particle, std::span<const Index> first_of_frames)
-    : environment_(&environment),
-      step_(scene.time.step),
-      first_particle_(first_particle.begin(), first_particle.end()) {
-  std::vector<std::size_t> seen(environment.cloths.size(), 0);  // attachments so far, per cloth
-  for (const scene::Attachment& of_scene : scene.attachments) {
-    const int own = object_named(environment.cloths, of_scene.cloth);
-    if (own < 0) continue;  // this cloth is not put on yet
-    const auto& chosen = environment.cloths[own].attachments[seen[own]++];
+Attachments::Attachments(const model::Model& model, std::span<const Index> first_particle,
+                         std::span<const Index> first_of_frames)
+    : model_(&model), step_(model.time.step), first_particle_(first_particle.begin(), first_particle.end()) {
+  for (const model::Attachment& given : model.attachments) {
     Attachment attachment;
-    attachment.name = of_scene.name;
-    attachment.cloth = object_named(environment.cloths, of_scene.to);
-    attachment.body = object_named(environment.bodies, of_scene.to);
-    if (attachment.cloth < 0 && attachment.body < 0) continue;
+    attachment.name = given.name;
+    attachment.cloth = index_of(given.to_cloth);
+    attachment.body = index_of(given.to_body);
     if (attachment.body >= 0) attachment.frame = first_of_frames[attachment.body];
-    attachment.begin = of_scene.begin;
-    attachment.release = of_scene.release >= 0 ? of_scene.release : std::numeric_limits<double>::infinity();
-    attachment.length = of_scene.length;
-    attachment.breaking_load = of_scene.breaking_load;
-    for (const environment::Chosen& one : chosen)
+    attachment.begin = given.begin;
+    attachment.release = given.release >= 0 ? given.release : std::numeric_limits<double>::infinity();
+    attachment.length = given.length;
+    attachment.breaking_load = given.breaking_load;
+    for (const model::Chosen& one : given.particles)
       attachment.springs.push_back(
-          {.particle = first_particle_[own] + one.particle, .stiffness = of_scene.stiffness * one.share});
+          {.particle = first_particle_[given.cloth] + one.particle, .stiffness = given.stiffness * one.share});
     attachments_.push_back(std::move(attachment));
   }
 }
@@ -55,14 +47,14 @@ bool Attachments::holds_at(const Attachment& attachment, double t) const {
 
 // Position of a body's vertex at time t [m].
 Vec3 Attachments::corner_position(std::size_t body, Index vertex, double t) const {
-  const environment::BodyObject& object = environment_->bodies[body];
-  if (object.character) return environment_->vertex(body, static_cast<std::size_t>(vertex), t).position;
-  const environment::PoseSample pose = environment_->pose(body, t);
+  const model::Body& object = model_->bodies[body];
+  if (object.deforms()) return model_->vertex(body, static_cast<std::size_t>(vertex), t).position;
+  const motion::PoseSample pose = model_->pose(body, t);
   return pose.position + pose.rotation * object.mesh.positions[static_cast<std::size_t>(vertex)];
 }
 
 const mesh::RigidFrame& Attachments::frame_of(const Attachment& attachment) const {
-  return environment_->bodies[attachment.body].dynamics->frame;
+  return model_->bodies[attachment.body].dynamics->frame;
 }
 
 // Converts a point from weights of three vertices to weights of the four frame particles of their body.
@@ -84,17 +76,17 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
   const bool is_cloth = attachment.cloth >= 0;
   const Index first = is_cloth ? first_particle_[attachment.cloth] : 0;
   if (is_cloth) {
-    const auto own = x.subspan(first, environment_->cloths[attachment.cloth].start.size());
+    const auto own = x.subspan(first, model_->cloths[attachment.cloth].start.size());
     of_target.assign(own.begin(), own.end());
   } else {
-    of_target.resize(environment_->bodies[attachment.body].mesh.positions.size());
+    of_target.resize(model_->bodies[attachment.body].mesh.positions.size());
     if (attachment.frame >= 0)
       frame_of(attachment).place(x.subspan(attachment.frame, mesh::RigidFrame::kParticles), of_target);
     else
-      environment_->place(static_cast<std::size_t>(attachment.body), t, of_target);
+      model_->place(static_cast<std::size_t>(attachment.body), t, of_target);
   }
-  const auto& triangles = is_cloth ? environment_->cloths[attachment.cloth].mesh.topology.triangles
-                                   : environment_->bodies[attachment.body].mesh.topology.triangles;
+  const auto& triangles = is_cloth ? model_->cloths[attachment.cloth].mesh.topology.triangles
+                                   : model_->bodies[attachment.body].mesh.topology.triangles;
   attachment.speed = 0;
   for (Spring& spring : attachment.springs) {
     const Vec3& own = x[spring.particle];
@@ -227,8 +219,8 @@ std::vector<std::string> Attachments::accept(std::span<const Vec3> x) {
   return warnings;
 }
 
-std::vector<frame::AttachmentLoad> Attachments::measure() const {
-  std::vector<frame::AttachmentLoad> loads;
+std::vector<AttachmentLoad> Attachments::measure() const {
+  std::vector<AttachmentLoad> loads;
   for (const Attachment& attachment : attachments_)
     loads.push_back({attachment.name, attachment.load, attachment.holds && attachment.state == State::tied});
   return loads;
@@ -259,10 +251,10 @@ void Attachments::serialize(Archive& archive) {
   for (Attachment& attachment : attachments_) {
     serialize_values(archive, attachment.state, attachment.holds, attachment.load);
     if constexpr (Archive::kReads) require(attachment.state <= State::broken, "an attachment");
-    const std::size_t count = attachment.frame >= 0   ? static_cast<std::size_t>(attachment.frame) + 4
-                              : attachment.cloth >= 0 ? static_cast<std::size_t>(first_particle_.back()) +
-                                                            environment_->cloths.back().start.size()
-                                                      : environment_->bodies[attachment.body].mesh.positions.size();
+    const std::size_t count =
+        attachment.frame >= 0   ? static_cast<std::size_t>(attachment.frame) + 4
+        : attachment.cloth >= 0 ? static_cast<std::size_t>(first_particle_.back()) + model_->cloths.back().start.size()
+                                : model_->bodies[attachment.body].mesh.positions.size();
     for (Spring& spring : attachment.springs) {
       for (std::size_t k = 0; k < spring.corners.size(); ++k) {
         serialize_values(archive, spring.corners[k], spring.weights[k]);

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "environment/environment.hpp"
-#include "frame/frame_report.hpp"
-#include "scene/scene.hpp"
+#include "model/model.hpp"
+#include "simulation/frame_report.hpp"
 #include "solver/linear_system.hpp"
 
 namespace weft::simulation {
@@ -26,8 +25,7 @@ class Attachments {
  public:
   /// `first_particle`: of each cloth; `first_of_frames`: first frame particle of each body, −1 for a body that forces
   /// do not move. The environment must outlive this object.
-  Attachments(const scene::Scene& scene, const environment::Environment& environment,
-              std::span<const Index> first_particle, std::span<const Index> first_of_frames);
+  Attachments(const model::Model& model, std::span<const Index> first_particle, std::span<const Index> first_of_frames);
 
   bool empty() const { return attachments_.empty(); }
 
@@ -48,7 +46,7 @@ class Attachments {
   /// Accepts the step that ends at x [m]: measures forces, and breaks attachments above their breaking load. Returns
   /// warnings of attachments that were tied in this step and pull too fast for cloth to follow.
   std::vector<std::string> accept(std::span<const Vec3> x);
-  std::vector<frame::AttachmentLoad> measure() const;
+  std::vector<AttachmentLoad> measure() const;
 
   /// Copies the state of attachments of the same name. `cloths[k]`: number in this object of cloth k of `there`.
   void copy_state_from(const Attachments& there, std::span<const std::size_t> cloths);
@@ -96,7 +94,7 @@ class Attachments {
   template <class Visit>
   void for_each_tension(std::span<const Vec3> x, const Visit& visit) const;
 
-  const environment::Environment* environment_;
+  const model::Model* model_;
   double step_;                        // of the scene [s]
   std::vector<Index> first_particle_;  // of each cloth
   std::vector<Attachment> attachments_;

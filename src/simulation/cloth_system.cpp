@@ -19,7 +19,6 @@
 #include "forces/stretch_limit.hpp"
 #include "forces/triangle_bend.hpp"
 #include "mesh/geometry.hpp"
-#include "scene/ropes.hpp"
 #include "simulation/pins.hpp"
 
 namespace weft::simulation {
@@ -29,27 +28,27 @@ namespace {
 constexpr Index kMinRangeSize = 512;
 constexpr Index kMaxRangesPerThread = 2;
 
-bool has_drag(const scene::Material& m, const scene::Physics& physics) {
+bool has_drag(const model::Material& m, const model::Physics& physics) {
   return physics.air_density > 0 && m.drag > 0;
 }
-forces::StretchParameters stretch_of(const scene::Material& m) {
+forces::StretchParameters stretch_of(const model::Material& m) {
   return {m.stretch_weft, m.stretch_warp, m.stretch_viscosity};
 }
-forces::ShearParameters shear_of(const scene::Material& m) {
+forces::ShearParameters shear_of(const model::Material& m) {
   return {m.shear, m.shear_viscosity};
 }
-forces::BendParameters bend_of(const scene::Material& m) {
+forces::BendParameters bend_of(const model::Material& m) {
   return {m.bend, m.bend_viscosity, m.bend_friction};
 }
-forces::AirParameters air_of(const scene::Material& m, const scene::Physics& physics) {
+forces::AirParameters air_of(const model::Material& m, const model::Physics& physics) {
   return {physics.air_density, physics.wind, m.drag};
 }
 
 // Sine of the shear angle at which the threads lock; infinite if they never do.
-double max_shear_sine(const scene::Material& m) {
+double max_shear_sine(const model::Material& m) {
   return m.max_shear > 0 ? std::sin(m.max_shear * std::numbers::pi / 180) : std::numeric_limits<double>::infinity();
 }
-double max_extension(const scene::Material& m) {
+double max_extension(const model::Material& m) {
   return m.max_stretch > 0 ? m.max_stretch : std::numeric_limits<double>::infinity();
 }
 
@@ -61,7 +60,7 @@ struct Lattice {
 };
 
 // The finest lattice. Grids have one box per particle; triangles have cubes with the mean particle distance as side.
-Lattice lattice_of(const environment::ClothObject& cloth) {
+Lattice lattice_of(const model::Cloth& cloth) {
   Lattice lattice;
   const mesh::Grid& grid = cloth.grid;
   lattice.sides = {grid.lu, grid.lv, grid.lu};
@@ -103,50 +102,40 @@ double ease(double s) {
 
 }  // namespace
 
-bool bends(const scene::Material& material) {
-  return material.bend > 0;
-}
-
-bool locks(const scene::Material& material) {
-  return material.max_stretch > 0 || material.max_shear > 0;
-}
-
-ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment)
-    : gravity_(scene.physics.gravity), begin_(-scene.preroll_frames() / scene.time.fps) {
+ClothSystem::ClothSystem(const model::Model& model) : gravity_(model.physics.gravity), begin_(model.start_time()) {
   Index first = 0;
-  forces_.resize(scene.cloths.size());
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const scene::Material& material = scene.cloths[c].material;
-    const environment::ClothObject& cloth = environment.cloths[c];
+  forces_.resize(model.cloths.size());
+  for (std::size_t c = 0; c < model.cloths.size(); ++c) {
+    const model::Cloth& cloth = model.cloths[c];
     first_.push_back(first);
-    const scene::Rope* rope = scene.cloths[c].rope.get();
-    const auto masses = rope != nullptr ? forces::lumped_masses(cloth.lengths, rope->closed, numbers_of(*rope).mass)
-                        : cloth.sheet.triangles.empty() ? forces::lumped_masses(cloth.grid, material.density)
-                                                        : forces::lumped_masses(cloth.sheet, material.density);
+    const double density = cloth.material.density;
+    const auto masses = cloth.rope ? forces::lumped_masses(cloth.rope->lengths, cloth.rope->closed, cloth.rope->mass)
+                        : cloth.sheet.triangles.empty() ? forces::lumped_masses(cloth.grid, density)
+                                                        : forces::lumped_masses(cloth.sheet, density);
     masses_.insert(masses_.end(), masses.begin(), masses.end());
-    for (std::size_t w = 0; w < cloth.weights.size(); ++w) {
+    for (const model::Weight& weight : cloth.weights) {
       double fraction_sum = 0;
-      for (const environment::Chosen& carrier : cloth.weights[w]) fraction_sum += carrier.share;
-      for (const environment::Chosen& carrier : cloth.weights[w])
-        masses_[first + carrier.particle] += scene.cloths[c].weights[w].mass * (carrier.share / fraction_sum);
+      for (const model::Chosen& carrier : weight.particles) fraction_sum += carrier.share;
+      for (const model::Chosen& carrier : weight.particles)
+        masses_[first + carrier.particle] += weight.mass * (carrier.share / fraction_sum);
     }
     held_.resize(masses_.size());
-    for (std::size_t p = 0; p < cloth.pins.size(); ++p)
-      for (const environment::Chosen& chosen : cloth.pins[p])
-        if (!scene.cloths[c].pins[p].strength) held_[first + chosen.particle] = 1;
-    if (rope != nullptr)
-      add_rope_forces(c, cloth.lengths, *rope, scene.physics);
+    for (const model::Pin& pin : cloth.pins)
+      for (const model::Chosen& chosen : pin.particles)
+        if (!pin.strength) held_[first + chosen.particle] = 1;
+    if (cloth.rope)
+      add_rope_forces(c, *cloth.rope, model.physics);
     else if (cloth.sheet.triangles.empty())
-      add_quad_forces(c, cloth.grid, material, scene.physics);
+      add_quad_forces(c, cloth, model.physics);
     else
-      add_triangle_forces(c, cloth.sheet, scene.cloths[c], cloth.put_on, scene.physics);
+      add_triangle_forces(c, cloth, model.physics);
     spacing_ = std::min(spacing_, cloth.spacing);
     first += static_cast<Index>(masses.size());
   }
   first_.push_back(first);
-  inflation_ = Inflation(scene, environment, first_);
-  add_frames(scene, environment);
-  build_aggregates(environment);
+  inflation_ = Inflation(model, first_);
+  add_frames(model);
+  build_aggregates(model);
 
   const solver::Assembly assembly(lay_out_matrix());
   for (const auto& of_cloth : forces_)
@@ -157,9 +146,9 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   sew(0);
 }
 
-void ClothSystem::add_frames(const scene::Scene& scene, const environment::Environment& environment) {
-  const double stiffness = numerics.bodies.rigidity / (scene.time.step * scene.time.step);
-  for (const environment::BodyObject& body : environment.bodies) {
+void ClothSystem::add_frames(const model::Model& model) {
+  const double stiffness = numerics.bodies.rigidity / (model.time.step * model.time.step);
+  for (const model::Body& body : model.bodies) {
     if (!body.dynamics) continue;
     const auto& [frame, mass, velocity, turn, release] = *body.dynamics;
     forces_.emplace_back().push_back(std::make_unique<forces::Rigidity>(frame, first_.back(), mass, stiffness));
@@ -169,10 +158,10 @@ void ClothSystem::add_frames(const scene::Scene& scene, const environment::Envir
   }
 }
 
-std::vector<Index> ClothSystem::first_of_frames(const environment::Environment& environment) const {
+std::vector<Index> ClothSystem::first_of_frames(const model::Model& model) const {
   std::vector<Index> first;
   std::size_t part = cloths();
-  for (const environment::BodyObject& body : environment.bodies) first.push_back(body.dynamics ? first_[part++] : -1);
+  for (const model::Body& body : model.bodies) first.push_back(body.dynamics ? first_[part++] : -1);
   return first;
 }
 
@@ -192,43 +181,42 @@ solver::LinearSystem ClothSystem::make_linear_system() const {
   return system;
 }
 
-void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, const scene::Material& material,
-                                  const scene::Physics& physics) {
+void ClothSystem::add_quad_forces(std::size_t cloth, const model::Cloth& of, const model::Physics& physics) {
+  const mesh::Grid& grid = of.grid;
+  const model::Material& material = of.material;
   const Index first = first_[cloth];
   auto stretch = std::make_unique<forces::Stretch>(grid, first, stretch_of(material));
   membranes_.push_back(stretch.get());
   forces_[cloth].push_back(std::move(stretch));
   if (material.shear > 0 || material.shear_viscosity > 0)
     forces_[cloth].push_back(std::make_unique<forces::Shear>(grid, first, shear_of(material)));
-  if (locks(material))
+  if (material.locks())
     add_limit(cloth, std::make_unique<forces::StretchLimit>(grid, first, stretch_of(material), max_extension(material),
                                                             max_shear_sine(material)));
-  if (bends(material)) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
+  if (material.bends()) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
   if (has_drag(material, physics))
     forces_[cloth].push_back(std::make_unique<forces::Air>(grid, first, air_of(material, physics)));
 }
 
-void ClothSystem::add_rope_forces(std::size_t cloth, std::span<const double> lengths, const scene::Rope& rope,
-                                  const scene::Physics& physics) {
-  const scene::RopeNumbers numbers = scene::numbers_of(rope);
-  auto cord = std::make_unique<forces::Cord>(lengths, rope.closed, first_[cloth],
-                                             forces::CordParameters{.stretch = numbers.stretch,
-                                                                    .stretch_viscosity = rope.damping * numbers.stretch,
-                                                                    .bend = numbers.bend,
-                                                                    .bend_viscosity = rope.damping * numbers.bend,
+void ClothSystem::add_rope_forces(std::size_t cloth, const model::Rope& rope, const model::Physics& physics) {
+  auto cord = std::make_unique<forces::Cord>(rope.lengths, rope.closed, first_[cloth],
+                                             forces::CordParameters{.stretch = rope.stretch,
+                                                                    .stretch_viscosity = rope.damping * rope.stretch,
+                                                                    .bend = rope.bend,
+                                                                    .bend_viscosity = rope.damping * rope.bend,
                                                                     .air_density = physics.air_density,
                                                                     .wind = physics.wind,
                                                                     .drag = rope.drag,
                                                                     .diameter = rope.diameter});
   if (!rope.keys.empty()) {
     std::vector<double> times;
-    std::vector<environment::Spline<1>::Value> values;
-    for (const scene::RopeKey& key : rope.keys) {
+    std::vector<motion::Spline<1>::Value> values;
+    for (const model::RopeKey& key : rope.keys) {
       times.push_back(key.time);
       values.emplace_back(key.length);
     }
     keyed_ropes_.push_back({cord.get(),
-                            std::accumulate(lengths.begin(), lengths.end(), 0.0),
+                            std::accumulate(rope.lengths.begin(), rope.lengths.end(), 0.0),
                             {rope.interpolation, std::move(times), std::move(values)}});
   }
   membranes_.push_back(cord.get());
@@ -240,19 +228,18 @@ void ClothSystem::add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLi
   forces_[cloth].push_back(std::move(limit));
 }
 
-void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of,
-                                      double put_on, const scene::Physics& physics) {
-  const scene::Material& material = of.material;
+void ClothSystem::add_triangle_forces(std::size_t cloth, const model::Cloth& of, const model::Physics& physics) {
+  const mesh::Sheet& sheet = of.sheet;
+  const model::Material& material = of.material;
   const Index first = first_[cloth];
-  const bool crossed = of.shape == scene::ClothShape::crossed_triangles;
   std::unique_ptr<forces::TriangleMembrane> membrane;
-  if (crossed && bends(material))  // membrane locking matters only with bending stiffness
+  if (of.crossed && material.bends())  // membrane locking matters only with bending stiffness
     membrane = std::make_unique<forces::CrossedMembrane>(sheet, first, stretch_of(material), shear_of(material));
   else
     membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
   membranes_.push_back(membrane.get());
-  if (sheet.sewn) sewing_.push_back({cloth, put_on, of.sewing, -1, membrane.get(), nullptr, nullptr, nullptr});
-  if (locks(material)) {
+  if (sheet.sewn) sewing_.push_back({cloth, of.put_on, of.sewing, -1, membrane.get(), nullptr, nullptr, nullptr});
+  if (material.locks()) {
     auto limit = std::make_unique<forces::StretchLimit>(*membrane, stretch_of(material), max_extension(material),
                                                         max_shear_sine(material));
     if (sheet.sewn) sewing_.back().limit = limit.get();
@@ -270,7 +257,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
     for (const std::string& seam : sheet.tearing_seams) sewing_.back().tearing_seams.push_back(of.name + ": " + seam);
     forces_[cloth].push_back(std::move(ties));
   }
-  if (bends(material))
+  if (material.bends())
     forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material), held_));
   if (has_drag(material, physics))
     forces_[cloth].push_back(std::make_unique<forces::Air>(sheet, first, air_of(material, physics)));
@@ -307,9 +294,9 @@ std::size_t ClothSystem::largest_range_count() const {
 // Builds the aggregates of the preconditioner. Each level merges the boxes of the next finer one (coarsen()), until at
 // most numerics.linear.coarsest_aggregates boxes are left, or one per cloth. Frame particles stay aggregates of their
 // own.
-void ClothSystem::build_aggregates(const environment::Environment& environment) {
+void ClothSystem::build_aggregates(const model::Model& model) {
   std::vector<Lattice> lattices;
-  for (const environment::ClothObject& cloth : environment.cloths) lattices.push_back(lattice_of(cloth));
+  for (const model::Cloth& cloth : model.cloths) lattices.push_back(lattice_of(cloth));
   bool is_coarse = false;
   do {
     solver::Aggregates grouping;
@@ -380,8 +367,8 @@ void ClothSystem::accept(std::span<const Vec3> x) {
     if (!sewing.tearing_seams.empty()) sewing.ties->accept(x);
 }
 
-std::vector<frame::AttachmentLoad> ClothSystem::measure_seams(std::span<const Vec3> x) const {
-  std::vector<frame::AttachmentLoad> loads;
+std::vector<AttachmentLoad> ClothSystem::measure_seams(std::span<const Vec3> x) const {
+  std::vector<AttachmentLoad> loads;
   for (const Sewing& sewing : sewing_) {
     if (sewing.tearing_seams.empty()) continue;
     const auto seams = sewing.ties->measure_seams(x);

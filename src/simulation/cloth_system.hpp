@@ -7,15 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "environment/environment.hpp"
-#include "environment/spline.hpp"
 #include "forces/bands.hpp"
 #include "forces/force.hpp"
 #include "forces/ties.hpp"
 #include "forces/triangle_membrane.hpp"
-#include "frame/frame_report.hpp"
 #include "integrator/system.hpp"
-#include "scene/scene.hpp"
+#include "model/model.hpp"
+#include "motion/spline.hpp"
+#include "simulation/frame_report.hpp"
 #include "simulation/inflation.hpp"
 #include "solver/linear_system.hpp"
 
@@ -27,19 +26,13 @@ struct LockLinearisation;
 
 namespace weft::simulation {
 
-/// Whether cloth of this material resists bending. Without it, bending viscosity and friction have no effect.
-bool bends(const scene::Material& material);
-
-/// Whether threads of this material lock: whether it has a limit to stretch or shear.
-bool locks(const scene::Material& material);
-
-/// Numbers the particles of all cloths consecutively, in the order of the scene. After them come four particles for
+/// Numbers the particles of all cloths consecutively, in the order of the model. After them come four particles for
 /// each body that forces move: its frame. A part is a cloth or such a frame. Forces depend on their arguments, and
 /// besides only on what changes with time: rest shapes of cloth that is being sewn, rope lengths, enclosed air, and
 /// which particles are held.
 class ClothSystem {
  public:
-  ClothSystem(const scene::Scene& scene, const environment::Environment& environment);
+  explicit ClothSystem(const model::Model& model);
 
   std::span<const double> masses() const { return masses_; }
   std::size_t cloths() const { return membranes_.size(); }
@@ -47,7 +40,7 @@ class ClothSystem {
   /// First particle of a part (cloths come first); for `parts()`, the number of all particles.
   Index first_particle(std::size_t part) const { return first_[part]; }
   /// First frame particle of each body of the environment; −1 for a body without a frame.
-  std::vector<Index> first_of_frames(const environment::Environment& environment) const;
+  std::vector<Index> first_of_frames(const model::Model& model) const;
   /// Smallest distance between neighbouring particles of all cloths [m].
   double spacing() const { return spacing_; }
 
@@ -102,7 +95,7 @@ class ClothSystem {
   /// Accepts a step that ends with particles at x [m]: seams may tear.
   void accept(std::span<const Vec3> x);
   /// The pull of each seam that can tear [N].
-  std::vector<frame::AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
+  std::vector<AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
   /// Copies which ties of seams hold or are torn. `cloths[k]`: number in this object of cloth k of `there`.
   void copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths);
 
@@ -129,16 +122,13 @@ class ClothSystem {
   std::vector<float> strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const;
 
  private:
-  void add_quad_forces(std::size_t cloth, const mesh::Grid& grid, const scene::Material& material,
-                       const scene::Physics& physics);
-  void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of, double put_on,
-                           const scene::Physics& physics);
-  void add_rope_forces(std::size_t cloth, std::span<const double> lengths, const scene::Rope& rope,
-                       const scene::Physics& physics);
-  void add_frames(const scene::Scene& scene, const environment::Environment& environment);
+  void add_quad_forces(std::size_t cloth, const model::Cloth& of, const model::Physics& physics);
+  void add_triangle_forces(std::size_t cloth, const model::Cloth& of, const model::Physics& physics);
+  void add_rope_forces(std::size_t cloth, const model::Rope& rope, const model::Physics& physics);
+  void add_frames(const model::Model& model);
   void add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit);
   solver::BlockMatrix lay_out_matrix() const;
-  void build_aggregates(const environment::Environment& environment);
+  void build_aggregates(const model::Model& model);
   void divide_into_ranges();
 
   std::vector<Index> first_;  // of each part, then the number of all particles
@@ -165,8 +155,8 @@ class ClothSystem {
   /// A rope with key-framed length.
   struct KeyedRope {
     forces::Cord* cord;
-    double length;                   // rest length at construction [m]
-    environment::Spline<1> lengths;  // over the time of the scene
+    double length;              // rest length at construction [m]
+    motion::Spline<1> lengths;  // over the time of the scene
   };
   std::vector<KeyedRope> keyed_ropes_;
   Inflation inflation_;

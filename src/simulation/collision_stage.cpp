@@ -12,47 +12,43 @@
 #include "core/error.hpp"
 #include "core/numerics.hpp"
 #include "mesh/geometry.hpp"
-#include "scene/ropes.hpp"
 #include "simulation/intersections.hpp"
 
 namespace weft::simulation {
 namespace {
 
-bool bodies_collide(const scene::Scene& scene) {
-  const auto collides = [](const auto& body) { return body.collide; };
-  return scene.contact.obstacles &&
-         (std::ranges::any_of(scene.obstacles, collides) || std::ranges::any_of(scene.characters, collides));
+bool bodies_collide(const model::Model& model) {
+  return model.contact.obstacles && std::ranges::any_of(model.bodies, &model::Body::collide);
 }
 
-bool moves_by_forces(const scene::Scene& scene) {
-  return std::ranges::any_of(scene.obstacles, [](const scene::Obstacle& o) { return scene::is_dynamic(o); });
+bool moves_by_forces(const model::Model& model) {
+  return std::ranges::any_of(model.bodies, [](const model::Body& body) { return body.dynamics != nullptr; });
 }
 
 // Numbers of the colliding bodies; those that forces move come first.
-std::vector<std::size_t> colliding_bodies(const scene::Scene& scene, const environment::Environment& environment) {
+std::vector<std::size_t> colliding_bodies(const model::Model& model) {
   std::vector<std::size_t> bodies;
-  if (!bodies_collide(scene)) return bodies;
-  for (std::size_t b = 0; b < environment.bodies.size(); ++b)
-    if (environment.bodies[b].collide) bodies.push_back(b);
+  if (!bodies_collide(model)) return bodies;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (model.bodies[b].collide) bodies.push_back(b);
   std::stable_partition(bodies.begin(), bodies.end(),
-                        [&](std::size_t b) { return environment.bodies[b].dynamics != nullptr; });
+                        [&](std::size_t b) { return model.bodies[b].dynamics != nullptr; });
   return bodies;
 }
 
 // Contact thickness of a body that forces move [m].
-double thickness_of(const environment::Dynamics& dynamics) {
+double thickness_of(const model::Dynamics& dynamics) {
   return std::min(numerics.bodies.thickness,
                   numerics.bodies.thickness_of_size * dynamics.frame.deviations().minCoeff());
 }
 
 // Friction of pairs that the scene names. The engine numbers the cloths first, then the colliding bodies.
-std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
-                                                    const environment::Environment& environment) {
+std::vector<collision::PairFriction> friction_pairs(const model::Model& model) {
   std::vector<std::string> names;
-  for (const scene::Cloth& cloth : scene.cloths) names.push_back(cloth.name);
-  for (std::size_t b : colliding_bodies(scene, environment)) names.push_back(environment.bodies[b].name);
+  for (const model::Cloth& cloth : model.cloths) names.push_back(cloth.name);
+  for (std::size_t b : colliding_bodies(model)) names.push_back(model.bodies[b].name);
   std::vector<collision::PairFriction> pairs;
-  for (const scene::FrictionPair& pair : scene.contact.pairs) {
+  for (const model::FrictionPair& pair : model.contact.pairs) {
     const auto a = std::find(names.begin(), names.end(), pair.first),
                b = std::find(names.begin(), names.end(), pair.second);
     if (a == names.end() || b == names.end()) continue;  // the body does not collide
@@ -63,7 +59,7 @@ std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
   return pairs;
 }
 
-collision::BroadPhaseOptions search_options(const scene::Search& search) {
+collision::BroadPhaseOptions search_options(const model::Search& search) {
   constexpr std::array<int, 3> kDirections{6, 18, 26};
   constexpr std::array<int, 3> kChildren{2, 4, 8};
   collision::BroadPhaseOptions options;
@@ -77,35 +73,34 @@ collision::BroadPhaseOptions search_options(const scene::Search& search) {
   return options;
 }
 
-collision::EngineParameters engine_parameters(const scene::Scene& scene, const environment::Environment& environment) {
-  const scene::Contact& contact = scene.contact;
-  const bool velocity = contact.response == scene::Response::velocity_constraints;
+collision::EngineParameters engine_parameters(const model::Model& model) {
+  const model::Contact& contact = model.contact;
+  const bool velocity = contact.response == model::Response::velocity_constraints;
   double spacing = std::numeric_limits<double>::infinity();
-  for (const environment::ClothObject& cloth : environment.cloths) spacing = std::min(spacing, cloth.spacing);
+  for (const model::Cloth& cloth : model.cloths) spacing = std::min(spacing, cloth.spacing);
   return {.search = {contact.self, contact.obstacles, contact.search.reuse, contact.search.coherence,
                      search_options(contact.search)},
-          .contact = {contact.stiffness, scene.time.step, friction_pairs(scene, environment)},
+          .contact = {contact.stiffness, model.time.step, friction_pairs(model)},
           .response = velocity ? collision::ResponseForm::velocity_constraints : collision::ResponseForm::springs,
           .stick_speed = std::max(numerics.contact.stick_velocity,
                                   std::isinf(spacing) ? 0 : numerics.contact.stick_spacings * spacing)};
 }
 
-collision::Bodies make_bodies(const scene::Scene& scene, const environment::Environment& environment,
-                              const ClothSystem& cloth) {
+collision::Bodies make_bodies(const model::Model& model, const ClothSystem& cloth) {
   collision::Bodies bodies;
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const scene::Material& material = scene.cloths[c].material;
-    const double of_spacing = scene.cloths[c].rope ? 1 / scene::kMinRopePiece : numerics.contact.thickness_of_spacing;
-    const double thickness = std::min(material.thickness, of_spacing * environment.cloths[c].spacing);
-    const mesh::Mesh& mesh = environment.cloths[c].mesh;
+  for (std::size_t c = 0; c < model.cloths.size(); ++c) {
+    const model::Material& material = model.cloths[c].material;
+    const double of_spacing = model.cloths[c].rope ? 1 / model::kMinRopePiece : numerics.contact.thickness_of_spacing;
+    const double thickness = std::min(material.thickness, of_spacing * model.cloths[c].spacing);
+    const mesh::Mesh& mesh = model.cloths[c].mesh;
     bodies.add(mesh.topology.triangles, static_cast<Index>(mesh.positions.size()),
                {.deformable = true, .thickness = thickness, .friction = material.friction});
   }
   const Index cloth_particles = cloth.first_particle(cloth.cloths());
   Index frames = cloth.first_particle(cloth.parts()) - cloth_particles;
-  const std::vector<Index> first_of_frames = cloth.first_of_frames(environment);
-  for (std::size_t b : colliding_bodies(scene, environment)) {
-    const environment::BodyObject& body = environment.bodies[b];
+  const std::vector<Index> first_of_frames = cloth.first_of_frames(model);
+  for (std::size_t b : colliding_bodies(model)) {
+    const model::Body& body = model.bodies[b];
     if (body.dynamics) {
       bodies.add(body.colliding_triangles(), static_cast<Index>(body.mesh.positions.size()),
                  {.deformable = true,
@@ -117,18 +112,17 @@ collision::Bodies make_bodies(const scene::Scene& scene, const environment::Envi
       continue;
     }
     std::vector<collision::Patch> patches;
-    for (const environment::Part& part : body.parts)
-      if (part.is_patch()) patches.push_back({part.vertices, part.thickness, part.friction.value_or(body.friction)});
+    for (const model::Patch& patch : body.patches) patches.push_back({patch.vertices, patch.thickness, patch.friction});
     bodies.add(body.colliding_triangles(), static_cast<Index>(body.mesh.positions.size()),
-               {.friction = body.friction, .moving = body.moving, .rigid = !body.character}, patches, body.limbs);
+               {.friction = body.friction, .moving = body.moving, .rigid = !body.deforms()}, patches, body.limbs);
   }
   return bodies;
 }
 
 // Largest distance of a vertex from the origin of a moving obstacle [m]; 0 for other bodies.
-double radius_of(const environment::BodyObject& body) {
+double radius_of(const model::Body& body) {
   double radius_sq = 0;
-  if (body.moving && !body.character)
+  if (body.moving && !body.deforms())
     for (const Vec3& x : body.mesh.positions) radius_sq = std::max(radius_sq, x.squaredNorm());
   return std::sqrt(radius_sq);
 }
@@ -140,34 +134,32 @@ double sagitta(double radius, double angle) {
 
 }  // namespace
 
-bool CollisionStage::needed(const scene::Scene& scene) {
-  return (!scene.cloths.empty() && (scene.contact.self || bodies_collide(scene))) ||
-         (moves_by_forces(scene) && bodies_collide(scene));
+bool CollisionStage::needed(const model::Model& model) {
+  return (!model.cloths.empty() && (model.contact.self || bodies_collide(model))) ||
+         (moves_by_forces(model) && bodies_collide(model));
 }
 
-CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Environment& environment,
-                               const ClothSystem& cloth, SystemState& start)
-    : environment_(environment),
-      bodies_(colliding_bodies(scene, environment)),
+CollisionStage::CollisionStage(const model::Model& model, const ClothSystem& cloth, SystemState& start)
+    : model_(model),
+      bodies_(colliding_bodies(model)),
       particles_(cloth.masses().size()),
       rigid_(make_rigid_vertices(cloth)),
       masses_(masses_of_all(cloth)),
-      engine_(make_bodies(scene, environment, cloth), engine_parameters(scene, environment), append_bodies(start),
-              masses_) {
-  for (const auto& object : environment.cloths) names_.push_back(object.name);
-  for (std::size_t b : bodies_) names_.push_back(environment.bodies[b].name);
+      engine_(make_bodies(model, cloth), engine_parameters(model), append_bodies(start), masses_) {
+  for (const auto& object : model.cloths) names_.push_back(object.name);
+  for (std::size_t b : bodies_) names_.push_back(model.bodies[b].name);
   motions_.resize(names_.size());
   for (std::size_t b : bodies_) {
-    radii_.push_back(radius_of(environment.bodies[b]));
-    boxes_.push_back(mesh::bounding_box(environment.bodies[b].mesh.positions));
+    radii_.push_back(radius_of(model.bodies[b]));
+    boxes_.push_back(mesh::bounding_box(model.bodies[b].mesh.positions));
   }
 }
 
 RigidVertices CollisionStage::make_rigid_vertices(const ClothSystem& cloth) const {
   RigidVertices vertices(static_cast<Index>(cloth.masses().size()));
-  const std::vector<Index> first_of_frames = cloth.first_of_frames(environment_);
+  const std::vector<Index> first_of_frames = cloth.first_of_frames(model_);
   for (const std::size_t b : bodies_)
-    if (environment_.bodies[b].dynamics) vertices.add(environment_.bodies[b].dynamics->frame, first_of_frames[b]);
+    if (model_.bodies[b].dynamics) vertices.add(model_.bodies[b].dynamics->frame, first_of_frames[b]);
   return vertices;
 }
 
@@ -181,10 +173,10 @@ const std::vector<Vec3>& CollisionStage::append_bodies(SystemState& start) const
   start.x.resize(static_cast<std::size_t>(rigid_.end()));
   rigid_.place(start.x);
   for (std::size_t b : bodies_) {
-    if (environment_.bodies[b].dynamics) continue;
+    if (model_.bodies[b].dynamics) continue;
     const std::size_t first = start.x.size();
-    start.x.resize(first + environment_.bodies[b].mesh.positions.size());
-    environment_.place(b, start.bodies_time, std::span(start.x).subspan(first));
+    start.x.resize(first + model_.bodies[b].mesh.positions.size());
+    model_.place(b, start.bodies_time, std::span(start.x).subspan(first));
   }
   return start.x;
 }
@@ -195,10 +187,10 @@ std::vector<IntersectionPlace> CollisionStage::find_intersections(const SystemSt
 
 double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start) {
   constexpr int kMaxStackHeight = 32;  // bodies on top of each other; each round lifts one more
-  const std::size_t cloths = environment_.cloths.size();
+  const std::size_t cloths = model_.cloths.size();
   const collision::Bodies& bodies = engine_.bodies();
   const auto is_free = [&](std::size_t body) {
-    return bodies[body].frame >= 0 && t >= environment_.bodies[bodies_[body - cloths]].dynamics->release;
+    return bodies[body].frame >= 0 && t >= model_.bodies[bodies_[body - cloths]].dynamics->release;
   };
   const auto height = [&](std::size_t body) {  // of its centre
     double sum = 0;
@@ -241,9 +233,9 @@ void CollisionStage::place_bodies(double t, SystemState& moment) const {
   moment.bodies_time = t;
   auto first = static_cast<std::size_t>(rigid_.end());
   for (std::size_t b : bodies_) {
-    if (environment_.bodies[b].dynamics) continue;
-    const std::size_t count = environment_.bodies[b].mesh.positions.size();
-    if (environment_.bodies[b].moving) environment_.place(b, t, std::span(moment.x).subspan(first, count));
+    if (model_.bodies[b].dynamics) continue;
+    const std::size_t count = model_.bodies[b].mesh.positions.size();
+    if (model_.bodies[b].moving) model_.place(b, t, std::span(moment.x).subspan(first, count));
     first += count;
   }
 }
@@ -271,28 +263,27 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
   }
   place_bodies(t + h, next);
   for (std::size_t b = 0; b < bodies_.size() && is_dynamic(b); ++b) {
-    const collision::BodyTraits& traits = engine_.bodies()[environment_.cloths.size() + b];
+    const collision::BodyTraits& traits = engine_.bodies()[model_.cloths.size() + b];
     if (movable_[static_cast<std::size_t>(traits.frame)] != collision::kPinned) continue;
     // Not released yet: keys move it, as they move other obstacles.
     std::fill_n(movable_.begin() + traits.frame, mesh::RigidFrame::kParticles, std::uint8_t{collision::kFixed});
     std::ranges::fill(engine_.bodies()
-                          .part(environment_.cloths.size() + b, std::span(movable_))
-                          .last(environment_.bodies[bodies_[b]].mesh.positions.size()),
+                          .part(model_.cloths.size() + b, std::span(movable_))
+                          .last(model_.bodies[bodies_[b]].mesh.positions.size()),
                       std::uint8_t{collision::kFixed});
   }
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    motions_[environment_.cloths.size() + b] = motion_of(bodies_[b], t, h);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) motions_[model_.cloths.size() + b] = motion_of(bodies_[b], t, h);
   return engine_.begin_step(now.x, next.x, movable_, h, motions_);
 }
 
 bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemState& now) const {
   const double max_sagitta = numerics.separation.creep * engine_.detection_distance();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (radii_[b] == 0 || (is_dynamic(b) && t >= environment_.bodies[bodies_[b]].dynamics->release)) continue;
+    if (radii_[b] == 0 || (is_dynamic(b) && t >= model_.bodies[bodies_[b]].dynamics->release)) continue;
     // The angular velocity hardly changes between keys; a body stops at its last key.
     double angle = 0;
     for (const double fraction : {0.0, 0.5, 1.0})
-      angle = std::max(angle, h * environment_.pose(bodies_[b], t + fraction * h).angular_velocity.norm());
+      angle = std::max(angle, h * model_.pose(bodies_[b], t + fraction * h).angular_velocity.norm());
     if (sagitta(radii_[b], angle) > max_sagitta && cloth_comes_near(b, t, h, angle, now)) return true;
   }
   return false;
@@ -303,7 +294,7 @@ bool CollisionStage::bodies_are_constant(double t0, double t1, SystemState& now,
   place_bodies(t1, next);
   const Box3 cloth = mesh::bounding_box(now.particles());
   const collision::Bodies& bodies = engine_.bodies();
-  for (std::size_t b = environment_.cloths.size(); b < bodies.size(); ++b) {
+  for (std::size_t b = model_.cloths.size(); b < bodies.size(); ++b) {
     if (bodies[b].deformable) continue;
     const auto from = bodies.part(b, std::span<const Vec3>(now.x)), to = bodies.part(b, std::span<const Vec3>(next.x));
     if (std::ranges::equal(from, to)) continue;
@@ -332,7 +323,7 @@ bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, doub
   const int pieces = 1 + static_cast<int>(std::min(angle, 100.0) / kMaxPieceAngle);
   Box3 box;
   for (int p = 0; p <= pieces; ++p) {
-    const environment::PoseSample pose = environment_.pose(bodies_[body], t + h * p / pieces);
+    const motion::PoseSample pose = model_.pose(bodies_[body], t + h * p / pieces);
     for (int corner = 0; corner < 8; ++corner)
       box.extend(Vec3(pose.position + pose.rotation * boxes_[body].corner(static_cast<Box3::CornerType>(corner))));
   }
@@ -353,9 +344,9 @@ bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, doub
 // Rigid motion of a body from t to t + h; none for characters, which deform, and for bodies that forces move.
 collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, double h) const {
   collision::RigidMotion motion;
-  const environment::BodyObject& object = environment_.bodies[body];
-  if (!object.moving || object.character || object.dynamics) return motion;
-  const environment::PoseSample from = environment_.pose(body, t), to = environment_.pose(body, t + h);
+  const model::Body& object = model_.bodies[body];
+  if (!object.moving || object.deforms() || object.dynamics) return motion;
+  const motion::PoseSample from = model_.pose(body, t), to = model_.pose(body, t + h);
   if (from.rotation.coeffs() != to.rotation.coeffs())
     motion.turn = (to.rotation * from.rotation.conjugate()).toRotationMatrix();
   motion.shift = to.position - motion.turn * from.position;
@@ -384,7 +375,7 @@ std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, 
 }
 
 bool CollisionStage::find_pins_between_cloths() {
-  const auto is_cloth = [&](Index v) { return engine_.bodies().body_of(v) < environment_.cloths.size(); };
+  const auto is_cloth = [&](Index v) { return engine_.bodies().body_of(v) < model_.cloths.size(); };
   for (const collision::CornerPair& pair : engine_.failing()) {
     if (!is_cloth(pair.a[0]) || !is_cloth(pair.b[0])) continue;
     for (const collision::Triangle& corners : {pair.a, pair.b})
@@ -431,7 +422,7 @@ void CollisionStage::note_pinches(const SystemState& start) {
 void CollisionStage::copy_state_from(const CollisionStage& before, std::span<const std::size_t> cloths) {
   const collision::Bodies &old_bodies = before.engine_.bodies(), &bodies = engine_.bodies();
   const auto here = [&](std::size_t body) {
-    return body < cloths.size() ? cloths[body] : body - cloths.size() + environment_.cloths.size();
+    return body < cloths.size() ? cloths[body] : body - cloths.size() + model_.cloths.size();
   };
   for (const auto& [key, origin] : before.engine_.exempted().origins()) {
     const std::size_t cloth = old_bodies.body_of(key.cloth[0]);

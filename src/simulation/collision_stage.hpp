@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "collision/engine.hpp"
-#include "environment/environment.hpp"
 #include "integrator/system.hpp"
-#include "scene/scene.hpp"
+#include "model/model.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/rigid_vertices.hpp"
 #include "simulation/simulation.hpp"
@@ -26,19 +25,13 @@ struct SystemState : integrator::State {
   std::span<const Vec3> particles() const { return {x.data(), v.size()}; }
 };
 
-/// Whether untangle() may move this cloth at the start.
-bool may_be_untangled(const scene::Cloth& cloth);
-/// Whether untangle() may move any cloth of the scene.
-bool may_be_untangled(const scene::Scene& scene);
-
 class CollisionStage {
  public:
   /// Whether anything in the scene can collide. If not, no stage is made.
-  static bool needed(const scene::Scene& scene);
+  static bool needed(const model::Model& model);
 
   /// Appends the vertices of the bodies at start.bodies_time to start.x. The environment must outlive the stage.
-  CollisionStage(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
-                 SystemState& start);
+  CollisionStage(const model::Model& model, const ClothSystem& cloth, SystemState& start);
 
   /// All places where surfaces touch or cross at the start. A run may begin only if there is none: the guarantee
   /// against penetration holds only for surfaces that start apart.
@@ -50,12 +43,12 @@ class CollisionStage {
   /// nothing and returns 0.
   double lift_bodies(const Vec3& up, double t, SystemState& start);
 
-  /// Moves cloth that touches or crosses something at the start, if may_be_untangled() is true for the cloth. Particles
+  /// Moves cloth that touches or crosses something at the start, if Cloth::may_be_untangled(). Particles
   /// in `held` stay, and so do the cloths whose numbers are in `dressed`. If a new cloth is worn over a dressed one,
   /// all new cloths end up outside of the dressed one. Throws Error(scene_invalid) with objects and places if an
   /// obstacle goes through cloth that has no way out. Other intersections may remain: see find_intersections().
-  void untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
-                std::span<const std::size_t> dressed, SystemState& start);
+  void untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> dressed,
+                SystemState& start);
 
   /// Copies the pinched pairs of another stage. `cloths[k]`: number in this stage of cloth k of `before`.
   void copy_state_from(const CollisionStage& before, std::span<const std::size_t> cloths);
@@ -145,7 +138,7 @@ class CollisionStage {
   RigidVertices make_rigid_vertices(const ClothSystem& cloth) const;
   std::vector<double> masses_of_all(const ClothSystem& cloth) const;
   const std::vector<Vec3>& append_bodies(SystemState& start) const;
-  bool is_dynamic(std::size_t body) const { return environment_.bodies[bodies_[body]].dynamics != nullptr; }
+  bool is_dynamic(std::size_t body) const { return model_.bodies[bodies_[body]].dynamics != nullptr; }
   void place_bodies(double t, SystemState& moment) const;
   bool cloth_comes_near(std::size_t body, double t, double h, double angle, const SystemState& now) const;
   collision::RigidMotion motion_of(std::size_t body, double t, double h) const;
@@ -153,7 +146,7 @@ class CollisionStage {
   std::string describe(const collision::Pinch& pinch) const;
   void note_pinches(const SystemState& start);
 
-  const environment::Environment& environment_;
+  const model::Model& model_;
   std::vector<std::string> names_;   // of all cloths, then of all bodies_
   std::vector<std::size_t> bodies_;  // colliding bodies of the environment; those that forces move come first
   std::vector<double> radii_;  // per body: largest distance from its origin if it is a moving obstacle, else 0 [m]

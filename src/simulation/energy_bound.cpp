@@ -7,42 +7,35 @@
 
 #include "core/error.hpp"
 #include "core/numerics.hpp"
-#include "scene/following.hpp"
-#include "scene/scene.hpp"
 #include "simulation/collision_stage.hpp"
 
 namespace weft::simulation {
 namespace {
 
 // Whether pins alone drive the cloth, and their work is counted.
-bool is_driven_by_pins_alone(const scene::Scene& scene) {
+bool is_driven_by_pins_alone(const model::Model& model) {
   const auto moves = [](const auto& track) { return track.keys.size() > 1; };
-  for (const scene::Cloth& cloth : scene.cloths) {
-    const bool sewn = cloth.shape == scene::ClothShape::pattern || cloth.shape == scene::ClothShape::mesh;
-    if (sewn && cloth.sewing > 0) return false;        // sewing does work
+  for (const model::Cloth& cloth : model.cloths) {
+    if (cloth.sewing > 0) return false;                // sewing does work
     if (!cloth.over.empty()) return false;             // this cloth is added later
     if (cloth.pressure.keys.size() > 1) return false;  // pumping does work
     if (cloth.rope && cloth.rope->keys.size() > 1) return false;
     // A pin with a strength is a spring, whose work is not counted.
-    for (const scene::Pin& pin : cloth.pins)
-      if (pin.strength && (moves(pin.motion) || !pin.follow.empty())) return false;
+    for (const model::Pin& pin : cloth.pins)
+      if (pin.strength && (moves(pin.motion) || pin.body)) return false;
   }
-  const auto stands = [&](const scene::Obstacle& obstacle) {
-    return !obstacle.collide || !scene::moves(scene, obstacle);
-  };
-  if (!scene.characters.empty() || !std::ranges::all_of(scene.obstacles, stands)) return false;
-  // A body that gets a velocity at its release gains energy then.
-  const auto is_thrown = [](const scene::Obstacle& obstacle) {
-    return obstacle.release > 0 && (obstacle.velocity != Vec3::Zero() || obstacle.spin != Vec3::Zero());
-  };
-  if (std::ranges::any_of(scene.obstacles, is_thrown)) return false;
+  for (const model::Body& body : model.bodies) {
+    if (body.deforms() || (body.collide && body.moving)) return false;
+    // A body that gets a velocity at its release gains energy then.
+    if (body.dynamics && body.dynamics->release > 0 &&
+        (body.dynamics->velocity != Vec3::Zero() || body.dynamics->angular_velocity != Vec3::Zero()))
+      return false;
+  }
   // The work of attachments is not counted if they contract to a given length, or if their target moves.
-  for (const scene::Attachment& attachment : scene.attachments) {
-    const auto target = std::ranges::find(scene.obstacles, attachment.to, &scene::Obstacle::name);
-    if (attachment.length || (target != scene.obstacles.end() && scene::moves(scene, *target))) return false;
-  }
-  if (scene.physics.keys.size() > 1 || !scene.fans.empty()) return false;
-  return scene.physics.air_density == 0 || (scene.physics.wind == Vec3::Zero() && scene.physics.gusts.speed == 0);
+  for (const model::Attachment& attachment : model.attachments)
+    if (attachment.length || (attachment.to_body && model.bodies[*attachment.to_body].moving)) return false;
+  if (model.physics.keys.size() > 1 || !model.fans.empty()) return false;
+  return model.physics.air_density == 0 || (model.physics.wind == Vec3::Zero() && model.physics.gusts.speed == 0);
 }
 
 double mechanical_energy(const FrameReport& report) {
@@ -51,10 +44,10 @@ double mechanical_energy(const FrameReport& report) {
 
 }  // namespace
 
-EnergyBound::EnergyBound(const scene::Scene& scene, double mass, const FrameReport& start)
-    : applies_(is_driven_by_pins_alone(scene)),
-      damped_contact_(CollisionStage::needed(scene) && scene.time.integrator != scene::Integrator::implicit_midpoint),
-      integrator_(scene.time.integrator),
+EnergyBound::EnergyBound(const model::Model& model, double mass, const FrameReport& start)
+    : applies_(is_driven_by_pins_alone(model)),
+      damped_contact_(CollisionStage::needed(model) && model.time.integrator != integrator::Method::implicit_midpoint),
+      integrator_(model.time.integrator),
       negligible_energy_(mass * numerics.energy.negligible),
       start_energy_(mechanical_energy(start)),
       start_kinetic_(start.kinetic_energy),
@@ -93,7 +86,7 @@ std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) 
       "it; try a smaller time.step or solver.newton_tolerance{}",
       energies.frame, gain,
       pin_work_high_ > pin_work_low_ ? fmt::format(" and by the work of its pins ({:.3g} J)", pin_work_) : "", in_play,
-      integrator_ == scene::Integrator::implicit_midpoint
+      integrator_ == integrator::Method::implicit_midpoint
           ? ", or integrator = \"bdf2\": the midpoint rule damps nothing"
           : "");
   if (refused) throw Error(ExitCode::simulation_failed, "{}", text);

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "core/archive.hpp"
-#include "environment/environment.hpp"
-#include "scene/scene.hpp"
+#include "model/model.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::simulation {
@@ -21,7 +20,7 @@ namespace weft::simulation {
 class EnergyBound {
  public:
   /// `mass`: of all particles [kg].
-  EnergyBound(const scene::Scene& scene, double mass, const FrameReport& start);
+  EnergyBound(const model::Model& model, double mass, const FrameReport& start);
 
   /// Checks a frame. Returns warnings, each once in a run; throws Error(simulation_failed) if far too much is gained.
   std::vector<std::string> check(const FrameReport& energies);
@@ -40,7 +39,7 @@ class EnergyBound {
   bool applies_, damped_contact_;
   bool has_lagged_ = false;  // a pin has lagged: the force that pulls it does work that is not counted
   bool warned_ = false, warned_of_solver_ = false;
-  scene::Integrator integrator_;
+  integrator::Method integrator_;
   double negligible_energy_;               // smaller differences are no error [J]
   double start_energy_;                    // mechanical energy at the start [J]
   double start_kinetic_, start_elastic_;   // at the start [J]

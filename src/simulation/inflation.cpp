@@ -15,11 +15,11 @@ namespace {
 // bound, and a line search may reach a volume of zero. At the end of a step, contacts keep the volume larger.
 constexpr double kMinVolumeRatio = 1e-3;
 
-environment::Spline<1> air_track_of(const scene::Pressure& pressure) {
-  using Track = environment::Spline<1>;
+motion::Spline<1> air_track_of(const model::Pressure& pressure) {
+  using Track = motion::Spline<1>;
   std::vector<double> times;
   std::vector<Track::Value> values;
-  for (const scene::PressureKey& key : pressure.keys) {
+  for (const model::PressureKey& key : pressure.keys) {
     times.push_back(key.time);
     values.emplace_back(key.value);
   }
@@ -29,15 +29,13 @@ environment::Spline<1> air_track_of(const scene::Pressure& pressure) {
 
 }  // namespace
 
-Inflation::Inflation(const scene::Scene& scene, const environment::Environment& environment,
-                     std::span<const Index> first_particle) {
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const scene::Pressure& pressure = scene.cloths[c].pressure;
+Inflation::Inflation(const model::Model& model, std::span<const Index> first_particle) {
+  for (std::size_t c = 0; c < model.cloths.size(); ++c) {
+    const model::Pressure& pressure = model.cloths[c].pressure;
     if (!pressure.acts()) continue;
-    const environment::ClothObject& object = environment.cloths[c];
+    const model::Cloth& object = model.cloths[c];
     Cloth& cloth = cloths_.emplace_back(Cloth{object.name,
-                                              fmt::format("{}:{}:{}: cloth.{}.pressure", scene.file.string(),
-                                                          scene.cloths[c].line, scene.cloths[c].column, object.name),
+                                              object.source + ".pressure",
                                               c,
                                               first_particle[c],
                                               first_particle[c] + static_cast<Index>(object.start.size()),
@@ -50,13 +48,13 @@ Inflation::Inflation(const scene::Scene& scene, const environment::Environment& 
 
 // Amount of air, as its volume at the outside pressure [m³].
 double Inflation::Cloth::air() const {
-  return std::max(0.0, control == scene::PressureControl::fill ? value * closed_volume : closed_volume + value);
+  return std::max(0.0, control == model::PressureControl::fill ? value * closed_volume : closed_volume + value);
 }
 
 // Gauge pressure [Pa].
 double Inflation::Cloth::pressure(double at_volume) const {
   if (closed_volume == kOpen) return 0;
-  if (control == scene::PressureControl::gauge) return value;
+  if (control == model::PressureControl::gauge) return value;
   const double amount = air(), min_volume = kMinVolumeRatio * amount;
   if (amount == 0) return -kAmbientPressure;
   const double ratio = at_volume > min_volume ? amount / at_volume : (2 - at_volume / min_volume) / kMinVolumeRatio;
@@ -65,7 +63,7 @@ double Inflation::Cloth::pressure(double at_volume) const {
 
 // −dp/dV [Pa/m³].
 double Inflation::Cloth::stiffness(double at_volume) const {
-  if (closed_volume == kOpen || control == scene::PressureControl::gauge || air() == 0) return 0;
+  if (closed_volume == kOpen || control == model::PressureControl::gauge || air() == 0) return 0;
   const double amount = air(), v = std::max(at_volume, kMinVolumeRatio * amount);
   return kAmbientPressure * amount / (v * v);
 }
@@ -73,7 +71,7 @@ double Inflation::Cloth::stiffness(double at_volume) const {
 // Energy [J].
 double Inflation::Cloth::energy(double at_volume) const {
   if (closed_volume == kOpen) return 0;
-  if (control == scene::PressureControl::gauge) return -value * at_volume;
+  if (control == model::PressureControl::gauge) return -value * at_volume;
   const double amount = air(), min_volume = kMinVolumeRatio * amount;
   if (amount == 0) return kAmbientPressure * at_volume;
   const double v = std::max(at_volume, min_volume),
@@ -89,7 +87,7 @@ void Inflation::begin_step(double t, std::span<const Vec3> x, const std::functio
       cloth.closed_volume = kOpen;
     } else if (cloth.closed_volume == kOpen) {
       const double volume = cloth.evaluate(x);
-      if (cloth.control != scene::PressureControl::gauge && cloth.volume.is_flat(volume))
+      if (cloth.control != model::PressureControl::gauge && cloth.volume.is_flat(volume))
         throw Error(ExitCode::scene_invalid,
                     "{}: expected cloth that encloses a volume when it is closed, for an amount of air, got {:.3g} m³; "
                     "close it, or give its pressure (control = \"gauge\")",
@@ -126,8 +124,8 @@ double Inflation::energy(std::span<const Vec3> x) const {
   return sum;
 }
 
-std::vector<frame::EnclosedAir> Inflation::measure(std::span<const Vec3> x) const {
-  std::vector<frame::EnclosedAir> measured;
+std::vector<EnclosedAir> Inflation::measure(std::span<const Vec3> x) const {
+  std::vector<EnclosedAir> measured;
   for (const Cloth& cloth : cloths_) {
     const double volume = cloth.evaluate(x);
     measured.push_back({cloth.name, volume, cloth.pressure(volume)});

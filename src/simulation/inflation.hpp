@@ -5,11 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "environment/environment.hpp"
-#include "environment/spline.hpp"
 #include "forces/enclosed_volume.hpp"
-#include "frame/frame_report.hpp"
-#include "scene/scene.hpp"
+#include "model/model.hpp"
+#include "motion/spline.hpp"
+#include "simulation/frame_report.hpp"
 #include "solver/linear_system.hpp"
 
 namespace weft::simulation {
@@ -26,9 +25,8 @@ class Inflation {
   static constexpr double kAmbientPressure = 101325;
 
   Inflation() = default;
-  /// Keeps the cloths whose pressure acts. `first_particle`: of each cloth of the scene.
-  Inflation(const scene::Scene& scene, const environment::Environment& environment,
-            std::span<const Index> first_particle);
+  /// Keeps the cloths whose pressure acts. `first_particle`: of each cloth of the model.
+  Inflation(const model::Model& model, std::span<const Index> first_particle);
 
   bool empty() const { return cloths_.empty(); }
 
@@ -46,7 +44,7 @@ class Inflation {
 
   /// Energy of the air in all cloths [J].
   double energy(std::span<const Vec3> x) const;
-  std::vector<frame::EnclosedAir> measure(std::span<const Vec3> x) const;
+  std::vector<EnclosedAir> measure(std::span<const Vec3> x) const;
 
   /// Copies the enclosed air from another simulation. `numbers[k]`: number in this scene of cloth k of `there`.
   void copy_state_from(const Inflation& there, std::span<const std::size_t> numbers);
@@ -62,8 +60,8 @@ class Inflation {
     std::size_t number;  // of the cloth in the scene
     Index first, end;    // particles
     forces::EnclosedVolume volume;
-    scene::PressureControl control;
-    environment::Spline<1> track;
+    model::PressureControl control;
+    motion::Spline<1> track;
     double value = 0;                      // of the track in the current step; for the unit, see PressureControl
     double closed_volume = kOpen;          // volume when it was closed [m³]; kOpen: not closed yet
     mutable std::vector<Vec3> gradient{};  // scratch

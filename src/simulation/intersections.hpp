@@ -18,7 +18,4 @@ std::vector<IntersectionPlace> group_intersections(std::span<const collision::Co
                                                    const collision::Bodies& bodies, std::span<const std::string> names,
                                                    std::span<const Vec3> x);
 
-/// "12 pairs of triangles that touch or cross in 2 places: 'sheet' and 'ball' (8 pairs) around (0, 0, 1) m, ...".
-std::string describe(std::span<const IntersectionPlace> places);
-
 }  // namespace weft::simulation

@@ -32,49 +32,19 @@ struct TriangleAxes {
   }
 };
 
-int body_named(const environment::Environment& environment, const std::string& name) {
-  const auto found = std::find_if(environment.bodies.begin(), environment.bodies.end(),
-                                  [&](const environment::BodyObject& body) { return body.name == name; });
-  return found == environment.bodies.end() ? -1 : static_cast<int>(found - environment.bodies.begin());
-}
-
-/// Track through the keys of a pin. `middle`: mean start position of its particles.
-environment::Track track_of(const scene::PinTrack& motion, const Vec3& middle) {
-  scene::PoseTrack track{motion.interpolation, {}};
-  for (const scene::PinKey& key : motion.keys) {
-    track.keys.push_back({key.time, key.pose});
-    if (!key.in_world) track.keys.back().pose.position += middle;
-  }
-  return environment::Track(track, {.position = middle});
-}
-
-/// Mean start position of the region of a pin, including particles that another pin holds. Particles of its fade come
-/// after those of the region, and do not count.
-Vec3 middle_of(std::span<const environment::Chosen> particles, std::span<const Vec3> start) {
-  Vec3 middle = Vec3::Zero();
-  std::size_t count = 0;
-  for (const environment::Chosen& chosen : particles) {
-    if (chosen.faded) break;
-    middle += start[static_cast<std::size_t>(chosen.particle)];
-    ++count;
-  }
-  return middle / static_cast<double>(count);
-}
-
 }  // namespace
 
 // Takes time linear in the particles of all pins.
-std::vector<Pins::Owner> Pins::owners(const environment::Environment& environment,
-                                      const std::vector<Index>& first_particle) {
+std::vector<Pins::Owner> Pins::owners(const model::Model& model, const std::vector<Index>& first_particle) {
   std::size_t count = 0;
-  for (std::size_t c = 0; c < environment.cloths.size(); ++c)
-    count = static_cast<std::size_t>(first_particle[c]) + environment.cloths[c].start.size();
+  for (std::size_t c = 0; c < model.cloths.size(); ++c)
+    count = static_cast<std::size_t>(first_particle[c]) + model.cloths[c].start.size();
   std::vector<Owner> owner_of(count);
   for (const bool faded : {false, true}) {
     std::size_t pin = 0;
-    for (std::size_t c = 0; c < environment.cloths.size(); ++c)
-      for (const std::vector<environment::Chosen>& particles : environment.cloths[c].pins) {
-        for (const environment::Chosen& chosen : particles) {
+    for (std::size_t c = 0; c < model.cloths.size(); ++c)
+      for (const model::Pin& each : model.cloths[c].pins) {
+        for (const model::Chosen& chosen : each.particles) {
           const auto i = static_cast<std::size_t>(first_particle[c] + chosen.particle);
           if (chosen.faded == faded && owner_of[i].fraction == 0) owner_of[i] = {pin, chosen.share};
         }
@@ -84,16 +54,15 @@ std::vector<Pins::Owner> Pins::owners(const environment::Environment& environmen
   return owner_of;
 }
 
-Pins::Pins(const scene::Scene& scene, const environment::Environment& environment,
-           const std::vector<Index>& first_particle)
-    : owner_of_(owners(environment, first_particle)) {
-  const double start_time = -scene.preroll_frames() / scene.time.fps;
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const environment::ClothObject& cloth = environment.cloths[c];
+Pins::Pins(const model::Model& model, const std::vector<Index>& first_particle)
+    : owner_of_(owners(model, first_particle)) {
+  const double start_time = model.start_time();
+  for (std::size_t c = 0; c < model.cloths.size(); ++c) {
+    const model::Cloth& cloth = model.cloths[c];
     for (std::size_t number = 0; number < cloth.pins.size(); ++number) {
-      const scene::Pin& pin = scene.cloths[c].pins[number];
+      const model::Pin& pin = cloth.pins[number];
       Group& group = groups_.emplace_back();
-      const std::vector<environment::Chosen>& all = cloth.pins[number];
+      const std::vector<model::Chosen>& all = pin.particles;
       std::vector<std::size_t> places;  // index of each particle of the group in `all`
       for (std::size_t k = 0; k < all.size(); ++k) {
         const Index particle = first_particle[c] + all[k].particle;
@@ -106,37 +75,32 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
 
       const auto start = [&](Index particle) -> const Vec3& { return cloth.start[particle - first_particle[c]]; };
       group.release = pin.release;
-      const scene::Followed followed = scene::followed(pin.follow);
-      group.follow = pin.follow.empty() ? -1 : body_named(environment, followed.body);
-      const environment::BodyObject* body = group.follow < 0 ? nullptr : &environment.bodies[group.follow];
-      if (body != nullptr && !body->followers.empty()) {
-        const auto follower = std::ranges::find_if(
-            body->followers, [&](const auto& candidate) { return candidate.cloth == c && candidate.pin == number; });
-        for (const std::size_t place : places) group.skinned.push_back(follower->first_vertex + place);
-      } else if (body != nullptr && body->character) {
+      if (pin.body) group.follow = static_cast<int>(*pin.body);
+      if (pin.first_vertex) {
+        for (const std::size_t place : places) group.skinned.push_back(*pin.first_vertex + place);
+      } else if (pin.body && model.bodies[*pin.body].deforms()) {
         std::vector<Vec3> starts;
         for (Index particle : group.particles) starts.push_back(start(particle));
-        group.anchors = anchor(environment, static_cast<std::size_t>(group.follow), start_time, starts);
+        group.anchors = anchor(model, static_cast<std::size_t>(group.follow), start_time, starts);
       } else if (group.follow >= 0) {
-        const environment::PoseSample pose = environment.pose(static_cast<std::size_t>(group.follow), start_time);
+        const motion::PoseSample pose = model.pose(static_cast<std::size_t>(group.follow), start_time);
         for (Index particle : group.particles)
           group.arms.push_back(pose.rotation.conjugate() * (start(particle) - pose.position));
       } else {
-        const Vec3 middle = middle_of(all, cloth.start);
-        group.track = track_of(pin.motion, middle);
-        for (Index particle : group.particles) group.arms.push_back(start(particle) - middle);
+        group.track.emplace(pin.motion, motion::Pose{.position = pin.middle});
+        for (Index particle : group.particles) group.arms.push_back(start(particle) - pin.middle);
       }
     }
   }
 }
 
-std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environment, std::size_t character, double t,
+std::vector<Pins::Anchor> Pins::anchor(const model::Model& model, std::size_t character, double t,
                                        std::span<const Vec3> places) {
-  const mesh::Mesh& skin = environment.bodies[character].mesh;
+  const mesh::Mesh& skin = model.bodies[character].mesh;
   std::vector<MovingPoint> vertices;
   std::vector<Vec3> x;
   for (std::size_t v = 0; v < skin.positions.size(); ++v) {
-    vertices.push_back({environment.vertex(character, v, t).position, Vec3::Zero()});
+    vertices.push_back({model.vertex(character, v, t).position, Vec3::Zero()});
     x.push_back(vertices.back().x);
   }
   std::vector<Anchor> anchors;
@@ -161,8 +125,7 @@ bool Pins::release_between(double t0, double t1) const {
   });
 }
 
-void Pins::held_at(double t, const environment::Environment& environment,
-                   std::vector<integrator::HeldParticle>& held) const {
+void Pins::held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const {
   held.clear();
   for (const Group& group : groups_) {
     if (group.particles.empty() || (group.release >= 0 && t > group.release)) continue;
@@ -171,7 +134,7 @@ void Pins::held_at(double t, const environment::Environment& environment,
       std::array<MovingPoint, 3> corners;
       MovingPoint place{Vec3::Zero(), Vec3::Zero()};
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto vertex = environment.vertex(static_cast<std::size_t>(group.follow), anchor.corners[k], t);
+        const auto vertex = model.vertex(static_cast<std::size_t>(group.follow), anchor.corners[k], t);
         corners[k] = {vertex.position, vertex.velocity};
         place.x += anchor.weights[k] * vertex.position;
         place.v += anchor.weights[k] * vertex.velocity;
@@ -182,13 +145,13 @@ void Pins::held_at(double t, const environment::Environment& environment,
                       place.v + triangle.rates * anchor.arm});
     }
     for (std::size_t p = 0; p < group.skinned.size(); ++p) {
-      const auto place = environment.vertex(static_cast<std::size_t>(group.follow), group.skinned[p], t);
+      const auto place = model.vertex(static_cast<std::size_t>(group.follow), group.skinned[p], t);
       held.push_back({{group.particles[p], Mat3::Zero()}, place.position, place.velocity});
     }
     if (!group.anchors.empty() || !group.skinned.empty()) continue;
-    environment::PoseSample pose;
+    motion::PoseSample pose;
     if (group.follow >= 0) {
-      pose = environment.pose(static_cast<std::size_t>(group.follow), t);
+      pose = model.pose(static_cast<std::size_t>(group.follow), t);
     } else {
       pose = group.track->at(t);
     }

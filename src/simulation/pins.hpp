@@ -6,18 +6,19 @@
 #include <span>
 #include <vector>
 
-#include "environment/environment.hpp"
 #include "integrator/system.hpp"
-#include "scene/scene.hpp"
+#include "model/model.hpp"
 
 namespace weft::simulation {
+
+/// Largest speed at which a pin or an attachment can move cloth without tearing it [m/s]; a hand reaches 10.
+inline constexpr double kMaxHoldSpeed = 20;
 
 /// All pins of a scene; they move particles along key frames or with a body.
 class Pins {
  public:
   /// `first_particle`: of each cloth.
-  Pins(const scene::Scene& scene, const environment::Environment& environment,
-       const std::vector<Index>& first_particle);
+  Pins(const model::Model& model, const std::vector<Index>& first_particle);
 
   bool empty() const { return groups_.empty(); }
 
@@ -36,8 +37,7 @@ class Pins {
   /// Particles of all pins with their targets at time t [s], without those of pins released before t. Each particle has
   /// one entry. If pins overlap, the particle belongs to the first of them in the scene; but a pin with the particle in
   /// its region comes before one with the particle in its fade.
-  void held_at(double t, const environment::Environment& environment,
-               std::vector<integrator::HeldParticle>& held) const;
+  void held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const;
   /// Whether a pin is released at a time in [t0, t1) [s].
   bool release_between(double t0, double t1) const;
 
@@ -53,9 +53,8 @@ class Pins {
     std::size_t pin = 0;
     double fraction = 0;  // 0: no pin
   };
-  static std::vector<Owner> owners(const environment::Environment& environment,
-                                   const std::vector<Index>& first_particle);
-  static std::vector<Anchor> anchor(const environment::Environment& environment, std::size_t character, double t,
+  static std::vector<Owner> owners(const model::Model& model, const std::vector<Index>& first_particle);
+  static std::vector<Anchor> anchor(const model::Model& model, std::size_t character, double t,
                                     std::span<const Vec3> places);
   /// The particles of one pin, which share one motion.
   struct Group {
@@ -67,7 +66,7 @@ class Pins {
     std::vector<Anchor> anchors;  // in place of `arms`, if it follows a body without bones
     // In place of `arms`, if it follows a body with bones: the vertices that represent its particles.
     std::vector<std::size_t> skinned;
-    std::optional<environment::Track> track;  // of the mean position of the particles
+    std::optional<motion::Track> track;  // of the mean position of the particles
   };
 
   std::vector<Group> groups_;

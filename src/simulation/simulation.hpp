@@ -1,7 +1,8 @@
-// Simulates a scene frame by frame: snapshots, reports, and saved states.
+// Simulates a model frame by frame: positions, reports, and saved states.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -9,19 +10,15 @@
 #include <string_view>
 #include <vector>
 
-#include "frame/frame_report.hpp"
-#include "frame/frame_snapshot.hpp"
-#include "scene/scene.hpp"
+#include "model/model.hpp"
+#include "simulation/frame_report.hpp"
 
 namespace weft::simulation {
 
 /// FrameReport::stretch_ratio above which a run warns.
 inline constexpr double kMaxStretchRatio = 1.1;
 
-using frame::FrameReport;
-using frame::ObjectInfo;
-
-/// All particles of the cloths that are put on, cloth by cloth in the order of the scene.
+/// All particles of the cloths that are put on, cloth by cloth in the order of the model.
 struct ParticleState {
   std::span<const Vec3> positions, velocities;  ///< [m], [m/s]
   std::span<const double> masses;               ///< [kg]
@@ -33,22 +30,6 @@ struct ClothMotion {
   std::vector<float> strains;        ///< per particle: largest relative change of length of the threads next to it
 };
 
-/// One line of `weft check --plan`: a part and whether this scene needs it.
-struct PlanItem {
-  std::string part;
-  bool used = false;
-  std::string reason;
-};
-
-/// Lists the parts of which a simulation of this scene consists, without building it. Reads only the files of
-/// characters (size of key frames), meshes and fitted patterns (rest shapes). Throws Error(asset_unreadable,
-/// scene_invalid) if they cannot be used.
-std::vector<PlanItem> plan(const scene::Scene& scene);
-
-/// Warnings of `weft check`, one text each: settings that may end a run, or that the author hardly intends. If the
-/// scene has moving pins, throws as Simulation's constructor does.
-std::vector<std::string> find_warnings(const scene::Scene& scene);
-
 /// A place where two objects, or one object and itself, touch or cross at the start.
 struct IntersectionPlace {
   std::string a, b;                            ///< the objects
@@ -58,16 +39,12 @@ struct IntersectionPlace {
   std::vector<std::array<Vec3, 3>> triangles;  ///< those that meet there [m]
 };
 
-/// The start of a scene before its preroll, even if a run from it would be refused.
-struct StartView {
-  frame::SnapshotPtr snapshot;
-  std::vector<IntersectionPlace> places;  ///< largest number of pairs first; empty if a run may begin
-  std::string description;                ///< describes the places, for a message; empty if there are none
-};
+/// "12 pairs of triangles that touch or cross in 2 places: 'sheet' and 'ball' (8 pairs) around (0, 0, 1) m, ...".
+std::string describe(std::span<const IntersectionPlace> places);
 
-/// Makes the start as the scene gives it, without untangling; layers are not checked against each other. Throws
-/// Error(asset_unreadable, scene_invalid).
-StartView view_start(const scene::Scene& scene);
+/// Places where surfaces touch or cross at the start, before its preroll and without untangling; largest number of
+/// pairs first; empty if a run may begin. Layers are not checked against each other.
+std::vector<IntersectionPlace> find_start_intersections(const model::Model& model);
 
 /// Size of the matrix of one Newton iteration, without contacts.
 struct MatrixSize {
@@ -77,15 +54,20 @@ struct MatrixSize {
 
 class Simulation {
  public:
-  /// Builds only what the scene needs. Throws Error(asset_unreadable, scene_invalid).
-  explicit Simulation(const scene::Scene& scene);
+  /// Builds only what the model needs. Throws Error(scene_invalid) if surfaces touch or cross at the start.
+  explicit Simulation(model::Model model);
   ~Simulation();
 
-  /// The current frame. After construction: frame 0, or the first frame of the preroll (with a negative number).
-  frame::SnapshotPtr snapshot() const;
+  /// With the motions of driven bodies.
+  const model::Model& model() const;
+  /// Number of the current frame, negative in the preroll, and its time [s].
+  int frame() const;
+  double time() const;
+  /// Number of changes of the state so far: of frames advanced, and of restored states.
+  std::uint64_t changes() const;
 
-  /// Simulates the next frame. If that fails, keeps the last snapshot and throws Error(simulation_failed) with the
-  /// reason, or Error(scene_invalid) if a cloth that is put on or closed in this frame does not fit.
+  /// Simulates the next frame. If that fails, keeps the state of the current one and throws Error(simulation_failed)
+  /// with the reason, or Error(scene_invalid) if a cloth that is put on or closed in this frame does not fit.
   FrameReport advance();
 
   /// The report of frame 0: energies and distances of the start.
@@ -94,26 +76,32 @@ class Simulation {
   /// Simulates time.preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before
   /// each frame, and returns false as soon as that does: frame 0 is then not reached. Throws as advance() does.
   bool run_preroll(const std::function<bool()>& proceed = [] { return true; });
-  std::vector<ObjectInfo> objects() const;
   std::size_t particles() const;
   MatrixSize matrix() const;
+  /// Positions of the particles of all cloths [m], in the order of the model; a cloth that is not put on is at its
+  /// start.
+  std::vector<Vec3> particles_of_all() const;
+  /// Whether all cloths are put on.
+  bool all_dressed() const;
+  /// Vertices of a body that forces move [m]; empty for other bodies.
+  std::vector<Vec3> vertices_of(std::size_t body) const;
   /// State of the current frame, for the cloths that are put on; valid until the next advance().
   ParticleState state() const;
-  /// `cloth`: number in the scene. The result is valid until the next advance().
+  /// `cloth`: number in the model. The result is valid until the next advance().
   ClothMotion motion_of(std::size_t cloth) const;
   /// Total contact force on each particle [N] at the end of the last step, per cloth; empty until the cloth is put on.
   std::vector<std::vector<Vec3>> contact_forces() const;
 
-  /// Moves an obstacle (number in the scene) to `end` at constant velocity during the next frame, whatever the scene
-  /// says of its motion; it then stays there. The obstacle must have two keys or more.
-  void drive(std::size_t obstacle, const scene::Pose& end);
+  /// Moves a rigid body (number in the model) to `end` at constant velocity during the next frame, whatever its own
+  /// motion; it then stays there. The body must be `moving`.
+  void drive(std::size_t body, const motion::Pose& end);
 
   /// Appends everything that later frames depend on. Only machines of one kind and one version of the program can read
   /// it. Not allowed after a failed advance().
   void save(std::string& bytes) const;
-  /// Restores what a simulation of the same scene has saved; the frames that follow have the same bits. Only allowed
-  /// before the first advance(). If obstacles were driven, first call drive() once for each of them, to any pose.
-  /// Throws std::runtime_error if the bytes do not fit this scene; the simulation is then unusable.
+  /// Restores what a simulation of the same model has saved; the frames that follow have the same bits. Only allowed
+  /// before the first advance(). If bodies were driven, first call drive() once for each of them, to any pose.
+  /// Throws std::runtime_error if the bytes do not fit this model; the simulation is then unusable.
   void restore(std::string_view bytes);
 
  private:

@@ -36,9 +36,9 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
 StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& report) {
   const double t = attempt.t, h = attempt.h;
   held_ = pins_.held();
-  hold_frames(environment_, cloth_, t + h, held_);
+  hold_frames(model_, cloth_, t + h, held_);
   // What is released changes its acceleration at once: the stepper's history does not predict the motion that follows.
-  const bool releases = release_frames(environment_, cloth_, t, h, progress_.now.v) || pins_.release_between(t, t + h);
+  const bool releases = release_frames(model_, cloth_, t, h, progress_.now.v) || pins_.release_between(t, t + h);
   if (releases) stepper_.restart();
   pinned_ = held_.size();
   problem_.begin_step(t + h - start_, progress_.now.particles(), held_, pins_.pulls());
@@ -172,7 +172,7 @@ integrator::StepReport StepLoop::solve(double h, Start start, bool check_early, 
 // The midpoint rule has no damping, and contacts that switch on and off would excite cloth: BDF2 replaces it in steps
 // with contacts.
 integrator::Method StepLoop::method() const {
-  const integrator::Method chosen = method_of(scene_.time.integrator);
+  const integrator::Method chosen = model_.time.integrator;
   const bool needs_damping =
       chosen == integrator::Method::implicit_midpoint && collisions_ && !collisions_->response().empty();
   return needs_damping ? integrator::Method::bdf2 : chosen;

@@ -19,27 +19,25 @@ constexpr double kReportAgainRatio = 1.5;
 
 }  // namespace
 
-StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& environment, double start)
-    : scene_(scene),
-      environment_(environment),
-      start_(-scene.preroll_frames() / scene.time.fps),
-      cloth_(scene, environment),
+StepLoop::StepLoop(const model::Model& model, double start)
+    : model_(model),
+      start_(model.start_time()),
+      cloth_(model),
       problem_(cloth_),
-      pins_(scene, environment, first_particles(cloth_), cloth_.masses()),
-      progress_{start_of(scene, environment, cloth_, start), step_control_of(scene),
-                std::numeric_limits<double>::infinity()},
-      stepper_(method_of(scene.time.integrator), newton_of(scene)),
+      pins_(model, first_particles(cloth_), cloth_.masses()),
+      progress_{start_of(model, cloth_, start), step_control_of(model), std::numeric_limits<double>::infinity()},
+      stepper_(model.time.integrator, newton_of(model)),
       reported_overstretch_(cloth_.cloths(), 0),
-      attachments_(scene, environment, first_particles(cloth_), cloth_.first_of_frames(environment)),
-      weather_(scene),
+      attachments_(model, first_particles(cloth_), cloth_.first_of_frames(model)),
+      weather_(model),
       gravity_(weather_.gravity(start)) {
   SystemState& now = progress_.now;
   pins_.begin_step(start, 0, now.x);
   held_ = pins_.held();
   cloth_.hold(held_);
   for (const integrator::HeldParticle& particle : held_) now.v[particle.constraint.particle] = particle.v_end;
-  if (CollisionStage::needed(scene)) {
-    collisions_.emplace(scene, environment, cloth_, now);
+  if (CollisionStage::needed(model)) {
+    collisions_.emplace(model, cloth_, now);
     problem_.use_contacts(collisions_->response(), collisions_->rigid_vertices());
   }
   if (!attachments_.empty()) problem_.use_attachments(attachments_);
@@ -73,14 +71,13 @@ void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size
 
 void StepLoop::untangle() {
   if (!collisions_) return;
-  collisions_->untangle(scene_, held_, dressed_, progress_.now);
+  collisions_->untangle(held_, dressed_, progress_.now);
   next_ = progress_.now;
 }
 
 double StepLoop::lift_bodies() {
   if (!collisions_ || collisions_->rigid_vertices() == nullptr) return 0;
-  const Vec3 up = scene_.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
-  const double lift = collisions_->lift_bodies(up, start_, progress_.now);
+  const double lift = collisions_->lift_bodies(model_.up, start_, progress_.now);
   next_ = progress_.now;
   return lift;
 }
@@ -95,10 +92,10 @@ std::vector<Vec3> StepLoop::contact_forces() const {
 
 std::vector<Vec3> StepLoop::vertices_of(std::size_t body) const {
   std::vector<Vec3> vertices;
-  if (!environment_.bodies[body].dynamics) return vertices;
-  const Index first = cloth_.first_of_frames(environment_)[body];
-  vertices.resize(environment_.bodies[body].mesh.positions.size());
-  environment_.bodies[body].dynamics->frame.place(
+  if (!model_.bodies[body].dynamics) return vertices;
+  const Index first = cloth_.first_of_frames(model_)[body];
+  vertices.resize(model_.bodies[body].mesh.positions.size());
+  model_.bodies[body].dynamics->frame.place(
       std::span(progress_.now.x).subspan(static_cast<std::size_t>(first), mesh::RigidFrame::kParticles), vertices);
   return vertices;
 }
@@ -112,12 +109,12 @@ void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
 // Divides the frame into equal steps, or takes one step if everything rests. Computes times from the number of steps
 // before, so that they have the same bits at any frame rate.
 void StepLoop::advance_equally(double t_t0, FrameReport& report) {
-  const double fps = scene_.time.fps;
-  const int steps = std::max(1, static_cast<int>(std::ceil(1 / (fps * scene_.time.step) - 1e-9)));
+  const double fps = model_.time.fps;
+  const int steps = std::max(1, static_cast<int>(std::ceil(1 / (fps * model_.time.step) - 1e-9)));
   const double h = 1 / (fps * steps);
   if (steps > 1 && may_rest(t_t0, h, steps) && rest(t_t0, 1 / fps, report)) return;
   const double done = std::round(t_t0 * fps) * steps;
-  for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, scene_.solver.halvings, report);
+  for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, model_.solver.halvings, report);
 }
 
 // Whether one long step may replace the next `steps` steps of length h [s]: all cloth is slow and has settled in its
@@ -126,8 +123,8 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints release and stick again from step to step.
-  const bool needs_steps = scene_.contact.response == scene::Response::velocity_constraints;
-  if (scene_.time.integrator != scene::Integrator::implicit_euler || needs_steps || whole > progress_.longest ||
+  const bool needs_steps = model_.contact.response == model::Response::velocity_constraints;
+  if (model_.time.integrator != integrator::Method::implicit_euler || needs_steps || whole > progress_.longest ||
       !is_slow(progress_.now) || !has_settled())
     return false;
   for (int s = 1; s <= steps; ++s) {
@@ -136,7 +133,7 @@ bool StepLoop::may_rest(double t, double h, int steps) {
         !attachments_.are_constant_between(t, end))
       return false;
     if (!cloth_.lengths_are_constant(t, end)) return false;
-    if (!pins_.are_constant_between(t, end) || !frames_are_constant(environment_, t, end) ||
+    if (!pins_.are_constant_between(t, end) || !frames_are_constant(model_, t, end) ||
         (collisions_ && !collisions_->bodies_are_constant(t, end, progress_.now, next_)))
       return false;
   }
@@ -202,7 +199,7 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
       h = (t_t1 - t) / left;
     }
     for (; obstacle_turns_too_far(t, h); h *= 0.5) left *= 2;
-    const bool is_last = rejections == scene_.solver.halvings || h < numerics.steps.least;
+    const bool is_last = rejections == model_.solver.halvings || h < numerics.steps.least;
     const Rejection rejection = attempt(t, h, rejections, is_last, report);
     if (rejection && is_last) fail(report.frame, t, h, *rejection);
     // In an impact, the error may ask for shorter steps without end. So the last attempt is accepted whatever its
@@ -259,7 +256,7 @@ void StepLoop::measure_stretch(FrameReport& report) {
   report.warnings.push_back(
       fmt::format("frame {}: '{}' is stretched by {:.0f} %, which its threads do not allow (max_stretch {:g}), near "
                   "({:.4g}, {:.4g}, {:.4g}) m",
-                  report.frame, scene_.cloths[most.cloth].name, 100 * most.extension, most.extension / most.ratio,
+                  report.frame, model_.cloths[most.cloth].name, 100 * most.extension, most.extension / most.ratio,
                   most.place.x(), most.place.y(), most.place.z()));
 }
 

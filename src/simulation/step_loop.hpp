@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "environment/environment.hpp"
-#include "environment/weather.hpp"
 #include "integrator/step_control.hpp"
 #include "integrator/stepper.hpp"
-#include "scene/scene.hpp"
+#include "model/model.hpp"
+#include "model/weather.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
 #include "simulation/simulation.hpp"
@@ -19,12 +18,12 @@
 
 namespace weft::simulation {
 
-/// Parts that a scene does not need are not built: there is no collision stage if nothing collides, and no force of
+/// Parts that a model does not need are not built: there is no collision stage if nothing collides, and no force of
 /// zero stiffness.
 class StepLoop {
  public:
-  /// `start`: time of the first step [s]. Scene and environment must outlive the loop.
-  StepLoop(const scene::Scene& scene, const environment::Environment& environment, double start);
+  /// `start`: time of the first step [s]. The model must outlive the loop.
+  StepLoop(const model::Model& model, double start);
 
   StepLoop(const StepLoop&) = delete;  // members refer to each other
   StepLoop& operator=(const StepLoop&) = delete;
@@ -65,7 +64,7 @@ class StepLoop {
   }
 
   const ClothSystem& cloth() const { return cloth_; }
-  const environment::Weather& weather() const { return weather_; }
+  const model::Weather& weather() const { return weather_; }
   const Attachments& attachments() const { return attachments_; }
   const StepProblem& problem() const { return problem_; }
   /// Number of particles that pins, keys or velocity constraints hold.
@@ -141,8 +140,7 @@ class StepLoop {
   double added_energy_ratio(double before, double h) const;
   static Rejection rejection_of(const integrator::StepReport& step);
 
-  const scene::Scene& scene_;
-  const environment::Environment& environment_;
+  const model::Model& model_;
   double start_;                      // time at which the simulation starts [s]
   std::vector<std::size_t> dressed_;  // cloths that were taken over
   ClothSystem cloth_;
@@ -157,7 +155,7 @@ class StepLoop {
   std::size_t pinned_ = 0;  // pins and keys hold the first pinned_ of held_, velocity constraints the others
   std::optional<CollisionStage> collisions_;
   Attachments attachments_;
-  environment::Weather weather_;
+  model::Weather weather_;
   Vec3 gravity_;  // in the current step [m/s²]
 };
 

@@ -4,38 +4,34 @@
 #include <optional>
 #include <vector>
 
-#include "environment/environment.hpp"
 #include "integrator/step_control.hpp"
 #include "integrator/stepper.hpp"
-#include "scene/scene.hpp"
+#include "model/model.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
 
 namespace weft::simulation {
 
-integrator::Method method_of(scene::Integrator integrator);
-integrator::NewtonParameters newton_of(const scene::Scene& scene);
+integrator::NewtonParameters newton_of(const model::Model& model);
 /// None if the scene has a fixed step instead of a tolerance.
-std::optional<integrator::StepControl> step_control_of(const scene::Scene& scene);
+std::optional<integrator::StepControl> step_control_of(const model::Model& model);
 
 /// First particle of each cloth.
 std::vector<Index> first_particles(const ClothSystem& cloth);
 
 /// Positions of all particles at the start, and their velocities as the scene gives them, at time t [s].
-SystemState start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
-                     double t);
+SystemState start_of(const model::Model& model, const ClothSystem& cloth, double t);
 
 /// For a step that ends at t [s]: appends the frame particles of bodies that keys still move then, where the keys place
 /// them.
-void hold_frames(const environment::Environment& environment, const ClothSystem& cloth, double t,
+void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
                  std::vector<integrator::HeldParticle>& held);
 
 /// Sets the velocities of frames that are released in the step from t to t + h [s] to those of their keys at t plus the
 /// body's own velocity and spin. Returns whether there are any.
-bool release_frames(const environment::Environment& environment, const ClothSystem& cloth, double t, double h,
-                    std::span<Vec3> v);
+bool release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v);
 
 /// Whether, of the bodies not yet released at t0, none is released or moved by its keys between t0 and t1 [s].
-bool frames_are_constant(const environment::Environment& environment, double t0, double t1);
+bool frames_are_constant(const model::Model& model, double t0, double t1);
 
 }  // namespace weft::simulation

@@ -6,7 +6,6 @@
 
 #include "core/error.hpp"
 #include "core/log.hpp"
-#include "scene/layers.hpp"
 #include "simulation/collision_stage.hpp"
 #include "untangle/untangle.hpp"
 
@@ -16,7 +15,7 @@ namespace {
 // Maximum ratio of border edges to all edges at which a body counts as closed: characters are open at eyes and soles.
 constexpr double kClosedBorder = 0.02;
 
-untangle::Kind kind_of(const environment::BodyObject& body) {
+untangle::Kind kind_of(const model::Body& body) {
   if (body.infinite_floor) return untangle::Kind::floor;
   const mesh::EdgeSet edges = mesh::collect_edges(body.colliding_triangles());
   const auto border = std::ranges::count_if(edges.edges, [](const mesh::Edge& e) { return e.triangles[1] < 0; });
@@ -25,34 +24,26 @@ untangle::Kind kind_of(const environment::BodyObject& body) {
 }
 
 // Whether a cloth that is not dressed yet is worn over this one.
-bool is_layer(const scene::Scene& scene, std::size_t cloth, std::span<const std::size_t> dressed) {
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std::size_t> dressed) {
+  for (std::size_t c = 0; c < model.cloths.size(); ++c)
     if (std::ranges::find(dressed, c) == dressed.end() &&
-        scene::worn_over(scene, scene.cloths[c].name, scene.cloths[cloth].name))
+        std::ranges::find(model.cloths[c].over, model.cloths[cloth].name) != model.cloths[c].over.end())
       return true;
   return false;
 }
 
 }  // namespace
 
-bool may_be_untangled(const scene::Cloth& cloth) {
-  return cloth.start == scene::ClothStart::untangle || !cloth.over.empty();
-}
-
-bool may_be_untangled(const scene::Scene& scene) {
-  return std::ranges::any_of(scene.cloths, [](const scene::Cloth& c) { return may_be_untangled(c); });
-}
-
-void CollisionStage::untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
-                              std::span<const std::size_t> dressed, SystemState& start) {
+void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> dressed,
+                              SystemState& start) {
   // Dressed cloths stand still, like obstacles. They come last, so that cloth is moved out of bodies first, then out of
   // dressed cloths.
   std::vector<std::size_t> order;  // numbers of the engine's bodies
-  const std::size_t cloths = environment_.cloths.size();
+  const std::size_t cloths = model_.cloths.size();
   for (std::size_t c = 0; c < cloths; ++c)
     if (std::ranges::find(dressed, c) == dressed.end()) order.push_back(c);
   for (std::size_t b = 0; b < bodies_.size(); ++b) order.push_back(cloths + b);
-  if (scene.contact.self) order.insert(order.end(), dressed.begin(), dressed.end());
+  if (model_.contact.self) order.insert(order.end(), dressed.begin(), dressed.end());
 
   collision::Bodies bodies;
   std::vector<untangle::Kind> kinds;
@@ -70,20 +61,20 @@ void CollisionStage::untangle(const scene::Scene& scene, std::span<const integra
     if (fresh)
       kinds.push_back(untangle::Kind::cloth);
     else if (b >= cloths)
-      kinds.push_back(kind_of(environment_.bodies[bodies_[b - cloths]]));
+      kinds.push_back(kind_of(model_.bodies[bodies_[b - cloths]]));
     else
-      kinds.push_back(is_layer(scene, b, dressed) ? untangle::Kind::layer : untangle::Kind::open);
+      kinds.push_back(is_layer(model_, b, dressed) ? untangle::Kind::layer : untangle::Kind::open);
     for (std::size_t v = first; v < first + static_cast<std::size_t>(surface.vertex_count); ++v) {
       x.push_back(start.x[v]);
-      movable.push_back(fresh && may_be_untangled(scene.cloths[b]) && is_held[v] == 0);
+      movable.push_back(fresh && model_.cloths[b].may_be_untangled() && is_held[v] == 0);
     }
-    const std::vector<Vec3>& given = b < cloths ? environment_.cloths[b].mesh.positions : rest;
+    const std::vector<Vec3>& given = b < cloths ? model_.cloths[b].mesh.positions : rest;
     if (fresh) rest.insert(rest.end(), given.begin(), given.end());
   }
 
   const untangle::Fabric fabric(bodies, std::move(kinds), x, rest, movable);
   const untangle::Report report =
-      untangle::untangle(fabric, {scene.contact.self, order.size() > cloths - dressed.size()}, x);
+      untangle::untangle(fabric, {model_.contact.self, order.size() > cloths - dressed.size()}, x);
   if (!report.locked.empty()) {
     std::string regions;
     for (const untangle::InsideRegion& region : report.locked) {
@@ -97,7 +88,7 @@ void CollisionStage::untangle(const scene::Scene& scene, std::span<const integra
                 "{}: expected a start that can be untangled, got {} pairs of triangles that cross, and cloth that an "
                 "obstacle goes through; it would have to move: {}; 'weft thumbnail --start' draws it; move it, or have "
                 "the body raise its arms as sleeves do (stance_arms) or grow into it (grow)",
-                scene.file.string(), report.pairs_before, regions);
+                model_.source, report.pairs_before, regions);
   }
   if (report.pairs_before > 0 || report.farthest > 0)
     log::info(

@@ -19,10 +19,10 @@ double arrived_distance() {
 
 }  // namespace
 
-YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environment& environment,
-                           const std::vector<Index>& first_particle, std::span<const double> masses)
-    : pins_(scene, environment, first_particle),
-      environment_(environment),
+YieldingPins::YieldingPins(const model::Model& model, const std::vector<Index>& first_particle,
+                           std::span<const double> masses)
+    : pins_(model, first_particle),
+      model_(model),
       masses_(masses),
       lagged_(masses.size(), 0),
       lags_(masses.size(), 0),
@@ -31,9 +31,9 @@ YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environ
   for (std::size_t pin = 0; pin < pins_.size(); ++pin) {
     const Pins::Info& info = pins_.info(pin);
     const auto begin = static_cast<std::size_t>(first_particle[info.cloth]);
-    const std::size_t count = environment.cloths[info.cloth].start.size();
+    const std::size_t count = model.cloths[info.cloth].start.size();
     double weight = 0;
-    for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * scene.physics.largest_gravity();
+    for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * model.physics.largest_gravity();
     pull_force_.push_back(numerics.pins.weights * weight);
   }
 }
@@ -45,9 +45,9 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   }
   forced_t_ = t;
   forced_h_ = h;
-  pins_.held_at(t + h, environment_, targets_);
+  pins_.held_at(t + h, model_, targets_);
   const bool any_lagged = std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; });
-  if (any_lagged) pins_.held_at(t, environment_, at_start_);
+  if (any_lagged) pins_.held_at(t, model_, at_start_);
   std::ranges::fill(lags_, std::uint8_t{0});
   // Particles that have arrived are held again. Particles whose pin is released before t + h are not in `targets_`.
   if (any_lagged)
@@ -76,8 +76,8 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
 
 bool YieldingPins::are_constant_between(double t0, double t1) {
   if (std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; })) return false;
-  pins_.held_at(t0, environment_, at_start_);
-  pins_.held_at(t1, environment_, targets_);
+  pins_.held_at(t0, model_, at_start_);
+  pins_.held_at(t1, model_, targets_);
   return std::ranges::equal(at_start_, targets_, [](const auto& start, const auto& target) {
     return start.constraint.particle == target.constraint.particle && start.x_end == target.x_end;
   });
@@ -120,8 +120,8 @@ void YieldingPins::accept() {
     const std::size_t pin = pins_.pin_of(particle);
     if (!lagging_.insert(pin).second || lagging_before_.contains(pin)) continue;
     const Pins::Info& info = pins_.info(pin);
-    seen_.turns.push_back(fmt::format("pin {} of '{}' gives way to {}", info.number,
-                                      environment_.cloths[info.cloth].name, obstructions_[pin]));
+    seen_.turns.push_back(
+        fmt::format("pin {} of '{}' gives way to {}", info.number, model_.cloths[info.cloth].name, obstructions_[pin]));
   }
   seen_.particles = std::max(seen_.particles, count);
   std::swap(lagged_, lags_);
@@ -133,8 +133,7 @@ YieldingPins::Lags YieldingPins::take_lags() {
   for (std::size_t pin : lagging_before_) {
     if (lagging_.contains(pin)) continue;
     const Pins::Info& info = pins_.info(pin);
-    seen_.turns.push_back(
-        fmt::format("pin {} of '{}' is held again", info.number, environment_.cloths[info.cloth].name));
+    seen_.turns.push_back(fmt::format("pin {} of '{}' is held again", info.number, model_.cloths[info.cloth].name));
   }
   lagging_before_ = std::move(lagging_);
   lagging_.clear();

@@ -20,8 +20,7 @@ class YieldingPins {
  public:
   /// `first_particle`: of each cloth; `masses`: of all particles [kg]. The environment and `masses` must outlive this
   /// object.
-  YieldingPins(const scene::Scene& scene, const environment::Environment& environment,
-               const std::vector<Index>& first_particle, std::span<const double> masses);
+  YieldingPins(const model::Model& model, const std::vector<Index>& first_particle, std::span<const double> masses);
 
   /// Begins a step from t to t + h [s] with particles at x [m]: finds which ones are held at t + h, and which are
   /// pulled.
@@ -62,7 +61,7 @@ class YieldingPins {
   void pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x);
 
   Pins pins_;
-  const environment::Environment& environment_;
+  const model::Model& model_;
   std::span<const double> masses_;
   std::vector<double> pull_force_;  // per pin: maximum total force on its lagging particles [N]; pull() may raise it
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;

@@ -120,25 +120,26 @@ TEST(Codec, FramesComeBackBitForBit) {
     EXPECT_EQ(a->lights[0].color, b.lights[0].color);
     EXPECT_EQ(a->lights[0].intensity, b.lights[0].intensity);
     EXPECT_EQ(a->lights[0].softness, b.lights[0].softness);
-    const frame::FrameReport &before = sample.report(k), &after = cached.report;
+    const simulation::FrameReport &before = sample.report(k), &after = cached.report;
     EXPECT_EQ(before.frame, after.frame);
     EXPECT_EQ(before.time, after.time);
-    for (const auto stage : {&frame::FrameReport::simulate, &frame::FrameReport::collide, &frame::FrameReport::forces,
-                             &frame::FrameReport::preconditioner, &frame::FrameReport::linear}) {
+    for (const auto stage :
+         {&simulation::FrameReport::simulate, &simulation::FrameReport::collide, &simulation::FrameReport::forces,
+          &simulation::FrameReport::preconditioner, &simulation::FrameReport::linear}) {
       EXPECT_EQ((before.*stage).wall_s, (after.*stage).wall_s);
       EXPECT_EQ((before.*stage).cpu_s, (after.*stage).cpu_s);
     }
-    for (const auto number :
-         {&frame::FrameReport::error_estimate, &frame::FrameReport::solver_error, &frame::FrameReport::min_distance,
-          &frame::FrameReport::max_strain, &frame::FrameReport::stretch_ratio, &frame::FrameReport::kinetic_energy,
-          &frame::FrameReport::potential_energy, &frame::FrameReport::elastic_energy, &frame::FrameReport::pin_work,
-          &frame::FrameReport::solver_work})
+    for (const auto number : {&simulation::FrameReport::error_estimate, &simulation::FrameReport::solver_error,
+                              &simulation::FrameReport::min_distance, &simulation::FrameReport::max_strain,
+                              &simulation::FrameReport::stretch_ratio, &simulation::FrameReport::kinetic_energy,
+                              &simulation::FrameReport::potential_energy, &simulation::FrameReport::elastic_energy,
+                              &simulation::FrameReport::pin_work, &simulation::FrameReport::solver_work})
       EXPECT_EQ(before.*number, after.*number);
-    for (const auto number :
-         {&frame::FrameReport::steps, &frame::FrameReport::rejected_steps, &frame::FrameReport::inexact_steps,
-          &frame::FrameReport::newton_iterations, &frame::FrameReport::linear_iterations,
-          &frame::FrameReport::proximities, &frame::FrameReport::constraints, &frame::FrameReport::pinched_pairs,
-          &frame::FrameReport::lagging_particles})
+    for (const auto number : {&simulation::FrameReport::steps, &simulation::FrameReport::rejected_steps,
+                              &simulation::FrameReport::inexact_steps, &simulation::FrameReport::newton_iterations,
+                              &simulation::FrameReport::linear_iterations, &simulation::FrameReport::proximities,
+                              &simulation::FrameReport::constraints, &simulation::FrameReport::pinched_pairs,
+                              &simulation::FrameReport::lagging_particles})
       EXPECT_EQ(before.*number, after.*number);
     EXPECT_EQ(before.warnings, after.warnings);
   }

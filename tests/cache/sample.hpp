@@ -7,8 +7,8 @@
 #include <random>
 
 #include "cache/manifest.hpp"
-#include "frame/frame_report.hpp"
 #include "frame/frame_snapshot.hpp"
+#include "simulation/frame_report.hpp"
 
 namespace weft::cache {
 
@@ -95,8 +95,8 @@ struct Sample {
     return snapshot;
   }
 
-  frame::FrameReport report(int k) const {
-    frame::FrameReport report;
+  simulation::FrameReport report(int k) const {
+    simulation::FrameReport report;
     report.frame = k;
     report.time = k / 25.0;
     report.simulate = {0.2, 0.1};

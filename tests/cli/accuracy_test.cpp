@@ -13,7 +13,7 @@
 #include "bench/shadow.hpp"
 #include "bench/trajectory.hpp"
 #include "cli/subprocess.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 
@@ -140,7 +140,7 @@ TEST(Trajectories, ParticlesOfAMeshLieOnThoseOfTheFinerOne) {
     ASSERT_TRUE(can_refine(coarse, 2));
     EXPECT_FALSE(can_refine(coarse, 0.5)) << "three cells";
     refine(fine, 2);
-    const simulation::Simulation a(coarse), b(fine);
+    const production::SceneSimulation a(coarse), b(fine);
     const auto same = matching_particles_in_refined(coarse);
     ASSERT_EQ(same.size(), a.particles());
     for (std::size_t i = 0; i < same.size(); ++i)

@@ -103,7 +103,7 @@ std::uint64_t CachedRun::hash_of_frames(const std::string& cache, int count) con
       add(state.positions);
       add(state.heat);
     }
-    const frame::FrameReport& r = cached.report;
+    const simulation::FrameReport& r = cached.report;
     add(std::array<double, 9>{r.error_estimate, r.solver_error, r.min_distance, r.max_strain, r.kinetic_energy,
                               r.potential_energy, r.elastic_energy, r.pin_work, r.solver_work});
     add(std::array<int, 8>{r.frame, r.steps, r.rejected_steps, r.newton_iterations, r.linear_iterations, r.proximities,

@@ -6,10 +6,10 @@
 #include <functional>
 
 #include "cache/codec.hpp"
+#include "production/scene_simulation.hpp"
+#include "production/snapshots.hpp"
 #include "scene/loader.hpp"
 #include "scene/rule.hpp"
-#include "simulation/simulation.hpp"
-#include "simulation/snapshots.hpp"
 
 namespace weft::cli {
 namespace {
@@ -96,7 +96,7 @@ scene::Scene scene_with(const std::vector<std::string>& overrides) {
 }
 
 frame::SnapshotPtr third_frame(const scene::Scene& scene) {
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   simulation.advance();
   simulation.advance();
   return simulation.snapshot();
@@ -116,7 +116,7 @@ void expect_not_simulated(const std::string& change, const scene::Scene& before,
   const scene::Scene after = scene_with(changes);
   EXPECT_NE(after.hash, before.hash) << change;
   EXPECT_EQ(after.simulation_hash, before.simulation_hash) << change;
-  EXPECT_TRUE(bytes_of(*third_frame(after)) == bytes_of(*simulation::Looks(after).put_on(kept))) << change;
+  EXPECT_TRUE(bytes_of(*third_frame(after)) == bytes_of(*production::Looks(after).put_on(kept))) << change;
 }
 
 TEST(Looks, AreAllThatTheRulesCallNotSimulatedAndNothingElse) {

@@ -58,7 +58,7 @@ TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
   scene::Material& material = scene.cloths[0].material;
   for (double* stiffness : {&material.stretch_weft, &material.stretch_warp, &material.shear, &material.bend})
     *stiffness *= stiffer->breaks->factors[0];
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   std::string told;
   try {
     for (int k = 0; k < 8; ++k)

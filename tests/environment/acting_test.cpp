@@ -230,7 +230,7 @@ TEST_F(Acting, LeavesPartsOutOfContactAndClosesWhatIsLeft) {
   character_.parts[0].collide = false;
   scene_.characters[0] = character_;
   const Environment environment(scene_);
-  const BodyObject& body = environment.bodies[0];
+  const model::Body& body = environment.model.bodies[0];
   const auto triangles = body.colliding_triangles();
   EXPECT_TRUE(mesh::inspect(triangles, body.mesh.positions.size()).border.empty());
   double low = 0, high = 0;
@@ -248,7 +248,7 @@ TEST_F(Acting, LeavesPartsOutOfContactAndClosesWhatIsLeft) {
   character_.parts[0].bone = "Hips";
   character_.parts[0].collide = false;
   scene_.characters[0] = character_;
-  EXPECT_FALSE(Environment(scene_).bodies[0].collide) << "nothing is left";
+  EXPECT_FALSE(Environment(scene_).model.bodies[0].collide) << "nothing is left";
 }
 
 TEST_F(Acting, RefusesPartsThatItDoesNotHave) {
@@ -469,17 +469,17 @@ TEST_F(Acting, CharactersOfASceneMoveAsBodiesAfterItsObstacles) {
   character_.source = file_;
   scene_.characters[0] = character_;
   const Environment environment(scene_);
-  ASSERT_EQ(environment.bodies.size(), 2u);
-  const BodyObject& body = environment.bodies[1];
+  ASSERT_EQ(environment.model.bodies.size(), 2u);
+  const model::Body& body = environment.model.bodies[1];
   EXPECT_EQ(body.name, "rod");
-  EXPECT_TRUE(body.character && body.moving && body.collide);
+  EXPECT_TRUE(body.deforms() && body.moving && body.collide);
   EXPECT_EQ(body.friction, 0.9);
   std::vector<Vec3> start(body.mesh.positions.size()), later = start;
-  environment.place(1, 0, start);
-  environment.place(1, 1, later);
+  environment.model.place(1, 0, start);
+  environment.model.place(1, 1, later);
   EXPECT_EQ(start, body.mesh.positions);
   EXPECT_NEAR((later[0] - start[0]).norm(), 2, 1e-5);
-  EXPECT_NEAR(environment.vertex(1, 0, 1).velocity.norm(), 2, 1e-4);
+  EXPECT_NEAR(environment.model.vertex(1, 0, 1).velocity.norm(), 2, 1e-4);
 }
 
 }  // namespace

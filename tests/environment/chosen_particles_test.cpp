@@ -14,9 +14,9 @@
 namespace weft::environment {
 namespace {
 
-std::map<Index, double> shares_of(const std::vector<Chosen>& chosen) {
+std::map<Index, double> shares_of(const std::vector<model::Chosen>& chosen) {
   std::map<Index, double> shares;
-  for (const Chosen& one : chosen) shares.emplace(one.particle, one.share);
+  for (const model::Chosen& one : chosen) shares.emplace(one.particle, one.share);
   EXPECT_EQ(shares.size(), chosen.size()) << "each once";
   return shares;
 }
@@ -24,8 +24,8 @@ std::map<Index, double> shares_of(const std::vector<Chosen>& chosen) {
 class ChosenParticles : public support::TestFolder {
  protected:
   /// The first cloth of a scene; `cloth` is appended to its table.
-  ClothObject cloth_of(const std::string& cloth) const {
-    return std::move(Environment(support::scene_of_text("[[cloth]]\nname = 'c'\n" + cloth)).cloths[0]);
+  model::Cloth cloth_of(const std::string& cloth) const {
+    return std::move(Environment(support::scene_of_text("[[cloth]]\nname = 'c'\n" + cloth)).model.cloths[0]);
   }
   /// Writes a picture with one row of grey pixels; returns its file.
   std::string row_of(const std::vector<int>& greys) const {
@@ -55,25 +55,26 @@ class ChosenParticles : public support::TestFolder {
 // A grid with a spacing of 0.1 m at rest. The strength fades with the distance from the row at warp 0, up to 0.25 m.
 TEST_F(ChosenParticles, FadeWithTheDistanceAlongTheClothAtRest) {
   for (const char* shape : {"quads", "aligned_triangles"}) {
-    const ClothObject cloth =
+    const model::Cloth cloth =
         cloth_of(fmt::format("size = [0.4, 0.4]\nparticles = 5\nstart_scale = [0.5, 0.5]\nshape = '{}'\n"
                              "pin = [{{ high = [1, 0], strength = 10, fade = 0.25 }}]\n",
                              shape));
-    const auto shares = shares_of(cloth.pins[0]);
+    const auto shares = shares_of(cloth.pins[0].particles);
     ASSERT_EQ(shares.size(), 15u) << shape;
     for (const auto& [particle, fraction] : shares) {
       const double s = 1 - 0.1 * (particle / 5) / 0.25;
       EXPECT_NEAR(fraction, s * s * (3 - 2 * s), 1e-12) << shape << " " << particle;
     }
-    for (std::size_t k = 0; k < cloth.pins[0].size(); ++k) EXPECT_EQ(cloth.pins[0][k].faded, k >= 5) << shape;
+    for (std::size_t k = 0; k < cloth.pins[0].particles.size(); ++k)
+      EXPECT_EQ(cloth.pins[0].particles[k].faded, k >= 5) << shape;
   }
 }
 
 // Distances from a corner of the sheet are also measured across quads: 0.141 m along the diagonal of a cell.
 TEST_F(ChosenParticles, FadeAcrossQuadsToo) {
-  const ClothObject cloth =
+  const model::Cloth cloth =
       cloth_of("size = [0.4, 0.4]\nparticles = 5\npin = [{ high = [0, 0], strength = 10, fade = 0.2 }]\n");
-  const auto shares = shares_of(cloth.pins[0]);
+  const auto shares = shares_of(cloth.pins[0].particles);
   const double s = 1 - 0.1 * std::sqrt(2) / 0.2;
   ASSERT_EQ(shares.size(), 4u);
   EXPECT_NEAR(shares.at(6), s * s * (3 - 2 * s), 1e-12);
@@ -86,7 +87,7 @@ TEST_F(ChosenParticles, HaveTheGreyOfAMaskAsTheirShare) {
   const auto pinned = [&](const std::string& more) {
     return cloth_of("size = [1, 1]\nparticles = 5\npin = [{ mask = '" + mask + "'" + more + " }]\n");
   };
-  const auto soft = shares_of(pinned(", strength = 3").pins[0]);
+  const auto soft = shares_of(pinned(", strength = 3").pins[0].particles);
   ASSERT_EQ(soft.size(), 20u);
   EXPECT_EQ(soft.at(0), 1);
   EXPECT_NEAR(soft.at(1), 0.25 * 1 / 3.0 + 0.75,
@@ -94,7 +95,7 @@ TEST_F(ChosenParticles, HaveTheGreyOfAMaskAsTheirShare) {
   EXPECT_NEAR(soft.at(2), 1 / 3.0, 1e-12);
   EXPECT_FALSE(soft.contains(4));
   const auto held = pinned(", high = [1, 0.5]");
-  EXPECT_EQ(shares_of(held.pins[0]).size(), 6u) << "two columns of three rows: a third is not held";
+  EXPECT_EQ(shares_of(held.pins[0].particles).size(), 6u) << "two columns of three rows: a third is not held";
 }
 
 // A mask is upright: its bottom edge is at low warp.
@@ -104,30 +105,32 @@ TEST_F(ChosenParticles, AreTakenByMasksThatStandUpright) {
   image::write_png(folder_ / "mask.png", picture, {});
   const auto shares = shares_of(cloth_of("size = [1, 1]\nparticles = 3\npin = [{ strength = 1, mask = '" +
                                          (folder_ / "mask.png").string() + "' }]\n")
-                                    .pins[0]);
+                                    .pins[0]
+                                    .particles);
   EXPECT_FALSE(shares.contains(0));
   EXPECT_EQ(shares.at(8), 1);
 }
 
 TEST_F(ChosenParticles, OfMeshesAreTakenByUvsColoursAndGroups) {
   const std::string mask = row_of({255, 0});
-  const ClothObject cloth =
+  const model::Cloth cloth =
       cloth_of(strip_with("pin = [{ mask = '" + mask +
                           "' }, { vertex_color = 'red', strength = 2 }, { vertex_color = 'blue' },\n"
                           "       { vertex_color = 'brightness', strength = 1, low = [0, 1] }]\n"
                           "weight = [{ vertex_color = 'red', mass = 3 }]\n"));
   const auto x_of = [&](Index i) { return cloth.start[static_cast<std::size_t>(i)].x(); };
   const auto y_of = [&](Index i) { return cloth.start[static_cast<std::size_t>(i)].y(); };
-  for (const auto& [particle, fraction] : shares_of(cloth.pins[0])) EXPECT_GE(x_of(particle), 1) << "UVs run against x";
-  const auto red = shares_of(cloth.pins[1]);
+  for (const auto& [particle, fraction] : shares_of(cloth.pins[0].particles))
+    EXPECT_GE(x_of(particle), 1) << "UVs run against x";
+  const auto red = shares_of(cloth.pins[1].particles);
   ASSERT_EQ(red.size(), 4u);
   for (const auto& [particle, fraction] : red) EXPECT_NEAR(fraction, 0.5 * x_of(particle), 1e-6);
-  const auto blue = shares_of(cloth.pins[2]);
+  const auto blue = shares_of(cloth.pins[2].particles);
   ASSERT_EQ(blue.size(), 3u);
   for (const auto& [particle, fraction] : blue) EXPECT_EQ(y_of(particle), 1);
-  for (const auto& [particle, fraction] : shares_of(cloth.pins[3]))
+  for (const auto& [particle, fraction] : shares_of(cloth.pins[3].particles))
     EXPECT_NEAR(fraction, (0.5 * x_of(particle) + 0.25 + 1) / 3, 1e-6);
-  EXPECT_EQ(shares_of(cloth.weights[0]), red);
+  EXPECT_EQ(shares_of(cloth.weights[0].particles), red);
 }
 
 // Front and back lie one behind the other: one picture over both would select particles of the back as well.
@@ -142,18 +145,21 @@ TEST_F(ChosenParticles, OfOnePanelAreTakenInItsOwnFractions) {
     pattern += fmt::format("[[seam]]\na = 'front.{0}'\nb = 'back.{0}'\n", edge);
   support::write_bytes(folder_ / "tube.toml", pattern);
   const std::string tube = "shape = 'pattern'\nedge_length = 0.05\nfile = '" + (folder_ / "tube.toml").string() + "'\n";
-  const ClothObject cloth = cloth_of(tube + "pin = [{ panel = 'front', mask = '" + row_of({255, 0}) +
-                                     "', high = [1, 0.5], strength = 1 }]\n");
+  const Environment environment(support::scene_of_text("[[cloth]]\nname = 'c'\n" + tube +
+                                                       "pin = [{ panel = 'front', mask = '" + row_of({255, 0}) +
+                                                       "', high = [1, 0.5], strength = 1 }]\n"));
+  const model::Cloth& cloth = environment.model.cloths[0];
+  const ClothDetails& details = environment.cloths[0];
   std::map<Index, double> expected;
-  for (std::size_t t = 0; t < cloth.panel_of.size(); ++t)
+  for (std::size_t t = 0; t < details.panel_of.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       // The grey value is 1 up to the middle of the left pixel, and 0 from that of the right one.
-      const Vec2 at = (cloth.paint_uv[t][k] + Vec2(0.2, 0)) / 0.4;
+      const Vec2 at = (details.paint_uv[t][k] + Vec2(0.2, 0)) / 0.4;
       const double fraction = std::clamp(1.5 - 2 * at.x(), 0.0, 1.0);
-      if (cloth.panel_of[t] == 0 && at.y() < 0.5 + 1e-9 && fraction > 0.5 / 255)
+      if (details.panel_of[t] == 0 && at.y() < 0.5 + 1e-9 && fraction > 0.5 / 255)
         expected.emplace(cloth.mesh.topology.triangles[t][k], fraction);
     }
-  const auto shares = shares_of(cloth.pins[0]);
+  const auto shares = shares_of(cloth.pins[0].particles);
   ASSERT_EQ(shares.size(), expected.size());
   ASSERT_GT(expected.size(), 10U);
   for (const auto& [particle, fraction] : expected) EXPECT_NEAR(shares.at(particle), fraction, 1e-9) << particle;

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "environment/rotation.hpp"
 #include "mesh/geometry.hpp"
+#include "motion/rotation.hpp"
 #include "support/mesh_measures.hpp"
 #include "support/scene_runs.hpp"
 
@@ -35,8 +35,8 @@ scene::Scene scene_with(const scene::Shape& shape, scene::UpAxis up = scene::UpA
 
 /// Positions of the vertices of a body at time t.
 std::vector<Vec3> placed(const Environment& environment, double t = 0, std::size_t body = 0) {
-  std::vector<Vec3> positions(environment.bodies[body].mesh.positions.size());
-  environment.place(body, t, positions);
+  std::vector<Vec3> positions(environment.model.bodies[body].mesh.positions.size());
+  environment.model.place(body, t, positions);
   return positions;
 }
 
@@ -55,9 +55,9 @@ TEST(Cloth, IsGradedAsTheSceneSaysWithFractionsToMatch) {
   for (const auto shape : {scene::ClothShape::quads, scene::ClothShape::aligned_triangles}) {
     cloth.shape = shape;
     const Environment environment(scene);
-    const ClothObject& object = environment.cloths[0];
+    const model::Cloth& object = environment.model.cloths[0];
     EXPECT_LT((object.mesh.positions[4] - Vec3(-0.5, 0.6, 0)).norm(), kRounding);
-    EXPECT_LT((object.fractions[4] - Vec2(1.0 / 3, 0.8)).norm(), kRounding);
+    EXPECT_LT((environment.cloths[0].fractions[4] - Vec2(1.0 / 3, 0.8)).norm(), kRounding);
     const bool quads = shape == scene::ClothShape::quads;
     EXPECT_NEAR(object.spacing, quads ? 0.4 : std::sqrt(2) * 0.4 / std::hypot(1, 0.4), kRounding);
   }
@@ -71,13 +71,13 @@ TEST(Cloth, LiesInThePlaneOfItsPoseWithWeftAlongXAndWarpAlongY) {
   cloth.size = {2, 3};
   cloth.particles_weft = 5;
   cloth.particles_warp = 7;
-  cloth.pose = {{10, 20, 30}, about({1, 0, 0}, 90 * kDegree)};  // y is turned upward
+  cloth.pose = {{10, 20, 30}, motion::about({1, 0, 0}, 90 * kDegree)};  // y is turned upward
   cloth.velocity = {1, 2, 3};
   // Only the pose orients cloth; the up axis does not.
   for (const auto up : {scene::UpAxis::z, scene::UpAxis::y}) {
     scene.up = up;
     const Environment environment(scene);
-    const ClothObject& object = environment.cloths.at(0);
+    const model::Cloth& object = environment.model.cloths.at(0);
     EXPECT_EQ(object.name, "sheet");
     EXPECT_EQ(object.grid.lu, 0.5);
     EXPECT_EQ(object.grid.lv, 0.5);
@@ -103,9 +103,9 @@ TEST(Shapes, TurnTheirAxisUpWhereYIsUp) {
   EXPECT_LT((bounds_of(z_up).sizes() - Vec3(1, 1, 3)).norm(), kRounding);
   EXPECT_LT((bounds_of(y_up).sizes() - Vec3(1, 3, 1)).norm(), kRounding);
   // The tip is the only vertex at the top.
-  const auto& body = y_up.bodies[0].mesh.positions;
+  const auto& body = y_up.model.bodies[0].mesh.positions;
   EXPECT_EQ(std::count_if(body.begin(), body.end(), [](const Vec3& x) { return x.y() > 1.499; }), 1);
-  EXPECT_GT(support::enclosed_volume(y_up.bodies[0].mesh.topology.triangles, body), 0);
+  EXPECT_GT(support::enclosed_volume(y_up.model.bodies[0].mesh.topology.triangles, body), 0);
 }
 
 TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {
@@ -129,11 +129,11 @@ TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {
       scene.obstacles.back().segments = 16;
     }
     const Environment environment(scene);
-    ASSERT_EQ(environment.bodies.size(), cases.size());
+    ASSERT_EQ(environment.model.bodies.size(), cases.size());
     for (std::size_t k = 0; k < cases.size(); ++k) {
       const Vec3& expected = up == scene::UpAxis::z ? cases[k].z_up : cases[k].y_up;
       EXPECT_LT((bounds_of(environment, 0, k).sizes() - expected).norm(), kRounding) << k;
-      EXPECT_EQ(environment.bodies[k].infinite_floor, k == 5);
+      EXPECT_EQ(environment.model.bodies[k].infinite_floor, k == 5);
     }
   }
 }
@@ -147,7 +147,7 @@ TEST(HalfPipe, OpensAgainstGravityWhicheverAxisIsUp) {
 TEST(Plane, FacesUpAndIsNoFloorToTheHorizonIfFinite) {
   for (const auto up : {scene::UpAxis::z, scene::UpAxis::y}) {
     const Environment environment(scene_with(scene::Plane{.size = {2, 2}, .infinite = false}, up));
-    const BodyObject& plane = environment.bodies[0];
+    const model::Body& plane = environment.model.bodies[0];
     EXPECT_FALSE(plane.infinite_floor);
     const Vec3 normal = up == scene::UpAxis::z ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
     for (const auto& t : plane.mesh.topology.triangles)
@@ -157,11 +157,11 @@ TEST(Plane, FacesUpAndIsNoFloorToTheHorizonIfFinite) {
 
 TEST(Obstacle, AtRestStandsAtItsPoseForAllTimes) {
   scene::Scene scene = scene_with(scene::BoxShape{.size = {2, 4, 6}, .bevel = 0});
-  scene.obstacles[0].pose = {{1, 2, 3}, about({0, 0, 1}, 90 * kDegree)};
+  scene.obstacles[0].pose = {{1, 2, 3}, motion::about({0, 0, 1}, 90 * kDegree)};
   scene.obstacles[0].collide = false;
   const Environment environment(scene);
-  EXPECT_FALSE(environment.bodies[0].moving);
-  EXPECT_FALSE(environment.bodies[0].collide);
+  EXPECT_FALSE(environment.model.bodies[0].moving);
+  EXPECT_FALSE(environment.model.bodies[0].collide);
   for (const double t : {0.0, 5.0}) {
     EXPECT_LT((bounds_of(environment, t).min() - Vec3(-1, 1, 0)).norm(), kRounding);
     EXPECT_LT((bounds_of(environment, t).max() - Vec3(3, 3, 6)).norm(), kRounding);
@@ -172,18 +172,19 @@ TEST(Obstacle, AtRestStandsAtItsPoseForAllTimes) {
 TEST(Body, IsPassedThroughWhereAPartIsLeftOut) {
   const auto man_with = [](const std::string& more) {
     return Environment(
-               support::scene_of_text("[[character]]\nname = 'man'\nsource = 'mannequin'\nedge_length = 0.05\n" + more))
-        .bodies[0];
+        support::scene_of_text("[[character]]\nname = 'man'\nsource = 'mannequin'\nedge_length = 0.05\n" + more));
   };
-  EXPECT_TRUE(man_with("").passed_through.empty());
-  const BodyObject man = man_with("part = [{ name = 'hands', collide = false }]\n");
+  EXPECT_TRUE(man_with("").bodies[0].passed_through.empty());
+  const Environment with_man = man_with("part = [{ name = 'hands', collide = false }]\n");
+  const model::Body& man = with_man.model.bodies[0];
+  const BodyDetails& details = with_man.bodies[0];
   const auto& triangles = man.mesh.topology.triangles;
-  ASSERT_EQ(man.passed_through.size(), triangles.size());
+  ASSERT_EQ(details.passed_through.size(), triangles.size());
   std::size_t colliding_on_hand = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto& hand = man.parts[0].vertices;
+    const auto& hand = details.parts[0].vertices;
     const bool of_a_hand = hand[triangles[t][0]] + hand[triangles[t][1]] + hand[triangles[t][2]] >= 2;
-    EXPECT_EQ(man.passed_through[t] != 0, of_a_hand);
+    EXPECT_EQ(details.passed_through[t] != 0, of_a_hand);
     if (of_a_hand) continue;
     ASSERT_LT(colliding_on_hand, man.colliding.size());
     EXPECT_EQ(man.colliding[colliding_on_hand++], triangles[t]);
@@ -196,19 +197,19 @@ scene::Scene scene_with_tumbling_torus() {
   scene::Scene scene = scene_with(scene::Torus{});
   scene.obstacles[0].segments = 12;
   scene.obstacles[0].motion.keys = {{0, {{0, 0, 1}, Quat::Identity()}},
-                                    {0.5, {{1, 0, 2}, about({1, 1, 0}, 1.5)}},
-                                    {2, {{1, 3, 0}, about({0, 1, 1}, -1)}}};
+                                    {0.5, {{1, 0, 2}, motion::about({1, 1, 0}, 1.5)}},
+                                    {2, {{1, 3, 0}, motion::about({0, 1, 1}, -1)}}};
   return scene;
 }
 
 TEST(Obstacle, InMotionIsElsewhereAtAnotherTimeAndKeepsItsShapeAndFollowsItsPose) {
   const Environment environment(scene_with_tumbling_torus());
-  ASSERT_TRUE(environment.bodies[0].moving);
+  ASSERT_TRUE(environment.model.bodies[0].moving);
   EXPECT_NE(placed(environment, 1), placed(environment, 0));
-  const std::vector<Vec3>& torus = environment.bodies[0].mesh.positions;
+  const std::vector<Vec3>& torus = environment.model.bodies[0].mesh.positions;
   for (const double t : {0.2, 0.5, 1.7, 9.0}) {
     const std::vector<Vec3> x = placed(environment, t);
-    const PoseSample pose = environment.pose(0, t);
+    const motion::PoseSample pose = environment.model.pose(0, t);
     for (std::size_t i = 0; i < x.size(); ++i)
       EXPECT_LT((x[i] - (pose.position + pose.rotation * torus[i])).norm(), kRounding);
   }
@@ -220,7 +221,7 @@ TEST(Obstacle, InMotionHasTheVelocityAndAccelerationOfEachVertex) {
   for (const double t : {0.25, 1.1}) {
     const std::vector<Vec3> before = placed(environment, t - h), now = placed(environment, t),
                             after = placed(environment, t + h);
-    const PoseSample pose = environment.pose(0, t);
+    const motion::PoseSample pose = environment.model.pose(0, t);
     for (std::size_t i = 0; i < before.size(); ++i) {
       const Vec3 arm = now[i] - pose.position;
       const Vec3 velocity = (after[i] - before[i]) / (2 * h);

@@ -6,13 +6,13 @@
 #include <algorithm>
 
 #include "environment/environment.hpp"
-#include "environment/rotation.hpp"
+#include "motion/rotation.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::environment {
 namespace {
 
-constexpr double kRounding = 1e-13;  // a few rounding errors of coordinates of some metres
+constexpr double kPlaceRounding = 1e-13;  // a few rounding errors of coordinates of some metres
 
 /// An arm rises and turns about z by a quarter in a second, a hand slides along it, and the hand holds a ring.
 const char* const kRobot = R"(
@@ -38,28 +38,30 @@ keys = [{ time = 0, position = [2, 0, 0] }, { time = 1, position = [2.5, 0, 0], 
 
 TEST(Parent, LeavesWhatFollowsWhereItsOwnPoseSaysUntilItMoves) {
   const Environment environment(support::scene_of_text(kRobot));
-  const PoseSample ring = environment.pose(0, 0), hand = environment.pose(2, 0);
-  EXPECT_LT((ring.position - Vec3(3, 0, 1)).norm(), kRounding);
-  EXPECT_LT((hand.position - Vec3(2, 0, 0)).norm(), kRounding);
-  EXPECT_LT(ring.rotation.angularDistance(Quat::Identity()), kRounding);
-  for (const BodyObject& body : environment.bodies) EXPECT_TRUE(body.moving) << body.name;
+  const motion::PoseSample ring = environment.model.pose(0, 0), hand = environment.model.pose(2, 0);
+  EXPECT_LT((ring.position - Vec3(3, 0, 1)).norm(), kPlaceRounding);
+  EXPECT_LT((hand.position - Vec3(2, 0, 0)).norm(), kPlaceRounding);
+  EXPECT_LT(ring.rotation.angularDistance(Quat::Identity()), kPlaceRounding);
+  for (const model::Body& body : environment.model.bodies) EXPECT_TRUE(body.moving) << body.name;
 }
 
 TEST(Parent, CarriesTheOwnMotionOfWhatFollowsThroughAChain) {
   const Environment environment(support::scene_of_text(kRobot));
   // The hand slid 1.5 m along the arm, which now points to +y, and turned about the arm.
-  const PoseSample hand = environment.pose(2, 1);
-  EXPECT_LT((hand.position - Vec3(1, 1.5, 2)).norm(), kRounding);
-  EXPECT_LT(hand.rotation.angularDistance(about({0, 0, 1}, 90 * kDegree) * about({1, 0, 0}, 90 * kDegree)), 1e-7);
+  const motion::PoseSample hand = environment.model.pose(2, 1);
+  EXPECT_LT((hand.position - Vec3(1, 1.5, 2)).norm(), kPlaceRounding);
+  EXPECT_LT(
+      hand.rotation.angularDistance(motion::about({0, 0, 1}, 90 * kDegree) * motion::about({1, 0, 0}, 90 * kDegree)),
+      1e-7);
   // At t = 0 the ring is at the hand + (1, 0, 1). At t = 1 the rotation of the hand maps +x to +y and +z to +x.
-  const PoseSample ring = environment.pose(0, 1);
+  const motion::PoseSample ring = environment.model.pose(0, 1);
   EXPECT_LT((hand.rotation * Vec3(0, 0, 1) - Vec3(1, 0, 0)).norm(), 1e-7);
   EXPECT_LT((ring.position - Vec3(2, 2.5, 2)).norm(), 1e-7);
-  std::vector<Vec3> placed(environment.bodies[0].mesh.positions.size());
-  environment.place(0, 1, placed);
+  std::vector<Vec3> placed(environment.model.bodies[0].mesh.positions.size());
+  environment.model.place(0, 1, placed);
   for (std::size_t i = 0; i < placed.size(); ++i)
-    EXPECT_LT((placed[i] - (ring.position + ring.rotation * environment.bodies[0].mesh.positions[i])).norm(),
-              kRounding);
+    EXPECT_LT((placed[i] - (ring.position + ring.rotation * environment.model.bodies[0].mesh.positions[i])).norm(),
+              kPlaceRounding);
 }
 
 TEST(Parent, GivesExactDerivatives) {
@@ -67,11 +69,11 @@ TEST(Parent, GivesExactDerivatives) {
   const double h = 1e-4;
   const Vec3 arm(0.3, -0.2, 0.5);
   const auto place = [&](double t) -> Vec3 {
-    const PoseSample pose = environment.pose(0, t);
+    const motion::PoseSample pose = environment.model.pose(0, t);
     return pose.position + pose.rotation * arm;
   };
   for (const double t : {0.25, 0.8}) {
-    const PoseSample pose = environment.pose(0, t);
+    const motion::PoseSample pose = environment.model.pose(0, t);
     const Vec3 before = place(t - h), now = place(t), after = place(t + h), lever = now - pose.position;
     // Tolerances as in Obstacle.InMotionHasTheVelocityAndAccelerationOfEachVertex.
     EXPECT_LT((pose.velocity_at(lever) - (after - before) / (2 * h)).norm(), 1e-6);
@@ -81,12 +83,13 @@ TEST(Parent, GivesExactDerivatives) {
 
 TEST(Parent, ThatAnotherProgramMovesTakesWhatFollowsAlong) {
   Environment environment(support::scene_of_text(kRobot));
-  const Quat half = about({0, 0, 1}, 180 * kDegree);
-  environment.set_motion(1, {scene::Interpolation::linear, {{0, {{1, 0, 0}}}, {1, {{0, 0, 0}, half}}}});
+  const Quat half = motion::about({0, 0, 1}, 180 * kDegree);
+  environment.model.set_motion(1, {scene::Interpolation::linear, {{0, {{1, 0, 0}}}, {1, {{0, 0, 0}, half}}}});
   // The hand is 1.5 m from the middle of the arm, which now points to -x.
-  EXPECT_LT((environment.pose(2, 1).position - Vec3(-1.5, 0, 0)).norm(), kRounding);
-  environment.set_motion(2, {scene::Interpolation::linear, {{0, {{2, 0, 0}}}, {1, {{7, 0, 0}}}}});
-  EXPECT_LT((environment.pose(2, 1).position - Vec3(7, 0, 0)).norm(), kRounding) << "it follows nothing any more";
+  EXPECT_LT((environment.model.pose(2, 1).position - Vec3(-1.5, 0, 0)).norm(), kPlaceRounding);
+  environment.model.set_motion(2, {scene::Interpolation::linear, {{0, {{2, 0, 0}}}, {1, {{7, 0, 0}}}}});
+  EXPECT_LT((environment.model.pose(2, 1).position - Vec3(7, 0, 0)).norm(), kPlaceRounding)
+      << "it follows nothing any more";
 }
 
 TEST(Parent, StartsWithThePreroll) {
@@ -94,8 +97,8 @@ TEST(Parent, StartsWithThePreroll) {
   scene.time.preroll = 1;
   for (scene::PoseKey& key : scene.obstacles[1].motion.keys) key.time -= 1;
   const Environment environment(scene);
-  EXPECT_LT((environment.pose(2, -1).position - Vec3(2, 0, 0)).norm(), kRounding);
-  EXPECT_LT((environment.pose(2, 0).position - Vec3(1, 1, 2)).norm(), kRounding);
+  EXPECT_LT((environment.model.pose(2, -1).position - Vec3(2, 0, 0)).norm(), kPlaceRounding);
+  EXPECT_LT((environment.model.pose(2, 0).position - Vec3(1, 1, 2)).norm(), kPlaceRounding);
 }
 
 TEST(Parent, ThatIsAPartOfACharacterCarriesAsAPinOnItIs) {
@@ -117,24 +120,25 @@ height = 0.2
 position = [0, 0, 1.85]
 follow = "man.head"
 )"));
-  ASSERT_TRUE(environment.bodies[0].moving);
-  EXPECT_LT((environment.pose(0, 0).position - Vec3(0, 0, 1.85)).norm(), 1e-9);
+  ASSERT_TRUE(environment.model.bodies[0].moving);
+  EXPECT_LT((environment.model.pose(0, 0).position - Vec3(0, 0, 1.85)).norm(), 1e-9);
   const auto& parts = environment.bodies[1].parts;
   ASSERT_EQ(std::ranges::count(parts, "head", &Part::name), 1);
   // Its highest vertex is the top of the head.
-  const std::vector<Vec3>& skin = environment.bodies[1].mesh.positions;
+  const std::vector<Vec3>& skin = environment.model.bodies[1].mesh.positions;
   const auto top =
       static_cast<std::size_t>(std::ranges::max_element(skin, {}, [](const Vec3& x) { return x.z(); }) - skin.begin());
   const auto seen_from_hat = [&](double t) -> Vec3 {
-    const PoseSample hat = environment.pose(0, t);
-    return hat.rotation.conjugate() * (environment.vertex(1, top, t).position - hat.position);
+    const motion::PoseSample hat = environment.model.pose(0, t);
+    return hat.rotation.conjugate() * (environment.model.vertex(1, top, t).position - hat.position);
   };
   const Vec3 start = seen_from_hat(0);
   double max_change = 0, max_displacement = 0;
   for (int k = 0; k <= 100; ++k) {
     max_change = std::max(max_change, (seen_from_hat(0.02 * k) - start).norm());
     max_displacement =
-        std::max(max_displacement, (environment.pose(0, 0.02 * k).position - environment.pose(0, 0).position).norm());
+        std::max(max_displacement,
+                 (environment.model.pose(0, 0.02 * k).position - environment.model.pose(0, 0).position).norm());
   }
   EXPECT_GT(max_displacement, 0.5);
   EXPECT_LT(max_change, 1e-3);

@@ -60,7 +60,7 @@ TEST_F(SameFile, GivesAClothWhatTheBodyThenHasNotWhereTheBodyHadIt) {
     scene_.cloths.push_back(cloth);
     EXPECT_EQ(make().mesh.positions.size(), 5u);
     Wearers wearers(scene_);
-    const ClothObject dress = make_cloth(scene_, cloth, wearers);
+    const model::Cloth dress = make_cloth(scene_, cloth, wearers).cloth;
     ASSERT_EQ(dress.start.size(), 3u);
     for (const Vec3& x : dress.start)
       EXPECT_TRUE(std::ranges::any_of(whole, [&](const Vec3& y) { return (x - y).norm() < kSingle; })) << x.transpose();

@@ -27,8 +27,8 @@ TEST(Start, ScaleStretchesAlongWeftAndWarpAboutTheMiddleAndLeavesTheRestShape) {
   scene::Scene scene = turned_sheet();
   scene.cloths[0].start_scale = {3, 0.25};
   const Environment scaled(scene);
-  EXPECT_EQ(scaled.cloths[0].mesh.positions, at_rest.cloths[0].mesh.positions);
-  const auto& x = scaled.cloths[0].start;
+  EXPECT_EQ(scaled.model.cloths[0].mesh.positions, at_rest.model.cloths[0].mesh.positions);
+  const auto& x = scaled.model.cloths[0].start;
   EXPECT_NEAR((x[4] - x[0]).norm(), 3 * 1, 1e-12);
   EXPECT_NEAR((x[40] - x[0]).norm(), 0.25 * 2, 1e-12);
   EXPECT_LT((x[22] - Vec3(1, 2, 3)).norm(), 1e-12);  // the middle
@@ -39,8 +39,8 @@ TEST(Start, NoiseIsBoundedDifferentForEachParticleAndTheSameInEveryRun) {
   const Environment at_rest(scene);
   scene.cloths[0].start_noise = 0.01;
   const Environment shaken(scene), again(scene);
-  const auto &x = shaken.cloths[0].start, &rest = at_rest.cloths[0].start;
-  EXPECT_EQ(x, again.cloths[0].start);
+  const auto &x = shaken.model.cloths[0].start, &rest = at_rest.model.cloths[0].start;
+  EXPECT_EQ(x, again.model.cloths[0].start);
   std::set<double> offsets;
   double most = 0;
   for (std::size_t i = 0; i < x.size(); ++i)

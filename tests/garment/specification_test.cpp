@@ -158,7 +158,7 @@ TEST_F(Specification, IsSewnAroundTheWearer) {
   const auto spans = [&] {
     const environment::Environment made(scene);
     Box3 box;
-    for (const Vec3& x : made.cloths[0].start) box.extend(x);
+    for (const Vec3& x : made.model.cloths[0].start) box.extend(x);
     return box;
   };
   // The hem is 40 cm above the floor and curved by 3 cm; joining the panels moves it a little more.
@@ -202,7 +202,7 @@ TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
       "[[character]]\nname = 'model'\nsource = 'mannequin'\nstance = 'rest'\nblend = 1\nedge_length = 0.05\n"
       "[[cloth]]\nname = 'skirt'\nshape = 'pattern'\nfile = '" +
       (folder_ / "a_specification.json").string() + "'\nedge_length = 0.04\n"));
-  const environment::ClothObject& cloth = made.cloths[0];
+  const model::Cloth& cloth = made.model.cloths[0];
   const std::vector<mesh::Triangle>& triangles = cloth.mesh.topology.triangles;
   double flap_last = -1, front_first = 1;
   Vec3 flap_faces(0, 0, 0), front_faces(0, 0, 0);
@@ -211,7 +211,7 @@ TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
     for (std::size_t k = 0; k < 3; ++k) x[k] = cloth.start[static_cast<std::size_t>(triangles[t][k])];
     const Vec3 middle = (x[0] + x[1] + x[2]) / 3;
     if (std::abs(middle.x()) > 0.1 || middle.z() < 0.77 || middle.z() > 0.85 || middle.y() > 0) continue;
-    const std::string& panel = cloth.panels[static_cast<std::size_t>(cloth.panel_of[t])];
+    const std::string& panel = made.cloths[0].panels[static_cast<std::size_t>(made.cloths[0].panel_of[t])];
     (panel == "flap" ? flap_faces : front_faces) += (x[1] - x[0]).cross(x[2] - x[0]);
     if (panel == "flap")
       flap_last = std::max(flap_last, middle.y());

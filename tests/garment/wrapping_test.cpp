@@ -227,8 +227,8 @@ TEST(ShippedPatterns, StartOnTheMannequinWithoutIntersections) {
     ASSERT_TRUE(loaded.ok()) << loaded.describe();
     const environment::Environment environment(loaded.scene);
     std::vector<support::JudgedObject> objects;
-    const environment::ClothObject& cloth = environment.cloths[0];
-    const mesh::Mesh& body = environment.bodies.back().mesh;
+    const model::Cloth& cloth = environment.model.cloths[0];
+    const mesh::Mesh& body = environment.model.bodies.back().mesh;
     objects.push_back({"cloth", true, cloth.start, cloth.sheet.triangles});
     objects.push_back({"body", false, body.positions, body.topology.triangles});
     EXPECT_TRUE(support::judge(objects).pairs.empty()) << name;

@@ -70,10 +70,10 @@ TEST(LibraryScene, ChangesAddUp) {
 }
 
 TEST(LibrarySimulation, HasTheBitsOfTheProgram) {
-  simulation::Simulation reference(support::scene_of_text(kDrape));
+  production::SceneSimulation reference(support::scene_of_text(kDrape));
   Simulation simulation(Scene::parse(kDrape));
   for (int k = 1; k <= 10; ++k) {
-    const frame::FrameReport report = reference.advance();
+    const simulation::FrameReport report = reference.advance();
     const Frame& frame = simulation.advance();
     const Object& sheet = frame.object("sheet");
     const auto state = reference.state();

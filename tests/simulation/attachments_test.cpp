@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
-#include "simulation/simulation.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {
@@ -30,7 +30,7 @@ struct Hanging {
   std::vector<double> lowest;  // [m]
 };
 Hanging hang_up(const scene::Scene& scene) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   Hanging result;
   for (int frame = 1; frame < scene.frame_count(); ++frame) {
     result.reports.push_back(simulation.advance());
@@ -43,7 +43,7 @@ constexpr double kWeight = 0.2 * 0.15 * 9.81;  // [N]
 
 TEST(Attachments, BearTheWeightThatHangsOnThem) {
   const Hanging hanging = hang_up(towel("stiffness = 500\n"));
-  const frame::AttachmentLoad& peg = hanging.reports.back().attachments.at(0);
+  const simulation::AttachmentLoad& peg = hanging.reports.back().attachments.at(0);
   EXPECT_EQ(peg.name, "peg");
   EXPECT_TRUE(peg.holds);
   EXPECT_NEAR(peg.load / kWeight, 1, 0.01);
@@ -81,7 +81,7 @@ TEST(Attachments, DrawTheirEndsTogetherToALength) {
   scene::Scene scene = towel("length = 0\nstiffness = 500\n");
   scene.physics.gravity.setZero();
   scene.cloths[0].pose.position.z() = 0.75;  // 0.07 m below the rail
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int frame = 0; frame < 25; ++frame) simulation.advance();
   double highest = 0;
   for (const Vec3& x : testing::sheet_of(simulation.snapshot())) highest = std::max(highest, x.z());
@@ -112,7 +112,7 @@ TEST(Attachments, WarnOnceIfTheyPullFasterThanClothCanFollowWhateverTheStep) {
 }
 
 TEST(Attachments, FollowTheirBody) {
-  Simulation simulation(
+  production::SceneSimulation simulation(
       towel("release = 0\n",
             "[[obstacle]]\nname = \"lift\"\nshape = \"sphere\"\nradius = 0.02\ninterpolation = \"linear\"\nkeys = [{ "
             "time = 0, position = [0, 0, 1] }, { time = 0.5, position = [0, 0, 1.2] }]\n[[attach]]\nname = "
@@ -126,7 +126,7 @@ TEST(Attachments, FollowTheirBody) {
 // The program does not measure the work of a lifting body. Without contact, the energy check must recognise from the
 // body's motion that energy comes in.
 TEST(Attachments, ToABodyThatLiftsAreNoEnergyWithoutASource) {
-  Simulation simulation(towel(
+  production::SceneSimulation simulation(towel(
       "release = 0\n",
       "[[obstacle]]\nname = \"lift\"\nshape = \"sphere\"\nradius = 0.02\ncollide = false\nkeys = [{ time = 0, position "
       "= [0, 0, 1] }, { time = 0.5, position = [0, 0, 3] }]\n[[attach]]\nname = \"hook\"\ncloth = \"towel\"\nto = "
@@ -139,7 +139,7 @@ TEST(Attachments, StoreEnergyThatIsReported) {
   scene::Scene scene = towel("length = 0\nstiffness = 1\n");
   scene.cloths[0].pose.position.z() = 0.75;  // 0.07 m below the rail
   scene.cloths[0].velocity = Vec3(0, 0, -1);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   // Eleven springs of 1 N/m, of which the two at the ends count half: 10 N/m. After a frame of 0.04 s they are 0.09 to
   // 0.11 m long.
   const double energy = simulation.advance().elastic_energy;
@@ -156,7 +156,7 @@ constexpr const char* kButton =
     "[[attach]]\nname = \"button\"\ncloth = \"upper\"\nto = \"lower\"\nlow = [0, 0]\nhigh = [0, 0]\nstiffness = 2000\n";
 
 TEST(Attachments, BetweenClothsKeepTheirMomentumAndTheirDistance) {
-  Simulation simulation(support::scene_of_text(kButton));
+  production::SceneSimulation simulation(support::scene_of_text(kButton));
   const auto momentum = [&] {
     const ParticleState state = simulation.state();
     Vec3 sum = Vec3::Zero();
@@ -180,11 +180,11 @@ TEST(Attachments, BetweenClothsKeepTheirMomentumAndTheirDistance) {
 
 TEST(Attachments, HaveForcesThatAreDerivativesOfTheirEnergyAndTermsThatAreOfTheirForces) {
   const scene::Scene scene = support::scene_of_text(kButton);
-  const environment::Environment environment(scene);
+  const model::Model model = environment::Environment(scene).model;
   const std::vector<Index> first{0, 36};
-  Attachments attachments(scene, environment, first, std::vector<Index>(environment.bodies.size(), -1));
-  std::vector<Vec3> x = environment.cloths[0].start;
-  x.insert(x.end(), environment.cloths[1].start.begin(), environment.cloths[1].start.end());
+  Attachments attachments(model, first, std::vector<Index>(model.bodies.size(), -1));
+  std::vector<Vec3> x = model.cloths[0].start;
+  x.insert(x.end(), model.cloths[1].start.begin(), model.cloths[1].start.end());
   attachments.begin_step(0, 0.01, x, std::vector<double>(x.size(), 0.001));
   for (std::size_t i = 0; i < x.size(); ++i)
     x[i] += 0.004 * Vec3(std::sin(3.0 * i), std::sin(5.0 * i), std::sin(7.0 * i));

@@ -25,26 +25,25 @@ scene::Scene sheet_over_a_ball() {
 
 class CollisionStages : public ::testing::Test {
  protected:
-  CollisionStages() : environment_(sheet_over_a_ball()), cloth_(sheet_over_a_ball(), environment_) {
-    now_.x = environment_.cloths[0].start;
+  CollisionStages() : model_(environment::Environment(sheet_over_a_ball()).model), cloth_(model_) {
+    now_.x = model_.cloths[0].start;
     now_.v.assign(25, Vec3(0.1, 0.2, 0.3));
     now_.bodies_time = 0.2;
-    stage_.emplace(sheet_over_a_ball(), environment_, cloth_, now_);
+    stage_.emplace(model_, cloth_, now_);
     next_ = now_;
   }
 
   /// Positions of floor and ball at time t, in the order in which they follow the particles.
   std::vector<Vec3> bodies_at(double t) const {
-    std::vector<Vec3> floor(environment_.bodies[0].mesh.positions.size()),
-        ball(environment_.bodies[1].mesh.positions.size());
-    environment_.place(0, t, floor);
-    environment_.place(1, t, ball);
+    std::vector<Vec3> floor(model_.bodies[0].mesh.positions.size()), ball(model_.bodies[1].mesh.positions.size());
+    model_.place(0, t, floor);
+    model_.place(1, t, ball);
     floor.insert(floor.end(), ball.begin(), ball.end());
     return floor;
   }
   static std::vector<Vec3> bodies_of(const SystemState& moment) { return {moment.x.begin() + 25, moment.x.end()}; }
 
-  environment::Environment environment_;
+  model::Model model_;
   ClothSystem cloth_;
   SystemState now_, next_;
   std::optional<CollisionStage> stage_;
@@ -57,7 +56,7 @@ TEST_F(CollisionStages, PlaceBodiesBehindTheParticlesForBothEndsOfAStep) {
   EXPECT_EQ(bodies_of(next_), bodies_at(0.2 + 0.01));
   EXPECT_NE(bodies_of(now_), bodies_of(next_));
   for (std::size_t i = 0; i < 25; ++i) {
-    EXPECT_EQ(now_.x[i], environment_.cloths[0].start[i]);
+    EXPECT_EQ(now_.x[i], model_.cloths[0].start[i]);
     EXPECT_EQ(next_.x[i], now_.x[i] + 0.01 * now_.v[i]);  // the prediction
   }
 }

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "environment/environment.hpp"
+#include "production/scene_simulation.hpp"
 #include "scene/loader.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
@@ -31,7 +33,7 @@ scene::Scene runaway() {
 }
 
 /// Advances, by at most 100 frames, until the simulation refuses; returns its message.
-std::string refusal(Simulation& simulation) {
+std::string refusal(production::SceneSimulation& simulation) {
   for (int k = 0; k < 100; ++k) {
     const int before = simulation.snapshot()->frame;
     try {
@@ -46,7 +48,7 @@ std::string refusal(Simulation& simulation) {
 }
 
 TEST(EnergyBound, RunawayOfTheMidpointRuleIsRefusedByName) {
-  Simulation simulation(runaway());
+  production::SceneSimulation simulation(runaway());
   const std::string words = refusal(simulation);
   EXPECT_NE(words.find("more than at the start"), std::string::npos) << words;
   EXPECT_NE(words.find("bdf2"), std::string::npos) << words;
@@ -56,7 +58,7 @@ TEST(EnergyBound, OtherMethodsPass) {
   for (auto integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2}) {
     scene::Scene scene = runaway();
     scene.time.integrator = integrator;
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     EXPECT_EQ(refusal(simulation), "");
   }
 }
@@ -67,7 +69,7 @@ TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
   scene::Pin pin;
   pin.motion.keys = {{0, {}}, {1, {{3, 0, 0}, Quat::Identity()}}};
   scene.cloths[0].pins.push_back(pin);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   FrameReport report;
   for (int k = 0; k < 10; ++k) report = simulation.advance();
   EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: its pin moves by 3 m in a second
@@ -105,7 +107,7 @@ scene::Scene shaken(scene::Integrator integrator, double step, const Vec3& ampli
 // Without the check, such a run gains 3e15 J in 246 frames (measured).
 TEST(EnergyBound, RunawayOfAShakenStripIsRefused) {
   for (const Vec3& amplitude : {Vec3(0, 0.02, 0), Vec3(0.01, 0, 0.005), Vec3(0, 0.1, 0)}) {
-    Simulation simulation(shaken(scene::Integrator::implicit_midpoint, 0.04, amplitude));
+    production::SceneSimulation simulation(shaken(scene::Integrator::implicit_midpoint, 0.04, amplitude));
     const std::string words = refusal(simulation);
     EXPECT_NE(words.find("by the work of its pins"), std::string::npos) << amplitude.transpose() << ": " << words;
     EXPECT_LT(simulation.initial_report().kinetic_energy, 1);
@@ -119,7 +121,7 @@ TEST(EnergyBound, WorkOfPinsClosesTheBudget) {
     for (const Vec3& amplitude : {Vec3(0, 0.1, 0), Vec3(0.05, 0, 0.1)}) {
       scene::Scene scene = shaken(integrator, 0.002, amplitude);
       scene.solver.newton_tolerance = 1e-3;
-      Simulation simulation(scene);
+      production::SceneSimulation simulation(scene);
       const FrameReport start = simulation.initial_report();
       const auto all = [](const FrameReport& r) { return r.kinetic_energy + r.potential_energy + r.elastic_energy; };
       double work = 0, max_work = 0;
@@ -149,7 +151,7 @@ TEST(EnergyBound, RoundingIsNoEnergy) {
       scene.time.integrator = integrator;
       scene::Cloth& cloth = scene.cloths[0];
       hang(cloth, 1e6, 1e5, 1e-4);
-      Simulation simulation(scene);
+      production::SceneSimulation simulation(scene);
       for (int k = 0; k < 44; ++k) {
         const FrameReport report = simulation.advance();
         ASSERT_TRUE(report.warnings.empty()) << report.warnings.front();
@@ -174,7 +176,7 @@ TEST(EnergyBound, MotionThatTheSolverHoldsBackIsWarnedOf) {
     left.low = left.high = {0, 0};
     right.low = right.high = {1, 0};
     cloth.pins = {left, right};
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     std::vector<std::string> warnings;
     for (int k = 0; k < 12; ++k) std::ranges::copy(simulation.advance().warnings, std::back_inserter(warnings));
     return warnings;
@@ -195,7 +197,7 @@ TEST(EnergyBound, ContactBringsNone) {
     scene.contact.self = scene.contact.obstacles = true;
     scene.obstacles.push_back(testing::obstacle("ball", scene::Sphere{0.2}, {0, 0, 0.2}));
     scene.cloths[0].pose.position += Vec3(0.003, 0.002, 0);
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     const double start = simulation.initial_report().potential_energy;
     for (int k = 0; k < 25; ++k) {
       const FrameReport& now = simulation.advance();
@@ -207,7 +209,7 @@ TEST(EnergyBound, ContactBringsNone) {
 
 /// Maximum gain of mechanical energy since the start, relative to the energy in play; 1 if the run ended.
 double largest_gain(const scene::Scene& scene, int frames) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const FrameReport start = simulation.initial_report();
   double gain = 0, low = start.potential_energy, high = low;
   for (int k = 0; k < frames; ++k) {
@@ -287,7 +289,7 @@ TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
   constexpr double kCounts = 0.15;  // [s]
   for (const scene::Shape& shape :
        {scene::Shape(scene::BoxShape{{0.3, 0.3, 0.3}}), scene::Shape(scene::Cone{0.3, 0.3})}) {
-    Simulation simulation(falls_on(shape, 10, 0.01));
+    production::SceneSimulation simulation(falls_on(shape, 10, 0.01));
     double solver = 0, steps = 0;
     for (int frame = 1; frame <= 10; ++frame) {
       double fastest = 0;
@@ -313,7 +315,7 @@ scene::Scene on_a_blade() {
 
 // If the sheet were only pushed out after the solve, its threads would store 0.18 J, from a fall of 0.068 J.
 TEST(EnergyBound, WhatWouldPassAnEdgeIsSolvedWithTheContactsOfThatPlace) {
-  Simulation simulation(on_a_blade());
+  production::SceneSimulation simulation(on_a_blade());
   const FrameReport start = simulation.initial_report();
   double most_elastic = 0, fall = 0;
   for (int k = 0; k < 8; ++k) {
@@ -354,7 +356,8 @@ TEST(EnergyBound, EnergyThatContactBringsToAMethodThatDampsIsWarnedOfOnce) {
     report.elastic_energy = 0.5 + gained;
     return report;
   };
-  EnergyBound bound(on_a_blade(), 0.05, {}), resumed(on_a_blade(), 0.05, {});
+  const model::Model model = environment::Environment(on_a_blade()).model;
+  EnergyBound bound(model, 0.05, {}), resumed(model, 0.05, {});
   EXPECT_TRUE(bound.check(after_a_fall(0.09)).empty());
   const std::vector<std::string> warnings = bound.check(after_a_fall(0.5));
   ASSERT_EQ(warnings.size(), 1u);

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/swinging_sheet.hpp"
 
 namespace weft::simulation {
@@ -18,18 +19,18 @@ class Energy {
     resting.time.step = 0.04;
     resting.time.fps = 25;
     resting.cloths[0].material.bend_viscosity = 1e-3;
-    Simulation simulation(resting);
+    production::SceneSimulation simulation(resting);
     FrameReport report;
     for (int k = 0; k < 1500; ++k) report = simulation.advance();
     EXPECT_LT(report.kinetic_energy, 1e-6);
     rest_ = of(simulation, report);
   }
-  double above_rest(const Simulation& simulation, const FrameReport& report) const {
+  double above_rest(const production::SceneSimulation& simulation, const FrameReport& report) const {
     return of(simulation, report) - rest_;
   }
 
  private:
-  double of(const Simulation& simulation, const FrameReport& report) const {
+  double of(const production::SceneSimulation& simulation, const FrameReport& report) const {
     const scene::Cloth& cloth = scene_.cloths[0];
     const int nu = cloth.particles_weft, nv = cloth.particles_warp;
     const double cell_mass = cloth.material.density * cloth.size.x() * cloth.size.y() / ((nu - 1) * (nv - 1));
@@ -57,7 +58,7 @@ TEST(PinnedSheet, OfSecondOrderMethodsKeepMoreEnergyThanEuler) {
   const auto run = [&](scene::Integrator integrator, int rate) {
     scene.time.integrator = integrator;
     scene.time.step = 1.0 / rate;
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     const double start = energy.above_rest(simulation, simulation.initial_report());
     FrameReport report;
     for (int k = 0; k < 10; ++k) report = simulation.advance();

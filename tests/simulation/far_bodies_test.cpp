@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {
@@ -21,7 +22,7 @@ scene::Scene sheet_on_ball() {
 
 /// Positions of all frames.
 std::vector<std::vector<Vec3>> film_of(const scene::Scene& scene, int frames) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   std::vector<std::vector<Vec3>> film;
   for (int k = 0; k < frames; ++k) {
     simulation.advance();

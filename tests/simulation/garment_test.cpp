@@ -9,6 +9,7 @@
 #include <string>
 
 #include "environment/environment.hpp"
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/small_character.hpp"
@@ -110,9 +111,9 @@ TEST_F(Garments, NothingFallsBeforeItIsSewn) {
 // The front's top of 0.33 m has 12 particles at 30 mm; `low` and `high` can select a part of them.
 TEST_F(Garments, ArePinnedByEdgesOfTheirPattern) {
   const scene::Scene scene = dressed("pin = [{ edge = 'front.top' }, { edge = 'back.hem', low = [0.5, 0] }]\n");
-  const environment::Environment environment(scene);
-  const environment::ClothObject& cloth = environment.cloths[0];
-  const auto& top = cloth.pins[0];
+  const model::Model model = environment::Environment(scene).model;
+  const model::Cloth& cloth = model.cloths[0];
+  const auto& top = cloth.pins[0].particles;
   EXPECT_EQ(top.size(), 12U);
   for (const auto& [i, fraction, faded] : top) {
     EXPECT_EQ(fraction, 1);
@@ -120,7 +121,7 @@ TEST_F(Garments, ArePinnedByEdgesOfTheirPattern) {
     EXPECT_NEAR(cloth.start[i].z(), 0.4, 0.01);
     EXPECT_LT(cloth.start[i].y(), 1e-3) << "of the front";
   }
-  const auto& hem = cloth.pins[1];
+  const auto& hem = cloth.pins[1].particles;
   EXPECT_EQ(hem.size(), 6U);
   for (const auto& [i, fraction, faded] : hem) {
     EXPECT_NEAR(cloth.start[i].z(), 0.1, 0.01);
@@ -142,9 +143,9 @@ TEST_F(Garments, StandUprightWhicheverAxisIsUp) {
     return scene;
   }();
   const environment::Environment a(z_up), b(y_up);
-  for (std::size_t i = 0; i < a.cloths[0].mesh.positions.size(); ++i) {
-    const Vec3 p = a.cloths[0].mesh.positions[i] - z_up.cloths[0].pose.position,
-               q = b.cloths[0].mesh.positions[i] - z_up.cloths[0].pose.position;
+  for (std::size_t i = 0; i < a.model.cloths[0].mesh.positions.size(); ++i) {
+    const Vec3 p = a.model.cloths[0].mesh.positions[i] - z_up.cloths[0].pose.position,
+               q = b.model.cloths[0].mesh.positions[i] - z_up.cloths[0].pose.position;
     EXPECT_LT((Vec3(p.x(), p.z(), -p.y()) - q).norm(), 1e-12);
   }
 }
@@ -152,13 +153,13 @@ TEST_F(Garments, StandUprightWhicheverAxisIsUp) {
 TEST_F(Garments, AStartThatTouchesTheWearerIsRefusedWithItsPlace) {
   const scene::Scene scene =
       dressed("[[obstacle]]\nname = 'post'\nshape = 'cylinder'\nradius = 0.16\nheight = 1.2\nposition = [0, 0, 0.4]\n");
-  support::expect_error(ExitCode::scene_invalid, "'tube'", [&] { Simulation simulation(scene); });
+  support::expect_error(ExitCode::scene_invalid, "'tube'", [&] { production::SceneSimulation simulation(scene); });
 }
 
 /// The message with which a start is refused.
 std::string refusal_of(const scene::Scene& scene) {
   try {
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
   } catch (const Error& error) {
     return error.what();
   }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "mesh/shapes.hpp"
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -37,7 +38,7 @@ class Balloon : public support::TestFolder {
         time, (folder_ / "sphere.obj").string(), kDensity, kStretch, kStretch, viscosity_, cloth));
   }
   FrameReport run(const scene::Scene& scene) {
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     FrameReport report = simulation.initial_report();
     for (int frame = 1; frame < scene.frame_count(); ++frame) report = simulation.advance();
     return report;
@@ -48,7 +49,7 @@ class Balloon : public support::TestFolder {
 TEST_F(Balloon, StretchesUntilTheTensionIsPressureTimesHalfTheRadius) {
   for (const double pressure : {200.0, 1000.0}) {
     const scene::Scene balloon = scene("duration = 0.4\nstep = 0.005", fmt::format("pressure.gauge = {}\n", pressure));
-    const FrameReport start = Simulation(balloon).initial_report(), end = run(balloon);
+    const FrameReport start = production::SceneSimulation(balloon).initial_report(), end = run(balloon);
     ASSERT_EQ(end.enclosed.size(), 1u);
     EXPECT_EQ(end.enclosed[0].pressure, pressure);
     // Per rest length, kStretch ε = p R (1 + ε)² / 2 balances the pressure.
@@ -61,7 +62,8 @@ TEST_F(Balloon, StretchesUntilTheTensionIsPressureTimesHalfTheRadius) {
 
 TEST_F(Balloon, HoldsWhatIsPumpedInAtThePressureOfItsTension) {
   for (const double pumped : {0.1, 0.5, -0.05}) {
-    const double start = Simulation(scene("", "pressure.gauge = 1\n")).initial_report().enclosed[0].volume;
+    const double start =
+        production::SceneSimulation(scene("", "pressure.gauge = 1\n")).initial_report().enclosed[0].volume;
     const FrameReport end =
         run(scene("duration = 0.4\nstep = 0.005",
                   fmt::format("pressure = {{ control = \"air\", keys = [{{ time = 0, air = 0 }}, {{ "
@@ -80,7 +82,8 @@ TEST_F(Balloon, HoldsWhatIsPumpedInAtThePressureOfItsTension) {
 }
 
 TEST_F(Balloon, OfMoreAirIsOneIntoWhichThatIsPumped) {
-  const double start = Simulation(scene("", "pressure.gauge = 1\n")).initial_report().enclosed[0].volume;
+  const double start =
+      production::SceneSimulation(scene("", "pressure.gauge = 1\n")).initial_report().enclosed[0].volume;
   const char* time = "duration = 0.4\nstep = 0.005";
   const FrameReport fill = run(scene(time, "pressure = { control = \"fill\", fill = 1.2 }\n"));
   const FrameReport air = run(scene(time, fmt::format("pressure = {{ control = \"air\", air = {} }}\n", 0.2 * start)));
@@ -97,7 +100,7 @@ TEST_F(Balloon, SwingsWithTheFrequencyOfItsAirAndKeepsItsEnergy) {
             "pressure = { control = \"fill\", fill = 1.01 }\n");
   balloon.time.fps = 40 / period;
   testing::solve_tightly(balloon);
-  Simulation simulation(balloon);
+  production::SceneSimulation simulation(balloon);
   std::vector<double> volumes{simulation.initial_report().enclosed[0].volume};
   const double all = simulation.initial_report().air_energy;
   EXPECT_GT(all, 0);
@@ -117,7 +120,7 @@ TEST_F(Balloon, SwingsWithTheFrequencyOfItsAirAndKeepsItsEnergy) {
 TEST_F(Balloon, FliesOnWithItsMomentum) {
   const scene::Scene balloon =
       scene("duration = 0.4\nstep = 0.005", "velocity = [0.3, 0.1, 0]\nspin = [0, 0, 90]\npressure.gauge = 500\n");
-  Simulation simulation(balloon);
+  production::SceneSimulation simulation(balloon);
   for (int frame = 1; frame <= 10; ++frame) simulation.advance();
   Vec3 momentum = Vec3::Zero();
   double mass = 0;
@@ -130,7 +133,7 @@ TEST_F(Balloon, FliesOnWithItsMomentum) {
 TEST_F(Balloon, LosesNothingOfWhatKeysLeaveAlone) {
   const scene::Scene none = scene("duration = 0.2", ""), zero = scene("duration = 0.2", "pressure.gauge = 0\n");
   EXPECT_EQ(none.hash, zero.hash);
-  Simulation simulation(zero);
+  production::SceneSimulation simulation(zero);
   EXPECT_TRUE(simulation.advance().enclosed.empty());
 }
 

@@ -4,14 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "production/plan.hpp"
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
-#include "simulation/simulation.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {
 namespace {
 
-Vec3 mean_velocity(const Simulation& simulation) {
+Vec3 mean_velocity(const production::SceneSimulation& simulation) {
   const ParticleState state = simulation.state();
   Vec3 momentum = Vec3::Zero();
   double mass = 0;
@@ -21,7 +22,7 @@ Vec3 mean_velocity(const Simulation& simulation) {
 }
 
 Vec3 velocity_at_end(const scene::Scene& scene) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int frame = 1; frame < scene.frame_count(); ++frame) simulation.advance();
   return mean_velocity(simulation);
 }
@@ -75,7 +76,7 @@ TEST(KeyedForces, SpinTurnsClothAboutItsCentreAndIsKept) {
   scene.time = {.duration = 0.2, .fps = 25, .step = 0.002, .integrator = scene::Integrator::implicit_midpoint};
   scene.cloths[0].spin = {0, 0, 180};
   scene.cloths[0].velocity = {0.5, 0, 0};
-  const auto angular_momentum = [](const Simulation& simulation) {
+  const auto angular_momentum = [](const production::SceneSimulation& simulation) {
     const ParticleState state = simulation.state();
     Vec3 middle = Vec3::Zero(), sum = Vec3::Zero();
     double mass = 0;
@@ -86,7 +87,7 @@ TEST(KeyedForces, SpinTurnsClothAboutItsCentreAndIsKept) {
       sum += state.masses[i] * (state.positions[i] - middle).cross(state.velocities[i]);
     return sum;
   };
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   // A square of lumped masses with n cells a side has the moment m a² / 12 (1 + 2 / n²) about each axis in its plane.
   const double inertia = 0.2 * 0.09 * 0.09 / 6 * (1 + 2.0 / 64);
   const Vec3 start = angular_momentum(simulation);
@@ -104,7 +105,7 @@ TEST(KeyedForces, SpinTurnsClothAboutItsCentreAndIsKept) {
 TEST(PlanOfNamedParts, ListsThemOnlyWhereASceneNamesThem) {
   const auto named = [](const scene::Scene& scene) {
     std::string parts;
-    for (const PlanItem& item : plan(scene))
+    for (const production::PlanItem& item : production::plan(scene))
       for (const char* part : {"pressure", "keyed", "fans", "attachments"})
         if (item.part.find(part) != std::string::npos) parts += item.part + ";";
     return parts;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/saved_state.hpp"
 #include "support/intersections.hpp"
 #include "support/scene_runs.hpp"
@@ -75,7 +76,7 @@ class Layers : public support::TestFolder {
 TEST_F(Layers, ThatCrossOrLieTheWrongWayAroundGetOutsideOfWhatTheyAreWornOver) {
   for (const char* time : {"", "preroll = 0.36\n"}) {
     const scene::Scene scene = dressed(time);
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     ASSERT_TRUE(simulation.run_preroll());
     for (int frame = 0; frame < 4; ++frame) {
       const frame::SnapshotPtr now = simulation.snapshot();
@@ -104,7 +105,7 @@ TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
   // Until the shirt is dressed, the vest falls as it does alone.
   scene::Scene alone = scene;
   alone.cloths = {scene.cloths[1]};
-  Simulation one(alone), three(scene);
+  production::SceneSimulation one(alone), three(scene);
   const std::size_t vest = alone.cloths.empty() ? 0 : one.particles();
   for (int frame = 0; frame < 3; ++frame) {
     one.advance(), three.advance();
@@ -114,7 +115,7 @@ TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
   // Then the vest keeps the speed that it has alone. If dressing stopped it, it would have a quarter of that speed.
   one.advance(), three.advance();
   EXPECT_EQ(three.state().positions.size(), 2 * vest);
-  const auto speed = [&](const Simulation& simulation) {
+  const auto speed = [&](const production::SceneSimulation& simulation) {
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 0; i < vest; ++i) sum += simulation.state().velocities[i];
     return sum.z();
@@ -160,7 +161,7 @@ shape = "box"
 size = [0.2, 0.2, 0.2]
 keys = [{ time = -0.8, position = [-0.02, 0.25, 0.48] }, { time = -0.5, position = [-0.02, 0.095, 0.48] }]
 )");
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   HeldUp held;
   for (int frame = -20; frame < 10; ++frame) {
     const FrameReport report = simulation.advance();

@@ -230,7 +230,7 @@ std::size_t pairs_of_cloths(const support::Judgement& judgement, const std::vect
 TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
   scene::Scene scene = support::scene_of_text(GetParam().scene);
   scene.time.step = GetParam().step;
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   int pinched = 0, steps = 0;
   std::vector<std::string> pinches;
   // Long steps also cause warnings about stretch and about residual forces; these do not concern the pinch.
@@ -357,7 +357,7 @@ class PinchBetweenParts : public support::TestFolder {
         "'\n[[cloth]]\nname = 'sheet'\nsize = [0.3, 0.3]\nparticles = [13, 13]\nposition = [0.004, 0, 0.053]\n"
         "rotation = [90, 0, 0]\npin = [{ low = [0, 1], high = [1, 1] }]\n" +
         more);
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     std::vector<std::string> pinches;
     for (int k = 1; k < scene.frame_count(); ++k) {
       const FrameReport report = simulation.advance();
@@ -420,7 +420,7 @@ class HandOnHip : public PinchBetweenParts {
         (folder_ / "body_*.obj").string() +
         "'\n[[cloth]]\nname = 'sheet'\nsize = [0.6, 0.5]\nparticles = [25, 21]\nposition = [0, -0.137, 0.95]\n"
         "rotation = [90, 0, 0]\npin = [{ low = [0, 1], high = [1, 1] }]\n");
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     Course course;
     for (int k = 1; k < scene.frame_count(); ++k) {
       const FrameReport report = simulation.advance();

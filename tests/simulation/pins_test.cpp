@@ -54,17 +54,17 @@ const Deformation kBent = [](const Vec3& x, double t) -> Vec3 {
 
 /// A scene with its pins.
 struct Pinned {
-  environment::Environment environment;
+  model::Model model;
   Pins pins;
-  explicit Pinned(const scene::Scene& scene) : environment(scene), pins(scene, environment, {0}) {}
+  explicit Pinned(const scene::Scene& scene) : model(environment::Environment(scene).model), pins(model, {0}) {}
 
   std::vector<integrator::HeldParticle> at(double t) const {
     std::vector<integrator::HeldParticle> held;
-    pins.held_at(t, environment, held);
+    pins.held_at(t, model, held);
     return held;
   }
   const Vec3& start(const integrator::HeldParticle& held) const {
-    return environment.cloths[0].start[held.constraint.particle];
+    return model.cloths[0].start[held.constraint.particle];
   }
 };
 
@@ -100,9 +100,9 @@ TEST_F(PinsOnACharacter, KeepTheirDistanceFromTheSkin) {
   for (int k = 0; k < kFiles - 1; ++k)
     for (const auto& held : pinned.at(k / kFileRate)) {
       double min_deviation = 1;  // minimum deviation from 10 mm, over all faces
-      for (const auto& t : pinned.environment.bodies[0].mesh.topology.triangles) {
+      for (const auto& t : pinned.model.bodies[0].mesh.topology.triangles) {
         const auto at = [&](std::size_t c) {
-          return pinned.environment.vertex(0, static_cast<std::size_t>(t[c]), k / kFileRate).position;
+          return pinned.model.vertex(0, static_cast<std::size_t>(t[c]), k / kFileRate).position;
         };
         const Vec3 n = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
         min_deviation = std::min(min_deviation, std::abs(n.dot(held.x_end - at(0)) - 0.01));
@@ -165,8 +165,8 @@ TEST(PinStrength, IsKnownOfEveryParticle) {
   for (const char* edge : {"low = [0, 0], high = [1, 0]", "low = [0, 1], high = [1, 1]"}) {
     const scene::Scene scene = support::scene_of_text(
         fmt::format("[[cloth]]\nname = 'a'\nsize = [0.2, 0.2]\nparticles = [3, 3]\npin = [{{ {} }}]\n", edge));
-    const environment::Environment environment(scene);
-    const Pins pins(scene, environment, {0});
+    const model::Model model = environment::Environment(scene).model;
+    const Pins pins(model, {0});
     int pinned = 0;
     for (Index i = 0; i < 9; ++i) pinned += pins.strength_fraction(i) > 0 ? 1 : 0;
     EXPECT_EQ(pinned, 3) << edge;

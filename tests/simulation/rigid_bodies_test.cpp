@@ -9,7 +9,8 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "simulation/simulation.hpp"
+#include "production/plan.hpp"
+#include "production/scene_simulation.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {
@@ -26,7 +27,7 @@ std::string timed(double duration, const std::string& more = "") {
 }
 
 /// Positions of the vertices of an object, by its index.
-const std::vector<Vec3>& vertices(const Simulation& simulation, std::size_t object) {
+const std::vector<Vec3>& vertices(const production::SceneSimulation& simulation, std::size_t object) {
   return simulation.snapshot()->states.at(object).positions;
 }
 
@@ -54,7 +55,7 @@ Fit fit(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
 
 TEST(RigidBodies, FallFreely) {
   for (const std::string method : {"implicit_euler", "bdf2", "implicit_midpoint"}) {
-    Simulation simulation(support::scene_of_text(
+    production::SceneSimulation simulation(support::scene_of_text(
         timed(0.4, "integrator = \"" + method + "\"") +
         box("box", "size = [0.1, 0.2, 0.3]\nmass = 2\nvelocity = [1, 0, 2]\nposition = [0, 0, 1]\n")));
     for (int frame = 0; frame < 10; ++frame) simulation.advance();
@@ -71,7 +72,7 @@ TEST(RigidBodies, KeepTheirSpinAndShapeForAHundredTurns) {
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 10\nstep = 0.004\nintegrator = \"implicit_midpoint\"\n[physics]\ngravity = [0, 0, 0]\n" +
       box("brick", "size = [0.2, 0.1, 0.05]\ndensity = 1000\nspin = [0, 0, 3600]\n"));
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const std::vector<Vec3> start = vertices(simulation, 0);
   const double energy = simulation.initial_report().kinetic_energy;
   // Moment of inertia: 1 kg, (0.2² + 0.1²) / 12 m².
@@ -90,7 +91,7 @@ TEST(RigidBodies, TumbleWithTheirAngularMomentum) {
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 4\nstep = 0.002\nintegrator = \"implicit_midpoint\"\n[physics]\ngravity = [0, 0, 0]\n" +
       box("brick", "size = [0.2, 0.1, 0.05]\ndensity = 1000\nspin = [0.5, 720, 0]\n"));
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const std::vector<Vec3> start = vertices(simulation, 0);
   double min_cosine = 1;
   std::vector<Vec3> before = start;
@@ -109,7 +110,7 @@ TEST(RigidBodies, ComeToRestOnTheFloorAndStayThere) {
       timed(2) + "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n" +
       box("box", "size = [0.2, 0.2, 0.2]\nmass = 1\nposition = [0, 0, 0.4]\nrotation = [20, 10, 0]\n"));
   const auto frames = [&] {
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     for (int frame = 1; frame < scene.frame_count() - 10; ++frame) simulation.advance();
     const std::vector<Vec3> before = vertices(simulation, 1);
     for (int frame = 0; frame < 9; ++frame) simulation.advance();
@@ -138,7 +139,7 @@ TEST(RigidBodies, SlideDownAnInclineAsBlocksDo) {
                          ", 0]\nfriction = 0.5\n") +
         box("block", "size = [0.2, 0.2, 0.1]\nmass = 3\nfriction = 0.5\nposition = [" + std::to_string(off.x()) +
                          ", 0, " + std::to_string(off.z()) + "]\nrotation = [0, " + std::to_string(angle) + ", 0]\n"));
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     const Vec3 start = middle(vertices(simulation, 1));
     for (int frame = 1; frame < scene.frame_count(); ++frame) simulation.advance();
     const double t = 0.04 * (scene.frame_count() - 1);
@@ -158,7 +159,7 @@ TEST(RigidBodies, HangInClothThatCarriesThem) {
       "\"cotton\" }\npin = [{ low = [0, 0], high = [0, 1] }, { low = [1, 0], high = [1, 1] }]\n"
       "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.1\nsegments = 24\nmass = 0.5\nposition = [0.1, 0, "
       "1.2]\n");
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   FrameReport report;
   for (int frame = 1; frame < scene.frame_count(); ++frame) report = simulation.advance();
   const Vec3 ball = middle(vertices(simulation, 1));
@@ -174,7 +175,7 @@ TEST(RigidBodies, AreMovedByKeysUntilTheirRelease) {
       box("box",
           "size = [0.1, 0.1, 0.1]\nmass = 1\nrelease = 0.2\nkeys = [{ time = 0, position = [0, 0, 1] }, { time = "
           "0.4, position = [0.8, 0, 1] }]\n"));
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int frame = 1; frame <= 5; ++frame) simulation.advance();
   EXPECT_NEAR((middle(vertices(simulation, 0)) - Vec3(0.4, 0, 1)).norm(), 0, 1e-12);
   for (int frame = 6; frame <= 10; ++frame) simulation.advance();
@@ -187,7 +188,7 @@ TEST(RigidBodies, AreThrownAtTheirReleaseWithEachMethod) {
   // The history of BDF2 says that the body rests. If BDF2 used it at the release, the body would leave 1.5 times as
   // fast.
   for (const std::string method : {"implicit_euler", "bdf2", "implicit_midpoint"}) {
-    Simulation simulation(support::scene_of_text(
+    production::SceneSimulation simulation(support::scene_of_text(
         timed(0.4, "integrator = \"" + method + "\"") +
         box("box", "size = [0.1, 0.1, 0.1]\nmass = 1\nrelease = 0.2\nvelocity = [1, 0, 0]\nposition = [0, 0, 1]\n")));
     for (int frame = 0; frame < 5; ++frame) simulation.advance();
@@ -210,11 +211,11 @@ scene::Scene busy_scene() {
 }
 
 TEST(RigidBodies, GoOnToTheBitFromWhatWasSaved) {
-  Simulation whole(busy_scene());
+  production::SceneSimulation whole(busy_scene());
   for (int frame = 0; frame < 8; ++frame) whole.advance();
   std::string saved;
   whole.save(saved);
-  Simulation resumed(busy_scene());
+  production::SceneSimulation resumed(busy_scene());
   resumed.restore(saved);
   for (int frame = 0; frame < 6; ++frame) {
     whole.advance();
@@ -230,7 +231,7 @@ TEST(RigidBodies, KeepTheMomentumOfWhatCollides) {
       timed(0.6) + "[physics]\ngravity = [0, 0, 0]\n" +
       box("a", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [-0.2, 0, 0]\nvelocity = [1, 0, 0]\nfriction = 0.5\n") +
       box("b", "size = [0.1, 0.1, 0.1]\nmass = 3\nposition = [0.1, 0.06, 0.02]\nfriction = 0.5\n"));
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   std::vector<Vec3> a = vertices(simulation, 0), b = vertices(simulation, 1);
   FrameReport report;
   for (int frame = 1; frame < scene.frame_count(); ++frame) {
@@ -250,9 +251,10 @@ TEST(RigidBodies, DoNotBounce) {
   // impact for smooth motion.
   for (const std::string method : {"implicit_euler", "bdf2"}) {
     for (const std::string pose : {"position = [0, 0, 0.3]", "position = [0, 0, 0.34]\nrotation = [45, 0, 0]"}) {
-      Simulation simulation(support::scene_of_text(timed(0.6, "fps = 100\nintegrator = \"" + method + "\"") +
-                                                   box("box", "size = [0.2, 0.2, 0.2]\nmass = 1\n" + pose + "\n") +
-                                                   "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n"));
+      production::SceneSimulation simulation(
+          support::scene_of_text(timed(0.6, "fps = 100\nintegrator = \"" + method + "\"") +
+                                 box("box", "size = [0.2, 0.2, 0.2]\nmass = 1\n" + pose + "\n") +
+                                 "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n"));
       double lowest = 1, rise = 0;
       for (int frame = 1; frame <= 60; ++frame) {
         simulation.advance();
@@ -288,7 +290,7 @@ TEST(RigidBodies, PassImpactsOnToWhatTheyTouch) {
        {Run{"implicit_euler", 0.01, 0.201}, {"bdf2", 0.01, 0.22}, {"bdf2", 0.005, 0.22}, {"bdf2", 0.001, 0.202}}) {
     const std::string scene =
         fmt::format("[time]\nduration = 1\nstep = {}\nintegrator = \"{}\"\n", run.step, run.method);
-    Simulation simulation(support::scene_of_text(scene + balls));
+    production::SceneSimulation simulation(support::scene_of_text(scene + balls));
     FrameReport report;
     for (int frame = 1; frame <= 25; ++frame) report = simulation.advance();
     EXPECT_GT(report.kinetic_energy, 0.199 * 0.25) << run.method << ", " << run.step;
@@ -320,7 +322,7 @@ TEST(RigidBodies, HangFromClothThatIsTiedToThem) {
                              box("weight", "size = [0.1, 0.1, 0.1]\nmass = 2\nposition = [0, 0, 0.69]\n") +
                              "[[attach]]\nname = \"hook\"\ncloth = \"strap\"\nto = \"weight\"\nlow = [0, 0]\nhigh = "
                              "[1, 0]\nstiffness = 5000\n");
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   FrameReport report;
   for (int frame = 1; frame < scene.frame_count(); ++frame) report = simulation.advance();
   EXPECT_NEAR(report.attachments.at(0).load / (2 * kGravity), 1, 0.02);
@@ -332,30 +334,30 @@ TEST(RigidBodies, MayTouchWhatTheyStandOn) {
   for (int i = 0; i < 4; ++i)
     scene += box("box_" + std::to_string(i),
                  "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, " + std::to_string(0.05 + 0.1 * i) + "]\n");
-  Simulation simulation(support::scene_of_text(scene));
+  production::SceneSimulation simulation(support::scene_of_text(scene));
   for (int frame = 1; frame < 13; ++frame) simulation.advance();
   // The boxes rest within the contact thickness of each other, 0.5 mm, and half of it above the floor.
   EXPECT_GT(middle(vertices(simulation, 4)).z(), 0.35);
   EXPECT_LT(middle(vertices(simulation, 4)).z(), 0.35175);
   // A body inside another is refused.
-  EXPECT_THROW(
-      Simulation(support::scene_of_text(timed(0.5) + "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n" +
-                                        box("box", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, 0.03]\n"))),
-      Error);
+  EXPECT_THROW(production::SceneSimulation(
+                   support::scene_of_text(timed(0.5) + "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n" +
+                                          box("box", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, 0.03]\n"))),
+               Error);
 }
 
 TEST(RigidBodies, ArePlannedAndDoubtedWithEulersMethod) {
   const std::string ball = "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nmass = 1\n";
   const auto counts = [](const scene::Scene& scene) {
-    return std::ranges::count_if(plan(scene), [](const PlanItem& item) {
+    return std::ranges::count_if(production::plan(scene), [](const production::PlanItem& item) {
       return item.used && (item.part == "motion: rigid bodies" || item.part == "collision: cloth and obstacles");
     });
   };
   EXPECT_EQ(counts(support::scene_of_text(timed(1) + ball)), 2);
   EXPECT_EQ(counts(support::scene_of_text(timed(1) + ball, {"obstacle.ball.mass=0"})), 0);
-  EXPECT_EQ(find_warnings(support::scene_of_text(timed(1) + ball)).size(), 1U);
-  EXPECT_TRUE(find_warnings(support::scene_of_text(timed(1, "integrator = \"bdf2\"") + ball)).empty());
-  EXPECT_TRUE(find_warnings(support::scene_of_text(timed(1) + box("box", "mass = 1\n"))).empty());
+  EXPECT_EQ(production::find_warnings(support::scene_of_text(timed(1) + ball)).size(), 1U);
+  EXPECT_TRUE(production::find_warnings(support::scene_of_text(timed(1, "integrator = \"bdf2\"") + ball)).empty());
+  EXPECT_TRUE(production::find_warnings(support::scene_of_text(timed(1) + box("box", "mass = 1\n"))).empty());
 }
 
 TEST(RigidBodies, AreRefusedWhereTheyHaveNoInside) {

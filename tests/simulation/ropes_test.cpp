@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "core/parallel.hpp"
+#include "production/plan.hpp"
+#include "production/scene_simulation.hpp"
 #include "simulation/saved_state.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
@@ -59,16 +61,16 @@ TEST(RopeRuns, BearWhatIsTiedToThem) {
       "0.1\n"
       "drag = 20\nweight = [{ at = 1, mass = 0.2 }]\n"
       "[[attach]]\nname = \"knot\"\ncloth = \"cord\"\nto = \"line\"\nat = 0\n");
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   FrameReport last;
   for (int frame = 1; frame < scene.frame_count(); ++frame) last = simulation.advance();
   EXPECT_NEAR(last.attachments.at(0).load / ((0.2 + 0.28 * 0.01) * 9.81), 1, 0.02);
 }
 
 TEST(RopeRuns, CountAsObjectsOfTheirOwnKind) {
-  const Simulation simulation(support::scene_of_text(kTangle));
-  const std::vector<ObjectInfo> objects = simulation.objects();
-  const auto loop = std::ranges::find(objects, "loop", &ObjectInfo::name);
+  const production::SceneSimulation simulation(support::scene_of_text(kTangle));
+  const std::vector<frame::ObjectInfo> objects = simulation.objects();
+  const auto loop = std::ranges::find(objects, "loop", &frame::ObjectInfo::name);
   ASSERT_NE(loop, objects.end());
   EXPECT_EQ(loop->kind, frame::ObjectKind::rope);
   EXPECT_EQ(loop->vertices, loop->faces) << "a loop";
@@ -76,8 +78,9 @@ TEST(RopeRuns, CountAsObjectsOfTheirOwnKind) {
 
 TEST(RopeRuns, ArePlannedWhereTheSceneHasSome) {
   const auto mentions_ropes = [](const scene::Scene& scene) {
-    return std::ranges::any_of(plan(scene),
-                               [](const PlanItem& item) { return item.part.find("rope") != item.part.npos; });
+    return std::ranges::any_of(production::plan(scene), [](const production::PlanItem& item) {
+      return item.part.find("rope") != item.part.npos;
+    });
   };
   EXPECT_TRUE(mentions_ropes(support::scene_of_text(kTangle)));
   EXPECT_FALSE(mentions_ropes(support::scene_of_text("[[cloth]]\nname = \"sheet\"\n")));

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "core/parallel.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 
 namespace weft::simulation::testing {
 namespace {
@@ -52,7 +52,7 @@ std::string compare(const Seen& expected, const Seen& came) {
 }
 
 // Advances to the next frame, of the preroll or of the film.
-Seen next_frame(Simulation& simulation) {
+Seen next_frame(production::SceneSimulation& simulation) {
   Seen seen;
   if (simulation.snapshot()->frame < 0) {
     int asked = 0;
@@ -68,7 +68,7 @@ Seen next_frame(Simulation& simulation) {
   return seen;
 }
 
-std::string saved(const Simulation& simulation) {
+std::string saved(const production::SceneSimulation& simulation) {
   std::string bytes;
   simulation.save(bytes);
   return bytes;
@@ -76,7 +76,7 @@ std::string saved(const Simulation& simulation) {
 
 // Continues from a state after frame k to the end and compares with the uninterrupted run.
 std::string go_on(const scene::Scene& scene, const std::string& state, int k, const std::vector<Seen>& run) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   simulation.restore(state);
   if (saved(simulation) != state) return fmt::format("the state after frame {}, restored, is saved as another one", k);
   if (k > 0 && !same_picture(*run[k - 1].snapshot, *simulation.snapshot()))
@@ -92,7 +92,7 @@ std::string go_on(const scene::Scene& scene, const std::string& state, int k, co
 Continued continue_runs(const scene::Scene& scene, const Interruptions& interruptions) {
   Continued result;
   std::vector<Seen> run;
-  Simulation plain(scene), saving(scene);
+  production::SceneSimulation plain(scene), saving(scene);
   std::vector<std::string> states{saved(saving)};
   for (int k = 1; k <= interruptions.frames; ++k) {
     run.push_back(next_frame(plain));

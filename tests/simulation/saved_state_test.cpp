@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/parallel.hpp"
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -255,7 +256,7 @@ TEST(SavedStates, OfAPrerollKeepWhatItsFramesHaveSaid) {
     for (scene::PoseKey& key : jaw.motion.keys) key.time -= 0.6;
   const Continued pinched = continue_runs(scene, {16, {4, 8, 14, 15}});
   EXPECT_EQ(pinched.difference, "");
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   simulation.run_preroll();
   EXPECT_FALSE(simulation.initial_report().warnings.empty());
 }
@@ -282,7 +283,7 @@ TEST(SavedStates, KeepTheBoundOfEnergy) {
   left.low = left.high = {0, 1};
   right.low = right.high = {1, 1};
   scene.cloths[0].pins = {left, right};
-  const auto refusal = [](Simulation& simulation, std::vector<std::string>* states) {
+  const auto refusal = [](production::SceneSimulation& simulation, std::vector<std::string>* states) {
     for (int k = 0; k < 100; ++k) try {
         simulation.advance();
         if (states != nullptr) simulation.save(states->emplace_back());
@@ -292,13 +293,13 @@ TEST(SavedStates, KeepTheBoundOfEnergy) {
     return std::string("none");
   };
   std::vector<std::string> states;
-  Simulation first(scene);
+  production::SceneSimulation first(scene);
   const std::string words = refusal(first, &states);
   EXPECT_NE(words.find("more than at the start"), std::string::npos) << words;
   ASSERT_GT(states.size(), 2u);
   // The message contains the energy in play, from the minimum and the maximum of all frames before.
   for (const std::string& state : {states.front(), states.back()}) {
-    Simulation resumed(scene);
+    production::SceneSimulation resumed(scene);
     resumed.restore(state);
     EXPECT_EQ(refusal(resumed, nullptr), words);
   }
@@ -373,7 +374,7 @@ position = [0, 0, 1.83]
 
 // For any bytes, restoring throws std::runtime_error or gives a simulation that works.
 void try_bytes(const scene::Scene& scene, const std::string& bytes) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   try {
     simulation.restore(bytes);
     EXPECT_EQ(simulation.snapshot()->states[0].positions.size(), simulation.state().positions.size());
@@ -383,22 +384,22 @@ void try_bytes(const scene::Scene& scene, const std::string& bytes) {
 
 TEST(SavedStates, ThatAreCutShortOrTooLongOrForeignAreRefused) {
   const scene::Scene scene = support::scene_of_text(kThinJaws);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 0; k < 6; ++k) simulation.advance();
   std::string bytes;
   simulation.save(bytes);
   for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 150) {
-    Simulation other(scene);
+    production::SceneSimulation other(scene);
     EXPECT_THROW(other.restore(std::string_view(bytes).substr(0, size)), std::runtime_error) << size;
   }
-  Simulation longer(scene), foreign(support::scene_of_text(kDrape));
+  production::SceneSimulation longer(scene), foreign(support::scene_of_text(kDrape));
   EXPECT_THROW(longer.restore(bytes + "x"), std::runtime_error);
   EXPECT_THROW(foreign.restore(bytes), std::runtime_error);
 }
 
 TEST(SavedStates, WithAnyByteChangedDoNoHarm) {
   const scene::Scene scene = support::scene_of_text(kThinJaws, {"contact.response=velocity_constraints"});
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 0; k < 8; ++k) simulation.advance();
   std::string bytes;
   simulation.save(bytes);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "frame/frame_snapshot.hpp"
+#include "production/scene_simulation.hpp"
 #include "scene/scene.hpp"
-#include "simulation/simulation.hpp"
 
 namespace weft::simulation::testing {
 

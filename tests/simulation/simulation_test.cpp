@@ -1,6 +1,4 @@
 // The whole step loop: pins, contact, failures, and the same bits with any number of threads.
-#include "simulation/simulation.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -8,7 +6,9 @@
 
 #include "core/parallel.hpp"
 #include "core/stop.hpp"
-#include "environment/track.hpp"
+#include "motion/track.hpp"
+#include "production/plan.hpp"
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/intersections.hpp"
 #include "support/scene_runs.hpp"
@@ -33,7 +33,7 @@ scene::Scene sheet_on_ball() {
 
 TEST(Simulation, FrameZeroIsTheSheetAsTheSceneLaysIt) {
   scene::Scene scene = sheet_alone(0.4, 5, 1.5);
-  const Simulation simulation(scene);
+  const production::SceneSimulation simulation(scene);
   EXPECT_EQ(simulation.snapshot()->frame, 0);
   EXPECT_EQ(simulation.snapshot()->time, 0);
   ASSERT_EQ(simulation.particles(), 25u);
@@ -48,7 +48,7 @@ TEST(Simulation, FrameTimesAreThoseOfTheRateAndNoSums) {
   scene::Scene scene = sheet_alone(0.4, 3, 1);
   scene.time.fps = 30;
   scene.time.step = 0.01;  // three and a third steps would fit a frame, so four equal ones are used
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 1; k <= 20; ++k) {
     const FrameReport report = simulation.advance();
     EXPECT_EQ(report.frame, k);
@@ -66,7 +66,7 @@ TEST(Simulation, FreeFallInVacuumIsTheLawOfTheMethodForEveryParticle) {
     testing::solve_tightly(scene);
     scene.time.integrator = integrator;
     scene.cloths[0].velocity = {0.5, 0, 1};
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     const auto start = sheet_of(simulation.snapshot());
     const double h = 0.02;
     for (int k = 1; k <= 10; ++k) {
@@ -93,7 +93,7 @@ TEST(Simulation, PinnedParticlesFollowTheKeysExactly) {
   const Quat quarter(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitZ()));
   pin.motion.keys = {{0, {}}, {0.25, {{0.1, 0, 0.2}, Quat::Identity()}}, {0.5, {{0.1, 0.3, 0.2}, quarter}}};
   scene.cloths[0].pins.push_back(pin);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const auto start = sheet_of(simulation.snapshot());
   const Vec3 centre(0, 0.2, 1);  // of the pinned edge
   for (int k = 1; k <= 12; ++k) {
@@ -122,7 +122,7 @@ TEST(Simulation, WithoutRigidityThereIsNoBendingAtAll) {
     scene::Material& material = scene.cloths[0].material;
     material.bend = rigidity;
     material.bend_viscosity *= damping, material.bend_friction *= damping;
-    for (const PlanItem& item : plan(scene)) {
+    for (const production::PlanItem& item : production::plan(scene)) {
       if (item.part == "force: bending") {
         EXPECT_EQ(item.used, rigidity > 0);
       }
@@ -130,7 +130,7 @@ TEST(Simulation, WithoutRigidityThereIsNoBendingAtAll) {
         EXPECT_EQ(item.used, rigidity > 0 && damping > 0) << item.part;
       }
     }
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     for (int k = 0; k < 5; ++k) simulation.advance();
     return sheet_of(simulation.snapshot());
   };
@@ -145,7 +145,7 @@ TEST(Simulation, PinLetsGoAtItsReleaseTime) {
   scene::Pin pin;  // the whole sheet
   pin.release = 0.2;
   scene.cloths[0].pins.push_back(pin);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const auto start = sheet_of(simulation.snapshot());
   for (int k = 1; k <= 5; ++k) {
     EXPECT_EQ(simulation.advance().constraints, 9);
@@ -169,7 +169,7 @@ TEST(Simulation, PinThatFollowsAnObstacleMovesWithIt) {
   pin.low = {0, 1};
   pin.follow = "bar";
   scene.cloths[0].pins.push_back(pin);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const auto start = sheet_of(simulation.snapshot());
   for (int k = 1; k <= 10; ++k) simulation.advance();
   for (std::size_t i = 20; i < 25; ++i) {
@@ -183,7 +183,7 @@ TEST(Simulation, SurfacesKnowAllPlacesToWhichKeysMoveThem) {
   scene.time.duration = 1;
   scene.obstacles.push_back(obstacle("ball", scene::Sphere{0.1}));
   scene.obstacles.back().motion.keys = {{0, {{0, 0, 0}, Quat::Identity()}}, {1, {{2, 0, 0}, Quat::Identity()}}};
-  const frame::SnapshotPtr snapshot = Simulation(scene).snapshot();
+  const frame::SnapshotPtr snapshot = production::SceneSimulation(scene).snapshot();
   const auto& surfaces = snapshot->surfaces;
   EXPECT_NEAR(surfaces[0]->run_bounds->max().z(), 1, 1e-12);
   EXPECT_NEAR(surfaces[1]->run_bounds->min().x(), -0.1, 1e-3);
@@ -199,7 +199,7 @@ TEST(Simulation, EqualStepsLeadToTheSameBitsInFramesOfAnyLength) {
   coarse.obstacles[0].motion.keys[1].pose.position += Vec3(0.05, 0, 0.1);
   scene::Scene fine = coarse;
   fine.time.fps = 100;
-  Simulation few(coarse), many(fine);
+  production::SceneSimulation few(coarse), many(fine);
   for (int frame = 1; frame <= 10; ++frame) {
     few.advance();
     for (int k = 0; k < 4; ++k) many.advance();
@@ -209,7 +209,7 @@ TEST(Simulation, EqualStepsLeadToTheSameBitsInFramesOfAnyLength) {
 }
 
 TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
-  Simulation simulation(sheet_on_ball());
+  production::SceneSimulation simulation(sheet_on_ball());
   double lowest_so_far = 1;
   int proximities = 0;
   for (int k = 0; k <= 25; ++k) {
@@ -230,7 +230,7 @@ TEST(Simulation, SheetOnABallIsSolvedDownToRounding) {
   scene.time.step = 0.01;
   scene.solver.newton_tolerance = 1e-8;
   scene.solver.linear_tolerance = 1e-4;
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   int rejected = 0;
   for (int k = 0; k < 8; ++k) {
     const FrameReport report = simulation.advance();
@@ -244,9 +244,9 @@ class EverySearch : public ::testing::TestWithParam<void (*)(scene::Search&)> {}
 
 TEST_P(EverySearch, GivesTheSameBits) {
   scene::Scene scene = sheet_on_ball();
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   GetParam()(scene.contact.search);
-  Simulation other(scene);
+  production::SceneSimulation other(scene);
   int proximities = 0;
   for (int k = 1; k <= 13; ++k) {
     simulation.advance();
@@ -268,9 +268,9 @@ INSTANTIATE_TEST_SUITE_P(
 // Kept closest points are those of an earlier step, so that positions differ in their last digits, and later in more.
 TEST(Simulation, KeptClosestPointsFindTheFirstContactsThatTheDefaultFindsAndKeepTheSheetApart) {
   scene::Scene scene = sheet_on_ball();
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   scene.contact.search.coherence = true;
-  Simulation other(scene);
+  production::SceneSimulation other(scene);
   int first = 0;  // proximities in the first frame with contacts; later ones differ
   for (int k = 1; k <= 13; ++k) {
     const int expected = simulation.advance().proximities, found = other.advance().proximities;
@@ -285,7 +285,7 @@ TEST(Simulation, SheetOnAFloorComesToRestWithinHalfItsThickness) {
   scene::Scene scene = sheet_alone(0.3, 9, 0.05);
   scene.contact.self = scene.contact.obstacles = true;
   scene.obstacles.push_back(obstacle("floor", scene::Plane{}));
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   FrameReport report;
   for (int k = 1; k <= 25; ++k) report = simulation.advance();
   const double half_thickness = 0.5 * scene.cloths[0].material.thickness;
@@ -321,7 +321,7 @@ TEST(Simulation, GivesTheSameBitsOnAnyNumberOfThreads) {
   std::vector<std::vector<std::uint64_t>> runs;
   for (int threads : {1, 2, 4, 8}) {
     set_thread_count(threads);
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     runs.emplace_back();
     int contacts = 0;
     for (int k = 1; k <= 10; ++k) {
@@ -361,7 +361,7 @@ FrameReport swinging_strip(scene::Integrator integrator, int particles_across, i
   scene::Pin end;
   end.high = {0, 1};
   cloth.pins.push_back(end);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   FrameReport report;
   for (int k = 0; k < frames; ++k) report = simulation.advance();
   return report;
@@ -380,7 +380,7 @@ TEST(Simulation, NeedlesSwingAsASingleRowOfCells) {
 
 // A user may want to see a character or a camera before adding cloth: a scene without mass must run.
 TEST(Simulation, BodiesAloneMove) {
-  Simulation simulation(
+  production::SceneSimulation simulation(
       support::scene_of_text("[time]\nduration = 0.2\n[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n"
                              "keys = [{ time = 0, position = [0, 0, 1] }, { time = 0.2, position = [1, 0, 1] }]\n"));
   const double before = simulation.snapshot()->states[0].positions[0].x();
@@ -391,7 +391,7 @@ TEST(Simulation, BodiesAloneMove) {
 }
 
 TEST(Simulation, StepThatCannotBeSolvedFailsWithItsFrameAndKeepsTheLastGoodOne) {
-  Simulation simulation(sheet_with_fast_edge());
+  production::SceneSimulation simulation(sheet_with_fast_edge());
   for (int k = 1; k <= 3; ++k) simulation.advance();
   const auto good = simulation.snapshot();
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -409,7 +409,7 @@ TEST(Simulation, FailureInTheMiddleOfAFrameTakesBackItsFirstSteps) {
   scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1000;
   scene.cloths[0].pins[0].motion.keys[1].time = 0.14;  // after the first of the two steps of the frame
   scene.cloths[0].pins[0].motion.keys[2].pose.position = {500, 3000, 2000};
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 1; k <= 3; ++k) simulation.advance();
   // The message contains the residual of the failed step. If the program kept the first step of the frame, a second
   // attempt would fail with another value.
@@ -432,7 +432,7 @@ TEST(Simulation, RejectedStepIsHalvedUntilItCanBeSolved) {
   scene.cloths[0].pins[0].motion.keys[2].pose.position = {0, 0.5, 0.5};
   scene.solver.newton_iterations = 2;
   scene.solver.halvings = 10;
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 1; k <= 3; ++k) simulation.advance();
   const FrameReport report = simulation.advance();
   EXPECT_GT(report.rejected_steps, 0);
@@ -446,12 +446,12 @@ TEST(Preroll, IsSimulatedBeforeFrameZeroWhileKeysStand) {
   scene.obstacles.push_back(obstacle("ball", scene::Sphere{0.25}));
   scene::Obstacle& ball = scene.obstacles[0];
   ball.motion.keys = {{0.2, {{0, 0, 0}, Quat::Identity()}}, {0.6, {{0.3, 0, 0}, Quat::Identity()}}};
-  Simulation plain(scene);
+  production::SceneSimulation plain(scene);
   for (int k = 1; k <= 5; ++k) plain.advance();
 
   scene.time.preroll = 0.2;  // five frames
   for (scene::PoseKey& key : ball.motion.keys) key.time -= 0.2;
-  Simulation shown(scene);
+  production::SceneSimulation shown(scene);
   EXPECT_EQ(shown.snapshot()->frame, -5);
   int asked = 0;
   EXPECT_FALSE(shown.run_preroll([&] { return ++asked <= 2; }));
@@ -474,7 +474,7 @@ TEST(Preroll, IsSimulatedBeforeFrameZeroWhileKeysStand) {
 TEST(Stop, EndsAStepAndLeavesTheLastFrame) {
   scene::Scene scene = sheet_alone(0.6, 5, 2);
   scene.time.step = 1;
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   simulation.advance();
   const auto before = simulation.state();
   const std::vector<Vec3> x(before.positions.begin(), before.positions.end());

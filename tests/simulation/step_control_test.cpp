@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 
@@ -23,14 +24,14 @@ scene::Scene falling_sheet(scene::Integrator integrator, double tolerance) {
 }
 
 // How much lower the sheet is than after free fall, after this number of frames [m].
-double ahead_of_free_fall(const Simulation& simulation, int frames) {
+double ahead_of_free_fall(const production::SceneSimulation& simulation, int frames) {
   const double t = frames / 25.0;
   return 2 - 0.5 * 9.81 * t * t - testing::sheet_of(simulation.snapshot())[7].z();
 }
 
 TEST(StepTolerance, StepsEndOnFramesWhateverTheirLength) {
   // The midpoint rule is exact in free fall, so each frame shows whether its steps add up to the duration of the frame.
-  Simulation simulation(falling_sheet(scene::Integrator::implicit_midpoint, 1e-5));
+  production::SceneSimulation simulation(falling_sheet(scene::Integrator::implicit_midpoint, 1e-5));
   int steps = 0;
   for (int k = 1; k <= 10; ++k) {
     const FrameReport report = simulation.advance();
@@ -47,7 +48,7 @@ TEST(StepTolerance, StepsEndOnFramesWhateverTheirLength) {
 
 TEST(StepTolerance, EstimateIsTheErrorInFreeFall) {
   // Each Euler step of length h falls too far by ½ g h², and this error stays.
-  Simulation simulation(falling_sheet(scene::Integrator::implicit_euler, 1e-5));
+  production::SceneSimulation simulation(falling_sheet(scene::Integrator::implicit_euler, 1e-5));
   double estimate = 0;
   for (int k = 1; k <= 10; ++k) {
     const FrameReport report = simulation.advance();
@@ -62,7 +63,7 @@ TEST(StepTolerance, EstimateIsThereWithFixedStepsToo) {
   scene::Scene scene = falling_sheet(scene::Integrator::implicit_euler, 1);
   scene.time.tolerance.reset();
   scene.time.step = 0.01;
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   EXPECT_EQ(simulation.initial_report().error_estimate, 0);
   EXPECT_NEAR(simulation.advance().error_estimate, 4 * 0.5 * 1e-4 * 9.81, 1e-9);
 }
@@ -79,7 +80,7 @@ scene::Scene landing_sheet(scene::Integrator integrator, double tolerance) {
 
 TEST(StepTolerance, ImpactTakesShortStepsButNotWithoutEnd) {
   for (scene::Integrator integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2}) {
-    Simulation simulation(landing_sheet(integrator, 1e-4));
+    production::SceneSimulation simulation(landing_sheet(integrator, 1e-4));
     int max_steps = 0, rejected = 0;
     for (int k = 1; k <= 25; ++k) {
       const FrameReport report = simulation.advance();
@@ -96,7 +97,7 @@ TEST(StepTolerance, ImpactTakesShortStepsButNotWithoutEnd) {
 
 TEST(StepTolerance, GivesTheSameBitsAgain) {
   for (scene::Integrator integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2}) {
-    Simulation first(landing_sheet(integrator, 1e-4)), second(landing_sheet(integrator, 1e-4));
+    production::SceneSimulation first(landing_sheet(integrator, 1e-4)), second(landing_sheet(integrator, 1e-4));
     for (int k = 1; k <= 12; ++k) {
       first.advance();
       second.advance();
@@ -109,7 +110,7 @@ TEST(StepTolerance, ErrorThatAStepCannotMeetIsTakenAndCounted) {
   // No halvings: each step is tried once.
   scene::Scene scene = landing_sheet(scene::Integrator::bdf2, 1e-4);
   scene.solver.halvings = 0;
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   int inexact = 0;
   for (int k = 1; k <= 10; ++k) {
     const FrameReport report = simulation.advance();
@@ -134,7 +135,7 @@ TEST(StepTolerance, StepThatCannotBeSolvedEndsTheRunWithTheStateBefore) {
   scene.solver.linear_iterations = 1;
   const scene::Pin edge = fast_edge();
   scene.cloths[0].pins.push_back(edge);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   std::string said[2];
   for (std::string& text : said) {
     try {
@@ -157,7 +158,7 @@ TEST(StepTolerance, RunThatIsStuckIsRefusedInsteadOfShorteningStepsForEver) {
   scene.solver.halvings = 40;
   scene.cloths[0].start_scale = {1e4, 1e4};
   scene.cloths[0].start_noise = 1;
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   std::string text;
   try {
     for (int k = 0; k < 25; ++k) simulation.advance();
@@ -194,13 +195,13 @@ scene::Scene sheet_that_hangs() {
 }
 
 // Number of steps of each of the next `frames` frames.
-std::vector<int> steps_of(Simulation& simulation, int frames) {
+std::vector<int> steps_of(production::SceneSimulation& simulation, int frames) {
   std::vector<int> steps;
   for (int k = 0; k < frames; ++k) steps.push_back(simulation.advance().steps);
   return steps;
 }
 
-double mean_height(const Simulation& simulation) {
+double mean_height(const production::SceneSimulation& simulation) {
   double sum = 0;
   for (const Vec3& x : testing::sheet_of(simulation.snapshot())) sum += x.z();
   return sum / static_cast<double>(simulation.particles());
@@ -208,12 +209,12 @@ double mean_height(const Simulation& simulation) {
 
 TEST(Rest, TakesOneStepAFrameAndMovesNothing) {
   scene::Scene scene = sheet_on_block();
-  Simulation resting(scene);
+  production::SceneSimulation resting(scene);
   // A body that moves inside the block prevents rest: every step is taken.
   scene.obstacles.push_back(testing::obstacle("inside", scene::Sphere{0.005}));
   scene.obstacles.back().motion.keys = {{0, {{0, 0, 0.09}, Quat::Identity()}},
                                         {9, {{0.01, 0, 0.09}, Quat::Identity()}}};
-  Simulation stepping(scene);
+  production::SceneSimulation stepping(scene);
   const std::vector<int> steps = steps_of(resting, 50);
   EXPECT_EQ(steps.front(), 2);
   EXPECT_EQ(steps_of(stepping, 50), std::vector<int>(50, 2));
@@ -230,7 +231,7 @@ TEST(Rest, IsSlow) {
     scene::Scene scene = testing::sheet_alone(0.3, 5, 1);
     scene.physics.gravity = Vec3::Zero();
     scene.cloths[0].velocity = {speed, 0, 0};
-    Simulation drifting(scene);
+    production::SceneSimulation drifting(scene);
     EXPECT_EQ(steps_of(drifting, 3).back(), speed < 0.02 ? 1 : 2) << speed << " m/s";
   }
 }
@@ -241,14 +242,14 @@ TEST(Rest, EndsWithTheFrameInWhichSomethingMovesOrIsLetGo) {
                                     {2.03, {{0, 0, 0.05}, Quat::Identity()}},
                                     {2.6, {{0, 0, 0.25}, Quat::Identity()}}};
   scene.obstacles[0].motion.interpolation = scene::Interpolation::linear;
-  Simulation lifted(scene);
+  production::SceneSimulation lifted(scene);
   const std::vector<int> of_lifted = steps_of(lifted, 60);
   EXPECT_EQ(of_lifted[49], 1);
   for (int k = 50; k < 60; ++k) EXPECT_EQ(of_lifted[static_cast<std::size_t>(k)], 2) << "frame " << k + 1;
 
   scene = sheet_that_hangs();
   scene.cloths[0].pins[0].release = 1.99;
-  Simulation released(scene);
+  production::SceneSimulation released(scene);
   EXPECT_EQ(steps_of(released, 49).back(), 1);
   const double hung_at = mean_height(released);
   EXPECT_EQ(steps_of(released, 2), std::vector<int>(2, 2));
@@ -267,7 +268,7 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
   scene::Scene scene = sheet_on_block();
   scene.obstacles.push_back(testing::obstacle("inside", scene::Sphere{0.005}));
   scene.obstacles.back().motion = {scene::Interpolation::linear, there_and_back({0, 0, 0.09})};
-  Simulation beside(scene);
+  production::SceneSimulation beside(scene);
   EXPECT_EQ(steps_of(beside, 50).back(), 1);
   EXPECT_EQ(beside.advance().steps, 2);
 
@@ -275,7 +276,7 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
   scene::PinTrack& pinned = scene.cloths[0].pins[0].motion;
   pinned.interpolation = scene::Interpolation::linear;
   for (const scene::PoseKey& key : there_and_back(Vec3::Zero())) pinned.keys.push_back({key.time, key.pose});
-  Simulation pulled(scene);
+  production::SceneSimulation pulled(scene);
   EXPECT_EQ(steps_of(pulled, 50).back(), 1);
   EXPECT_EQ(pulled.advance().steps, 2);
 
@@ -283,7 +284,7 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
   scene.physics.interpolation = scene::Interpolation::linear;
   for (const scene::PoseKey& key : there_and_back(Vec3::Zero()))
     scene.physics.keys.push_back({key.time, scene.physics.gravity + 100 * key.pose.position, scene.physics.wind});
-  Simulation shaken(scene);
+  production::SceneSimulation shaken(scene);
   EXPECT_EQ(steps_of(shaken, 50).back(), 1);
   EXPECT_EQ(shaken.advance().steps, 2);
 }
@@ -291,7 +292,7 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
 // A strip of felt in cells of 3 by 27 mm, thrown while it hangs. Its bending friction alternates by some micrometres
 // per second. Shorter steps, even the shortest, leave as much, so the visibility threshold must accept it.
 TEST(StepThatStalls, LeavesWhatNobodySees) {
-  Simulation simulation(support::scene_of_text(R"(
+  production::SceneSimulation simulation(support::scene_of_text(R"(
 time = { step = 0.002, integrator = 'bdf2' }
 [[cloth]]
 name = 'c'
@@ -321,14 +322,14 @@ TEST(Rest, IsNotForMethodsThatKeepSmallMotionNorForGusts) {
     scene.obstacles.clear();
     scene.physics.gravity.setZero();
     scene.time.integrator = integrator;
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     EXPECT_EQ(steps_of(simulation, 3), std::vector<int>(3, 2));
     scene.time.integrator = scene::Integrator::implicit_euler;
-    Simulation euler(scene);
+    production::SceneSimulation euler(scene);
     EXPECT_EQ(steps_of(euler, 3), (std::vector<int>{2, 1, 1}));  // at first it is not known to rest
     scene.physics.air_density = 1.2;
     scene.physics.gusts.speed = 0.001;
-    Simulation blown(scene);
+    production::SceneSimulation blown(scene);
     EXPECT_EQ(steps_of(blown, 3), std::vector<int>(3, 2));
   }
 }

@@ -29,12 +29,11 @@ scene::Scene two_sheets() {
 class StepProblems : public ::testing::Test {
  protected:
   StepProblems()
-      : environment_(two_sheets()),
-        cloth_(two_sheets(), environment_),
+      : model_(environment::Environment(two_sheets()).model),
+        cloth_(model_),
         response_(collision::ResponseForm::springs, {cloth_.masses().begin(), cloth_.masses().end()}),
         v_(forces::testing::random_vectors(2 * kParticles, 1, 1)) {
-    for (const environment::ClothObject& cloth : environment_.cloths)
-      x_.insert(x_.end(), cloth.start.begin(), cloth.start.end());
+    for (const model::Cloth& cloth : model_.cloths) x_.insert(x_.end(), cloth.start.begin(), cloth.start.end());
     const std::vector<Vec3> noise = forces::testing::random_vectors(x_.size(), 0.005, 2);
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += noise[i];
 
@@ -81,7 +80,7 @@ class StepProblems : public ::testing::Test {
     return all;
   }
 
-  environment::Environment environment_;
+  model::Model model_;
   ClothSystem cloth_;
   collision::ContactResponse response_;
   std::vector<Vec3> x_, v_;
@@ -202,13 +201,13 @@ TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
     const scene::Scene scene =
         support::scene_of_text(std::string("[[cloth]]\nname = 'sheet'\nparticles = 5\nshape = '") + shape +
                                "'\npin = [{ low = [0, 0], high = [0.25, 1] }]\n");
-    const environment::Environment environment(scene);
-    const std::vector<Vec3>& x = environment.cloths[0].start;
+    const model::Model model = environment::Environment(scene).model;
+    const std::vector<Vec3>& x = model.cloths[0].start;
     const std::vector<Vec3> still(x.size(), Vec3::Zero());
     std::vector<integrator::HeldParticle> pinned;
-    for (const environment::Chosen& chosen : environment.cloths[0].pins[0])
+    for (const model::Chosen& chosen : model.cloths[0].pins[0].particles)
       pinned.push_back({{chosen.particle, Mat3::Zero()}, x[chosen.particle], Vec3::Zero()});
-    ClothSystem cloth(scene, environment);
+    ClothSystem cloth(model);
     StepProblem problem(cloth);
     const auto matrix_with = [&](std::span<const integrator::HeldParticle> held) {
       std::vector<Vec3> force = still;
@@ -233,10 +232,10 @@ TEST_F(SewnProblem, ForgetsWhatItKnewOfClothThatIsSewnOn) {
   const scene::Scene scene =
       support::scene_of_text("[[cloth]]\nname = 'tube'\nshape = 'pattern'\nfile = '" +
                              (folder_ / "tube.toml").string() + "'\nedge_length = 0.1\nsewing = 0.5\n");
-  const environment::Environment environment(scene);
-  ClothSystem cloth(scene, environment);
+  const model::Model model = environment::Environment(scene).model;
+  ClothSystem cloth(model);
   StepProblem problem(cloth);
-  const std::vector<Vec3>& x = environment.cloths[0].start;
+  const std::vector<Vec3>& x = model.cloths[0].start;
   const std::vector<Vec3> still(x.size(), Vec3::Zero());
   const integrator::StagePoint at{x, still, x, kRate, 1};
   const auto force_at = [&](double t) {
@@ -255,8 +254,8 @@ TEST_F(SewnProblem, ForgetsWhatItKnewOfClothThatIsSewnOn) {
 TEST(ClothSystems, AggregateSlenderCellsAlongTheirShortSidesFirst) {
   scene::Scene scene = testing::sheet_alone(1, 9, 1);
   scene.cloths[0].size = {1, 0.2};
-  const environment::Environment environment(scene);
-  const std::vector<Index> of = ClothSystem(scene, environment).make_linear_system().aggregate_levels.front().of;
+  const model::Model model = environment::Environment(scene).model;
+  const std::vector<Index> of = ClothSystem(model).make_linear_system().aggregate_levels.front().of;
   ASSERT_EQ(of.size(), 81U);
   int together = 0;
   for (std::size_t i = 0; i < of.size(); ++i)

@@ -1,9 +1,9 @@
 // Cloth with locking threads: what pulls at it, and the warnings if the limit cannot hold.
 #include <gtest/gtest.h>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/saved_state.hpp"
 #include "simulation/scenes.hpp"
-#include "simulation/simulation.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {
@@ -71,7 +71,7 @@ keys = [{ time = 0.1, position = [0, -1.5, 1.4] }, { time = 0.2, position = [0, 
 }
 
 double max_stretch_ratio(const scene::Scene& scene, std::vector<std::string>& seen_warnings) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   double ratio = 0;
   for (int k = 1; k < scene.frame_count(); ++k) {
     const FrameReport report = simulation.advance();
@@ -137,7 +137,7 @@ TEST(StretchLimitInAScene, ChangesNothingBelowItsOnset) {
   with.cloths[0].pins = {pin};
   scene::Scene without = with;
   with.cloths[0].material.max_stretch = 0.1, with.cloths[0].material.max_shear = 45;
-  Simulation a(with), b(without);
+  production::SceneSimulation a(with), b(without);
   for (int k = 0; k < 5; ++k) {
     const FrameReport of_a = a.advance(), of_b = b.advance();
     EXPECT_EQ(of_b.stretch_ratio, 0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation::testing {
@@ -33,7 +34,7 @@ struct SwingEnd {
 
 /// Runs the scene for this number of frames.
 inline SwingEnd swing(const scene::Scene& scene, int frames) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   SwingEnd end;
   FrameReport report;
   for (int k = 0; k < frames; ++k) {

@@ -37,7 +37,7 @@ class Tearing : public support::TestFolder {
 
 TEST_F(Tearing, SeamsBearTheWeightThatHangsOnThem) {
   const auto frames = support::run_scene(strip(2 * kLoad), {.judged = false});
-  const frame::AttachmentLoad& seam = frames.back().report.attachments.at(0);
+  const simulation::AttachmentLoad& seam = frames.back().report.attachments.at(0);
   EXPECT_EQ(seam.name, "strip: upper.low + lower.high");
   EXPECT_TRUE(seam.holds);
   EXPECT_NEAR(seam.load / (kLoad * kWidth), 1, 0.02);
@@ -57,7 +57,7 @@ TEST_F(Tearing, SeamsPartWhereTheLoadIsFirst) {
   const scene::Scene scene = strip(30 * kLoad, "weight = [{ edge = 'lower.low', high = [0.3, 1], mass = 0.1 }]\n");
   bool was_torn_in_part = false;
   for (const support::MeasuredFrame& frame : support::run_scene(scene, {.judged = false, .keep_positions = true})) {
-    const frame::AttachmentLoad& seam = frame.report.attachments.at(0);
+    const simulation::AttachmentLoad& seam = frame.report.attachments.at(0);
     double left = 2, right = 2;  // height of the lower corners [m]
     for (const Vec3& x : frame.cloths.at(0)) (x.x() < 0.1 ? left : right) = std::min(x.x() < 0.1 ? left : right, x.z());
     was_torn_in_part |= seam.holds && left < right - 0.01;

@@ -8,7 +8,7 @@
 namespace weft::simulation {
 namespace {
 
-using scene::name_of;
+using integrator::name_of;
 using testing::kIntegrators;
 using testing::rms_distance;
 using testing::SwingEnd;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/test_folder.hpp"
 
@@ -25,7 +26,7 @@ double drop_of_cantilever(scene::ClothShape shape) {
   scene::Pin clamp;
   clamp.high = {3.0 / 16, 1};
   cloth.pins.push_back(clamp);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   FrameReport report;
   for (int k = 0; k < 60; ++k) report = simulation.advance();
   EXPECT_LT(report.kinetic_energy, 1e-10);
@@ -46,7 +47,7 @@ TEST(TriangleCloth, CrossedSheetIsPinnedByPlaceAndWeighsAsMuchAsQuads) {
   scene::Pin edge;
   edge.high = {1, 0.1};
   scene.cloths[0].pins.push_back(edge);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   EXPECT_EQ(simulation.particles(), 25u + 16u);
   EXPECT_NEAR(simulation.initial_report().potential_energy, 0.2 * 9.81 * 2, 1e-12);
   for (int k = 0; k < 5; ++k) simulation.advance();
@@ -84,7 +85,7 @@ TEST_F(TriangleClothOfFile, CurvedRestShapeIsKeptWhicheverWayItBends) {
     scene.physics.gravity.setZero();
     scene.cloths[0].shape = scene::ClothShape::mesh;
     scene.cloths[0].file = folder_ / "pipe.obj";
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     const std::vector<Vec3> start = testing::sheet_of(simulation.snapshot());
     ASSERT_EQ(start.size(), 25u * 7u);
     for (int k = 0; k < 10; ++k) simulation.advance();
@@ -104,7 +105,7 @@ TEST_F(TriangleClothOfFile, StretchedPipeSpringsBackToItsRestShape) {
   cloth.start_scale = {1.05, 1};
   cloth.material.bend_friction = 0;
   cloth.material.bend *= 100;
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   FrameReport report = simulation.initial_report();
   EXPECT_GT(report.elastic_energy, 1e-4);
   for (int k = 0; k < 100; ++k) report = simulation.advance();
@@ -120,7 +121,7 @@ TEST_F(TriangleClothOfFile, FilesThatAreNoSheetAreMadeOneAndPinsThatHoldNothingA
     scene::Pin pin;
     pin.low = pin.high = place;
     scene.cloths[0].pins.push_back(pin);
-    const Simulation simulation(scene);
+    const production::SceneSimulation simulation(scene);
   };
   EXPECT_NO_THROW(build("f 1 3 4\n", {0, 0}));
   support::expect_error(ExitCode::scene_invalid, "pin.0: expected a part that holds at least one particle", [&] {

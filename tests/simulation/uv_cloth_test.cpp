@@ -6,6 +6,7 @@
 
 #include "environment/environment.hpp"
 #include "export/obj.hpp"
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -53,7 +54,7 @@ class UvCloth : public support::TestFolder {
   }
   /// Width across the pleats at the end [m].
   double width(const std::string& keys) const {
-    Simulation simulation(scene(keys));
+    production::SceneSimulation simulation(scene(keys));
     for (int k = 0; k < 25; ++k) simulation.advance();
     double low = 1, high = -1;
     for (const Vec3& x : testing::sheet_of(simulation.snapshot()))
@@ -74,11 +75,12 @@ TEST_F(UvCloth, PleatsOpenWhereTheUvsAreAFlatSheetAndStayWhereTheMeshIsItsShape)
 TEST_F(UvCloth, IslandsThatMeetAreOneCloth) {
   write_sheet(true);
   const environment::Environment made(scene("rest = 'uv'\n"));
-  const environment::ClothObject& cloth = made.cloths[0];
+  const model::Cloth& cloth = made.model.cloths[0];
   EXPECT_EQ(cloth.start.size(), std::size_t{(kWide + 1) * (kHigh + 1)});
   EXPECT_TRUE(cloth.sheet.sewn);
-  EXPECT_NE(cloth.rest_from.find("UVs: 2 islands, 1 unit = 1 m (metres)"), std::string::npos) << cloth.rest_from;
-  EXPECT_TRUE(cloth.warnings.empty());
+  EXPECT_NE(made.cloths[0].rest_from.find("UVs: 2 islands, 1 unit = 1 m (metres)"), std::string::npos)
+      << made.cloths[0].rest_from;
+  EXPECT_TRUE(made.cloths[0].warnings.empty());
   // Tolerance: assimp reads files in single precision.
   for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t)
     EXPECT_NEAR(mesh::rest_area(cloth.sheet, t), 0.5 * kCell * kCell, 1e-6 * kCell) << t;
@@ -113,7 +115,7 @@ TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
       support::scene_of_text(post + "shape = 'pattern'\nfile = '" + (folder_ / "tube.toml").string() +
                              "'\nedge_length = 0.04\nsewing = 0.4\nposition = [0, 0, 0.05]\n");
   constexpr int kExported = 40, kOn = 10;
-  Simulation simulation(sewn);
+  production::SceneSimulation simulation(sewn);
   for (int k = 0; k < kExported; ++k) simulation.advance();
   const frame::SnapshotPtr exported = simulation.snapshot();
   exporter::write_obj(folder_ / "tube.obj", *exported->surfaces[0], exported->states[0].positions);
@@ -123,16 +125,17 @@ TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
   scene::Scene read =
       support::scene_of_text(post + "shape = 'mesh'\nfile = '" + (folder_ / "tube.obj").string() + "'\n");
   const environment::Environment made(read);
-  const environment::ClothObject& cloth = made.cloths[0];
-  EXPECT_NE(cloth.rest_from.find("UVs, which fit it as panels do: 2 islands, 1 unit = 1 m (metres)"), std::string::npos)
-      << cloth.rest_from;
+  const model::Cloth& cloth = made.model.cloths[0];
+  EXPECT_NE(made.cloths[0].rest_from.find("UVs, which fit it as panels do: 2 islands, 1 unit = 1 m (metres)"),
+            std::string::npos)
+      << made.cloths[0].rest_from;
   double area = 0;
   for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t) area += mesh::rest_area(cloth.sheet, t);
   EXPECT_NEAR(area, 2 * 0.33 * 0.3, 1e-6);  // to the single precision of files in assimp
   // The faces of the file determine the numbering of vertices. The test therefore takes the distance from each place to
   // the nearest place of the earlier run.
   const auto off = [&] {
-    Simulation again(read);
+    production::SceneSimulation again(read);
     for (int k = 0; k < kOn; ++k) again.advance();
     double sum_sq = 0;
     for (const Vec3& x : testing::sheet_of(again.snapshot())) {

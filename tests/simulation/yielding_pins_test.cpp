@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "production/plan.hpp"
+#include "production/scene_simulation.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {
@@ -185,7 +187,7 @@ TEST(LaggingPin, IsHeldAgainWhileItMovesOn) {
 
 TEST(SoftPin, GivesUnderTheWeightByItsStrength) {
   const scene::Scene scene = support::scene_of_text(hanging(3, "strength = 5", ""));
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 1; k < scene.frame_count(); ++k) simulation.advance();
   const ParticleState state = simulation.state();
   double weight = 0, sag = 0;
@@ -240,7 +242,7 @@ TEST(PinKeys, OffsetAndPositionAreTwoWaysToSayOneThing) {
 }
 
 TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
-  const auto of = [](const std::string& text) { return find_warnings(support::scene_of_text(text)); };
+  const auto of = [](const std::string& text) { return production::find_warnings(support::scene_of_text(text)); };
   const auto entries = of(kIntoTheFloor);
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_EQ(entries[0].rfind("cloth.sheet.pin.0: enters 'floor' at 0.63 s", 0), 0u) << entries[0];
@@ -286,7 +288,7 @@ TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
 TEST(Doubts, NamePinsThatDrawFartherApartThanTheClothIs) {
   const std::string lower = "[[cloth.pin]]\nlow = [0, 0]\nhigh = [1, 0]\ninterpolation = 'linear'\n";
   const auto of = [&](const std::string& upper_keys, const std::string& more) {
-    return find_warnings(
+    return production::find_warnings(
         support::scene_of_text(hanging(1, "keys = [{ time = 0 }, { time = 1, " + upper_keys + " }]", more)));
   };
   // The pins are 0.4 m apart and separate by 0.19 m. That is 10 % after a fifth of the time, found at the next of 100

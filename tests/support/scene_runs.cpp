@@ -70,7 +70,7 @@ void judge_frame(MeasuredFrame& frame, const frame::FrameSnapshot& snapshot) {
 }  // namespace
 
 std::vector<MeasuredFrame> run_scene(const scene::Scene& scene, const RunPlan& plan, const EachFrame& each) {
-  simulation::Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   simulation.run_preroll();
   std::vector<MeasuredFrame> frames;
   const int end = plan.end < 0 ? scene.frame_count() : plan.end;

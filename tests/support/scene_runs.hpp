@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "production/scene_simulation.hpp"
 #include "scene/scene.hpp"
-#include "simulation/simulation.hpp"
 
 namespace weft::support {
 

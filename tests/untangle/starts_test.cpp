@@ -7,13 +7,13 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
-#include "simulation/simulation.hpp"
+#include "production/scene_simulation.hpp"
 #include "support/intersections.hpp"
 
 namespace weft::untangle {
 namespace {
 
-using simulation::Simulation;
+using production::SceneSimulation;
 
 scene::Scene empty_scene() {
   scene::Scene scene;
@@ -50,7 +50,7 @@ std::size_t judged_pairs(const frame::FrameSnapshot& snapshot) {
 
 std::string refusal(const scene::Scene& scene) {
   try {
-    const Simulation simulation(scene);
+    const production::SceneSimulation simulation(scene);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::scene_invalid);
     return error.what();
@@ -69,12 +69,12 @@ double max_displacement(const frame::FrameSnapshot& a, const frame::FrameSnapsho
 /// Expects that the given start intersects, and that neither the first frame nor the next three do, by the exact judge.
 /// Expects that the scene is refused without `start`.
 frame::SnapshotPtr expect_untangled(const scene::Scene& scene, std::size_t least_before = 1) {
-  const frame::SnapshotPtr given = simulation::view_start(scene).snapshot;
+  const frame::SnapshotPtr given = production::view_start(scene).snapshot;
   EXPECT_GE(judged_pairs(*given), least_before);
   scene::Scene as_given = scene;
   for (scene::Cloth& cloth : as_given.cloths) cloth.start = scene::ClothStart::as_given;
   EXPECT_NE(refusal(as_given).find("start = \"untangle\""), std::string::npos);
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const frame::SnapshotPtr first = simulation.snapshot();
   EXPECT_EQ(judged_pairs(*first), 0U);
   for (int frame = 0; frame < 3; ++frame) {
@@ -97,7 +97,7 @@ TEST(UntangledStart, ASheetThroughABallGoesOverToTheSmallerSide) {
     // The middle particle is at the pole of that side, no farther from it than the thickness of the cloth.
     const Vec3& middle = first->states[0].positions[12 + 25 * 12];
     EXPECT_NEAR(middle.z(), std::copysign(0.2, height), 0.004);
-    EXPECT_LT(max_displacement(*first, *simulation::view_start(scene).snapshot), 0.2);
+    EXPECT_LT(max_displacement(*first, *production::view_start(scene).snapshot), 0.2);
   }
 }
 
@@ -124,7 +124,7 @@ TEST(UntangledStart, CrossedSheetsAreOnOneSideOfEachOther) {
   scene.cloths = {sheet("a", {0, 0, 0}), sheet("b", {0, 0, 0.2}, 0.6)};
   scene.cloths[1].pose.rotation = turned(80, Vec3(1, 0.2, 0));
   const frame::SnapshotPtr first = expect_untangled(scene);
-  EXPECT_LT(max_displacement(*first, *simulation::view_start(scene).snapshot), 0.25);
+  EXPECT_LT(max_displacement(*first, *production::view_start(scene).snapshot), 0.25);
 }
 
 TEST(UntangledStart, ACrumpledSheetThatCrossesItselfIsSmoothedWhereItDoes) {
@@ -139,7 +139,8 @@ TEST(UntangledStart, WhatMayNotBeMovedIsNot) {
   scene.cloths = {sheet("a", {0, 0, 0}), sheet("b", {0, 0, 0.2}, 0.6)};
   scene.cloths[1].pose.rotation = turned(80, Vec3(1, 0.2, 0));
   scene.cloths[0].start = scene::ClothStart::as_given;
-  const frame::SnapshotPtr given = simulation::view_start(scene).snapshot, first = Simulation(scene).snapshot();
+  const frame::SnapshotPtr given = production::view_start(scene).snapshot,
+                           first = production::SceneSimulation(scene).snapshot();
   EXPECT_EQ(judged_pairs(*first), 0U);
   EXPECT_EQ(first->states[0].positions, given->states[0].positions);
   EXPECT_NE(first->states[1].positions, given->states[1].positions);
@@ -160,9 +161,9 @@ TEST(UntangledStart, HasTheSameBitsForAnyNumberOfThreads) {
   scene.cloths[1].pose.rotation = turned(80, Vec3(1, 0.2, 0));
   add_obstacle(scene, "ball", scene::Sphere{0.2});
   set_thread_count(1);
-  const frame::SnapshotPtr one = Simulation(scene).snapshot();
+  const frame::SnapshotPtr one = production::SceneSimulation(scene).snapshot();
   set_thread_count(4);
-  const frame::SnapshotPtr four = Simulation(scene).snapshot();
+  const frame::SnapshotPtr four = production::SceneSimulation(scene).snapshot();
   set_thread_count(0);
   EXPECT_EQ(judged_pairs(*one), 0U);
   for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(one->states[s].positions, four->states[s].positions);
@@ -172,7 +173,8 @@ TEST(UntangledStart, OfASceneThatIsApartNothingMoves) {
   scene::Scene scene = empty_scene();
   scene.cloths.push_back(sheet("sheet", {0, 0, 0.21}));
   add_obstacle(scene, "ball", scene::Sphere{0.2});
-  EXPECT_EQ(max_displacement(*Simulation(scene).snapshot(), *simulation::view_start(scene).snapshot), 0);
+  EXPECT_EQ(max_displacement(*production::SceneSimulation(scene).snapshot(), *production::view_start(scene).snapshot),
+            0);
 }
 
 }  // namespace

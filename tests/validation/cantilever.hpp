@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation::testing {
@@ -77,7 +78,7 @@ inline double drop_over_reach_of_run(scene::Scene scene, int cells) {
   scene.time = {.duration = 20, .fps = 5, .step = 0.2};
   scene.solver.newton_tolerance = 1e-5;
   scene.solver.linear_tolerance = 1e-3;
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   FrameReport report;
   for (int k = 0; k < scene.frame_count(); ++k) report = simulation.advance();
   EXPECT_LT(report.kinetic_energy, 1e-10 * std::abs(report.potential_energy));

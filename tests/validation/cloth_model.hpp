@@ -27,13 +27,13 @@ namespace weft::simulation::testing {
 class ClothModel {
  public:
   explicit ClothModel(const scene::Scene& scene)
-      : gravity_(scene.physics.gravity), environment_(scene), x(environment_.cloths[0].start) {
+      : gravity_(scene.physics.gravity), model_(environment::Environment(scene).model), x(model_.cloths[0].start) {
     const scene::Material& m = scene.cloths[0].material;
-    const environment::ClothObject& cloth = environment_.cloths[0];
+    const model::Cloth& cloth = model_.cloths[0];
     const forces::StretchParameters stretch{m.stretch_weft, m.stretch_warp, 0};
     held_.resize(x.size());
     for (const auto& pin : cloth.pins)
-      for (const environment::Chosen& chosen : pin) held_[chosen.particle] = 1;
+      for (const model::Chosen& chosen : pin.particles) held_[chosen.particle] = 1;
     if (cloth.sheet.triangles.empty()) {
       masses = forces::lumped_masses(cloth.grid, m.density);
       forces_.push_back(std::make_unique<forces::Stretch>(cloth.grid, 0, stretch));
@@ -161,7 +161,7 @@ class ClothModel {
     return found;
   }
 
-  const environment::ClothObject& cloth() const { return environment_.cloths[0]; }
+  const model::Cloth& cloth() const { return model_.cloths[0]; }
 
  private:
   static double coordinate(const std::vector<Vec3>& x, Eigen::Index dof) { return x[dof / 3][dof % 3]; }
@@ -184,7 +184,7 @@ class ClothModel {
   }
 
   Vec3 gravity_;
-  environment::Environment environment_;
+  model::Model model_;
   std::vector<std::unique_ptr<forces::Force>> forces_;
   solver::BlockMatrix matrix_;
   std::vector<char> held_;

@@ -113,8 +113,8 @@ scene::Scene square(ClothShape shape, const scene::Material& material) {
   scene::Cloth& cloth = scene.cloths[0];
   cloth.shape = shape;
   cloth.material = material;
-  const environment::Environment environment(scene);
-  const std::vector<Vec3>& x = environment.cloths[0].start;
+  const model::Model model = environment::Environment(scene).model;
+  const std::vector<Vec3>& x = model.cloths[0].start;
   const double reach = kPlateRadius + 0.5 * cloth.size.x() / (particles - 1);
   std::vector<std::size_t> held;
   for (std::size_t i = 0; i < x.size(); ++i)
@@ -130,8 +130,8 @@ TEST_F(Cusick, QuadsDrapeAsTrianglesDo) {
     double quads = 0;
     for (ClothShape shape : {ClothShape::quads, ClothShape::aligned_triangles, ClothShape::crossed_triangles}) {
       const scene::Scene scene = square(shape, scene::find_fabric(fabric)->material);
-      const environment::Environment environment(scene);
-      const Drape d = drape_to_rest(scene, environment.cloths[0].mesh.topology.triangles);
+      const model::Model model = environment::Environment(scene).model;
+      const Drape d = drape_to_rest(scene, model.cloths[0].mesh.topology.triangles);
       std::printf(" %s %.1f %% (strain %.4f, %.1f s)", testing::name_of(shape), 100 * d.coefficient, d.strain, d.cpu_s);
       if (shape == ClothShape::quads) quads = d.coefficient;
       EXPECT_NEAR(d.coefficient, quads, shape == ClothShape::crossed_triangles ? 0.06 : 0.03)

@@ -5,9 +5,10 @@
 #include <tuple>
 
 #include "environment/environment.hpp"
-#include "environment/gusts.hpp"
 #include "forces/sheets.hpp"
 #include "integrator/stepper.hpp"
+#include "model/gusts.hpp"
+#include "production/scene_simulation.hpp"
 #include "scene/fabrics.hpp"
 #include "simulation/scenes.hpp"
 #include "simulation/step_problem.hpp"
@@ -28,10 +29,10 @@ TEST(FreeCloth, KeepsItsMomentumInEveryMethod) {
   scene.cloths[0].material.stretch_viscosity = scene.cloths[0].material.shear_viscosity = 0.5;
   scene.cloths[0].material.bend_viscosity = 1e-6;
   scene.cloths[0].material.bend_friction = 0;  // Newton's method cannot resolve its kink at rest to 1e-8
-  const environment::Environment environment(scene);
-  ClothSystem system(scene, environment);
+  const model::Model model = environment::Environment(scene).model;
+  ClothSystem system(model);
   // Crumpled and moving, so that all forces act.
-  integrator::State start{environment.cloths[0].start, forces::testing::random_vectors(81, 1, 2)};
+  integrator::State start{model.cloths[0].start, forces::testing::random_vectors(81, 1, 2)};
   const auto noise = forces::testing::random_vectors(81, 0.001, 1);
   for (std::size_t i = 0; i < 81; ++i) start.x[i] += noise[i];
   for (Vec3& v : start.v) v += Vec3(0.5, -0.3, 0.2);
@@ -66,7 +67,7 @@ TEST_P(FreeFall, LeavesAFlatSheetFlatByEveryMethodAtDefaultSettings) {
     scene.time.integrator = integrator;
     scene.cloths[0].shape = std::get<1>(GetParam());
     scene.cloths[0].material = scene::find_fabric(std::get<0>(GetParam()))->material;
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     const std::vector<Vec3> start = testing::sheet_of(simulation.snapshot());
     for (int k = 1; k <= 25; ++k) simulation.advance();
     const std::vector<Vec3>& end = testing::sheet_of(simulation.snapshot());
@@ -93,7 +94,7 @@ TEST(ReleasedCloth, FallsAsFromAStart) {
     scene::Pin pin;
     pin.release = 0.2;
     scene.cloths[0].pins.push_back(pin);
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     for (int k = 1; k <= 15; ++k) simulation.advance();
     const double t = 0.4, h = 0.01, g = 9.81;
     double expected = -0.5 * g * t * t;
@@ -112,7 +113,7 @@ TEST(SteadyAir, TerminalVelocityHangsNotOnTheStep) {
         scene.time.integrator = integrator;
         scene.physics.air_density = 1.2;
         scene.cloths[0].material.drag = drag;
-        Simulation simulation(scene);
+        production::SceneSimulation simulation(scene);
         double before = 0, speed = 0;
         for (int k = 1; k <= 50; ++k) {
           simulation.advance();
@@ -134,9 +135,9 @@ TEST(GustsInARun, CarryASheetThatFalls) {
     scene.time.integrator = integrator;
     scene.physics.air_density = 1.2;
     scene.physics.gusts = {.speed = 1, .size = 1e5, .seed = 3};
-    const double gust = environment::Gusts(scene.physics.gusts, Vec3::Zero()).at(Vec3::Zero(), 1).z();
+    const double gust = model::GustField(scene.physics.gusts, Vec3::Zero()).at(Vec3::Zero(), 1).z();
     ASSERT_GT(std::abs(gust), 0.2) << "something to see";
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     double before = 0, speed = 0;
     for (int k = 1; k <= 50; ++k) {
       simulation.advance();
@@ -164,7 +165,7 @@ TEST(SteadyAir, ClothInSteadyWindComesToTheSameRestAtEveryStep) {
       pin.low = pin.high = corner;
       scene.cloths[0].pins.push_back(pin);
     }
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     FrameReport report;
     for (int k = 0; k < 100; ++k) report = simulation.advance();
     energies.push_back(report.elastic_energy);

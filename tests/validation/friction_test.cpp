@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {
@@ -48,7 +49,7 @@ scene::Scene incline(double angle, double friction, int particles) {
 
 /// Mean position along the slope [m] in each frame.
 std::vector<double> distances_down(const scene::Scene& scene, int frames) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   const Vec3 down = scene.obstacles[0].pose.rotation * Vec3::UnitX();
   std::vector<double> distances;
   for (int k = 0; k <= frames; ++k) {

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {
@@ -24,7 +25,7 @@ TEST(HangingSheet, IsLongerByHalfItsWeightOverItsStiffness) {
     top.low = {0, 1};
     cloth.pins.push_back(top);
 
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     FrameReport report;
     // The slowest mode, a quarter wave with speed √(k/ρ) = 22 m/s, has a period of 0.14 s, a fourteenth of the run.
     for (int k = 0; k < 50; ++k) report = simulation.advance();

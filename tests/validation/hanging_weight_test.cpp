@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {
@@ -32,7 +33,7 @@ TEST(HangingWeight, StretchesItsThreadsByItsWeightOverTheirStiffness) {
     weight.high = {1, 0};
     weight.mass = mass;
     chain.weights.push_back(weight);
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     for (int k = 0; k < 150; ++k) simulation.advance();
     const auto& x = testing::sheet_of(simulation.snapshot());
     const double expected = (mass * kLength + 0.5 * 20 * kLength) * 9.81 / (kStiffness * kWidth);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "validation/cantilever.hpp"
 #include "validation/cloth_model.hpp"
@@ -106,7 +107,7 @@ double way_aside(double gamma) {
   scene.solver.linear_tolerance = 1e-3;
   scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1e4;
   scene.cloths[0].velocity = {0, 1e-3, 0};
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 1; k < scene.frame_count(); ++k) simulation.advance();
   double aside = 0;
   for (const Vec3& x : testing::sheet_of(simulation.snapshot())) aside = std::max(aside, std::abs(x.y()));

@@ -52,7 +52,7 @@ class ManyContacts : public support::TestFolder {
     EXPECT_LE(rejected, 1);
 
     const scene::Scene free = support::scene_of_text(text, {"contact.self=false", "contact.obstacles=false"});
-    Simulation simulation(free);
+    production::SceneSimulation simulation(free);
     std::size_t pairs = 0;
     for (int frame = 1; frame < free.frame_count() && pairs == 0; ++frame) {
       simulation.advance();

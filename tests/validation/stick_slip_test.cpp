@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {
@@ -67,7 +68,7 @@ scene::Scene pressed_strip(double depth, double friction) {
 
 /// How far the tip moves in the second after its release [m].
 double way_of_tip(const scene::Scene& scene) {
-  Simulation simulation(scene);
+  production::SceneSimulation simulation(scene);
   for (int k = 0; k < kReleased + static_cast<int>(kFps); ++k) simulation.advance();
   return std::abs(testing::sheet_of(simulation.snapshot())[1].y());
 }

@@ -149,7 +149,7 @@ TEST(VibrationOfARun, HasThePhaseOfItsModes) {
     scene.time.integrator = scene::Integrator::implicit_midpoint;
     scene.solver.newton_tolerance = 1e-6;
     scene.solver.linear_tolerance = 1e-3;
-    Simulation simulation(scene);
+    production::SceneSimulation simulation(scene);
     double before = 0;
     std::vector<double> ups;  // [frames]
     for (int k = 1; ups.size() < 11 && k < 1300; ++k) {

@@ -77,7 +77,8 @@ void add_obstacles(World& world, const scene::Scene& scene) {
   }
 }
 
-void add_cloth(World& world, const Request& request, const scene::Scene& scene, const simulation::Simulation& start) {
+void add_cloth(World& world, const Request& request, const scene::Scene& scene,
+               const production::SceneSimulation& start) {
   const simulation::ParticleState state = start.state();
   std::vector<btVector3> places;
   std::vector<btScalar> masses;
@@ -135,7 +136,7 @@ void run(const Request& request) {
   const scene::Scene scene = support::scene_of(request.scene, request.overrides);
   if (scene.cloths.size() != 1 || !scene.characters.empty())
     throw std::invalid_argument("expected a scene of one cloth and no character");
-  const simulation::Simulation start(scene);
+  const production::SceneSimulation start(scene);
   World world;
   add_obstacles(world, scene);
   add_cloth(world, request, scene, start);

@@ -74,10 +74,10 @@ SheetSystem sheet_system(int side, double stiffness, Pose pose) {
       fmt::format("[time]\nduration = 1\n[[cloth]]\nname = \"sheet\"\nsize = [1, 1]\nparticles = [{0}, {0}]\n"
                   "material = {{ stretch = {1}, shear = {2} }}\n",
                   side, stiffness, shear));
-  const environment::Environment environment(scene);
-  simulation::ClothSystem cloth(scene, environment);
+  const model::Model model = environment::Environment(scene).model;
+  simulation::ClothSystem cloth(model);
   simulation::StepProblem problem(cloth);
-  const mesh::Grid& grid = environment.cloths[0].grid;
+  const mesh::Grid& grid = model.cloths[0].grid;
 
   SheetSystem sheet;
   sheet.side = side;

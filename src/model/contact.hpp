@@ -1,0 +1,44 @@
+// How contact is found and answered.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace weft::model {
+
+enum class Response { springs, velocity_constraints };
+enum class Bounds { box, dop18, dop26 };
+enum class TreeKind { binary, quad, oct };
+
+/// Methods that find surfaces close to each other (seed, "Collision Detection"). They change the speed, not the result.
+struct Search {
+  Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
+  TreeKind tree = TreeKind::oct;  ///< two, four or eight children per node
+  int leaf = 8;                   ///< maximum number of triangles per leaf
+  bool open_longer_side = false;  ///< of two nodes, open only the longer one
+  bool separation_lists = false;  ///< start each traversal where the previous one stopped
+  bool velocity_cones = false;    ///< keep the bounds of slow nodes while their vertices stay inside
+  bool normal_cones = false;      ///< skip regions that are provably too flat to touch themselves
+  bool coherence = false;         ///< keep closest points of surfaces with little relative motion
+  bool reuse = true;              ///< keep candidate pairs and close features until something moves far
+};
+
+/// Coulomb friction between two objects; replaces the mean of their own coefficients.
+struct FrictionPair {
+  std::string first, second;              ///< names of cloths or obstacles; equal names: a cloth with itself
+  double friction = 0.3;                  ///< coefficient of kinetic friction
+  std::optional<double> static_friction;  ///< coefficient of static friction, at least `friction`; absent: equal to it
+};
+
+/// Contact of all surfaces.
+struct Contact {
+  bool self = true;        ///< cloth against itself and other cloths
+  bool obstacles = true;   ///< cloth against obstacles
+  double stiffness = 100;  ///< stiffness of one contact [N/m]
+  std::vector<FrictionPair> pairs;
+  Search search;
+  Response response = Response::springs;
+};
+
+}  // namespace weft::model

@@ -1,0 +1,32 @@
+// Properties of a fabric.
+#pragma once
+
+#include <string>
+
+namespace weft::model {
+
+/// A fabric in continuum units (seed, "Elastic Model").
+struct Material {
+  std::string fabric = "cotton";  ///< the named fabric that supplies the default values
+  double density = 0.15;          ///< [kg/m²]
+  double stretch_weft = 800;      ///< k1 [N/m]
+  double stretch_warp = 2100;     ///< k2 [N/m]
+  double shear = 130;             ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
+  double bend = 1e-5;             ///< B [N·m]
+  double max_stretch = 0.1;       ///< extension at which threads lock (stiffen) [1]; 0: never
+  double max_shear = 0;           ///< change of the angle between weft and warp at which they lock [degrees]; 0: never
+  double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
+  double shear_viscosity = 0;     ///< [N·s/m]
+  double bend_viscosity = 1e-6;   ///< [N·m·s]
+  double bend_friction = 5e-4;    ///< moment per width that must be overcome to change the curvature [N]
+  double thickness = 0.002;       ///< contact distance between two layers [m]
+  double friction = 0.3;          ///< Coulomb coefficient; a contact uses the geometric mean of both objects
+  double drag = 1.0;              ///< air resistance coefficient, for motion normal to the cloth; 0: none
+
+  /// Whether cloth of this material resists bending. Without it, bending viscosity and friction have no effect.
+  bool bends() const { return bend > 0; }
+  /// Whether threads of this material lock: whether it has a limit to stretch or shear.
+  bool locks() const { return max_stretch > 0 || max_shear > 0; }
+};
+
+}  // namespace weft::model

@@ -1,0 +1,8 @@
+// Interpolation between keys.
+#pragma once
+
+namespace weft::motion {
+
+enum class Interpolation { linear, cubic };
+
+}  // namespace weft::motion
