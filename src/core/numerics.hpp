@@ -9,7 +9,7 @@ namespace weft {
 /// without a unit are ratios or counts. `tests/tools/change_numerics.sh` shows which tests fail if a member is ten
 /// times as large.
 struct Numerics {
-  /// The linear solver (src/solver).
+  /// The linear solver (src/physics/solver).
   struct Linear {
     /// Trace of a particle's 3×3 block, relative to the sum of `LinearSystem::norm_weights` over its diagonal block. If
     /// any particle exceeds it, all aggregates move as wholes. Larger: slender cells, and a viscosity of 1e4 N·s/m, are
@@ -27,7 +27,7 @@ struct Numerics {
     double slender_aggregate = 2;
   } linear;
 
-  /// Newton's method (src/integrator).
+  /// Newton's method (src/physics/integrator).
   struct Newton {
     /// Allowed linear error, relative to the allowed Newton error; a diagonal block whose error is below it is not
     /// solved again. 1: fewer iterations, but more strain.
@@ -60,7 +60,7 @@ struct Numerics {
     double stale_motion = 0.005;
   } newton;
 
-  /// Step sizes from `time.tolerance` (src/integrator/step_control.cpp), and after rejections.
+  /// Step sizes from `time.tolerance` (src/physics/integrator/step_control.cpp), and after rejections.
   struct Steps {
     /// Error that the controller aims at, relative to the tolerance. Nearer to 1: more steps are rejected.
     double aim = 0.7;
@@ -76,7 +76,7 @@ struct Numerics {
     double rest_velocity = 0.02;
   } steps;
 
-  /// Contacts (src/collision).
+  /// Contacts (src/physics/collision).
   struct Contact {
     /// Detection distance, relative to the largest activation distance. Smaller: contacts are found late in a step.
     double detection = 1.5;
@@ -115,7 +115,7 @@ struct Numerics {
     double depenetration_stiffness = 0.05;
   } contact;
 
-  /// Separating planes, which guarantee that nothing intersects (src/collision/response).
+  /// Separating planes, which guarantee that nothing intersects (src/physics/collision/response).
   struct Separation {
     /// Minimum gap along a plane at the end of a step [m]. Smaller: rounding decides; larger: thin cloth fails.
     double least_gap = 1e-6;
@@ -147,7 +147,7 @@ struct Numerics {
     double negligible_change = 0.2;
   } walls;
 
-  /// Repairs of a step (src/simulation/step_loop.cpp).
+  /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
     /// Rejections of a step before cloth may count as pinched, and before an overstretched solve is accepted. As many
     /// attempts at a step release the particles of obstructed pins; one more may also move pinned particles.
@@ -164,7 +164,7 @@ struct Numerics {
     double overstretch = 2;
   } repair;
 
-  /// Pins that an obstacle keeps from their position (src/simulation/yielding_pins.cpp).
+  /// Pins that an obstacle keeps from their position (src/physics/simulation/yielding_pins.cpp).
   struct Pins {
     /// Speed [m/s], relative to its target, at which a particle returns.
     double return_velocity = 1;
@@ -187,7 +187,7 @@ struct Numerics {
     double thickness_of_size = 0.1;
   } bodies;
 
-  /// Energy without a source (src/simulation/energy_bound.cpp), relative to the energy in play.
+  /// Energy without a source (src/physics/simulation/energy_bound.cpp), relative to the energy in play.
   struct Energy {
     /// Gain above which a run fails, also the work of the residual above which it warns; gain above which it warns, and
     /// which pushing apart may add to a step.

@@ -51,8 +51,8 @@ std::vector<fs::path> written_files(const fs::path& root, const std::vector<std:
 const std::set<std::string> kGeneratedHeaders = {"embedded_shaders.hpp", "embedded_review.hpp", "embedded_cli.hpp",
                                                  "embedded_templates.hpp", "embedded_export.hpp"};
 
-// Headers that are installed.
-const std::string kInterface = "src/library/include/";
+// Headers that are installed are in a folder of this name of their module.
+const std::string kInterface = "/include/weft/";
 
 const std::vector<std::string> kCodeFolders = {"src", "shaders", "tests"};
 const std::vector<std::string> kAllFolders = {"src", "shaders", "tests", "scenes", ".ci"};
@@ -77,55 +77,99 @@ bool has_word(const std::string& line, const std::string& word) {
 
 }  // namespace
 
-std::vector<Module> read_modules(const fs::path& root) {
+namespace {
+
+// A weft_room() or weft_module() of src/CMakeLists.txt.
+struct Declaration {
+  std::string kind, name, does;
+  std::vector<std::string> uses;
+};
+
+std::vector<Declaration> read_declarations(const fs::path& root) {
   const std::string text = read(root / "src/CMakeLists.txt");
-  const std::regex declaration(R"re(\bweft_module\((\w+)(?:\s+DOES\s+"([^"]*)")?([^()]*)\))re");
-  std::vector<Module> modules;
-  for (std::sregex_iterator match(text.begin(), text.end(), declaration), end; match != end; ++match) {
-    Module module{(*match)[1], (*match)[2], {}};
-    std::istringstream words((*match)[3]);
+  const std::regex pattern(R"re(\bweft_(room|module)\((\w+)(?:\s+DOES\s+"([^"]*)")?([^()]*)\))re");
+  std::vector<Declaration> declarations;
+  for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match) {
+    Declaration declaration{(*match)[1], (*match)[2], (*match)[3], {}};
+    std::istringstream words((*match)[4]);
     bool in_uses = false;
     for (std::string word; words >> word;) {
       if (word == "USES" || word == "LINKS") {
         in_uses = word == "USES";
       } else if (in_uses) {
-        module.uses.push_back(word);
+        declaration.uses.push_back(word);
       }
     }
-    modules.push_back(module);
+    declarations.push_back(declaration);
+  }
+  return declarations;
+}
+
+// The module that a file below src/ belongs to, by its folder; empty if none.
+std::string module_of(const fs::path& file, const std::vector<Module>& modules) {
+  for (const Module& module : modules)
+    if (file.generic_string().starts_with(module.folder().generic_string() + "/")) return module.name;
+  return "";
+}
+
+}  // namespace
+
+std::vector<Room> read_rooms(const fs::path& root) {
+  std::vector<Room> rooms;
+  for (const Declaration& declared : read_declarations(root))
+    if (declared.kind == "room") rooms.push_back({declared.name, declared.does, declared.uses});
+  return rooms;
+}
+
+std::vector<Module> read_modules(const fs::path& root) {
+  std::vector<Module> modules;
+  std::string room;
+  for (const Declaration& declared : read_declarations(root)) {
+    if (declared.kind == "room")
+      room = declared.name;
+    else
+      modules.push_back({declared.name, declared.does, declared.uses, room});
   }
   return modules;
 }
 
 std::string wrong_includes(const fs::path& root) {
   std::map<std::string, std::set<std::string>> allowed;
-  for (const Module& module : read_modules(root)) {
+  const std::vector<Module> modules = read_modules(root);
+  for (const Module& module : modules) {
     allowed[module.name] = {module.uses.begin(), module.uses.end()};
     allowed[module.name].insert({"core", module.name});
   }
   const std::regex include(R"re(\s*#\s*include\s*"([^"]+)".*)re");
-  const std::regex public_include(R"re(\s*#\s*include\s*<(weft)/.*)re"),
+  const std::regex public_include(R"re(\s*#\s*include\s*<(weft/[^>]+)>.*)re"),
       standard_include(R"re(\s*#\s*include\s*<\w+>.*)re");
   std::string wrong;
   for (const fs::path& file : written_files(root, {"src"})) {
     if (!kCode.contains(file.extension()) || *file.begin() != "src") continue;
-    const std::string from = std::next(file.begin())->string();
+    const std::string from = module_of(file.lexically_relative("src"), modules);
     const auto lines = lines_of(root / file);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       std::smatch match;
       const bool of_interface = std::regex_match(lines[i], match, public_include);
-      if (of_interface && !allowed[from].contains("library"))
-        wrong += at(file, i + 1) + from + " does not use library\n";
-      if (file.generic_string().starts_with(kInterface) && lines[i].starts_with("#include") && !of_interface &&
-          !std::regex_match(lines[i], standard_include))
+      if (of_interface) {
+        const std::string header = "include/" + match[1].str();
+        const auto owner = std::ranges::find_if(
+            modules, [&](const Module& each) { return fs::exists(root / "src" / each.folder() / header); });
+        if (owner == modules.end())
+          wrong += at(file, i + 1) + "no module has " + header + "\n";
+        else if (!allowed[from].contains(owner->name))
+          wrong += at(file, i + 1) + from + " does not use " + owner->name + "\n";
+      }
+      if (file.generic_string().find(kInterface) != std::string::npos && lines[i].starts_with("#include") &&
+          !of_interface && !std::regex_match(lines[i], standard_include))
         wrong += at(file, i + 1) + "others cannot include this\n";
       if (!std::regex_match(lines[i], match, include)) continue;
       const fs::path target = match[1].str();
       if (kGeneratedHeaders.contains(target)) continue;
       if (!fs::is_regular_file(root / "src" / target)) {
         wrong += at(file, i + 1) + "src/" + target.generic_string() + " does not exist\n";
-      } else if (!allowed[from].contains(target.begin()->string())) {
-        wrong += at(file, i + 1) + from + " does not use " + target.begin()->string() + "\n";
+      } else if (const std::string used = module_of(target, modules); !allowed[from].contains(used)) {
+        wrong += at(file, i + 1) + from + " does not use " + used + "\n";
       }
     }
   }
@@ -135,21 +179,39 @@ std::string wrong_includes(const fs::path& root) {
 std::string wrong_declarations(const fs::path& root) {
   const std::string prefix = "src/CMakeLists.txt: ";
   std::string wrong;
-  std::set<std::string> declared;
+  std::map<std::string, std::set<std::string>> rooms{{"", {""}}};  // of each room: those whose modules it may use
+  for (const Room& room : read_rooms(root)) {
+    for (const std::string& used : room.uses)
+      if (!rooms.contains(used)) wrong += prefix + room.name + " uses " + used + ", which is not declared before it\n";
+    rooms[room.name] = {room.uses.begin(), room.uses.end()};
+    rooms[room.name].insert({"", room.name});
+  }
+  std::map<std::string, std::string> room_of;  // of each module declared so far
+  std::set<std::string> folders;
   for (const Module& module : read_modules(root)) {
     for (const std::string& used : module.uses) {
-      if (!declared.contains(used))
+      if (!room_of.contains(used))
         wrong += prefix + module.name + " uses " + used + ", which is not declared before it\n";
+      else if (!rooms[module.room].contains(room_of[used]))
+        wrong += prefix + module.name + " uses " + used + " of the room " + room_of[used] + "\n";
     }
-    if (!fs::is_directory(root / "src" / module.name)) wrong += prefix + module.name + " has no folder\n";
-    if (!declared.insert(module.name).second) wrong += prefix + module.name + " is declared twice\n";
+    if (!fs::is_directory(root / "src" / module.folder())) wrong += prefix + module.name + " has no folder\n";
+    if (!room_of.emplace(module.name, module.room).second) wrong += prefix + module.name + " is declared twice\n";
+    folders.insert(module.folder().generic_string());
   }
-  std::set<std::string> folders;
+  std::set<fs::path> found;
   for (const auto& entry : fs::directory_iterator(root / "src")) {
-    if (entry.is_directory()) folders.insert(entry.path().filename());
+    if (!entry.is_directory()) continue;
+    if (!rooms.contains(entry.path().filename())) {
+      found.insert(entry.path());
+      continue;
+    }
+    for (const auto& inner : fs::directory_iterator(entry.path()))
+      if (inner.is_directory()) found.insert(inner.path());
   }
-  for (const std::string& folder : folders) {
-    if (!declared.contains(folder)) wrong += prefix + "src/" + folder + " is not declared\n";
+  for (const fs::path& folder : found) {
+    const std::string below = folder.lexically_relative(root / "src").generic_string();
+    if (!folders.contains(below)) wrong += prefix + "src/" + below + " is not declared\n";
   }
   return wrong;
 }

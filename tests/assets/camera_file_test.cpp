@@ -1,5 +1,5 @@
 // Position, direction and motion of cameras from glTF files.
-#include "assets/camera_file.hpp"
+#include "film/assets/camera_file.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Scenes as assimp returns them, made by hand and damaged in one part after another.
-#include "assets/character_reader.hpp"
+#include "film/assets/character_reader.hpp"
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "character/pose.hpp"
+#include "film/character/pose.hpp"
 
 namespace weft::assets {
 namespace {

@@ -10,10 +10,10 @@
 #include <random>
 #include <string>
 
-#include "assets/mesh_file.hpp"
 #include "assets/small_files.hpp"
 #include "core/error.hpp"
-#include "mesh/topology.hpp"
+#include "film/assets/mesh_file.hpp"
+#include "physics/mesh/topology.hpp"
 
 namespace weft::assets {
 namespace {

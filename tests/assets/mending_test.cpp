@@ -1,12 +1,12 @@
 // Repair of surfaces that are not valid sheets, made here.
-#include "assets/mending.hpp"
+#include "film/assets/mending.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/topology.hpp"
+#include "physics/mesh/topology.hpp"
 
 namespace weft::assets {
 namespace {

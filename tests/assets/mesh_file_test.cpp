@@ -1,4 +1,4 @@
-#include "assets/mesh_file.hpp"
+#include "film/assets/mesh_file.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -13,8 +13,8 @@
 
 #include "assets/small_files.hpp"
 #include "core/error.hpp"
-#include "mesh/geometry.hpp"
-#include "mesh/ply.hpp"
+#include "physics/mesh/geometry.hpp"
+#include "physics/mesh/ply.hpp"
 #include "support/mesh_measures.hpp"
 
 namespace weft::assets {

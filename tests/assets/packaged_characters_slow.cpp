@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "assets/character_file.hpp"
-#include "character/pose.hpp"
 #include "core/error.hpp"
-#include "mesh/topology.hpp"
+#include "film/assets/character_file.hpp"
+#include "film/character/pose.hpp"
+#include "physics/mesh/topology.hpp"
 
 namespace weft::assets {
 namespace {

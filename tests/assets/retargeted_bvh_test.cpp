@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "assets/character_file.hpp"
-#include "character/anatomy.hpp"
-#include "character/mannequin.hpp"
-#include "character/pose.hpp"
-#include "character/retarget.hpp"
+#include "film/assets/character_file.hpp"
+#include "film/character/anatomy.hpp"
+#include "film/character/mannequin.hpp"
+#include "film/character/pose.hpp"
+#include "film/character/retarget.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::assets {

@@ -6,14 +6,15 @@ cd "$(dirname "$0")/measured"
 for file in *.md; do
   commit=$(sed -n 's/^weft [0-9.]* of commit \([0-9a-f]*\),.*/\1/p' "$file")
   case $file in
-    build.md | distances.md | falling_band.md | multi_sheet*.md | wound_ball.md) code=src/collision ;;
-    linear_solvers.md) code=src/solver ;;
-    drawing.md) code="src/render src/simulation src/solver src/collision" ;;
-    build_time.md) code=src ;;
-    *) code="src/simulation src/solver src/collision src/integrator src/forces src/bench" ;;
+    build.md | distances.md | falling_band.md | multi_sheet*.md | wound_ball.md) modules=collision ;;
+    linear_solvers.md) modules=solver ;;
+    drawing.md) modules="render simulation solver collision" ;;
+    build_time.md) modules= ;;
+    *) modules="simulation solver collision integrator forces bench" ;;
   esac
-  if count=$(cd ../../.. && git rev-list --count "$commit"..HEAD -- $code 2>/dev/null); then
-    echo "$file: commit $commit, $count later changes of $code"
+  code=${modules:+$(for module in $modules; do echo "src/$module src/*/$module"; done)}  # before the rooms, and in them
+  if count=$(cd ../../.. && git rev-list --count "$commit"..HEAD -- ${code:-src} 2>/dev/null); then
+    echo "$file: commit $commit, $count later changes of ${modules:-src}"
   else
     echo "$file: commit $commit is not in the history here"
   fi

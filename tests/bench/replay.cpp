@@ -5,11 +5,11 @@
 #include <string>
 
 #include "bench/measure.hpp"
-#include "collision/hierarchy/broad_phase.hpp"
 #include "collision/hierarchy/feature_distance.hpp"
-#include "collision/hierarchy/normal_cones.hpp"
 #include "collision/hierarchy/test_motions.hpp"
-#include "collision/proximity/coherence.hpp"
+#include "physics/collision/hierarchy/broad_phase.hpp"
+#include "physics/collision/variants/coherence.hpp"
+#include "physics/collision/variants/normal_cones.hpp"
 #include "support/ply.hpp"
 
 namespace weft::bench {

@@ -4,12 +4,12 @@
 
 #include "bench/cgal_tree.hpp"
 #include "bench/measure.hpp"
-#include "collision/hierarchy/broad_phase.hpp"
 #include "collision/hierarchy/test_meshes.hpp"
-#include "collision/hierarchy/tree.hpp"
-#include "collision/proximity/closest_points.hpp"
-#include "collision/proximity/gjk.hpp"
-#include "collision/proximity/proximities.hpp"
+#include "physics/collision/hierarchy/broad_phase.hpp"
+#include "physics/collision/hierarchy/tree.hpp"
+#include "physics/collision/proximity/closest_points.hpp"
+#include "physics/collision/proximity/gjk.hpp"
+#include "physics/collision/proximity/proximities.hpp"
 
 namespace weft::bench {
 

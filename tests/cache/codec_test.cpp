@@ -1,12 +1,12 @@
 // Frames to bytes and back, and the treatment of bytes that are not a frame.
-#include "cache/codec.hpp"
+#include "film/cache/codec.hpp"
 
 #include <gtest/gtest.h>
 #include <xxhash.h>
 #include <zstd.h>
 
-#include "cache/container.hpp"
 #include "cache/sample.hpp"
+#include "film/cache/container.hpp"
 
 namespace weft::cache {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <random>
 
-#include "cache/codec.hpp"
-#include "cache/container.hpp"
-#include "cache/names.hpp"
-#include "cache/reader.hpp"
 #include "cache/sample.hpp"
-#include "cache/writer.hpp"
+#include "film/cache/codec.hpp"
+#include "film/cache/container.hpp"
+#include "film/cache/names.hpp"
+#include "film/cache/reader.hpp"
+#include "film/cache/writer.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::cache {

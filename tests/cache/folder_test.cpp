@@ -1,10 +1,10 @@
 // The folder as writers leave it and readers find it.
 #include <gtest/gtest.h>
 
-#include "cache/names.hpp"
-#include "cache/reader.hpp"
 #include "cache/sample.hpp"
-#include "cache/writer.hpp"
+#include "film/cache/names.hpp"
+#include "film/cache/reader.hpp"
+#include "film/cache/writer.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::cache {

@@ -6,9 +6,9 @@
 #include <memory>
 #include <random>
 
-#include "cache/manifest.hpp"
-#include "frame/frame_snapshot.hpp"
-#include "simulation/frame_report.hpp"
+#include "film/cache/manifest.hpp"
+#include "film/frame/frame_snapshot.hpp"
+#include "physics/simulation/frame_report.hpp"
 
 namespace weft::cache {
 

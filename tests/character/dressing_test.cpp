@@ -1,14 +1,14 @@
 // Poses for dressing: on skeletons made here, and on the mannequin.
-#include "character/dressing.hpp"
+#include "film/character/dressing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "character/mannequin.hpp"
-#include "character/room.hpp"
-#include "mesh/topology.hpp"
-#include "mesh/triangle_grid.hpp"
+#include "film/character/mannequin.hpp"
+#include "film/character/room.hpp"
+#include "physics/mesh/topology.hpp"
+#include "physics/mesh/triangle_grid.hpp"
 #include "posed_mannequin.hpp"
 #include "support/intersections.hpp"
 

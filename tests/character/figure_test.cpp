@@ -1,4 +1,4 @@
-#include "character/figure.hpp"
+#include "film/character/figure.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "character/footing.hpp"
+#include "film/character/footing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "character/gait.hpp"
+#include "film/character/gait.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "character/gait_curves.hpp"
-#include "character/gait_steps.hpp"
+#include "film/character/gait_curves.hpp"
+#include "film/character/gait_steps.hpp"
 #include "posed_mannequin.hpp"
 #include "support/intersections.hpp"
 

@@ -1,4 +1,4 @@
-#include "character/mannequin.hpp"
+#include "film/character/mannequin.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <numbers>
 #include <utility>
 
-#include "character/mannequin_shape.hpp"
-#include "mesh/geometry.hpp"
-#include "mesh/topology.hpp"
+#include "film/character/mannequin_shape.hpp"
+#include "physics/mesh/geometry.hpp"
+#include "physics/mesh/topology.hpp"
 #include "posed_mannequin.hpp"
 #include "support/intersections.hpp"
 #include "support/mesh_measures.hpp"

@@ -1,12 +1,12 @@
-#include "character/nameless.hpp"
+#include "film/character/nameless.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "character/joints.hpp"
-#include "character/mannequin.hpp"
+#include "film/character/joints.hpp"
+#include "film/character/mannequin.hpp"
 
 namespace weft::character {
 namespace {

@@ -1,12 +1,12 @@
 // Parts of bodies: their skin, compared with the nearest bone of the mannequin and with a skeleton made here.
-#include "character/parts.hpp"
+#include "film/character/parts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "character/joints.hpp"
-#include "character/mannequin.hpp"
+#include "film/character/joints.hpp"
+#include "film/character/mannequin.hpp"
 
 namespace weft::character {
 namespace {

@@ -1,4 +1,4 @@
-#include "character/performance.hpp"
+#include "film/character/performance.hpp"
 
 #include <gtest/gtest.h>
 

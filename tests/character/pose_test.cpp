@@ -1,4 +1,4 @@
-#include "character/pose.hpp"
+#include "film/character/pose.hpp"
 
 #include <gtest/gtest.h>
 

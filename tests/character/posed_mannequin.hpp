@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "character/mannequin.hpp"
+#include "film/character/mannequin.hpp"
 
 namespace weft::character {
 

@@ -1,4 +1,4 @@
-#include "character/retarget.hpp"
+#include "film/character/retarget.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <array>
 #include <string>
 
-#include "character/joints.hpp"
-#include "character/mannequin.hpp"
-#include "character/pose.hpp"
+#include "film/character/joints.hpp"
+#include "film/character/mannequin.hpp"
+#include "film/character/pose.hpp"
 
 namespace weft::character {
 namespace {

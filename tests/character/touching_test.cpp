@@ -1,5 +1,5 @@
 // Hands that touch each other, an elbow or the hips.
-#include "character/touching.hpp"
+#include "film/character/touching.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "character/travel.hpp"
+#include "film/character/travel.hpp"
 
 #include <gtest/gtest.h>
 
-#include "character/footing.hpp"
-#include "character/gait.hpp"
-#include "character/mannequin.hpp"
-#include "character/pose.hpp"
+#include "film/character/footing.hpp"
+#include "film/character/gait.hpp"
+#include "film/character/mannequin.hpp"
+#include "film/character/pose.hpp"
 #include "posed_mannequin.hpp"
 
 namespace weft::character {

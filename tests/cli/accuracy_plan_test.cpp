@@ -5,12 +5,12 @@
 #include <cmath>
 #include <set>
 
-#include "bench/accuracy_report.hpp"
-#include "bench/html.hpp"
-#include "cli/options.hpp"
 #include "cli/subprocess.hpp"
+#include "lab/bench/accuracy_report.hpp"
+#include "lab/bench/html.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
+#include "tools/cli/options.hpp"
 
 namespace weft::bench {
 namespace {

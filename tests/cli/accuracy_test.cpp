@@ -8,12 +8,12 @@
 #include <numbers>
 #include <sstream>
 
-#include "bench/accuracy_report.hpp"
-#include "bench/plot.hpp"
-#include "bench/shadow.hpp"
-#include "bench/trajectory.hpp"
 #include "cli/subprocess.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "lab/bench/accuracy_report.hpp"
+#include "lab/bench/plot.hpp"
+#include "lab/bench/shadow.hpp"
+#include "lab/bench/trajectory.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 

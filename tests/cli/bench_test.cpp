@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bench/report.hpp"
-#include "bench/stability.hpp"
+#include "lab/bench/report.hpp"
+#include "lab/bench/stability.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::bench {

@@ -4,11 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cache/reader.hpp"
-#include "cache/writer.hpp"
 #include "cli/cached_run.hpp"
 #include "cli/video_probe.hpp"
-#include "image/png.hpp"
+#include "film/cache/reader.hpp"
+#include "film/cache/writer.hpp"
+#include "film/image/png.hpp"
 
 namespace weft::cli {
 namespace {

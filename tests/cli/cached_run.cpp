@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "cache/reader.hpp"
+#include "film/cache/reader.hpp"
 
 namespace weft::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/child_process.hpp"
+#include "tools/cli/child_process.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

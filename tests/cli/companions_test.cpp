@@ -1,16 +1,16 @@
 // The reported error estimate of runs, compared with their true error.
-#include "bench/companions.hpp"
+#include "lab/bench/companions.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "bench/accuracy.hpp"
-#include "cli/error_report.hpp"
 #include "cli/subprocess.hpp"
 #include "core/error.hpp"
+#include "lab/bench/accuracy.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
+#include "tools/cli/error_report.hpp"
 
 namespace weft::bench {
 namespace {

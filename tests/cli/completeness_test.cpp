@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "cli/cached_run.hpp"
-#include "cli/frame_range.hpp"
 #include "cli/video_probe.hpp"
+#include "tools/cli/frame_range.hpp"
 
 namespace weft::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/subprocess.hpp"
-#include "image/png.hpp"
+#include "film/image/png.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::cli {

@@ -5,9 +5,9 @@
 #include <set>
 #include <sstream>
 
-#include "bench/stability.hpp"
 #include "cli/subprocess.hpp"
 #include "cli/video_probe.hpp"
+#include "lab/bench/stability.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 

@@ -1,5 +1,5 @@
 // A film with made-up stages: what is kept and what is stopped if any stage fails.
-#include "cli/film.hpp"
+#include "tools/cli/film.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <mutex>
 #include <set>
 
-#include "cli/failure.hpp"
+#include "tools/cli/failure.hpp"
 
 namespace weft::cli {
 namespace {

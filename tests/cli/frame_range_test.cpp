@@ -1,4 +1,4 @@
-#include "cli/frame_range.hpp"
+#include "tools/cli/frame_range.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "cli/cached_run.hpp"
-#include "cli/commands.hpp"
-#include "cli/manual.hpp"
-#include "cli/parser.hpp"
+#include "tools/cli/commands.hpp"
+#include "tools/cli/manual.hpp"
+#include "tools/cli/parser.hpp"
 
 namespace weft::cli {
 namespace {

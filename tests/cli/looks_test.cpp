@@ -5,11 +5,11 @@
 
 #include <functional>
 
-#include "cache/codec.hpp"
-#include "production/scene_simulation.hpp"
-#include "production/snapshots.hpp"
-#include "scene/loader.hpp"
-#include "scene/rule.hpp"
+#include "film/cache/codec.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "film/production/snapshots.hpp"
+#include "film/scene/loader.hpp"
+#include "film/scene/rule.hpp"
 
 namespace weft::cli {
 namespace {

@@ -12,9 +12,9 @@
 #include <cstring>
 #include <functional>
 
-#include "cache/container.hpp"
 #include "cli/cached_run.hpp"
-#include "image/png.hpp"
+#include "film/cache/container.hpp"
+#include "film/image/png.hpp"
 
 namespace weft::cli {
 namespace {

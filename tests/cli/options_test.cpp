@@ -1,4 +1,4 @@
-#include "cli/options.hpp"
+#include "tools/cli/options.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/failure.hpp"
 #include "core/error.hpp"
+#include "tools/cli/failure.hpp"
 
 namespace weft::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/output_target.hpp"
+#include "tools/cli/output_target.hpp"
 
 #include <gtest/gtest.h>
 

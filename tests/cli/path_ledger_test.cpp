@@ -1,4 +1,4 @@
-#include "cli/path_ledger.hpp"
+#include "tools/cli/path_ledger.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "cli/subprocess.hpp"
-#include "image/png.hpp"
+#include "film/image/png.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::cli {

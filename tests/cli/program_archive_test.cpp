@@ -1,5 +1,5 @@
 // Archives of the program for farms: what is accepted, what is refused, and tasks that unpack and run one.
-#include "cli/program_archive.hpp"
+#include "tools/cli/program_archive.hpp"
 
 #include <gtest/gtest.h>
 #include <zstd.h>

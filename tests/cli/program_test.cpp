@@ -12,7 +12,7 @@
 #include "cli/subprocess.hpp"
 #include "cli/video_probe.hpp"
 #include "core/version.hpp"
-#include "image/png.hpp"
+#include "film/image/png.hpp"
 #include "support/ply.hpp"
 #include "support/test_folder.hpp"
 

@@ -5,9 +5,9 @@
 #include <set>
 #include <sstream>
 
-#include "cli/stats.hpp"
-#include "cli/summary.hpp"
 #include "support/test_folder.hpp"
+#include "tools/cli/stats.hpp"
+#include "tools/cli/summary.hpp"
 
 namespace weft::cli {
 namespace {

@@ -11,10 +11,10 @@
 #include <random>
 #include <thread>
 
-#include "cache/reader.hpp"
 #include "cli/cached_run.hpp"
 #include "cli/video_probe.hpp"
-#include "image/png.hpp"
+#include "film/cache/reader.hpp"
+#include "film/image/png.hpp"
 #include "support/ply.hpp"
 
 namespace weft::cli {

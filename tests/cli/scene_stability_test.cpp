@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "bench/scene_stability_report.hpp"
 #include "cli/subprocess.hpp"
+#include "lab/bench/scene_stability_report.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 

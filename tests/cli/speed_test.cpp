@@ -6,10 +6,10 @@
 #include <map>
 #include <sstream>
 
-#include "bench/speed_report.hpp"
 #include "cli/subprocess.hpp"
 #include "core/archive.hpp"
 #include "core/parallel.hpp"
+#include "lab/bench/speed_report.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 

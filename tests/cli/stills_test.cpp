@@ -1,9 +1,9 @@
 // Thumbnails and sheets, from scenes and from caches.
 #include <gtest/gtest.h>
 
-#include "cache/names.hpp"
 #include "cli/cached_run.hpp"
-#include "image/png.hpp"
+#include "film/cache/names.hpp"
+#include "film/image/png.hpp"
 
 namespace weft::cli {
 namespace {

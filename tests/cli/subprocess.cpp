@@ -17,8 +17,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "cli/program.hpp"
 #include "core/installation.hpp"
+#include "tools/cli/program.hpp"
 
 namespace weft::cli {
 namespace {

@@ -11,9 +11,9 @@
 #include <sstream>
 
 #include "cli/cached_run.hpp"
-#include "cli/sweep_plan.hpp"
-#include "cli/sweep_report.hpp"
-#include "image/png.hpp"
+#include "film/image/png.hpp"
+#include "tools/cli/sweep_plan.hpp"
+#include "tools/cli/sweep_report.hpp"
 
 namespace weft::cli {
 namespace {

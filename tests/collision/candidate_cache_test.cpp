@@ -1,13 +1,13 @@
 // Compares the collected candidate pairs, and what the cache reports as covered, with brute force.
-#include "collision/candidate_cache.hpp"
+#include "physics/collision/candidate_cache.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <set>
 
-#include "collision/proximity/closest_points.hpp"
-#include "collision/proximity/features.hpp"
+#include "physics/collision/proximity/closest_points.hpp"
+#include "physics/collision/proximity/features.hpp"
 
 namespace weft::collision {
 namespace {

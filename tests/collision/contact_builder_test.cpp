@@ -1,5 +1,5 @@
 // Compares each number of a contact with its formula.
-#include "collision/contact_builder.hpp"
+#include "physics/collision/contact_builder.hpp"
 
 #include <gtest/gtest.h>
 

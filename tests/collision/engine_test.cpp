@@ -1,5 +1,5 @@
 // All parts of collision handling together, on a square of cloth over a floor.
-#include "collision/engine.hpp"
+#include "physics/collision/engine.hpp"
 
 #include <gtest/gtest.h>
 

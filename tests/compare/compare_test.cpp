@@ -1,4 +1,4 @@
-#include "compare/compare.hpp"
+#include "tools/compare/compare.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "compare/pictures.hpp"
 #include "core/error.hpp"
-#include "image/color.hpp"
+#include "film/image/color.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::compare {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "compare/files.hpp"
+#include "film/video/encoder.hpp"
 #include "support/test_folder.hpp"
-#include "video/encoder.hpp"
+#include "tools/compare/files.hpp"
 
 namespace weft::compare {
 namespace {

@@ -1,11 +1,11 @@
-#include "compare/files.hpp"
+#include "tools/compare/files.hpp"
 
 #include <gtest/gtest.h>
 
 #include "compare/pictures.hpp"
-#include "image/png.hpp"
+#include "film/image/png.hpp"
+#include "film/video/encoder.hpp"
 #include "support/test_folder.hpp"
-#include "video/encoder.hpp"
 
 namespace weft::compare {
 namespace {

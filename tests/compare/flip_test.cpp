@@ -1,5 +1,5 @@
 // Compares each stage of FLIP with its formula, computed by hand.
-#include "compare/flip.hpp"
+#include "tools/compare/flip.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <regex>
 
-#include "compare/files.hpp"
 #include "compare/pictures.hpp"
-#include "image/png.hpp"
+#include "film/image/png.hpp"
 #include "support/test_folder.hpp"
+#include "tools/compare/files.hpp"
 
 namespace weft::compare {
 namespace {

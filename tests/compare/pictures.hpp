@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "image/image.hpp"
+#include "film/image/image.hpp"
 
 namespace weft::compare {
 

@@ -1,14 +1,14 @@
-#include "compare/references.hpp"
+#include "tools/compare/references.hpp"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
 
-#include "compare/acceptance.hpp"
 #include "compare/pictures.hpp"
-#include "image/png.hpp"
+#include "film/image/png.hpp"
 #include "support/test_folder.hpp"
+#include "tools/compare/acceptance.hpp"
 
 namespace weft::compare {
 namespace {

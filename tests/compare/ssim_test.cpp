@@ -1,4 +1,4 @@
-#include "compare/ssim.hpp"
+#include "tools/compare/ssim.hpp"
 
 #include <gtest/gtest.h>
 

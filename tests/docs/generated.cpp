@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "architecture/source_tree.hpp"
-#include "cli/options.hpp"
 #include "core/version.hpp"
 #include "docs/markdown.hpp"
 #include "docs/scene_keys.hpp"
-#include "scene/fabrics.hpp"
+#include "film/scene/fabrics.hpp"
+#include "tools/cli/options.hpp"
 
 namespace weft::docs {
 namespace {
@@ -147,14 +147,33 @@ std::string fabric_measurements() {
   return table;
 }
 
+// "[mesh](src/physics/mesh/README.md)", or only the name if the module has no page.
+std::string link_to(const architecture::Module& module, const fs::path& root, const std::string& to_root) {
+  const std::string page = fmt::format("src/{}/README.md", module.folder().generic_string());
+  return fs::exists(root / page) ? fmt::format("[{}]({}{})", module.name, to_root, page) : module.name;
+}
+
+// The rooms of src/, each with its modules; for a page at the top level.
+std::string rooms(const fs::path& root) {
+  std::string table = "| room of `src/` | holds | modules |\n|---|---|---|\n";
+  const std::vector<architecture::Module> all = architecture::read_modules(root);
+  const auto add = [&](const std::string& room, const std::string& does) {
+    std::string links;
+    for (const architecture::Module& module : all)
+      if (module.room == room) links += (links.empty() ? "" : ", ") + link_to(module, root, "");
+    table += fmt::format("| {} | {} | {} |\n", room.empty() ? "" : "`" + room + "/`", does, links);
+  };
+  add("", "what all use");
+  for (const architecture::Room& room : architecture::read_rooms(root)) add(room.name, room.does);
+  return table;
+}
+
+// What each module does and may use; for a page one level below the top.
 std::string modules(const fs::path& root) {
   std::string table = "| module | does | may use |\n|---|---|---|\n";
-  for (const architecture::Module& module : architecture::read_modules(root)) {
-    const std::string page = fmt::format("src/{}/README.md", module.name);
-    const bool has_page = fs::exists(root / page);
-    table += fmt::format("| {} | {} | {} |\n", has_page ? fmt::format("[{}]({})", module.name, page) : module.name,
-                         module.does, module.name == "cli" ? "all" : fmt::format("{}", fmt::join(module.uses, " ")));
-  }
+  for (const architecture::Module& module : architecture::read_modules(root))
+    table += fmt::format("| {} | {} | {} |\n", link_to(module, root, "../"), module.does,
+                         module.name == "cli" ? "all above" : fmt::format("{}", fmt::join(module.uses, " ")));
   return table;
 }
 
@@ -262,6 +281,7 @@ std::string print(const fs::path& root, const fs::path& file, const std::string&
   if (name == "fabrics") return fabrics();
   if (name == "fabric measurements") return fabric_measurements();
   if (name == "modules") return modules(root);
+  if (name == "rooms") return rooms(root);
   if (name == "scene keys") return scene_keys();
   if (name == "pattern keys") return pattern_keys();
   const std::string prefix = "measured ";

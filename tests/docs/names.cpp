@@ -68,7 +68,9 @@ bool is_file(const std::string& name, const fs::path& root, const fs::path& page
     const bool written_by_a_run = name.ends_with(".toml") || name.ends_with(".txt");
     return written_by_a_run || known.file_names.contains(name);
   }
-  const std::vector<fs::path> folders = {"", "src", "tests", page.parent_path()};
+  std::vector<fs::path> folders = {"", "src", "tests", page.parent_path()};
+  for (const auto& room : fs::directory_iterator(root / "src"))
+    if (room.is_directory()) folders.push_back("src" / room.path().filename());
   return std::any_of(folders.begin(), folders.end(),
                      [&](const fs::path& folder) { return fs::exists(root / folder / name); });
 }

@@ -5,8 +5,8 @@
 #include <map>
 #include <regex>
 
-#include "garment/pattern.hpp"
-#include "scene/rule.hpp"
+#include "film/garment/pattern.hpp"
+#include "film/scene/rule.hpp"
 
 namespace weft::docs {
 namespace {

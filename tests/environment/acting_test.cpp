@@ -1,5 +1,5 @@
 // Characters of a scene, from small files that are made here.
-#include "environment/acting.hpp"
+#include "film/environment/acting.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <string>
 
-#include "environment/environment.hpp"
-#include "mesh/topology.hpp"
+#include "film/environment/environment.hpp"
+#include "physics/mesh/topology.hpp"
 #include "support/small_character.hpp"
 #include "support/test_folder.hpp"
 

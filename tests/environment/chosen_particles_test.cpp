@@ -1,5 +1,5 @@
 // Selection of particles for pins and weights: by rows, pictures, colours and vertex groups, and the fade around them.
-#include "environment/chosen_particles.hpp"
+#include "film/environment/chosen_particles.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "image/png.hpp"
+#include "film/image/png.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 

@@ -1,5 +1,5 @@
 // Places where skin must leave clearance for cloth.
-#include "environment/clearance.hpp"
+#include "film/environment/clearance.hpp"
 
 #include <gtest/gtest.h>
 

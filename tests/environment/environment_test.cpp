@@ -1,4 +1,4 @@
-#include "environment/environment.hpp"
+#include "film/environment/environment.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,8 +10,8 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "mesh/geometry.hpp"
 #include "motion/rotation.hpp"
+#include "physics/mesh/geometry.hpp"
 #include "support/mesh_measures.hpp"
 #include "support/scene_runs.hpp"
 

@@ -1,11 +1,11 @@
 // Obstacles that follow the motion of other obstacles and of characters.
-#include "environment/parents.hpp"
+#include "film/environment/parents.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "environment/environment.hpp"
+#include "film/environment/environment.hpp"
 #include "motion/rotation.hpp"
 #include "support/scene_runs.hpp"
 

@@ -1,5 +1,5 @@
 // Texture coordinates of pictures on the shapes of obstacles.
-#include "environment/picture_places.hpp"
+#include "film/environment/picture_places.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "environment/environment.hpp"
+#include "film/environment/environment.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::environment {

@@ -1,4 +1,4 @@
-#include "environment/plausibility.hpp"
+#include "film/environment/plausibility.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "environment/environment.hpp"
+#include "film/environment/environment.hpp"
 #include "support/small_character.hpp"
 #include "support/test_folder.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "environment/environment.hpp"
+#include "film/environment/environment.hpp"
 
 namespace weft::environment {
 namespace {

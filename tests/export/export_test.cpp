@@ -9,11 +9,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "assets/mesh_file.hpp"
 #include "export/made_frames.hpp"
-#include "export/normals.hpp"
-#include "image/color.hpp"
-#include "image/picture.hpp"
+#include "film/assets/mesh_file.hpp"
+#include "film/image/color.hpp"
+#include "film/image/picture.hpp"
+#include "tools/export/normals.hpp"
 
 namespace weft::exporter {
 namespace {

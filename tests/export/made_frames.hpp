@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "export/export.hpp"
 #include "support/test_folder.hpp"
+#include "tools/export/export.hpp"
 
 namespace weft::exporter {
 

@@ -9,9 +9,9 @@
 #include <regex>
 
 #include "export/made_frames.hpp"
-#include "export/zip.hpp"
-#include "image/color.hpp"
-#include "image/picture.hpp"
+#include "film/image/color.hpp"
+#include "film/image/picture.hpp"
+#include "tools/export/zip.hpp"
 
 namespace weft::exporter {
 namespace {

@@ -1,5 +1,5 @@
 // Air resistance.
-#include "forces/air.hpp"
+#include "physics/forces/air.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Bending of the sheet as a plate.
-#include "forces/bend.hpp"
+#include "physics/forces/bend.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Compares the forces within ropes with closed forms.
-#include "forces/cord.hpp"
+#include "physics/forces/cord.hpp"
 
 #include <gtest/gtest.h>
 

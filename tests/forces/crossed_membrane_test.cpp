@@ -1,5 +1,5 @@
 // The membrane of crossed cells: exact for affine states, and equal to TriangleMembrane in flat parallelograms.
-#include "forces/crossed_membrane.hpp"
+#include "physics/forces/crossed_membrane.hpp"
 
 #include <gtest/gtest.h>
 

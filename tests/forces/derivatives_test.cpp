@@ -5,11 +5,11 @@
 #include <ostream>
 #include <string>
 
-#include "forces/bands.hpp"
-#include "forces/cord.hpp"
 #include "forces/sheets.hpp"
-#include "forces/stretch_limit.hpp"
 #include "forces/triangle_meshes.hpp"
+#include "physics/forces/bands.hpp"
+#include "physics/forces/cord.hpp"
+#include "physics/forces/stretch_limit.hpp"
 
 namespace weft::forces {
 namespace {

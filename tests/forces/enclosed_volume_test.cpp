@@ -1,12 +1,12 @@
 // Volume inside an open or closed surface, and its derivative.
-#include "forces/enclosed_volume.hpp"
+#include "physics/forces/enclosed_volume.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "mesh/shapes.hpp"
+#include "physics/mesh/shapes.hpp"
 
 namespace weft::forces {
 namespace {

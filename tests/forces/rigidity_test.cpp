@@ -1,5 +1,5 @@
 // The stiffness of rigid bodies: force against energy, stiffness against force, no force on rigid motion.
-#include "forces/rigidity.hpp"
+#include "physics/forces/rigidity.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/mesh.hpp"
-#include "mesh/shapes.hpp"
+#include "physics/mesh/mesh.hpp"
+#include "physics/mesh/shapes.hpp"
 
 namespace weft::forces {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <numeric>
 
-#include "forces/bands.hpp"
 #include "forces/sheets.hpp"
+#include "physics/forces/bands.hpp"
 
 namespace weft::forces {
 namespace {

@@ -1,5 +1,5 @@
 // Shear between weft and warp.
-#include "forces/shear.hpp"
+#include "physics/forces/shear.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,13 +6,13 @@
 #include <random>
 #include <vector>
 
-#include "forces/bend.hpp"
-#include "forces/force.hpp"
-#include "forces/shear.hpp"
-#include "forces/stretch.hpp"
-#include "forces/triangle_bend.hpp"
-#include "forces/triangle_membrane.hpp"
-#include "mesh/mesh.hpp"
+#include "physics/forces/bend.hpp"
+#include "physics/forces/force.hpp"
+#include "physics/forces/shear.hpp"
+#include "physics/forces/stretch.hpp"
+#include "physics/forces/triangle_bend.hpp"
+#include "physics/forces/triangle_membrane.hpp"
+#include "physics/mesh/mesh.hpp"
 
 namespace weft::forces::testing {
 

@@ -1,5 +1,5 @@
 // The limit at which woven threads lock.
-#include "forces/stretch_limit.hpp"
+#include "physics/forces/stretch_limit.hpp"
 
 #include <gtest/gtest.h>
 

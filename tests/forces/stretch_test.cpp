@@ -1,5 +1,5 @@
 // Tension along weft and warp.
-#include "forces/stretch.hpp"
+#include "physics/forces/stretch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Buttons and zips.
-#include "forces/ties.hpp"
+#include "physics/forces/ties.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "mesh/sheet.hpp"
+#include "physics/mesh/sheet.hpp"
 
 namespace weft::forces::testing {
 

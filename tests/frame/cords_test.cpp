@@ -1,5 +1,5 @@
 // Tubes that represent ropes in pictures.
-#include "frame/cords.hpp"
+#include "film/frame/cords.hpp"
 
 #include <gtest/gtest.h>
 

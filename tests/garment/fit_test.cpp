@@ -1,5 +1,5 @@
 // A pattern for one body on another: measurements, and the resulting scale.
-#include "garment/fit.hpp"
+#include "film/garment/fit.hpp"
 
 #include <gtest/gtest.h>
 

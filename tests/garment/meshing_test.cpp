@@ -6,10 +6,10 @@
 #include <map>
 #include <numbers>
 
-#include "garment/garment.hpp"
-#include "garment/pattern.hpp"
-#include "garment/triangulation.hpp"
-#include "mesh/topology.hpp"
+#include "film/garment/garment.hpp"
+#include "film/garment/pattern.hpp"
+#include "film/garment/triangulation.hpp"
+#include "physics/mesh/topology.hpp"
 #include "support/mesh_measures.hpp"
 
 namespace weft::garment {

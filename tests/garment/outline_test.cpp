@@ -1,5 +1,5 @@
 // Path data as outlines: every command, and invalid text.
-#include "garment/outline.hpp"
+#include "film/garment/outline.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "garment/triangulation.hpp"
+#include "film/garment/triangulation.hpp"
 
 namespace weft::garment {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "garment/garment.hpp"
+#include "film/garment/garment.hpp"
 #include "support/intersections.hpp"
 #include "support/test_folder.hpp"
 

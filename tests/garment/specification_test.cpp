@@ -1,13 +1,13 @@
 // Patterns of GarmentCode read as garments.
-#include "garment/specification.hpp"
+#include "film/garment/specification.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "environment/environment.hpp"
-#include "garment/garment.hpp"
+#include "film/environment/environment.hpp"
+#include "film/garment/garment.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 

@@ -1,11 +1,11 @@
 // Outlines from drawings: units, transforms, and files that are damaged.
-#include "garment/svg.hpp"
+#include "film/garment/svg.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "garment/triangulation.hpp"
+#include "film/garment/triangulation.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::garment {

@@ -1,5 +1,5 @@
 // The rest shape of a mesh from its UVs.
-#include "garment/uv_rest.hpp"
+#include "film/garment/uv_rest.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "mesh/shapes.hpp"
-#include "mesh/topology.hpp"
+#include "physics/mesh/shapes.hpp"
+#include "physics/mesh/topology.hpp"
 
 namespace weft::garment {
 namespace {

@@ -1,15 +1,15 @@
 // Panels that start wrapped around limbs of a wearer.
-#include "garment/wrapping.hpp"
+#include "film/garment/wrapping.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "environment/environment.hpp"
-#include "garment/garment.hpp"
-#include "mesh/shapes.hpp"
-#include "scene/loader.hpp"
+#include "film/environment/environment.hpp"
+#include "film/garment/garment.hpp"
+#include "film/scene/loader.hpp"
+#include "physics/mesh/shapes.hpp"
 #include "support/intersections.hpp"
 #include "support/test_folder.hpp"
 

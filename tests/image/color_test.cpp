@@ -1,4 +1,4 @@
-#include "image/color.hpp"
+#include "film/image/color.hpp"
 
 #include <gtest/gtest.h>
 

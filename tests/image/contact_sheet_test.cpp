@@ -1,4 +1,4 @@
-#include "image/contact_sheet.hpp"
+#include "film/image/contact_sheet.hpp"
 
 #include <gtest/gtest.h>
 

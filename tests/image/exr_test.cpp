@@ -1,5 +1,5 @@
 // Read back by OpenImageIO.
-#include "image/exr.hpp"
+#include "film/image/exr.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

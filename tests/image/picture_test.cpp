@@ -1,5 +1,5 @@
 // PNG and JPEG files as pictures with alpha.
-#include "image/picture.hpp"
+#include "film/image/picture.hpp"
 
 #include <gtest/gtest.h>
 #include <png.h>

@@ -1,4 +1,4 @@
-#include "image/png.hpp"
+#include "film/image/png.hpp"
 
 #include <gtest/gtest.h>
 #include <png.h>

@@ -1,4 +1,4 @@
-#include "image/shrink.hpp"
+#include "film/image/shrink.hpp"
 
 #include <gtest/gtest.h>
 

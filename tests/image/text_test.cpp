@@ -1,4 +1,4 @@
-#include "image/text.hpp"
+#include "film/image/text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "integrator/small_systems.hpp"
-#include "integrator/step_control.hpp"
+#include "physics/integrator/step_control.hpp"
 
 namespace weft::integrator {
 namespace {

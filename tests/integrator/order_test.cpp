@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "integrator/small_systems.hpp"
-#include "integrator/stepper.hpp"
+#include "physics/integrator/stepper.hpp"
 
 namespace weft::integrator {
 namespace {

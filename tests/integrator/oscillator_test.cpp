@@ -8,7 +8,7 @@
 #include <string>
 
 #include "integrator/small_systems.hpp"
-#include "integrator/stepper.hpp"
+#include "physics/integrator/stepper.hpp"
 
 namespace weft::integrator {
 namespace {

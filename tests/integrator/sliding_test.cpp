@@ -1,5 +1,5 @@
 // Error of the friction on a diagonal block as a whole, compared with the theory of a block on a floor.
-#include "integrator/sliding.hpp"
+#include "physics/integrator/sliding.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "integrator/stepper.hpp"
-#include "integrator/system.hpp"
+#include "physics/integrator/stepper.hpp"
+#include "physics/integrator/system.hpp"
 
 namespace weft::integrator::testing {
 

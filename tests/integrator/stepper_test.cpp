@@ -1,5 +1,5 @@
 // Held particles, free fall, and the reports of the stepper.
-#include "integrator/stepper.hpp"
+#include "physics/integrator/stepper.hpp"
 
 #include <gtest/gtest.h>
 

@@ -55,6 +55,31 @@ TEST_F(InstalledLibrary, StepsAsTheProgramDoes) {
   }
 }
 
+// Both libraries have the physics, so they compute the same bits.
+TEST_F(InstalledLibrary, OfThePhysicsStepsAModel) {
+  install();
+  run("cmake -S '" WEFT_SOURCE_DIR "/tests/library/example' -B example -DCMAKE_PREFIX_PATH='" +
+      (folder_ / "prefix").string() + "' && cmake --build example --target sheet");
+  std::istringstream printed(run("example/sheet 9"));
+  std::vector<Vec3> got;
+  for (Vec3 x; printed >> x.x() >> x.y() >> x.z();) got.push_back(x);
+  ASSERT_EQ(got.size(), 81U);
+  EXPECT_EQ(got[0], Vec3(0, 0, 0));
+  EXPECT_EQ(got[8], Vec3(1, 0, 0));
+  // Free fall of 0.4 s is 0.8 m; the far side swings about the pinned corners.
+  EXPECT_LT(got[76].z(), -0.4);
+  EXPECT_GT(got[76].z(), -1);
+}
+
+// The physics has neither files nor looks: its library needs none of their packages.
+TEST_F(InstalledLibrary, OfThePhysicsNeedsNoFilesAndNoPictures) {
+  const std::string needed = needed_by(WEFT_PHYSICS_LIBRARY);
+  EXPECT_NE(needed.find("libtbb"), std::string::npos) << needed;
+  for (const char* name : {"toml", "pugixml", "assimp", "zstd", "xxhash", "libav", "libsw", "libpng", "OpenEXR",
+                           "Imath", "OSMesa", "freetype", "EGL", "embree"})
+    EXPECT_EQ(needed.find(name), std::string::npos) << name << "\n" << needed;
+}
+
 TEST_F(InstalledLibrary, NeedsNothingForPicturesOrVideos) {
   const std::string needed = needed_by(WEFT_LIBRARY);
   EXPECT_NE(needed.find("libtbb"), std::string::npos) << needed;

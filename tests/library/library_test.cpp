@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 #include <vector>
+#include <weft/pictures.hpp>
 #include <weft/scene.hpp>
 #include <weft/settings.hpp>
 #include <weft/simulation.hpp>

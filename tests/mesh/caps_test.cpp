@@ -1,9 +1,9 @@
-#include "mesh/caps.hpp"
+#include "physics/mesh/caps.hpp"
 
 #include <gtest/gtest.h>
 
-#include "mesh/geometry.hpp"
-#include "mesh/shapes.hpp"
+#include "physics/mesh/geometry.hpp"
+#include "physics/mesh/shapes.hpp"
 
 namespace weft::mesh {
 namespace {

@@ -1,10 +1,10 @@
-#include "mesh/geometry.hpp"
+#include "physics/mesh/geometry.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "mesh/shapes.hpp"
+#include "physics/mesh/shapes.hpp"
 #include "support/mesh_measures.hpp"
 
 namespace weft::mesh {

@@ -1,12 +1,12 @@
-#include "mesh/isosurface.hpp"
+#include "physics/mesh/isosurface.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "mesh/geometry.hpp"
-#include "mesh/topology.hpp"
+#include "physics/mesh/geometry.hpp"
+#include "physics/mesh/topology.hpp"
 #include "support/mesh_measures.hpp"
 
 namespace weft::mesh {

@@ -1,4 +1,4 @@
-#include "mesh/ply.hpp"
+#include "physics/mesh/ply.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "mesh/polygon.hpp"
+#include "physics/mesh/polygon.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/geometry.hpp"
+#include "physics/mesh/geometry.hpp"
 
 namespace weft::mesh {
 namespace {

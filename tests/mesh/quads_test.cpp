@@ -1,10 +1,10 @@
-#include "mesh/quads.hpp"
+#include "physics/mesh/quads.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "mesh/geometry.hpp"
+#include "physics/mesh/geometry.hpp"
 
 namespace weft::mesh {
 namespace {

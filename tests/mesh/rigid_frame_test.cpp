@@ -1,5 +1,5 @@
 // Frames of rigid bodies, compared with the moments of solids.
-#include "mesh/rigid_frame.hpp"
+#include "physics/mesh/rigid_frame.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "mesh/mesh.hpp"
-#include "mesh/shapes.hpp"
+#include "physics/mesh/mesh.hpp"
+#include "physics/mesh/shapes.hpp"
 
 namespace weft::mesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "mesh/shapes.hpp"
+#include "physics/mesh/shapes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <ostream>
 #include <string>
 
-#include "mesh/geometry.hpp"
+#include "physics/mesh/geometry.hpp"
 #include "support/mesh_measures.hpp"
 
 namespace weft::mesh {

@@ -1,11 +1,11 @@
 // Sheets of triangles and their material coordinates.
-#include "mesh/sheet.hpp"
+#include "physics/mesh/sheet.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "mesh/geometry.hpp"
+#include "physics/mesh/geometry.hpp"
 
 namespace weft::mesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "mesh/topology.hpp"
+#include "physics/mesh/topology.hpp"
 
 #include <gtest/gtest.h>
 

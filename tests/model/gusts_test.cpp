@@ -1,5 +1,5 @@
 // Gusts of wind: strength, zero divergence, length scale and duration.
-#include "model/gusts.hpp"
+#include "physics/model/gusts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Key-framed gravity and air, and the jet of a fan.
-#include "model/weather.hpp"
+#include "physics/model/weather.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "environment/environment.hpp"
+#include "film/environment/environment.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::model {

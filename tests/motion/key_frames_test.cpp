@@ -1,4 +1,4 @@
-#include "motion/key_frames.hpp"
+#include "physics/motion/key_frames.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/parallel.hpp"
-#include "motion/spline.hpp"
+#include "physics/motion/spline.hpp"
 
 namespace weft::motion {
 namespace {

@@ -1,4 +1,4 @@
-#include "motion/spline.hpp"
+#include "physics/motion/spline.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "motion/track.hpp"
+#include "physics/motion/track.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "film/scene/common_rules.hpp"
 #include "motion/rotation.hpp"
-#include "scene/common_rules.hpp"
 
 namespace weft::motion {
 namespace {

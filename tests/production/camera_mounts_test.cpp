@@ -1,12 +1,12 @@
 // Cameras that follow a body, and focal lengths in millimetres, as snapshots contain them.
-#include "production/camera_mounts.hpp"
+#include "film/production/camera_mounts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "production/snapshots.hpp"
+#include "film/production/snapshots.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::production {

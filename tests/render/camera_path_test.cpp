@@ -1,5 +1,5 @@
 // Cameras that are computed from all frames of a run.
-#include "render/camera_path.hpp"
+#include "film/render/camera_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "film/render/view.hpp"
 #include "render/snapshots.hpp"
-#include "render/view.hpp"
 
 namespace weft::render {
 namespace {

@@ -1,5 +1,5 @@
 // Compares the data of random pixels with a search through all triangles.
-#include "render/data_passes.hpp"
+#include "film/render/data_passes.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -8,8 +8,8 @@
 #include <random>
 #include <sstream>
 
-#include "image/exr.hpp"
-#include "render/renderer.hpp"
+#include "film/image/exr.hpp"
+#include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
 #include "support/test_folder.hpp"
 

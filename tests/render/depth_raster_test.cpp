@@ -1,4 +1,4 @@
-#include "render/depth_raster.hpp"
+#include "film/render/depth_raster.hpp"
 
 #include <gtest/gtest.h>
 

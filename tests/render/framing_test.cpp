@@ -1,11 +1,11 @@
-#include "render/framing.hpp"
+#include "film/render/framing.hpp"
 
 #include <gtest/gtest.h>
 
 #include "core/error.hpp"
-#include "render/camera_path.hpp"
+#include "film/render/camera_path.hpp"
+#include "film/render/view.hpp"
 #include "render/snapshots.hpp"
-#include "render/view.hpp"
 
 namespace weft::render {
 namespace {

@@ -1,5 +1,5 @@
 // Motion blur, depth of field, render styles, and cloth that is refined for drawing.
-#include "render/instants.hpp"
+#include "film/render/instants.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "core/error.hpp"
-#include "render/refinement.hpp"
-#include "render/renderer.hpp"
+#include "film/render/refinement.hpp"
+#include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {

@@ -1,4 +1,4 @@
-#include "render/outlines.hpp"
+#include "film/render/outlines.hpp"
 
 #include <gtest/gtest.h>
 

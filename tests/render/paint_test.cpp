@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "image/color.hpp"
-#include "render/opacity.hpp"
-#include "render/painted_mesh.hpp"
-#include "render/renderer.hpp"
+#include "film/image/color.hpp"
+#include "film/render/opacity.hpp"
+#include "film/render/painted_mesh.hpp"
+#include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {

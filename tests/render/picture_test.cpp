@@ -11,8 +11,8 @@
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
-#include "image/color.hpp"
-#include "render/renderer.hpp"
+#include "film/image/color.hpp"
+#include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {

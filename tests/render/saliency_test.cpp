@@ -1,4 +1,4 @@
-#include "render/saliency.hpp"
+#include "film/render/saliency.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Pictures of one view in several sizes, for content that must look alike in all of them.
 #pragma once
 
-#include "render/renderer.hpp"
+#include "film/render/renderer.hpp"
 
 namespace weft::render {
 

@@ -1,12 +1,12 @@
-#include "render/shaded_mesh.hpp"
+#include "film/render/shaded_mesh.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "core/error.hpp"
-#include "image/color.hpp"
-#include "render/renderer.hpp"
+#include "film/image/color.hpp"
+#include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {

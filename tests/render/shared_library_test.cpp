@@ -1,4 +1,4 @@
-#include "render/gl/shared_library.hpp"
+#include "film/render/gl/shared_library.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "render/mirror.hpp"
-#include "render/renderer.hpp"
+#include "film/render/mirror.hpp"
+#include "film/render/renderer.hpp"
 #include "render/scaled_pictures.hpp"
 #include "render/snapshots.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "frame/frame_snapshot.hpp"
+#include "film/frame/frame_snapshot.hpp"
 
 namespace weft::render {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "image/color.hpp"
-#include "render/renderer.hpp"
+#include "film/image/color.hpp"
+#include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {

@@ -1,12 +1,12 @@
-#include "render/surroundings.hpp"
+#include "film/render/surroundings.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "image/color.hpp"
-#include "render/renderer.hpp"
+#include "film/image/color.hpp"
+#include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {

@@ -1,5 +1,5 @@
 // Light by rays: what they meet, what that reflects, and how the noise of few rays is removed.
-#include "render/traced_light.hpp"
+#include "film/render/traced_light.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <numbers>
 #include <random>
 
-#include "image/color.hpp"
-#include "render/joint_filter.hpp"
-#include "render/renderer.hpp"
+#include "film/image/color.hpp"
+#include "film/render/joint_filter.hpp"
+#include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {

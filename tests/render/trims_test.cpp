@@ -1,5 +1,5 @@
 // Hems, seams and edges of cloth.
-#include "render/trims.hpp"
+#include "film/render/trims.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "review/decisions.hpp"
+#include "tools/review/decisions.hpp"
 
 #include <chrono>
 

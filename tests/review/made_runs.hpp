@@ -5,10 +5,10 @@
 
 #include <string>
 
-#include "image/png.hpp"
-#include "review/find_runs.hpp"
+#include "film/image/png.hpp"
+#include "film/video/encoder.hpp"
 #include "support/test_folder.hpp"
-#include "video/encoder.hpp"
+#include "tools/review/find_runs.hpp"
 
 namespace weft::review {
 

@@ -1,8 +1,8 @@
-#include "review/pictures.hpp"
+#include "tools/review/pictures.hpp"
 
 #include <gtest/gtest.h>
 
-#include "image/png.hpp"
+#include "film/image/png.hpp"
 #include "review/made_runs.hpp"
 
 namespace weft::review {

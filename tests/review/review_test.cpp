@@ -1,4 +1,4 @@
-#include "review/review.hpp"
+#include "tools/review/review.hpp"
 
 #include <gtest/gtest.h>
 

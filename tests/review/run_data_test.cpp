@@ -1,4 +1,4 @@
-#include "review/run_data.hpp"
+#include "tools/review/run_data.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // The hash of a scene covers every file on which the result depends.
-#include "scene/dependencies.hpp"
+#include "film/scene/dependencies.hpp"
 
 #include <gtest/gtest.h>
 
-#include "image/png.hpp"
-#include "scene/loader.hpp"
+#include "film/image/png.hpp"
+#include "film/scene/loader.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::scene {

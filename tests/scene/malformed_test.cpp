@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/loader.hpp"
+#include "film/scene/loader.hpp"
 
 namespace weft::scene {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 #include <string>
 
+#include "film/scene/loader.hpp"
 #include "scene/folder.hpp"
-#include "scene/loader.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::scene {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/loader.hpp"
+#include "film/scene/loader.hpp"
 
 namespace weft::scene {
 namespace {

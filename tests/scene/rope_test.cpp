@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "scene/effective.hpp"
-#include "scene/loader.hpp"
-#include "scene/ropes.hpp"
+#include "film/scene/effective.hpp"
+#include "film/scene/loader.hpp"
+#include "film/scene/ropes.hpp"
 
 namespace weft::scene {
 namespace {

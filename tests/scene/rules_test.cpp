@@ -9,10 +9,10 @@
 #include <set>
 #include <string>
 
+#include "film/scene/loader.hpp"
+#include "film/scene/rule.hpp"
 #include "scene/folder.hpp"
 #include "scene/json_schema_check.hpp"
-#include "scene/loader.hpp"
-#include "scene/rule.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::scene {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <string>
 
-#include "scene/fabrics.hpp"
+#include "film/scene/fabrics.hpp"
+#include "film/scene/following.hpp"
+#include "film/scene/loader.hpp"
 #include "scene/folder.hpp"
-#include "scene/following.hpp"
-#include "scene/loader.hpp"
 
 namespace weft::scene {
 namespace {

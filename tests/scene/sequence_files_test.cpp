@@ -1,4 +1,4 @@
-#include "scene/sequence_files.hpp"
+#include "film/scene/sequence_files.hpp"
 
 #include <gtest/gtest.h>
 

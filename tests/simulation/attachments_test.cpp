@@ -1,11 +1,11 @@
 // Springs between cloths, and from cloth to bodies: forces, normal operation, breaking and release.
-#include "simulation/attachments.hpp"
+#include "physics/simulation/attachments.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 

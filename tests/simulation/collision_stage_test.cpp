@@ -1,5 +1,5 @@
 // CollisionStage: positions of particles, pins and bodies at both ends of a step, and the velocity of a push.
-#include "simulation/collision_stage.hpp"
+#include "physics/simulation/collision_stage.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Runs that gain energy without a source are refused with a reason.
-#include "simulation/energy_bound.hpp"
+#include "physics/simulation/energy_bound.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "environment/environment.hpp"
-#include "production/scene_simulation.hpp"
-#include "scene/loader.hpp"
+#include "film/environment/environment.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "film/scene/loader.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/swinging_sheet.hpp"
 
 namespace weft::simulation {

@@ -1,5 +1,5 @@
 // Garments are sewn and worn: seams stay closed, measures become those of the pattern, nothing intersects.
-#include "garment/garment.hpp"
+#include "film/garment/garment.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "environment/environment.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/environment/environment.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/small_character.hpp"

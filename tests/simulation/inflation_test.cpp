@@ -1,5 +1,5 @@
 // Compares closed cloth with air inside with theory: tension, volume, frequency, energy.
-#include "simulation/inflation.hpp"
+#include "physics/simulation/inflation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <fstream>
 #include <numbers>
 
-#include "mesh/shapes.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "physics/mesh/shapes.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"

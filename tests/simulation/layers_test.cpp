@@ -1,5 +1,5 @@
 // Layered garments: dressed one after the other, each outside the one below.
-#include "scene/layers.hpp"
+#include "film/scene/layers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/saved_state.hpp"
 #include "support/intersections.hpp"
 #include "support/scene_runs.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/shapes.hpp"
+#include "physics/mesh/shapes.hpp"
 #include "support/intersections.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"

@@ -1,5 +1,5 @@
 // Cloth pinned to places on a character's surface.
-#include "simulation/pins.hpp"
+#include "physics/simulation/pins.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "mesh/shapes.hpp"
+#include "physics/mesh/shapes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "production/plan.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/production/plan.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {

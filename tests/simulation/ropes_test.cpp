@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "core/parallel.hpp"
-#include "production/plan.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/production/plan.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/saved_state.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "core/parallel.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 
 namespace weft::simulation::testing {
 namespace {

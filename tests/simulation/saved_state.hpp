@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "film/scene/scene.hpp"
 
 namespace weft::simulation::testing {
 

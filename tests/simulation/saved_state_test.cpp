@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "core/parallel.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"

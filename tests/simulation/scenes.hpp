@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "frame/frame_snapshot.hpp"
-#include "production/scene_simulation.hpp"
-#include "scene/scene.hpp"
+#include "film/frame/frame_snapshot.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "film/scene/scene.hpp"
 
 namespace weft::simulation::testing {
 

@@ -6,9 +6,9 @@
 
 #include "core/parallel.hpp"
 #include "core/stop.hpp"
-#include "motion/track.hpp"
-#include "production/plan.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/production/plan.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "physics/motion/track.hpp"
 #include "simulation/scenes.hpp"
 #include "support/intersections.hpp"
 #include "support/scene_runs.hpp"

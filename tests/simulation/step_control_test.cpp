@@ -1,5 +1,5 @@
 // time.tolerance: the program chooses the steps, which end on frames.
-#include "integrator/step_control.hpp"
+#include "physics/integrator/step_control.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 

@@ -1,10 +1,10 @@
 // The memory of a step: equal arguments and memory give equal forces, and no invalid cached value is used.
-#include "simulation/step_problem.hpp"
+#include "physics/simulation/step_problem.hpp"
 
 #include <gtest/gtest.h>
 
 #include "forces/sheets.hpp"
-#include "simulation/pins.hpp"
+#include "physics/simulation/pins.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"

@@ -1,7 +1,7 @@
 // Cloth with locking threads: what pulls at it, and the warnings if the limit cannot hold.
 #include <gtest/gtest.h>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/saved_state.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation::testing {

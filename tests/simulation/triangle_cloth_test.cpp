@@ -5,7 +5,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/test_folder.hpp"
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <fstream>
 
-#include "environment/environment.hpp"
-#include "export/obj.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/environment/environment.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
+#include "tools/export/obj.hpp"
 
 namespace weft::simulation {
 namespace {

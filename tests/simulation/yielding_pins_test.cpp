@@ -1,5 +1,5 @@
 // Pins that an obstacle blocks, soft pins, and warnings about pins before the run.
-#include "simulation/yielding_pins.hpp"
+#include "physics/simulation/yielding_pins.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "production/plan.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/production/plan.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {

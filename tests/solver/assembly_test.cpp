@@ -1,5 +1,5 @@
 // Matrices assembled from one block per pair of particles.
-#include "solver/assembly.hpp"
+#include "physics/solver/assembly.hpp"
 
 #include <gtest/gtest.h>
 

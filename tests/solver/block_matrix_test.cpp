@@ -1,5 +1,5 @@
 // Compares the block matrix with a dense one.
-#include "solver/block_matrix.hpp"
+#include "physics/solver/block_matrix.hpp"
 
 #include <gtest/gtest.h>
 

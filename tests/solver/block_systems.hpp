@@ -4,8 +4,8 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "solver/conjugate_gradient.hpp"
-#include "solver/linear_system.hpp"
+#include "physics/solver/conjugate_gradient.hpp"
+#include "physics/solver/linear_system.hpp"
 
 namespace weft::solver::testing {
 

@@ -1,5 +1,5 @@
 // Compares constrained conjugate gradients with a dense direct solution.
-#include "solver/conjugate_gradient.hpp"
+#include "physics/solver/conjugate_gradient.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
+#include "physics/solver/conjugate_gradient.hpp"
 #include "solver/block_systems.hpp"
-#include "solver/conjugate_gradient.hpp"
 
 namespace weft::solver {
 namespace {

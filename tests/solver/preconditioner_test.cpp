@@ -1,5 +1,5 @@
 // Compares the preconditioner with the sum stated in its header, made of dense matrices.
-#include "solver/preconditioner.hpp"
+#include "physics/solver/preconditioner.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Rank-one terms, in the product and in the preconditioner.
-#include "solver/rank_one.hpp"
+#include "physics/solver/rank_one.hpp"
 
 #include <gtest/gtest.h>
 
+#include "physics/solver/conjugate_gradient.hpp"
 #include "solver/block_systems.hpp"
-#include "solver/conjugate_gradient.hpp"
 
 namespace weft::solver {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "collision/proximity/closest_points.hpp"
+#include "physics/collision/proximity/closest_points.hpp"
 
 namespace weft::support {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/types.hpp"
-#include "frame/frame_snapshot.hpp"
+#include "film/frame/frame_snapshot.hpp"
 
 namespace weft::support {
 

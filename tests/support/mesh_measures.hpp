@@ -7,7 +7,7 @@
 #include <numbers>
 #include <span>
 
-#include "mesh/geometry.hpp"
+#include "physics/mesh/geometry.hpp"
 
 namespace weft::support {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "environment/environment.hpp"
-#include "scene/loader.hpp"
+#include "film/environment/environment.hpp"
+#include "film/scene/loader.hpp"
 #include "support/intersections.hpp"
 
 namespace weft::support {

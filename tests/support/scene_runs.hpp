@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "production/scene_simulation.hpp"
-#include "scene/scene.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "film/scene/scene.hpp"
 
 namespace weft::support {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "mesh/ply.hpp"
+#include "physics/mesh/ply.hpp"
 #include "support/ply.hpp"
 #include "support/test_folder.hpp"
 

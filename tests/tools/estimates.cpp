@@ -8,15 +8,15 @@
 #include <filesystem>
 #include <iostream>
 
-#include "bench/accuracy.hpp"
-#include "bench/companions.hpp"
-#include "bench/plot.hpp"
-#include "bench/report.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "core/temporary_file.hpp"
-#include "scene/loader.hpp"
-#include "simulation/collision_stage.hpp"
+#include "film/scene/loader.hpp"
+#include "lab/bench/accuracy.hpp"
+#include "lab/bench/companions.hpp"
+#include "lab/bench/plot.hpp"
+#include "lab/bench/report.hpp"
+#include "physics/simulation/collision_stage.hpp"
 
 namespace weft::bench {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
-#include "environment/wearers.hpp"
-#include "garment/garment.hpp"
-#include "garment/triangulation.hpp"
+#include "film/environment/wearers.hpp"
+#include "film/garment/garment.hpp"
+#include "film/garment/triangulation.hpp"
 #include "support/mesh_measures.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 // weft_retarget: transfers motions of other skeletons to a body and prints how well its bones and feet follow.
-#include "character/retarget.hpp"
+#include "film/character/retarget.hpp"
 
 #include <fmt/format.h>
 
@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "assets/character_file.hpp"
-#include "character/footing.hpp"
-#include "character/mannequin.hpp"
-#include "character/parts.hpp"
 #include "core/timer.hpp"
+#include "film/assets/character_file.hpp"
+#include "film/character/footing.hpp"
+#include "film/character/mannequin.hpp"
+#include "film/character/parts.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "support/intersections.hpp"
 
 namespace weft::untangle {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation::testing {

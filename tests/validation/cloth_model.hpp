@@ -13,13 +13,13 @@
 #include <numeric>
 #include <vector>
 
-#include "environment/environment.hpp"
-#include "forces/bend.hpp"
-#include "forces/shear.hpp"
-#include "forces/stretch.hpp"
-#include "forces/triangle_bend.hpp"
-#include "forces/triangle_membrane.hpp"
-#include "simulation/pins.hpp"
+#include "film/environment/environment.hpp"
+#include "physics/forces/bend.hpp"
+#include "physics/forces/shear.hpp"
+#include "physics/forces/stretch.hpp"
+#include "physics/forces/triangle_bend.hpp"
+#include "physics/forces/triangle_membrane.hpp"
+#include "physics/simulation/pins.hpp"
 
 namespace weft::simulation::testing {
 

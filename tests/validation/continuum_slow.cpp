@@ -12,7 +12,7 @@
 
 #include "forces/sheets.hpp"
 #include "forces/triangle_meshes.hpp"
-#include "mesh/quads.hpp"
+#include "physics/mesh/quads.hpp"
 
 namespace weft::forces {
 namespace {

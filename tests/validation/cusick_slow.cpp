@@ -7,8 +7,8 @@
 #include <numbers>
 #include <string>
 
-#include "bench/fabric_tests.hpp"
-#include "scene/fabrics.hpp"
+#include "film/scene/fabrics.hpp"
+#include "lab/bench/fabric_tests.hpp"
 #include "support/test_folder.hpp"
 #include "validation/cantilever.hpp"
 #include "validation/cloth_model.hpp"

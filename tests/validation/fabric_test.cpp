@@ -1,8 +1,8 @@
 // Simulated laboratory tests recover the parameters of a fabric; cusick_slow.cpp tests how all fabrics drape.
 #include <gtest/gtest.h>
 
-#include "bench/fabric_tests.hpp"
-#include "scene/fabrics.hpp"
+#include "film/scene/fabrics.hpp"
+#include "lab/bench/fabric_tests.hpp"
 
 namespace weft::bench {
 namespace {

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <tuple>
 
-#include "environment/environment.hpp"
+#include "film/environment/environment.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "film/scene/fabrics.hpp"
 #include "forces/sheets.hpp"
-#include "integrator/stepper.hpp"
-#include "model/gusts.hpp"
-#include "production/scene_simulation.hpp"
-#include "scene/fabrics.hpp"
+#include "physics/integrator/stepper.hpp"
+#include "physics/model/gusts.hpp"
+#include "physics/simulation/step_problem.hpp"
 #include "simulation/scenes.hpp"
-#include "simulation/step_problem.hpp"
 
 namespace weft::simulation {
 namespace {

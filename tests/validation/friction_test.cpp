@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "garment/garment.hpp"
+#include "film/garment/garment.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 

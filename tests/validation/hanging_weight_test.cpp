@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {

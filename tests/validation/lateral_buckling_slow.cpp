@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 #include "validation/cantilever.hpp"
 #include "validation/cloth_model.hpp"

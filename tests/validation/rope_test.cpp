@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "scene/ropes.hpp"
+#include "film/scene/ropes.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft {

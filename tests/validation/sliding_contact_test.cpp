@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "production/scene_simulation.hpp"
+#include "film/production/scene_simulation.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "decode.hpp"
+#include "film/video/decoder.hpp"
+#include "film/video/encoder.hpp"
 #include "support/test_folder.hpp"
-#include "video/decoder.hpp"
-#include "video/encoder.hpp"
 
 namespace weft::video {
 namespace {

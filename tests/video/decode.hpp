@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
-#include "video/libav.hpp"
+#include "film/image/image.hpp"
+#include "film/video/libav.hpp"
 
 namespace weft::video {
 

@@ -1,12 +1,12 @@
-#include "video/decoder.hpp"
+#include "film/video/decoder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "film/video/encoder.hpp"
 #include "support/test_folder.hpp"
 #include "video/decode.hpp"
-#include "video/encoder.hpp"
 
 namespace weft::video {
 namespace {

@@ -1,4 +1,4 @@
-#include "video/encoder.hpp"
+#include "film/video/encoder.hpp"
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "decode.hpp"
+#include "film/video/frame_rate.hpp"
 #include "support/test_folder.hpp"
-#include "video/frame_rate.hpp"
 
 namespace weft::video {
 namespace {

@@ -1,4 +1,4 @@
-#include "video/frame_converter.hpp"
+#include "film/video/frame_converter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "video/frame_rate.hpp"
+#include "film/video/frame_rate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -18,7 +18,7 @@
 
 #include "core/memory.hpp"
 #include "core/timer.hpp"
-#include "mesh/ply.hpp"
+#include "physics/mesh/ply.hpp"
 #include "support/scene_runs.hpp"
 
 namespace {

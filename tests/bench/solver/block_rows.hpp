@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "solver/linear_system.hpp"
+#include "physics/solver/linear_system.hpp"
 
 namespace weft::bench {
 

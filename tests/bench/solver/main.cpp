@@ -17,7 +17,7 @@
 #include "bench/solver/solvers.hpp"
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
-#include "solver/conjugate_gradient.hpp"
+#include "physics/solver/conjugate_gradient.hpp"
 
 namespace weft::bench {
 namespace {

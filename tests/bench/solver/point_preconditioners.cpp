@@ -4,7 +4,7 @@
 
 #include "bench/solver/block_rows.hpp"
 #include "bench/solver/solvers.hpp"
-#include "solver/preconditioner.hpp"
+#include "physics/solver/preconditioner.hpp"
 
 namespace weft::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "simulation/step_problem.hpp"
+#include "physics/simulation/step_problem.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::bench {

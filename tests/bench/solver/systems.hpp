@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "solver/linear_system.hpp"
+#include "physics/solver/linear_system.hpp"
 
 namespace weft::bench {
 

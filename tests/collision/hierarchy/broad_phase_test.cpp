@@ -1,5 +1,5 @@
 // Compares the broad phase, with each of its options, with brute force over all pairs, as sets, while surfaces move.
-#include "collision/hierarchy/broad_phase.hpp"
+#include "physics/collision/hierarchy/broad_phase.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <set>
 
 #include "collision/hierarchy/feature_distance.hpp"
-#include "collision/hierarchy/kdop.hpp"
 #include "collision/hierarchy/test_motions.hpp"
 #include "core/error.hpp"
+#include "physics/collision/hierarchy/kdop.hpp"
 
 namespace weft::collision {
 namespace {

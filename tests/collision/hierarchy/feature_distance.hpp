@@ -5,8 +5,8 @@
 #include <span>
 #include <utility>
 
-#include "collision/proximity/closest_points.hpp"
-#include "collision/proximity/features.hpp"
+#include "physics/collision/proximity/closest_points.hpp"
+#include "physics/collision/proximity/features.hpp"
 
 namespace weft::collision::testing {
 

@@ -3,11 +3,11 @@
 
 #include <set>
 
-#include "collision/hierarchy/split.hpp"
 #include "collision/hierarchy/test_meshes.hpp"
-#include "collision/hierarchy/traversal.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "physics/collision/hierarchy/split.hpp"
+#include "physics/collision/hierarchy/traversal.hpp"
 
 namespace weft::collision {
 namespace {

@@ -1,5 +1,5 @@
 // Compares queries of a single hierarchy with brute force over all triangles.
-#include "collision/hierarchy/query.hpp"
+#include "physics/collision/hierarchy/query.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "collision/hierarchy/test_motions.hpp"
-#include "collision/proximity/closest_points.hpp"
+#include "physics/collision/proximity/closest_points.hpp"
 
 namespace weft::collision {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "collision/hierarchy/surface.hpp"
+#include "physics/collision/hierarchy/surface.hpp"
 
 namespace weft::collision::testing {
 

@@ -1,5 +1,5 @@
 // Compares closed-form closest points with an exact minimisation in quadruple precision that tries every support.
-#include "collision/proximity/closest_points.hpp"
+#include "physics/collision/proximity/closest_points.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Compares GJK with the closed forms over all features, for all kinds of triangles and quads, crossing or not.
-#include "collision/proximity/gjk.hpp"
+#include "physics/collision/proximity/gjk.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "collision/hierarchy/test_meshes.hpp"
-#include "collision/proximity/closest_points.hpp"
+#include "physics/collision/proximity/closest_points.hpp"
 
 namespace weft::collision {
 namespace {

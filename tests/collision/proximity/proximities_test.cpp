@@ -1,5 +1,5 @@
 // Compares near pairs with brute force over all features, as sets.
-#include "collision/proximity/proximities.hpp"
+#include "physics/collision/proximity/proximities.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <set>
 
 #include "collision/hierarchy/test_meshes.hpp"
-#include "collision/hierarchy/traversal.hpp"
-#include "collision/proximity/closest_points.hpp"
-#include "collision/response/separation.hpp"
+#include "physics/collision/hierarchy/traversal.hpp"
+#include "physics/collision/proximity/closest_points.hpp"
+#include "physics/collision/response/separation.hpp"
 
 namespace weft::collision {
 namespace {

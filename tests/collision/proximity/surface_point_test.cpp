@@ -1,6 +1,6 @@
 // Compares the nearest point of a surface with the known result for a box; the search by hierarchy equals that over all
 // triangles, bit by bit.
-#include "collision/proximity/surface_point.hpp"
+#include "physics/collision/proximity/surface_point.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "collision/hierarchy/test_motions.hpp"
-#include "mesh/shapes.hpp"
+#include "physics/mesh/shapes.hpp"
 
 namespace weft::collision {
 namespace {

@@ -1,12 +1,12 @@
 // A step in the frame of a turning obstacle: a thin blade sweeps into cloth that is 0.1 mm in front of it.
-#include "collision/response/carried_starts.hpp"
+#include "physics/collision/response/carried_starts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
 
-#include "collision/response/separation.hpp"
+#include "physics/collision/response/separation.hpp"
 
 namespace weft::collision {
 namespace {

@@ -1,6 +1,6 @@
 // Planes that separate two triangles for a whole step and turn with them. For random motions, separation_exact_test.cpp
 // compares the certificates with exact predicates.
-#include "collision/response/certificate.hpp"
+#include "physics/collision/response/certificate.hpp"
 
 #include <gtest/gtest.h>
 

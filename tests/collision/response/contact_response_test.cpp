@@ -1,5 +1,5 @@
 // Which contacts become prescribed velocities (walls) and which become springs.
-#include "collision/response/contact_response.hpp"
+#include "physics/collision/response/contact_response.hpp"
 
 #include <gtest/gtest.h>
 

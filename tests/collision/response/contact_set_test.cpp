@@ -1,5 +1,5 @@
 // Contact springs and friction in the linear system.
-#include "collision/response/contact_set.hpp"
+#include "physics/collision/response/contact_set.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "collision/response/contact_set.hpp"
+#include "physics/collision/response/contact_set.hpp"
 
 namespace weft::collision {
 namespace {

@@ -1,11 +1,11 @@
 // Pinched cloth, pair by pair: which pairs are exempt, in which direction they are pushed back, and what is reported.
-#include "collision/response/pinch.hpp"
+#include "physics/collision/response/pinch.hpp"
 
 #include <gtest/gtest.h>
 
 #include "collision/hierarchy/test_motions.hpp"
-#include "collision/response/pinch_report.hpp"
-#include "mesh/shapes.hpp"
+#include "physics/collision/response/pinch_report.hpp"
+#include "physics/mesh/shapes.hpp"
 
 namespace weft::collision {
 namespace {

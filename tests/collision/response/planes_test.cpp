@@ -1,5 +1,5 @@
 // Separating planes are remembered, and saving them loses nothing.
-#include "collision/response/planes.hpp"
+#include "physics/collision/response/planes.hpp"
 
 #include <gtest/gtest.h>
 

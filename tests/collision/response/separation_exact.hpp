@@ -10,7 +10,7 @@
 #include <ctime>
 #include <vector>
 
-#include "collision/response/separation.hpp"
+#include "physics/collision/response/separation.hpp"
 #include "support/exact_motion_queries.hpp"
 
 namespace weft::collision {

@@ -1,5 +1,5 @@
 // Checks with an exact judge, at samples of the step, that no two triangles meet.
-#include "collision/response/separation.hpp"
+#include "physics/collision/response/separation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Prescribed velocities of single particles (seed, Eq. (4)), with stiction, sliding and release.
-#include "collision/response/velocity_constraints.hpp"
+#include "physics/collision/response/velocity_constraints.hpp"
 
 #include <gtest/gtest.h>
 

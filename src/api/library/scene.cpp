@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+#include <weft/scene.hpp>
+
+#include "api/library/scene_data.hpp"
+#include "film/scene/fabrics.hpp"
+#include "film/scene/loader.hpp"
+
+namespace weft {
+namespace {
+
+std::vector<Mistake> public_mistakes(const scene::LoadResult& loaded) {
+  std::vector<Mistake> mistakes;
+  for (const scene::Mistake& mistake : loaded.mistakes) {
+    std::string change = mistake.override_text;  // "--set key=value"
+    if (!change.empty()) change.erase(0, change.find(' ') + 1);
+    mistakes.push_back({loaded.file.string(), mistake.line, mistake.column, change, mistake.key, mistake.text});
+  }
+  return mistakes;
+}
+
+std::shared_ptr<const Scene::Data> checked(scene::LoadResult loaded, std::vector<std::string> changes) {
+  if (!loaded.ok()) {
+    std::string lines = loaded.describe();
+    lines.pop_back();  // the last line feed
+    throw SceneError(lines, public_mistakes(loaded));
+  }
+  return std::make_shared<const Scene::Data>(
+      Scene::Data{std::move(loaded.scene), std::move(loaded.text), std::move(loaded.file), std::move(changes)});
+}
+
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& entry : list) names.push_back(entry.name);
+  return names;
+}
+
+}  // namespace
+
+Scene::Scene(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+Scene Scene::load(const std::filesystem::path& file, const std::vector<std::string>& changes) {
+  return Scene(checked(scene::load(file, changes), changes));
+}
+
+Scene Scene::parse(std::string_view toml, const std::vector<std::string>& changes, const std::filesystem::path& name) {
+  return Scene(checked(scene::load_text(toml, name, changes), changes));
+}
+
+Scene Scene::with(const std::vector<std::string>& changes) const {
+  std::vector<std::string> all = data_->changes;
+  all.insert(all.end(), changes.begin(), changes.end());
+  return parse(data_->text, all, data_->file);
+}
+
+const std::string& Scene::name() const {
+  return data_->scene.name;
+}
+double Scene::fps() const {
+  return data_->scene.time.fps;
+}
+int Scene::frames() const {
+  return data_->scene.frame_count();
+}
+std::vector<std::string> Scene::cloths() const {
+  return names_of(data_->scene.cloths);
+}
+std::vector<std::string> Scene::obstacles() const {
+  return names_of(data_->scene.obstacles);
+}
+std::string Scene::text() const {
+  return scene::effective_scene(data_->scene);
+}
+
+Material fabric(std::string_view name) {
+  const scene::Fabric* found = scene::find_fabric(name);
+  if (found == nullptr)
+    throw std::invalid_argument(
+        fmt::format("expected one of the fabrics {}, got {}", fmt::join(scene::fabric_names(), ", "), name));
+  const scene::Material& of = found->material;
+  return {.density = of.density,
+          .stretch_weft = of.stretch_weft,
+          .stretch_warp = of.stretch_warp,
+          .shear = of.shear,
+          .bend = of.bend,
+          .max_stretch = of.max_stretch,
+          .max_shear = of.max_shear,
+          .stretch_viscosity = of.stretch_viscosity,
+          .shear_viscosity = of.shear_viscosity,
+          .bend_viscosity = of.bend_viscosity,
+          .bend_friction = of.bend_friction,
+          .thickness = of.thickness,
+          .friction = of.friction,
+          .drag = of.drag};
+}
+
+}  // namespace weft

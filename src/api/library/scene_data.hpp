@@ -1,0 +1,20 @@
+// The data behind the public scene, for the library and the Python module.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+#include <weft/scene.hpp>
+
+#include "film/scene/scene.hpp"
+
+namespace weft {
+
+struct Scene::Data {
+  scene::Scene scene;
+  std::string text;            ///< TOML as given
+  std::filesystem::path file;  ///< as given
+  std::vector<std::string> changes;
+};
+
+}  // namespace weft

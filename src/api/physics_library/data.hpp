@@ -1,0 +1,86 @@
+// The data behind the public classes, for the libraries and the Python module.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+#include <weft/errors.hpp>
+#include <weft/simulation.hpp>
+
+#include "core/error.hpp"
+#include "core/types.hpp"
+#include "physics/simulation/simulation.hpp"
+
+namespace weft::frame {
+struct FrameSnapshot;
+}
+
+namespace weft {
+
+struct Frame::Data {
+  int number = 0;
+  double time = 0;  ///< [s]
+  Report report;
+  std::vector<std::vector<Vec3>> velocities;             ///< per cloth
+  std::vector<std::vector<float>> strains;               ///< per cloth
+  std::vector<std::vector<Vec3>> contact_forces;         ///< per cloth
+  std::vector<Object> objects;                           ///< views of the members, and of `viewed`
+  std::shared_ptr<const void> viewed;                    ///< positions and meshes
+  std::shared_ptr<const frame::FrameSnapshot> snapshot;  ///< for drawing; null for a simulation of a Model
+};
+
+struct Simulation::Impl {
+  /// Objects of the current state with their positions, and what else belongs to where it comes from.
+  using MakeFrame = std::function<Frame::Data(const simulation::Simulation& now)>;
+
+  /// `heading`: of a saved state; it tells what it is a state of. Throws std::invalid_argument if the options do not
+  /// fit.
+  Impl(std::unique_ptr<simulation::Simulation> simulation, std::string heading, const SimulationOptions& options,
+       MakeFrame make_frame);
+
+  std::size_t body(std::string_view name) const;
+  void update_current_frame(const simulation::FrameReport& report);
+
+  std::unique_ptr<simulation::Simulation> simulation;
+  std::string heading;
+  std::vector<std::size_t> driven;  // numbers of the driven bodies
+  MakeFrame make_frame;
+  std::optional<Frame> current;
+};
+
+}  // namespace weft
+
+namespace weft::library {
+
+// Views points as another type of the same size, which holds the same numbers.
+template <class To, class From>
+std::span<const To> view_as(const std::vector<From>& points) {
+  static_assert(sizeof(To) == sizeof(From));
+  return {reinterpret_cast<const To*>(points.data()), points.size()};
+}
+
+Report report_of(const simulation::FrameReport& report);
+
+/// Makes a frame. Adds views of velocities, strains and forces to its first objects, which are cloths.
+Frame make_frame(Frame::Data data);
+
+/// The first line of a state of `hash` with these driven bodies, which save() writes and the next run checks.
+std::string heading_of(std::uint64_t hash, const SimulationOptions& options);
+
+/// Throws the public exception that corresponds to an error of the program.
+[[noreturn]] void throw_public(const Error& error);
+
+/// Returns what `work` returns. If `work` throws Error, throws the corresponding exception of errors.hpp.
+template <class Work>
+auto with_public_errors(const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw_public(error);
+  }
+}
+
+}  // namespace weft::library

@@ -1,0 +1,57 @@
+// Simulates a model or a scene frame by frame.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+#include <weft/api.hpp>
+#include <weft/errors.hpp>
+#include <weft/frame.hpp>
+#include <weft/model.hpp>
+
+namespace weft {
+
+class Scene;
+
+struct SimulationOptions {
+  std::vector<std::string> driven;  ///< names of the bodies that Simulation::move() moves
+  std::string state;                ///< what save() returned, to continue from there; empty: begin at frame 0
+};
+
+/// A simulation at one frame. One thread at a time may use it; different simulations may run in different threads.
+/// The same model or scene gives the same bits on any number of threads.
+class WEFT_API Simulation {
+ public:
+  /// Builds the simulation. Throws std::invalid_argument if the model has a value that cannot be, or the options do not
+  /// fit it; SceneError if surfaces touch at the start.
+  explicit Simulation(const Model& model, const SimulationOptions& options = {});
+  /// Of the library with scenes (weft/scene.hpp). Builds the simulation and computes `time.preroll`, if the scene has
+  /// one. Throws SceneError if surfaces touch at the start, FileError, SimulationError; std::invalid_argument if the
+  /// options do not fit the scene.
+  explicit Simulation(const Scene& scene, const SimulationOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  const Frame& frame() const;
+  /// Computes the next frame, also beyond the last one of the scene. Throws SimulationError, or SceneError if a cloth
+  /// that is put on or closed in this frame does not fit; frame() then stays as it was.
+  const Frame& advance();
+
+  /// Moves a driven body to `pose` at constant velocity during the next frame; it then stays there. Pins that follow it
+  /// move along: a body that does not collide is a handle that holds cloth. Throws std::invalid_argument if the body is
+  /// not driven, or the pose is not finite or has no unit quaternion.
+  void move(std::string_view body, const Pose& pose);
+
+  /// Returns everything on which later frames depend. It can be restored with the same model or scene, options, library
+  /// version and kind of machine. Not allowed after a failed advance().
+  std::string save() const;
+
+  struct Impl;  ///< for the library itself
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace weft

@@ -1,0 +1,15 @@
+// The public model as the physics takes it.
+#pragma once
+
+#include <string>
+#include <vector>
+#include <weft/model.hpp>
+
+#include "physics/model/model.hpp"
+
+namespace weft::library {
+
+/// Throws std::invalid_argument that names the object and the value. `driven`: bodies that count as moving.
+model::Model physics_of(const Model& given, const std::vector<std::string>& driven);
+
+}  // namespace weft::library

@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <weft/simulation.hpp>
+
+#include "api/physics_library/data.hpp"
+#include "core/version.hpp"
+
+namespace weft {
+
+Simulation::Impl::Impl(std::unique_ptr<simulation::Simulation> of, std::string heading_of_state,
+                       const SimulationOptions& options, MakeFrame make)
+    : simulation(std::move(of)), heading(std::move(heading_of_state)), make_frame(std::move(make)) {
+  for (const std::string& name : options.driven) driven.push_back(body(name));
+  if (options.state.empty()) {
+    simulation->run_preroll();
+    update_current_frame(simulation->initial_report());
+    return;
+  }
+  if (!options.state.starts_with(heading))
+    throw std::invalid_argument(
+        "state: expected one that this version saved for this scene and these driven obstacles");
+  for (const std::size_t b : driven) simulation->drive(b, {});
+  try {
+    simulation->restore(std::string_view(options.state).substr(heading.size()));
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(std::string("state: ") + error.what());
+  }
+  update_current_frame({});
+}
+
+// Number of a rigid body. Throws std::invalid_argument with the names of all of them if there is none of this name.
+std::size_t Simulation::Impl::body(std::string_view name) const {
+  std::vector<std::string> names;
+  const std::vector<model::Body>& bodies = simulation->model().bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b].deforms()) continue;
+    if (bodies[b].name == name) return b;
+    names.push_back(bodies[b].name);
+  }
+  throw std::invalid_argument(
+      fmt::format("expected an obstacle of the scene ({}), got {}", fmt::join(names, ", "), name));
+}
+
+void Simulation::Impl::update_current_frame(const simulation::FrameReport& report) {
+  Frame::Data data = make_frame(*simulation);
+  data.number = simulation->frame();
+  data.time = simulation->time();
+  data.report = library::report_of(report);
+  for (std::size_t c = 0; c < simulation->model().cloths.size(); ++c) {
+    simulation::ClothMotion motion = simulation->motion_of(c);
+    data.velocities.emplace_back(motion.velocities.begin(), motion.velocities.end());
+    data.strains.push_back(std::move(motion.strains));
+  }
+  data.contact_forces = simulation->contact_forces();
+  current = library::make_frame(std::move(data));
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+const Frame& Simulation::frame() const {
+  return *impl_->current;
+}
+
+const Frame& Simulation::advance() {
+  library::with_public_errors([&] { impl_->update_current_frame(impl_->simulation->advance()); });
+  return frame();
+}
+
+void Simulation::move(std::string_view body, const Pose& pose) {
+  const std::size_t number = impl_->body(body);
+  if (std::ranges::find(impl_->driven, number) == impl_->driven.end())
+    throw std::invalid_argument(fmt::format("expected {} among SimulationOptions::driven", body));
+  const auto& [w, x, y, z] = pose.rotation;
+  const motion::Pose end{Vec3(pose.position.data()), Quat(w, x, y, z)};
+  if (!end.position.allFinite() || !(std::abs(end.rotation.norm() - 1) < 1e-6))
+    throw std::invalid_argument(
+        fmt::format("{}: expected a finite position [m] and a unit quaternion w, x, y, z, got [{}] and [{}]", body,
+                    fmt::join(pose.position, ", "), fmt::join(pose.rotation, ", ")));
+  impl_->simulation->drive(number, end);
+}
+
+std::string Simulation::save() const {
+  std::string bytes = impl_->heading;
+  impl_->simulation->save(bytes);
+  return bytes;
+}
+
+}  // namespace weft
+
+namespace weft::library {
+
+std::string heading_of(std::uint64_t hash, const SimulationOptions& options) {
+  return fmt::format("weft {} {:016x} {}\n", kVersion, hash, fmt::join(options.driven, ","));
+}
+
+}  // namespace weft::library

@@ -1,0 +1,22 @@
+// The parts of the Python module.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace weft::python {
+
+namespace py = pybind11;
+
+/// Scenes, simulations, frames, and the exceptions of errors.hpp.
+void bind_simulation(py::module_& module);
+/// Models made in memory.
+void bind_model(py::module_& module);
+/// Error estimates, frame caches, comparison of pictures.
+void bind_tools(py::module_& module);
+/// Drawing of frames.
+void bind_drawing(py::module_& module);
+
+/// Releases the lock of the interpreter during a call, so that other threads can run.
+using WithoutLock = py::call_guard<py::gil_scoped_release>;
+
+}  // namespace weft::python

@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+#include <weft/model.hpp>
+#include <weft/scene.hpp>
+
+#include "api/python/bindings.hpp"
+
+namespace weft::python {
+namespace {
+
+template <class Number>
+using Array = py::array_t<Number, py::array::c_style | py::array::forcecast>;
+
+// The rows of an array with as many columns as `Row` has numbers. Raises ValueError with the shape for any other.
+template <class Row, class Number = typename Row::value_type>
+std::vector<Row> rows_of(const Array<Number>& array, const char* name) {
+  constexpr std::size_t kColumns = std::tuple_size_v<Row>;
+  if (array.ndim() != 2 || array.shape(1) != kColumns)
+    throw py::value_error(fmt::format("{}: expected an array of n rows and {} columns, got shape ({})", name, kColumns,
+                                      fmt::join(array.shape(), array.shape() + array.ndim(), ", ")));
+  std::vector<Row> rows(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t k = 0; k < kColumns; ++k) rows[i][k] = array.data()[kColumns * i + k];
+  return rows;
+}
+
+Mesh mesh_of(const Array<double>& positions, const Array<std::int32_t>& triangles) {
+  return {rows_of<Vector>(positions, "positions"), rows_of<Triangle>(triangles, "triangles")};
+}
+
+void add_cloth(Model& model, const std::string& name, const Array<double>& positions,
+               const Array<std::int32_t>& triangles, const std::optional<Array<double>>& rest,
+               const std::variant<std::string, Material>& material, const Vector& velocity) {
+  Cloth cloth{.name = name, .mesh = mesh_of(positions, triangles), .rest = {}, .material = {}, .velocity = velocity};
+  if (rest) cloth.rest = rows_of<RestPoint>(*rest, "rest");
+  const auto* fabric_name = std::get_if<std::string>(&material);
+  cloth.material = fabric_name != nullptr ? fabric(*fabric_name) : std::get<Material>(material);
+  model.cloths.push_back(std::move(cloth));
+}
+
+using Rotation = std::array<double, 4>;
+using Key = std::tuple<double, Vector, Rotation>;
+
+void add_body(Model& model, const std::string& name, const Array<double>& positions,
+              const Array<std::int32_t>& triangles, const Vector& position, const Rotation& rotation,
+              const std::vector<Key>& keys, double mass, const Vector& velocity, double friction, bool collide) {
+  Body body{.name = name,
+            .mesh = mesh_of(positions, triangles),
+            .pose = {position, rotation},
+            .keys = {},
+            .mass = mass,
+            .velocity = velocity,
+            .friction = friction,
+            .collide = collide};
+  for (const auto& [time, place, turn] : keys) body.keys.push_back({time, {place, turn}});
+  model.bodies.push_back(std::move(body));
+}
+
+void add_pin(Model& model, const std::string& cloth, const std::vector<int>& particles, const std::string& body,
+             double release) {
+  model.pins.push_back({cloth, particles, body, release});
+}
+
+void bind_material(py::module_& module) {
+  py::class_<Material>(module, "Material", "A fabric in continuum units; the defaults are cotton. SI units.")
+      .def(py::init<>())
+      .def_readwrite("density", &Material::density, "kg/m².")
+      .def_readwrite("stretch_weft", &Material::stretch_weft, "N/m.")
+      .def_readwrite("stretch_warp", &Material::stretch_warp, "N/m.")
+      .def_readwrite("shear", &Material::shear, "N/m.")
+      .def_readwrite("bend", &Material::bend, "N m.")
+      .def_readwrite("max_stretch", &Material::max_stretch, "Extension at which threads lock; 0: never.")
+      .def_readwrite("max_shear", &Material::max_shear, "Degrees at which threads lock; 0: never.")
+      .def_readwrite("stretch_viscosity", &Material::stretch_viscosity, "N s/m.")
+      .def_readwrite("shear_viscosity", &Material::shear_viscosity, "N s/m.")
+      .def_readwrite("bend_viscosity", &Material::bend_viscosity, "N m s.")
+      .def_readwrite("bend_friction", &Material::bend_friction, "N.")
+      .def_readwrite("thickness", &Material::thickness, "Contact distance between two layers, m.")
+      .def_readwrite("friction", &Material::friction, "Coulomb coefficient.")
+      .def_readwrite("drag", &Material::drag, "Air resistance coefficient.");
+  module.def("fabric", &fabric, py::arg("name"), "A measured fabric, such as \"silk\".");
+}
+
+}  // namespace
+
+void bind_model(py::module_& module) {
+  py::enum_<Method>(module, "Method")
+      .value("implicit_euler", Method::implicit_euler)
+      .value("implicit_midpoint", Method::implicit_midpoint)
+      .value("bdf2", Method::bdf2);
+  bind_material(module);
+  py::class_<Model>(module, "Model",
+                    "What is simulated, made in memory. Positions are arrays n x 3 (m), triangles m x 3, "
+                    "counter-clockwise seen from the front. Values are checked when a Simulation is made.")
+      .def(py::init<>())
+      .def_readwrite("fps", &Model::fps, "Frames per second.")
+      .def_readwrite("step", &Model::step, "Maximum time step, s.")
+      .def_readwrite("method", &Model::method)
+      .def_readwrite("newton_tolerance", &Model::newton_tolerance)
+      .def_readwrite("gravity", &Model::gravity, "m/s².")
+      .def_readwrite("wind", &Model::wind, "m/s.")
+      .def_readwrite("air_density", &Model::air_density, "kg/m³.")
+      .def_readwrite("self_contact", &Model::self_contact, "Contact of cloth with itself and other cloths.")
+      .def("add_cloth", &add_cloth, py::arg("name"), py::arg("positions"), py::arg("triangles"), py::kw_only(),
+           py::arg("rest") = py::none(), py::arg("material") = Material(), py::arg("velocity") = Vector{},
+           "`rest`: places in the flat fabric along weft and warp, n x 2, m; without, the mesh is the rest shape. "
+           "`material`: a Material, or the name of a fabric.")
+      .def("add_body", &add_body, py::arg("name"), py::arg("positions"), py::arg("triangles"), py::kw_only(),
+           py::arg("position") = Vector{}, py::arg("rotation") = Rotation{1, 0, 0, 0},
+           py::arg("keys") = std::vector<Key>(), py::arg("mass") = 0.0, py::arg("velocity") = Vector{},
+           py::arg("friction") = 0.3, py::arg("collide") = true,
+           "`keys`: (time, position, rotation) through which it moves; rotations are unit quaternions w, x, y, z. "
+           "`mass`: above 0, forces move it (kg).")
+      .def("pin", &add_pin, py::arg("cloth"), py::arg("particles"), py::kw_only(), py::arg("body") = "",
+           py::arg("release") = std::numeric_limits<double>::infinity(),
+           "Hold particles where they start, or at a body, until `release` (s).");
+}
+
+}  // namespace weft::python

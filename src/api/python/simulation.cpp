@@ -1,0 +1,254 @@
+#include <fmt/format.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+#include <weft/settings.hpp>
+#include <weft/simulation.hpp>
+
+#include "api/python/bindings.hpp"
+
+namespace weft::python {
+namespace {
+
+// A value of a change as TOML text. Accepts scalars and arrays of numpy too.
+std::string toml_of(const py::handle& value) {
+  if (py::hasattr(value, "tolist")) return toml_of(value.attr("tolist")());
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value)) return py::repr(value);
+  if (py::isinstance<py::dict>(value)) {
+    std::vector<std::string> entries;
+    for (const auto& [key, entry] : value.cast<py::dict>())
+      entries.push_back(fmt::format("{} = {}", toml_of(key), toml_of(entry)));
+    return fmt::format("{{ {} }}", fmt::join(entries, ", "));
+  }
+  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
+    std::vector<std::string> entries;
+    for (const py::handle entry : value) entries.push_back(toml_of(entry));
+    return fmt::format("[{}]", fmt::join(entries, ", "));
+  }
+  // A JSON string is also a TOML string.
+  return py::module_::import("json").attr("dumps")(py::str(value), py::arg("ensure_ascii") = false).cast<std::string>();
+}
+
+using Changes = std::optional<py::dict>;
+
+std::vector<std::string> changes_of(const Changes& changes) {
+  std::vector<std::string> texts;
+  if (!changes) return texts;
+  for (const auto& [key, value] : *changes)
+    texts.push_back(fmt::format("{}={}", key.cast<std::string>(), toml_of(value)));
+  return texts;
+}
+
+Scene load(const std::filesystem::path& file, const Changes& changes) {
+  const std::vector<std::string> texts = changes_of(changes);
+  const py::gil_scoped_release without_lock;
+  return Scene::load(file, texts);
+}
+
+Scene parse(const std::string& toml, const Changes& changes, const std::filesystem::path& name) {
+  const std::vector<std::string> texts = changes_of(changes);
+  const py::gil_scoped_release without_lock;
+  return Scene::parse(toml, texts, name);
+}
+
+Scene change(const Scene& scene, const py::dict& changes) {
+  const std::vector<std::string> texts = changes_of(changes);
+  const py::gil_scoped_release without_lock;
+  return scene.with(texts);
+}
+
+/// An object of a frame. It holds the frame too, since the data of the object belong to the frame.
+struct FrameObject {
+  Frame frame;
+  const Object* object;
+};
+
+FrameObject find_object(const Frame& frame, const std::string& name) {
+  try {
+    return {frame, &frame.object(name)};
+  } catch (const std::out_of_range& error) {
+    throw py::key_error(error.what());
+  }
+}
+
+// A read-only view of numbers that `owner` keeps alive.
+template <class Number>
+py::array view(const Number* numbers, std::vector<py::ssize_t> shape, const py::object& owner) {
+  py::array_t<Number> array(std::move(shape), numbers, owner);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+// An array of rows, one for each std::array of a span. `field`: the member of Object that is this span.
+template <auto field>
+py::array rows(const py::object& self) {
+  const auto& span = self.cast<const FrameObject&>().object->*field;
+  using Row = typename std::remove_cvref_t<decltype(span)>::value_type;
+  return view(reinterpret_cast<const typename Row::value_type*>(span.data()),
+              {static_cast<py::ssize_t>(span.size()), static_cast<py::ssize_t>(std::tuple_size_v<Row>)}, self);
+}
+
+py::array strains(const py::object& self) {
+  const auto span = self.cast<const FrameObject&>().object->strains;
+  return view(span.data(), {static_cast<py::ssize_t>(span.size())}, self);
+}
+
+const char* kind_of(const FrameObject& object) {
+  constexpr const char* kNames[] = {"cloth", "obstacle", "character", "rope"};
+  return kNames[static_cast<std::size_t>(object.object->kind)];
+}
+
+// Defines the exceptions. The attribute `mistakes` of SceneError lists the mistakes with their places.
+void bind_errors(py::module_& module) {
+  py::class_<Mistake>(module, "Mistake", "One mistake in a scene, with its place in the file.")
+      .def_readonly("file", &Mistake::file, "Path of the scene file, as it was given.")
+      .def_readonly("line", &Mistake::line, "Line, counted from 1; 0 for the file as a whole or for a change.")
+      .def_readonly("column", &Mistake::column, "Column, counted from 1; 0 likewise.")
+      .def_readonly("change", &Mistake::change,
+                    "\"key=value\" of the change that contains the mistake; empty if the mistake is in the file.")
+      .def_readonly("key", &Mistake::key, "Key, such as \"cloth.band.material.thickness\"; may be empty.")
+      .def_readonly("text", &Mistake::text, "Description, such as \"expected > 0 m, got -0.001\".");
+  // These references are never released, because the interpreter may end before this library.
+  static const py::handle scene_error = py::exception<SceneError>(module, "SceneError", PyExc_ValueError).release();
+  static const py::handle file_error = py::exception<FileError>(module, "FileError", scene_error).release();
+  static const py::handle simulation_error =
+      py::exception<SimulationError>(module, "SimulationError", PyExc_RuntimeError).release();
+  static const auto set = [](const py::handle& type, const SceneError& error) {
+    py::object instance = type(error.what());
+    instance.attr("mistakes") = py::cast(error.mistakes());
+    PyErr_SetObject(type.ptr(), instance.ptr());
+  };
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const FileError& error) {
+      set(file_error, error);
+    } catch (const SceneError& error) {
+      set(scene_error, error);
+    } catch (const SimulationError& error) {
+      PyErr_SetString(simulation_error.ptr(), error.what());
+    }
+  });
+}
+
+void bind_scene(py::module_& module) {
+  py::class_<Scene>(module, "Scene", "A checked scene; it never changes.")
+      .def("with_changes", &change, py::arg("changes"),
+           "This scene with further changes, such as {\"cloth.band.material.fabric\": \"silk\"}.")
+      .def_property_readonly("name", &Scene::name, "Name of the file without its ending.")
+      .def_property_readonly("fps", &Scene::fps, "Frames per second.")
+      .def_property_readonly("frames", &Scene::frames, "Number of frames; frame k is the state at time k / fps.")
+      .def_property_readonly("cloths", &Scene::cloths, "Names of the cloths.")
+      .def_property_readonly("obstacles", &Scene::obstacles, "Names of the obstacles.")
+      .def_property_readonly("text", &Scene::text, "The scene as TOML text, with every default.");
+  module.def("load", &load, py::arg("file"), py::arg("changes") = py::none(),
+             "Read a scene file. Raises SceneError with all mistakes.");
+  module.def("parse", &parse, py::arg("toml"), py::arg("changes") = py::none(), py::arg("name") = "scene.toml",
+             "Read a scene from text, as load() does; relative paths start at the folder of `name`.");
+}
+
+void bind_frame(py::module_& module) {
+  py::class_<EnclosedAir>(module, "EnclosedAir", "Air that a cloth encloses; SI units.")
+      .def_readonly("cloth", &EnclosedAir::cloth)
+      .def_readonly("volume", &EnclosedAir::volume)
+      .def_readonly("pressure", &EnclosedAir::pressure);
+  py::class_<Report>(module, "Report", "Cost and results of the computation of one frame; SI units.")
+      .def_readonly("wall_s", &Report::wall_s)
+      .def_readonly("cpu_s", &Report::cpu_s)
+      .def_readonly("steps", &Report::steps)
+      .def_readonly("rejected_steps", &Report::rejected_steps)
+      .def_readonly("newton_iterations", &Report::newton_iterations)
+      .def_readonly("linear_iterations", &Report::linear_iterations)
+      .def_readonly("near_pairs", &Report::near_pairs)
+      .def_readonly("constraints", &Report::constraints)
+      .def_readonly("min_distance", &Report::min_distance)
+      .def_readonly("max_strain", &Report::max_strain)
+      .def_readonly("stretch_ratio", &Report::stretch_ratio)
+      .def_readonly("kinetic_energy", &Report::kinetic_energy)
+      .def_readonly("potential_energy", &Report::potential_energy)
+      .def_readonly("elastic_energy", &Report::elastic_energy)
+      .def_readonly("air_energy", &Report::air_energy)
+      .def_readonly("pin_work", &Report::pin_work)
+      .def_readonly("error_estimate", &Report::error_estimate)
+      .def_readonly("solver_error", &Report::solver_error)
+      .def_readonly("pinched_pairs", &Report::pinched_pairs)
+      .def_readonly("lagging_particles", &Report::lagging_particles)
+      .def_readonly("enclosed_air", &Report::enclosed_air)
+      .def_readonly("warnings", &Report::warnings);
+  py::class_<FrameObject>(module, "Object",
+                          "A cloth or body in one frame. Arrays are read-only views; they stay valid.")
+      .def_property_readonly("name", [](const FrameObject& self) { return std::string(self.object->name); })
+      .def_property_readonly("kind", &kind_of, "\"cloth\", \"obstacle\", \"character\" or \"rope\".")
+      .def_property_readonly("positions", &rows<&Object::positions>, "n x 3, m.")
+      .def_property_readonly("velocities", &rows<&Object::velocities>, "Velocities, n x 3, m/s; no rows for bodies.")
+      .def_property_readonly("contact_forces", &rows<&Object::contact_forces>,
+                             "Contact force on each particle, friction included, at the end of the last time step: n x "
+                             "3, N; zeros in the first frame of a simulation; no rows for bodies and caches.")
+      .def_property_readonly(
+          "strains", &strains,
+          "Strain at each particle, n values: the largest |length / rest length - 1| of the threads at it.")
+      .def_property_readonly("rest", &rows<&Object::rest>, "Rest coordinates along weft and warp, n x 2, m.")
+      .def_property_readonly("triangles", &rows<&Object::triangles>, "Vertex numbers of the triangles, m x 3.");
+  py::class_<Frame>(module, "Frame", "One frame; it never changes. frame[\"band\"] is its object with this name.")
+      .def_property_readonly("number", &Frame::number, "Counted from 0.")
+      .def_property_readonly("time", &Frame::time, "s.")
+      .def_property_readonly("report", &Frame::report, py::return_value_policy::reference_internal)
+      .def_property_readonly("objects",
+                             [](const Frame& self) {
+                               std::vector<FrameObject> objects;
+                               for (const Object& object : self.objects()) objects.push_back({self, &object});
+                               return objects;
+                             })
+      .def("__getitem__", &find_object, py::arg("name"));
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  bind_errors(module);
+  bind_scene(module);
+  bind_frame(module);
+  const auto make = [](const std::variant<Model, Scene>& of, const std::vector<std::string>& driven,
+                       const py::bytes& state) {
+    SimulationOptions options{driven, state};
+    const py::gil_scoped_release without_lock;
+    return std::visit([&](const auto& given) { return Simulation(given, options); }, of);
+  };
+  const auto move = [](Simulation& self, const std::string& obstacle, const Vector& position,
+                       const std::array<double, 4>& rotation) {
+    self.move(obstacle, {position, rotation});
+  };
+  py::class_<Simulation>(module, "Simulation",
+                         "Simulates a Scene or a Model frame by frame. Use each object from one thread at a time.")
+      .def(py::init(make), py::arg("scene"), py::kw_only(), py::arg("driven") = std::vector<std::string>(),
+           py::arg("state") = py::bytes(),
+           "`scene`: a Scene or a Model. `driven`: names of the obstacles that move() will move. `state`: bytes "
+           "returned by save(), to continue "
+           "from there.")
+      .def_property_readonly("frame", &Simulation::frame, py::return_value_policy::copy, "The current frame.")
+      .def("advance", &Simulation::advance, py::return_value_policy::copy, WithoutLock(),
+           "Compute the next frame. If it raises SimulationError, the current frame stays as it was.")
+      .def("move", move, py::arg("obstacle"), py::arg("position"),
+           py::arg("rotation") = std::array<double, 4>{1, 0, 0, 0},
+           "During the next frame, move a driven obstacle to this pose (m; unit quaternion w, x, y, z) at constant "
+           "velocity. Pins that follow it move with it.")
+      .def(
+          "save", [](const Simulation& self) { return py::bytes(self.save()); },
+          "The complete state, from which later frames follow.");
+  module.def("set_threads", &set_threads, py::arg("threads"),
+             "Set the maximum number of threads that compute; 0: all processors.");
+  module.attr("__version__") = version();
+  set_warning_handler([](std::string_view text) {
+    const py::gil_scoped_acquire lock;
+    if (PyErr_WarnEx(PyExc_UserWarning, std::string(text).c_str(), 1) < 0) throw py::error_already_set();
+  });
+}
+
+}  // namespace weft::python

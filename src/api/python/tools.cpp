@@ -1,0 +1,157 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/library/scene_data.hpp"
+#include "api/library/scene_frame.hpp"
+#include "api/python/bindings.hpp"
+#include "film/cache/reader.hpp"
+#include "lab/bench/companions.hpp"
+#include "tools/compare/files.hpp"
+
+namespace weft::python {
+namespace {
+
+using library::with_public_errors;
+
+/// Errors by name of the quantity.
+using Errors = std::map<std::string, double>;
+
+Errors errors_of(const bench::Errors& errors) {
+  Errors result;
+  for (std::size_t q = 0; q < bench::kQuantities; ++q)
+    result[std::string(bench::name_of(static_cast<bench::Quantity>(q)))] = errors[q];
+  return result;
+}
+
+struct ErrorOfRun {
+  Errors all;
+  std::map<std::string, std::optional<Errors>> parts;  // none: unknown
+  bool chaotic = false;
+  double cpu_s = 0;
+};
+
+ErrorOfRun estimate_error(const Scene& public_scene, bool mesh) {
+  return with_public_errors([&] {
+    const scene::Scene& scene = public_scene.data().scene;
+    const bench::ErrorEstimate estimate = bench::estimate_error(scene, bench::follow(scene), {.mesh = mesh});
+    ErrorOfRun result{errors_of(estimate.all), {}, estimate.start_matters, estimate.cpu_s};
+    for (const bench::ErrorPart& part : estimate.parts)
+      result.parts[std::string(name_of(part.source))] =
+          part.missing.empty() ? std::optional(errors_of(part.errors)) : std::nullopt;
+    return result;
+  });
+}
+
+/// The frames of a cache, in the form of frames of a simulation. Data that only a simulation has are missing.
+class Cache {
+ public:
+  explicit Cache(const std::filesystem::path& folder)
+      : reader_(with_public_errors([&] { return std::make_unique<cache::Reader>(folder); })) {}
+
+  std::vector<int> frames() const {
+    return with_public_errors([&] { return reader_->frames(); });
+  }
+  double fps() const { return reader_->manifest().fps; }
+  Scene scene() const {
+    return Scene::parse(with_public_errors([&] { return reader_->scene_text(); }), {},
+                        reader_->folder() / "scene.toml");
+  }
+  Frame frame(int number) const {
+    return with_public_errors([&] {
+      cache::CachedFrame frame = reader_->read(number);
+      Frame::Data data = library::view(std::move(frame.snapshot));
+      data.report = library::report_of(frame.report);
+      return library::make_frame(std::move(data));
+    });
+  }
+
+ private:
+  std::unique_ptr<const cache::Reader> reader_;
+};
+
+struct Difference {
+  std::string outcome, problem;
+  compare::FileComparison files;
+};
+
+Difference compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
+                         const compare::Limits& limits, const std::filesystem::path& mask) {
+  constexpr const char* kNames[] = {"same",        "within",  "differs",      "size",
+                                    "frame count", "no test", "no reference", "unreadable"};
+  Difference result;
+  if (!exists(reference)) return {"no reference", reference.string() + ": no such file", {}};
+  if (!exists(test)) return {"no test", test.string() + ": no such file", {}};
+  result.files = with_public_errors([&] { return compare::compare_files(reference, test, limits, mask); });
+  result.outcome = kNames[static_cast<std::size_t>(result.files.outcome)];
+  result.problem = result.files.problem;
+  return result;
+}
+
+void bind_difference(py::module_& module) {
+  const auto figure = [](auto field) {
+    return [field](const Difference& self) { return self.files.worst.figures.*field; };
+  };
+  using Figures = compare::Figures;
+  py::class_<Difference>(module, "Difference",
+                         "Differences of two pictures or videos; the values are those of the worst frame.")
+      .def_readonly("outcome", &Difference::outcome,
+                    "\"same\", \"within\" the limits, \"differs\", \"size\", \"frame count\", \"no test\", "
+                    "\"no reference\" or \"unreadable\".")
+      .def_readonly("problem", &Difference::problem, "Explanation in words, for the outcomes from \"size\" on.")
+      .def_property_readonly("good",
+                             [](const Difference& self) { return self.outcome == "same" || self.outcome == "within"; })
+      .def_property_readonly("frames", [](const Difference& self) { return self.files.frames; })
+      .def_property_readonly("worst_frame", [](const Difference& self) { return self.files.worst_frame; })
+      .def_property_readonly("pixels", figure(&Figures::pixels))
+      .def_property_readonly("pixels_changed", figure(&Figures::pixels_changed))
+      .def_property_readonly("pixels_over", figure(&Figures::pixels_over))
+      .def_property_readonly("pixels_at_edges", figure(&Figures::pixels_at_edges),
+                             "Number of pixels_over that are at edges; with the default budget each counts a fortieth.")
+      .def_property_readonly("largest", figure(&Figures::largest), "Largest difference of a channel, out of 255.")
+      .def_property_readonly("ssim", figure(&Figures::ssim), "Mean structural similarity, 1 where equal.")
+      .def_property_readonly("flip", figure(&Figures::flip), "Mean of the FLIP map, 0 where equal.")
+      .def_property_readonly("spot", figure(&Figures::spot), "Largest value of the FLIP map.");
+  const auto compare = [](const std::filesystem::path& reference, const std::filesystem::path& test,
+                          int pixel_tolerance, double pixel_budget, double flip, double spot,
+                          const std::optional<std::filesystem::path>& mask) {
+    return compare_files(reference, test, {pixel_tolerance, pixel_budget, flip, spot}, mask.value_or(""));
+  };
+  const compare::Limits limits;
+  module.def("compare", compare, py::arg("reference"), py::arg("test"), py::kw_only(),
+             py::arg("pixel_tolerance") = limits.pixel_tolerance, py::arg("pixel_budget") = limits.pixel_budget,
+             py::arg("flip") = limits.flip, py::arg("spot") = limits.spot, py::arg("mask") = py::none(), WithoutLock(),
+             "Compare two pictures or videos as `weft diff` does.");
+}
+
+}  // namespace
+
+void bind_tools(py::module_& module) {
+  py::class_<ErrorOfRun>(module, "ErrorEstimate", "Estimated error of a run, compared with exactly solved short steps.")
+      .def_readonly("all", &ErrorOfRun::all, "By quantity: position (m), velocity (m/s), energy (relative), ...")
+      .def_readonly("parts", &ErrorOfRun::parts,
+                    "The same for each source: time steps, solver, start, mesh; None if not known.")
+      .def_readonly(
+          "chaotic", &ErrorOfRun::chaotic,
+          "Whether a start moved by 1 um changes the run as much as its errors do; then no setting reduces them.")
+      .def_readonly("cpu_s", &ErrorOfRun::cpu_s, "CPU seconds of the comparison runs.");
+  module.def("estimate_error", &estimate_error, py::arg("scene"), py::arg("mesh") = false, WithoutLock(),
+             "Simulate the scene several times and estimate its error; with `mesh`, also that of the mesh.");
+  py::class_<Cache>(module, "Cache", "A frame cache that `weft simulate` wrote or is still writing.")
+      .def(py::init<const std::filesystem::path&>(), py::arg("folder"))
+      .def_property_readonly("frames", &Cache::frames, "Numbers of the frames that the cache contains now.")
+      .def_property_readonly("fps", &Cache::fps)
+      .def_property_readonly("scene", &Cache::scene)
+      .def("__getitem__", &Cache::frame, py::arg("number"), WithoutLock());
+  bind_difference(module);
+}
+
+}  // namespace weft::python

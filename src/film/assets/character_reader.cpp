@@ -1,0 +1,460 @@
+#include "film/assets/character_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+#include "film/assets/clip_reader.hpp"
+#include "film/assets/import.hpp"
+#include "film/assets/material_reader.hpp"
+#include "film/assets/soup.hpp"
+#include "physics/mesh/polygon.hpp"
+
+namespace weft::assets {
+namespace {
+
+using character::Affine;
+
+/// Maximum number of vertices of all parts with all copies, before merging: far more than collision can handle.
+constexpr std::size_t kMaxVertices = 4'000'000;
+
+/// If the skin in the rest pose of the nodes is farther than this from its bind pose, there is a warning [m].
+constexpr double kMaxBindError = 0.05;
+
+/// If the sum of weights differs from 1 by more than this, there is a warning. Smaller errors come from rounding, and
+/// from formats that store few bits.
+constexpr double kWeightSlack = 0.02;
+
+Affine to_affine(const aiMatrix4x4& m) {
+  Affine map;
+  map.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0, 0, 0, 1;
+  return map;
+}
+
+bool invertible(const Affine& map) {
+  const double size = map.linear().norm();
+  return std::abs(map.linear().determinant()) > 1e-9 * size * size * size;
+}
+
+/// A node, and the index of its parent in the same list.
+using NodeWithParent = std::pair<const aiNode*, Index>;
+
+/// All nodes, parents first, by mParent: assimp 5.2 lists the bones of Half-Life models as children of one node and
+/// stores their parents only in mParent. If mParent does not lead to all nodes, the lists of children are used.
+std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
+  using Children = std::unordered_map<const aiNode*, std::vector<const aiNode*>>;
+  // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
+  const auto walk = [&](const auto& children_of) {
+    std::vector<NodeWithParent> nodes;
+    std::vector<NodeWithParent> stack{{&root, -1}};
+    while (!stack.empty()) {
+      const NodeWithParent next = stack.back();
+      stack.pop_back();
+      nodes.push_back(next);
+      const auto children = children_of(*next.first);
+      for (std::size_t c = children.size(); c-- > 0;)
+        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);  // see soup.cpp
+    }
+    return nodes;
+  };
+  std::vector<NodeWithParent> listed =
+      walk([](const aiNode& node) { return std::span<aiNode* const>(node.mChildren, node.mNumChildren); });
+  Children named;
+  for (const auto& [node, parent] : listed)
+    if (node != &root) named[node->mParent].push_back(node);
+  std::vector<NodeWithParent> by_name = walk([&](const aiNode& node) { return named[&node]; });
+  return by_name.size() == listed.size() ? by_name : listed;
+}
+
+/// The weights of one vertex, by bone.
+using Weights = std::vector<character::Influence>;
+
+class CharacterReader {
+ public:
+  CharacterReader(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice)
+      : scene_(scene), file_(file), choice_(choice) {}
+
+  ReadCharacter read() {
+    read_nodes();
+    for (const aiMaterial* material : std::span(scene_.mMaterials, scene_.mNumMaterials))
+      character_.materials.emplace_back(material->GetName().C_Str());
+    std::set<std::string> names;
+    for (std::size_t n = 0; n < nodes_.size(); ++n)
+      for (const unsigned m : std::span(nodes_[n]->mMeshes, nodes_[n]->mNumMeshes)) {
+        if (m >= scene_.mNumMeshes)
+          throw std::runtime_error(fmt::format("node \"{}\": expected one of {} meshes, got number {}",
+                                               character_.nodes[n].name, scene_.mNumMeshes, m));
+        const aiMesh& mesh = *scene_.mMeshes[m];
+        names.insert({character_.nodes[n].name, mesh.mName.C_Str()});
+        if (is_chosen(character_.nodes[n].name, mesh.mName.C_Str())) read_mesh(mesh, static_cast<Index>(n));
+      }
+    check_choice(names);
+    const Soup unjoined = soup_;
+    join_vertices();
+    make_faces();
+    color_faces(unjoined);
+    for (const aiAnimation* animation : std::span(scene_.mAnimations, scene_.mNumAnimations))
+      character_.clips.push_back(to_clip(*animation, targets_, read_.warnings));
+    name_clips();
+    read_units();
+    return std::move(read_);
+  }
+
+ private:
+  bool is_chosen(const std::string& node, const std::string& mesh) const {
+    const auto names_it = [&](const std::vector<std::string>& list) {
+      return std::ranges::any_of(list, [&](const std::string& name) { return name == node || name == mesh; });
+    };
+    return (choice_.only.empty() || names_it(choice_.only)) && !names_it(choice_.without) &&
+           !names_it(choice_.elsewhere);
+  }
+
+  void check_choice(std::set<std::string> names) const {
+    names.erase("");
+    for (const auto& [key, list] : {std::pair{"meshes", &choice_.only}, {"without", &choice_.without}})
+      for (const std::string& name : *list)
+        if (!names.contains(name))
+          throw std::runtime_error(
+              fmt::format("{}: expected names of meshes or of their nodes, such as \"{}\", got \"{}\"", key,
+                          fmt::join(names, "\", \""), name));
+  }
+
+  void read_nodes() {
+    for (const auto& [node, parent] : nodes_with_parents(*scene_.mRootNode)) {
+      const std::string name = node->mName.C_Str();
+      targets_.nodes.emplace(name, static_cast<Index>(nodes_.size()));
+      nodes_.push_back(node);
+      character_.nodes.push_back({name, parent, to_affine(node->mTransformation)});
+      const Affine& local = character_.nodes.back().local;
+      if (!local.matrix().allFinite())
+        throw std::runtime_error(fmt::format("node \"{}\": expected finite numbers, got others", name));
+      globals_.push_back(parent < 0 ? local : globals_[parent] * local);
+    }
+  }
+
+  void read_mesh(const aiMesh& mesh, Index node) {
+    const std::string name = mesh.mName.C_Str();
+    const bool faces = std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
+                                   [](const aiFace& face) { return face.mNumIndices >= 3; });
+    if (!faces) return;
+    // A skinned mesh is placed by its bones. It is read only once, even if several nodes show it.
+    if (mesh.mNumBones > 0 && !skinned_.insert(&mesh).second) return;
+    const std::size_t base = soup_.positions.size();
+    if (base + mesh.mNumVertices > kMaxVertices)
+      throw std::runtime_error(fmt::format("mesh \"{}\": expected at most {} vertices in all", name, kMaxVertices));
+
+    Affine placing = globals_[node];
+    std::vector<Weights> weights = read_weights(mesh, node, placing);
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D& x = mesh.mVertices[v];
+      soup_.positions.push_back(placing * Vec3(x.x, x.y, x.z));
+      if (!soup_.positions.back().allFinite())
+        throw std::runtime_error(
+            fmt::format("mesh \"{}\": expected finite coordinates, got others at vertex {}", name, v));
+      materials_.push_back(mesh.mMaterialIndex < scene_.mNumMaterials ? static_cast<Index>(mesh.mMaterialIndex) : -1);
+      uv_.push_back(uv_of(mesh, v));
+    }
+    check_bind(mesh, placing, weights, node);
+    std::move(weights.begin(), weights.end(), std::back_inserter(weights_));
+    read_faces(mesh, base, placing.linear().determinant() < 0);
+    read_morphs(mesh, node, base, placing);
+  }
+
+  /// The weights of each vertex of a mesh. For a skinned mesh, `placing` becomes the transform from mesh to world in
+  /// the rest pose: (bone's node to world) × (bone offset) of the bone with the largest sum of weights. The stored bone
+  /// offsets apply to vertices after this transform, so that all meshes share one space.
+  std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& placing) {
+    std::vector<Weights> weights(mesh.mNumVertices);
+    std::vector<std::pair<Index, Affine>> bones;  // node and offset of bones with weights
+    double most = 0;
+    for (const aiBone* bone : std::span(mesh.mBones, mesh.mNumBones)) {
+      double total = 0;
+      for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights))
+        total += check_weight(mesh, *bone, w);
+      if (total == 0) continue;
+      const auto found = targets_.nodes.find(bone->mName.C_Str());
+      if (found == targets_.nodes.end())
+        throw std::runtime_error(fmt::format("mesh \"{}\": expected a node for each bone, got none named \"{}\"",
+                                             mesh.mName.C_Str(), bone->mName.C_Str()));
+      const Affine offset = to_affine(bone->mOffsetMatrix);
+      if (!offset.matrix().allFinite())
+        throw std::runtime_error(fmt::format("mesh \"{}\", bone \"{}\": expected finite numbers, got others",
+                                             mesh.mName.C_Str(), bone->mName.C_Str()));
+      const auto index = static_cast<Index>(character_.bones.size() + bones.size());
+      bones.emplace_back(found->second, offset);
+      for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights))
+        if (w.mWeight > 0) weights[w.mVertexId].push_back({index, w.mWeight});
+      const Affine held = globals_[found->second] * offset;
+      if (total > most && invertible(held)) {
+        most = total;
+        placing = held;
+      }
+    }
+    const Affine back = invertible(placing) ? placing.inverse() : Affine::Identity();
+    if (!invertible(placing)) placing = Affine::Identity();
+    for (const auto& [bone_node, offset] : bones) character_.bones.push_back({bone_node, offset * back});
+    normalise_weights(mesh, node, placing, weights);
+    return weights;
+  }
+
+  double check_weight(const aiMesh& mesh, const aiBone& bone, const aiVertexWeight& weight) const {
+    const auto fail = [&](const std::string& why) {
+      throw std::runtime_error(
+          fmt::format("mesh \"{}\", bone \"{}\": {}", mesh.mName.C_Str(), bone.mName.C_Str(), why));
+    };
+    if (weight.mVertexId >= mesh.mNumVertices)
+      fail(fmt::format("expected one of {} vertices, got number {}", mesh.mNumVertices, weight.mVertexId));
+    if (!std::isfinite(weight.mWeight) || weight.mWeight < 0)
+      fail(fmt::format("expected a weight >= 0, got {:g} at vertex {}", weight.mWeight, weight.mVertexId));
+    return weight.mWeight;
+  }
+
+  /// Warns if the rest pose of the nodes moves skin away from its bind pose, for example because of pivots that assimp
+  /// ignores. FBX binds a mesh at its node. Other formats define only the bones relative to each other; there,
+  /// `placing` gives the bind pose.
+  void check_bind(const aiMesh& mesh, const Affine& placing, const std::vector<Weights>& weights, Index node) {
+    if (mesh.mNumBones == 0) return;
+    const std::optional<double> metres = metres_per_unit(scene_);
+    const Affine& bound = metres ? globals_[node] : placing;
+    double farthest = 0;
+    unsigned worst = 0;
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const Vec3 x(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z);
+      Vec3 held = Vec3::Zero();
+      for (const character::Influence& influence : weights[v]) {
+        const character::Bone& bone = character_.bones[influence.bone];
+        held += influence.weight * (globals_[bone.node] * (bone.offset * (placing * x)));
+      }
+      const double distance = metres.value_or(1) * (held - bound * x).norm();
+      if (distance > farthest) farthest = distance, worst = v;
+    }
+    if (farthest <= kMaxBindError) return;
+    Index holder = 0;
+    double most = 0;
+    for (const character::Influence& influence : weights[worst])
+      if (influence.weight > most) most = influence.weight, holder = character_.bones[influence.bone].node;
+    read_.warnings.push_back(
+        fmt::format("mesh \"{}\": the rest pose of the nodes holds its skin up to {:.3g} m from where it was bound, at "
+                    "node \"{}\"; if the body looks wrong, export it in its bind pose, or as glTF",
+                    mesh.mName.C_Str(), farthest, character_.nodes[holder].name));
+  }
+
+  /// Normalises weights to a sum of 1. Vertices without weights are bound to the node of the mesh.
+  void normalise_weights(const aiMesh& mesh, Index node, const Affine& placing, std::vector<Weights>& weights) {
+    std::size_t unweighted = 0;
+    double furthest = 1;
+    std::size_t furthest_vertex = 0;
+    Index own = -1;
+    for (std::size_t v = 0; v < weights.size(); ++v) {
+      double sum = 0;
+      for (const character::Influence& influence : weights[v]) sum += influence.weight;
+      if (sum <= 0) {
+        ++unweighted;
+        if (own < 0) {
+          own = static_cast<Index>(character_.bones.size());
+          character_.bones.push_back({node, placing.inverse()});
+        }
+        weights[v] = {{own, 1}};
+        continue;
+      }
+      if (std::abs(sum - 1) > std::abs(furthest - 1)) {
+        furthest = sum;
+        furthest_vertex = v;
+      }
+      for (character::Influence& influence : weights[v]) influence.weight /= sum;
+    }
+    if (std::abs(furthest - 1) > kWeightSlack)
+      read_.warnings.push_back(
+          fmt::format("mesh \"{}\": weights of a vertex should add up to 1; they were scaled, those "
+                      "of vertex {} from {:g}",
+                      mesh.mName.C_Str(), furthest_vertex, furthest));
+    if (unweighted > 0 && mesh.mNumBones > 0)
+      read_.warnings.push_back(fmt::format("mesh \"{}\": {} of {} vertices have no bone; they go with node \"{}\"",
+                                           mesh.mName.C_Str(), unweighted, weights.size(),
+                                           character_.nodes[node].name));
+  }
+
+  void read_faces(const aiMesh& mesh, std::size_t base, bool mirrored) {
+    std::vector<Index> corners;
+    for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+      if (face.mNumIndices < 3) continue;
+      corners.clear();
+      for (const unsigned v : std::span(face.mIndices, face.mNumIndices)) {
+        if (v >= mesh.mNumVertices)
+          throw std::runtime_error(fmt::format("mesh \"{}\": expected one of {} vertices in each face, got number {}",
+                                               mesh.mName.C_Str(), mesh.mNumVertices, v));
+        corners.push_back(static_cast<Index>(base + v));
+      }
+      // A mirroring transform turns faces inside out; reversing the order of corners corrects this.
+      if (mirrored) std::reverse(corners.begin(), corners.end());
+      append_face(soup_, corners);
+    }
+  }
+
+  void read_morphs(const aiMesh& mesh, Index node, std::size_t base, const Affine& placing) {
+    const std::string name = mesh.mName.C_Str();
+    const ClipTargets::Morphs group{static_cast<Index>(morphs_.size()), static_cast<Index>(mesh.mNumAnimMeshes)};
+    for (const aiAnimMesh* target : std::span(mesh.mAnimMeshes, mesh.mNumAnimMeshes)) {
+      Morph morph{.name = target->mName.C_Str(), .weight = target->mWeight, .first = base, .displacements = {}};
+      if (!std::isfinite(target->mWeight) || (target->HasPositions() && target->mNumVertices != mesh.mNumVertices))
+        throw std::runtime_error(
+            fmt::format("mesh \"{}\", morph target \"{}\": expected {} vertices and a finite weight, got {} and {:g}",
+                        name, morph.name, mesh.mNumVertices, target->mNumVertices, target->mWeight));
+      for (unsigned v = 0; target->HasPositions() && v < mesh.mNumVertices; ++v) {
+        const aiVector3D by = target->mVertices[v] - mesh.mVertices[v];
+        morph.displacements.push_back(placing.linear() * Vec3(by.x, by.y, by.z));
+        if (!morph.displacements.back().allFinite())
+          throw std::runtime_error(
+              fmt::format("mesh \"{}\", morph target \"{}\": expected finite coordinates, got "
+                          "others at vertex {}",
+                          name, morph.name, v));
+      }
+      morphs_.push_back(std::move(morph));
+    }
+    if (group.count == 0) return;
+    const std::string& of_node = character_.nodes[node].name;
+    targets_.morphs.emplace(of_node, group);
+    if (name != of_node) targets_.morphs.emplace(name, group);
+  }
+
+  /// Merges copies of a vertex with the same position, weights and displacements, so that seams of textures or normals
+  /// do not cut the surface. Drops vertices without faces.
+  void join_vertices() {
+    std::unordered_map<std::string, Index> known;
+    std::vector<Index> renamed(soup_.positions.size(), -1);
+    std::vector<std::size_t> kept;
+    std::string key;
+    const auto rename = [&](Index& v) {
+      const auto old = static_cast<std::size_t>(v);
+      if (renamed[old] < 0) {
+        write_key(old, key);
+        const auto [found, is_new] = known.emplace(key, static_cast<Index>(kept.size()));
+        if (is_new) kept.push_back(old);
+        renamed[old] = found->second;
+      }
+      v = renamed[old];
+    };
+    for (auto& q : soup_.quads) std::for_each(q.begin(), q.end(), rename);
+    for (auto& t : soup_.triangles) std::for_each(t.begin(), t.end(), rename);
+
+    std::vector<Vec3> positions;
+    for (const std::size_t old : kept) {
+      positions.push_back(soup_.positions[old]);
+      character_.material_of_vertex.push_back(materials_[old]);
+      character_.first_influence.push_back(static_cast<Index>(character_.influences.size()));
+      character_.influences.insert(character_.influences.end(), weights_[old].begin(), weights_[old].end());
+    }
+    character_.first_influence.push_back(static_cast<Index>(character_.influences.size()));
+    for (Morph& morph : morphs_) {
+      std::vector<Vec3> displacements;
+      for (const std::size_t old : kept) displacements.push_back(morph.at(old));
+      character_.morphs.push_back({std::move(morph.name), std::move(displacements), morph.weight});
+    }
+    soup_.positions = std::move(positions);
+  }
+
+  /// Writes all data that determine the motion of a vertex to `key`, as bytes.
+  void write_key(std::size_t v, std::string& key) const {
+    const auto append_number = [&](double number) {
+      number += 0.0;  // 0 and -0 are equal
+      key.append(reinterpret_cast<const char*>(&number), sizeof number);
+    };
+    key.clear();
+    for (const double x : soup_.positions[v]) append_number(x);
+    for (const character::Influence& influence : weights_[v]) {
+      append_number(influence.bone);
+      append_number(influence.weight);
+    }
+    for (const Morph& morph : morphs_)
+      for (const double x : morph.at(v)) append_number(x);
+  }
+
+  void make_faces() {
+    std::size_t flat = 0;
+    character_.mesh.topology = make_topology(soup_, flat);
+    character_.mesh.positions = std::move(soup_.positions);
+    if (flat > 0)
+      read_.warnings.push_back(fmt::format("{} triangle{} without area left out", flat, flat == 1 ? "" : "s"));
+  }
+
+  Vec2 uv_of(const aiMesh& mesh, unsigned v) const {
+    if (mesh.mMaterialIndex >= scene_.mNumMaterials) return Vec2::Zero();
+    unsigned channel = uv_channel(*scene_.mMaterials[mesh.mMaterialIndex]);
+    if (mesh.mTextureCoords[channel] == nullptr) channel = 0;
+    if (mesh.mTextureCoords[channel] == nullptr) return Vec2::Zero();
+    const Vec2 uv(mesh.mTextureCoords[channel][v].x, mesh.mTextureCoords[channel][v].y);
+    return uv.allFinite() ? uv : Vec2(Vec2::Zero());
+  }
+
+  /// Copies materials and texture coordinates from the soup before its vertices were merged. The list of triangles is
+  /// the same before and after merging.
+  void color_faces(const Soup& unjoined) {
+    if (file_.empty() || scene_.mNumMaterials == 0 || std::ranges::find(materials_, -1) != materials_.end()) return;
+    character::Coloring& coloring = character_.coloring;
+    coloring.materials = read_materials(scene_, file_, read_.warnings);
+    std::size_t flat = 0;
+    for (const mesh::Triangle& t : make_topology(unjoined, flat).triangles) {
+      coloring.material_of_triangle.push_back(materials_[t[0]]);
+      coloring.uv.push_back({uv_[t[0]], uv_[t[1]], uv_[t[2]]});
+    }
+    if (coloring.uv.size() != character_.mesh.topology.triangles.size()) coloring = {};
+  }
+
+  /// Names clips without a name by their number, from 1.
+  void name_clips() {
+    for (std::size_t c = 0; c < character_.clips.size(); ++c)
+      if (character_.clips[c].name.empty()) character_.clips[c].name = std::to_string(c + 1);
+  }
+
+  /// FBX states its unit and up axis. For other formats, assimp itself converts to y up, and to metres if it knows the
+  /// unit.
+  void read_units() {
+    read_.metres_per_unit = metres_per_unit(scene_);
+    std::int32_t up = 0;
+    if (scene_.mMetaData == nullptr) return;
+    if (scene_.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) read_.up = up;
+  }
+
+  /// A morph target of one mesh.
+  struct Morph {
+    std::string name;
+    double weight = 0;
+    std::size_t first = 0;  // first vertex in the soup
+    std::vector<Vec3> displacements;
+
+    Vec3 at(std::size_t v) const {
+      return v >= first && v - first < displacements.size() ? displacements[v - first] : Vec3(Vec3::Zero());
+    }
+  };
+
+  const aiScene& scene_;
+  const std::filesystem::path& file_;
+  const MeshChoice& choice_;
+  ReadCharacter read_;
+  character::Character& character_ = read_.character;
+  std::vector<const aiNode*> nodes_;
+  std::vector<Affine> globals_;  // per node: transform to world at rest
+  Soup soup_;
+  std::vector<Weights> weights_;  // per vertex of the soup
+  std::vector<Index> materials_;  // per vertex of the soup; -1 if the file has none
+  std::vector<Vec2> uv_;          // per vertex of the soup
+  std::vector<Morph> morphs_;
+  std::set<const aiMesh*> skinned_;  // skinned meshes that have been read
+  ClipTargets targets_;
+};
+
+}  // namespace
+
+ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice) {
+  return CharacterReader(scene, file, choice).read();
+}
+
+}  // namespace weft::assets

@@ -1,0 +1,41 @@
+// Converts assimp's scene to a character.
+#pragma once
+
+#include <assimp/scene.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "film/character/character.hpp"
+
+namespace weft::assets {
+
+/// A character in the unit and axes of its file, and what the file states about them.
+struct ReadCharacter {
+  character::Character character;
+  std::optional<double> metres_per_unit;
+  std::optional<int> up;              ///< up axis: 0 x, 1 y, 2 z
+  std::vector<std::string> warnings;  ///< repaired or skipped parts, by name
+};
+
+/// Selects meshes of a file for a character, by their names or those of their nodes.
+struct MeshChoice {
+  std::vector<std::string> only;       ///< empty: all
+  std::vector<std::string> without;    ///< meshes to leave out
+  std::vector<std::string> elsewhere;  ///< meshes used by cloths: left out too; names that do not exist are allowed
+};
+
+/// Converts nodes, meshes with their weights and morph targets, and animations. All meshes share one list of bones. A
+/// mesh without bones is copied for each node that shows it, and bound to a bone at that node. Pictures are searched
+/// beside `file`; none are read if `file` is empty. Throws std::runtime_error that names the unusable part: indices out
+/// of range, non-finite numbers, bones without a node, key times that run backwards, unknown names in `choice`.
+ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice = {});
+
+/// Serialises a character for transfer between two processes of the same program, and back.
+std::string to_bytes(ReadCharacter& read);
+ReadCharacter character_from_bytes(std::string_view bytes);
+
+}  // namespace weft::assets

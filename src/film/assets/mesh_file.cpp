@@ -1,0 +1,205 @@
+#include "film/assets/mesh_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "core/disjoint_sets.hpp"
+#include "film/assets/character_file.hpp"
+#include "film/assets/soup.hpp"
+#include "physics/mesh/topology.hpp"
+
+namespace weft::assets {
+namespace {
+
+/// For each vertex, the first one at exactly the same position.
+std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
+  const auto key = [&](Index i) {
+    const Vec3& x = positions[i];
+    return std::array{x.x(), x.y(), x.z()};
+  };
+  std::vector<Index> order(positions.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+  std::vector<Index> first(positions.size());
+  Index start = -1;  // first vertex of the current run of equal positions
+  for (const Index i : order) {
+    if (start < 0 || key(i) != key(start)) start = i;
+    first[i] = start;
+  }
+  return first;
+}
+
+/// Merges vertices at exactly the same position (0 and -0 are equal) and drops unused ones. Vertices are ordered by
+/// their first use in faces. `joined` counts merged copies. Returns the new index of each vertex, or −1.
+std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
+  const std::vector<Index> first = first_at_same_place(soup.positions);
+  std::vector<Index> renamed(first.size(), -1);
+  std::vector<Vec3> kept;
+  const auto rename = [&](Index& v) {
+    const auto representative = static_cast<std::size_t>(first[v]);
+    if (renamed[representative] < 0) {
+      renamed[representative] = static_cast<Index>(kept.size());
+      kept.push_back(soup.positions[representative]);
+    }
+    v = renamed[representative];
+  };
+  for (auto& q : soup.quads) std::for_each(q.begin(), q.end(), rename);
+  for (auto& t : soup.triangles) std::for_each(t.begin(), t.end(), rename);
+  soup.positions = std::move(kept);
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    joined += first[v] == static_cast<Index>(v) ? 0 : 1;
+    renamed[v] = renamed[static_cast<std::size_t>(first[v])];
+  }
+  return renamed;
+}
+
+/// Copies colours and groups of vertices; `renamed`: new index of each vertex, or −1.
+void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, LoadedMesh& result) {
+  const std::size_t count = result.mesh.positions.size();
+  for (std::size_t v = 0; v < renamed.size(); ++v) {
+    if (renamed[v] < 0 || !soup.colors[v].allFinite()) continue;
+    if (result.colors.empty()) result.colors.assign(count, Vec3::Zero());
+    Vec3& color = result.colors[static_cast<std::size_t>(renamed[v])];
+    color = color.cwiseMax(soup.colors[v]).cwiseMin(1);
+  }
+  for (const Soup::Weight& weight : soup.weights) {
+    const Index vertex = renamed[static_cast<std::size_t>(weight.vertex)];
+    if (vertex < 0 || !(weight.weight > 0)) continue;
+    std::vector<double>& group = result.groups[soup.group_names[static_cast<std::size_t>(weight.group)]];
+    group.resize(count);
+    double& most = group[static_cast<std::size_t>(vertex)];
+    most = std::min(1.0, std::max(most, weight.weight));
+  }
+}
+
+/// UVs of the triangles of make_topology(). `soup`: before vertices are merged, which keeps the list of triangles.
+std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
+  std::vector<std::array<Vec2, 3>> corners;
+  if (std::ranges::none_of(soup.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;
+  std::size_t removed = 0;
+  for (const mesh::Triangle& t : make_topology(soup, removed).triangles)
+    corners.push_back({soup.uv[t[0]], soup.uv[t[1]], soup.uv[t[2]]});
+  return corners;
+}
+
+/// A border vertex, and the distance within which others are welded to it [m].
+struct BorderVertex {
+  Index vertex;
+  double weld_distance;
+};
+
+std::vector<BorderVertex> border_of(const mesh::Mesh& mesh, double ratio) {
+  std::vector<double> shortest(mesh.positions.size(), std::numeric_limits<double>::infinity());
+  for (const auto& [a, b] : mesh::inspect(mesh.topology.triangles, mesh.positions.size()).border)
+    for (const Index v : {a, b})
+      shortest[at(v)] = std::min(shortest[at(v)], (mesh.positions[at(a)] - mesh.positions[at(b)]).norm());
+  std::vector<BorderVertex> border;
+  for (std::size_t v = 0; v < shortest.size(); ++v)
+    if (std::isfinite(shortest[v])) border.push_back({static_cast<Index>(v), ratio * shortest[v]});
+  return border;
+}
+
+}  // namespace
+
+Welded weld_borders(LoadedMesh& loaded, double ratio) {
+  const std::vector<Vec3>& x = loaded.mesh.positions;
+  std::vector<BorderVertex> border = border_of(loaded.mesh, ratio);
+  // Sorts along x, so that only vertices near each other in this order are compared.
+  std::ranges::stable_sort(border, {}, [&](const BorderVertex& b) { return x[at(b.vertex)].x(); });
+  DisjointSets sets(x.size());
+  Welded welded;
+  for (std::size_t i = 0; i < border.size(); ++i)
+    for (std::size_t j = i + 1; j < border.size(); ++j) {
+      const Vec3 offset = x[at(border[j].vertex)] - x[at(border[i].vertex)];
+      if (offset.x() > border[i].weld_distance) break;
+      if (offset.norm() > std::min(border[i].weld_distance, border[j].weld_distance)) continue;
+      sets.join(border[i].vertex, border[j].vertex);
+      welded.widest = std::max(welded.widest, offset.norm());
+    }
+  std::vector<Index> renamed(x.size());
+  LoadedMesh result = loaded;
+  result.mesh.positions.clear();
+  std::vector<int> copies;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    const auto first = at(sets.root(static_cast<Index>(v)));
+    if (first == v) {
+      renamed[v] = static_cast<Index>(copies.size());
+      result.mesh.positions.push_back(x[v]);
+      copies.push_back(1);
+      continue;
+    }
+    ++welded.vertices;
+    renamed[v] = renamed[first];
+    result.mesh.positions[at(renamed[v])] += x[v];
+    ++copies[at(renamed[v])];
+  }
+  if (welded.vertices == 0) return welded;
+  for (std::size_t v = 0; v < copies.size(); ++v) result.mesh.positions[v] /= copies[v];
+  for (auto& quad : result.mesh.topology.quads)
+    for (Index& v : quad) v = renamed[at(v)];
+  for (auto& triangle : result.mesh.topology.triangles)
+    for (Index& v : triangle) v = renamed[at(v)];
+  if (!mesh::inspect(result.mesh.topology.triangles, copies.size()).manifold()) return {};
+  if (!loaded.colors.empty()) result.colors.assign(copies.size(), Vec3::Zero());
+  for (std::size_t v = 0; v < loaded.colors.size(); ++v)
+    result.colors[at(renamed[v])] = result.colors[at(renamed[v])].cwiseMax(loaded.colors[v]);
+  for (auto& [name, weights] : result.groups) {
+    weights.assign(copies.size(), 0);
+    const std::vector<double>& before = loaded.groups.at(name);
+    for (std::size_t v = 0; v < before.size(); ++v)
+      weights[at(renamed[v])] = std::max(weights[at(renamed[v])], before[v]);
+  }
+  loaded = std::move(result);
+  return welded;
+}
+
+namespace {
+
+LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& object) {
+  Soup soup = from_bytes(source.read([&] { return to_bytes(read_soup(source.file, object)); }));
+  if (soup.triangles.empty() && soup.quads.empty()) source.fail("expected faces, got none");
+  scene::FileUp up = axes.up;
+  if (up == scene::FileUp::as_file)
+    up = soup.up.empty() ? axes.default_up : static_cast<scene::FileUp>(soup.up.front() + 1);
+  Mat3 turn = Mat3::Identity();
+  if (up != scene::FileUp::as_file) turn = turn_up(static_cast<int>(up) - 1, axes.scene_up);
+  for (Vec3& x : soup.positions) {
+    x = axes.scale * (turn * x);
+    // Smaller coordinates also keep products of squared lengths finite.
+    if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
+      source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(),
+                              x.z()));
+  }
+
+  LoadedMesh result;
+  result.uv = uv_of_corners(soup);
+  const std::vector<Index> renamed = join_vertices(soup, result.joined_vertices);
+  result.mesh.topology = make_topology(soup, result.removed_triangles);
+  if (result.mesh.topology.triangles.empty()) source.fail("expected faces with an area, got none");
+  result.mesh.positions = std::move(soup.positions);
+  std::vector<std::uint8_t> used(result.mesh.positions.size(), 0);
+  for (const mesh::Triangle& t : result.mesh.topology.triangles)
+    for (const Index v : t) used[at(v)] = 1;
+  result.lost_vertices = static_cast<std::size_t>(std::ranges::count(used, 0));
+  copy_vertex_data(soup, renamed, result);
+  return result;
+}
+
+}  // namespace
+
+LoadedMesh load_mesh(const std::filesystem::path& file, const MeshAxes& axes, const std::string& where,
+                     const std::string& object) {
+  const Source source{file, where};
+  return source.checked([&] { return load(source, axes, object); });
+}
+
+}  // namespace weft::assets

@@ -1,0 +1,120 @@
+#include "film/assets/sequence_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include "core/input_file.hpp"
+#include "film/assets/soup.hpp"
+#include "film/assets/source.hpp"
+
+namespace weft::assets {
+namespace {
+
+/// Maximum size of the positions of all files [bytes]: far more than is practical.
+constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
+
+/// The vertex indices of the faces of an OBJ file as text; empty for other files. The file itself is read, because
+/// assimp gives each corner a vertex of its own.
+std::string face_numbers(const std::filesystem::path& file) {
+  std::string numbers;
+  if (file.extension() != ".obj" && file.extension() != ".OBJ") return numbers;
+  std::istringstream in(weft::read_file(file, kMaxMeshFileBytes));
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("f ")) continue;
+    std::istringstream corners(line.substr(2));
+    for (std::string corner; corners >> corner;) numbers += corner.substr(0, corner.find('/')) + ' ';
+    numbers += '\n';
+  }
+  return numbers;
+}
+
+void check_same_faces(const Source& source, const std::filesystem::path& first_file, const Soup& first,
+                      const Soup& other) {
+  const auto fail = [&](const char* what, std::size_t expected, std::size_t got) {
+    source.fail(fmt::format("expected {} {}, as in the first file of the sequence, got {}", expected, what, got));
+  };
+  if (other.positions.size() != first.positions.size())
+    fail("vertices", first.positions.size(), other.positions.size());
+  if (other.triangles.size() != first.triangles.size())
+    fail("triangles", first.triangles.size(), other.triangles.size());
+  if (other.quads.size() != first.quads.size()) fail("quads", first.quads.size(), other.quads.size());
+  if (other.triangles != first.triangles || other.quads != first.quads ||
+      face_numbers(source.file) != face_numbers(first_file))
+    source.fail("expected faces over the same vertices as in the first file of the sequence, got others");
+}
+
+/// Splits groups of coincident vertices where this file has vertices of a group at different positions.
+void split_groups(const std::vector<Vec3>& positions, std::vector<Index>& groups) {
+  std::map<std::pair<Index, std::array<double, 3>>, Index> known;
+  for (std::size_t v = 0; v < groups.size(); ++v) {
+    const Vec3 x = positions[v] + Vec3::Zero();  // 0 and -0 are equal
+    groups[v] = known.emplace(std::pair(groups[v], std::array{x.x(), x.y(), x.z()}), static_cast<Index>(known.size()))
+                    .first->second;
+  }
+}
+
+std::vector<Vec3> kept_of(const std::vector<Vec3>& positions, const std::vector<std::size_t>& kept) {
+  std::vector<Vec3> result;
+  for (const std::size_t v : kept) result.push_back(positions[v]);
+  return result;
+}
+
+}  // namespace
+
+LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const FileAxes& axes,
+                             const std::string& where) {
+  const Mat3 turn = axes.scale.value_or(1) *
+                    turn_up(axes.up == scene::FileUp::as_file ? 1 : static_cast<int>(axes.up) - 1, axes.scene_up);
+  Soup first;
+  std::vector<Index> groups;
+  LoadedSequence loaded;
+  for (const std::filesystem::path& file : files) {
+    const Source source{file, where, "mesh"};
+    Soup soup = source.checked([&] { return from_bytes(source.read([&] { return to_bytes(read_soup(file)); })); });
+    for (Vec3& x : soup.positions) {
+      x = turn * x;
+      if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
+        source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(),
+                                x.y(), x.z()));
+    }
+    if (loaded.positions.empty()) {
+      if (soup.triangles.empty() && soup.quads.empty()) source.fail("expected faces, got none");
+      if (soup.positions.size() * sizeof(Vec3) * files.size() > kMaxBytes)
+        source.fail(fmt::format("expected at most {} bytes of key frames, got {} of {} vertices", kMaxBytes,
+                                files.size(), soup.positions.size()));
+      first = soup;
+      groups.assign(soup.positions.size(), 0);
+    } else {
+      check_same_faces(source, files.front(), first, soup);
+    }
+    split_groups(soup.positions, groups);
+    loaded.positions.push_back(std::move(soup.positions));
+  }
+
+  // Groups become vertices, in the order of their first use in faces.
+  std::vector<Index> renamed(groups.size(), -1);
+  std::vector<std::size_t> kept;
+  const auto rename = [&](Index& v) {
+    Index& name = renamed[groups[v]];
+    if (name < 0) {
+      name = static_cast<Index>(kept.size());
+      kept.push_back(static_cast<std::size_t>(v));
+    }
+    v = name;
+  };
+  for (auto& q : first.quads) std::for_each(q.begin(), q.end(), rename);
+  for (auto& t : first.triangles) std::for_each(t.begin(), t.end(), rename);
+  for (std::vector<Vec3>& positions : loaded.positions) positions = kept_of(positions, kept);
+  first.positions = loaded.positions.front();
+  std::size_t flat = 0;
+  loaded.mesh.topology = make_topology(first, flat);
+  loaded.mesh.positions = std::move(first.positions);
+  return loaded;
+}
+
+}  // namespace weft::assets

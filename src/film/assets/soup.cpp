@@ -1,0 +1,239 @@
+#include "film/assets/soup.hpp"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+#include "film/assets/import.hpp"
+#include "physics/mesh/geometry.hpp"
+#include "physics/mesh/polygon.hpp"
+#include "physics/mesh/quads.hpp"
+
+namespace weft::assets {
+namespace {
+
+using Transform = Eigen::Matrix4d;
+
+/// Triangles with a smaller ratio area / (longest side)² count as having no area: their normal only reflects rounding
+/// errors of assimp's single precision.
+constexpr double kMinFaceArea = 1e-7;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+bool has_area(const mesh::Triangle& t, const std::vector<Vec3>& x) {
+  const auto corner = [&](std::size_t k) -> const Vec3& { return x[t[k]]; };
+  const double longest_sq = std::max({(corner(1) - corner(0)).squaredNorm(), (corner(2) - corner(1)).squaredNorm(),
+                                      (corner(0) - corner(2)).squaredNorm()});
+  return mesh::area_vector(t, x).norm() > kMinFaceArea * longest_sq;
+}
+
+Transform to_eigen(const aiMatrix4x4& m) {
+  Transform result;
+  for (unsigned r = 0; r < 4; ++r)
+    for (unsigned c = 0; c < 4; ++c) result(r, c) = static_cast<double>(m[r][c]);
+  return result;
+}
+
+/// Appends the bones of a mesh as vertex groups; groups of the same name are merged.
+void append_groups(Soup& soup, const aiMesh& part, std::size_t base) {
+  for (const aiBone* bone : std::span(part.mBones, part.mNumBones)) {
+    const auto known = std::ranges::find(soup.group_names, bone->mName.C_Str());
+    const auto group = static_cast<Index>(known - soup.group_names.begin());
+    if (known == soup.group_names.end()) soup.group_names.emplace_back(bone->mName.C_Str());
+    for (const aiVertexWeight& weight : std::span(bone->mWeights, bone->mNumWeights))
+      if (weight.mVertexId < part.mNumVertices)
+        soup.weights.push_back({group, static_cast<Index>(base + weight.mVertexId), weight.mWeight});
+  }
+}
+
+/// Appends one mesh, transformed to the world.
+void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
+  const std::size_t base = soup.positions.size();
+  if (base + part.mNumVertices > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+    throw std::runtime_error("expected fewer than 2^31 vertices");
+  for (unsigned v = 0; v < part.mNumVertices; ++v) {
+    const aiVector3D& x = part.mVertices[v];
+    const Eigen::Vector4d world = to_world * Eigen::Vector4d(x.x, x.y, x.z, 1);
+    soup.positions.push_back(world.head<3>());
+    soup.uv.emplace_back(kNone, kNone);
+    if (part.HasTextureCoords(0)) soup.uv.back() = {part.mTextureCoords[0][v].x, part.mTextureCoords[0][v].y};
+    soup.colors.emplace_back(kNone, kNone, kNone);
+    if (part.HasVertexColors(0))
+      soup.colors.back() = {part.mColors[0][v].r, part.mColors[0][v].g, part.mColors[0][v].b};
+  }
+  append_groups(soup, part, base);
+  // A mirroring transform turns faces inside out; reversing the order of corners corrects this.
+  const bool mirrored = to_world.topLeftCorner<3, 3>().determinant() < 0;
+  std::vector<Index> corners;
+  for (const aiFace& face : std::span(part.mFaces, part.mNumFaces)) {
+    if (face.mNumIndices < 3) continue;
+    corners.clear();
+    for (const unsigned v : std::span(face.mIndices, face.mNumIndices)) {
+      if (v >= part.mNumVertices)
+        throw std::runtime_error(
+            fmt::format("mesh \"{}\": a face names vertex {} of {}", part.mName.C_Str(), v, part.mNumVertices));
+      corners.push_back(static_cast<Index>(base + v));
+    }
+    if (mirrored) std::reverse(corners.begin(), corners.end());
+    append_face(soup, corners);
+  }
+}
+
+/// A node and its map to the world.
+using PlacedNode = std::pair<const aiNode*, Transform>;
+
+std::vector<PlacedNode> placed_nodes(const aiNode& root) {
+  std::vector<PlacedNode> nodes;
+  // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
+  std::vector<PlacedNode> stack{{&root, to_eigen(root.mTransformation)}};
+  while (!stack.empty()) {
+    const auto [node, to_world] = stack.back();
+    stack.pop_back();
+    nodes.emplace_back(node, to_world);
+    for (unsigned c = node->mNumChildren; c-- > 0;) {
+      const aiNode* child = node->mChildren[c];
+      // assimp's importer of RAW files (lists of triangles) leaves some child pointers null.
+      if (child != nullptr) stack.emplace_back(child, to_world * to_eigen(child->mTransformation));
+    }
+  }
+  return nodes;
+}
+
+/// Transform from mesh to world. Without bones: that of its node. With bones: (bone's node to world) × (bone offset) of
+/// the bone with the largest sum of weights; bones with a nearly singular transform are ignored. Characters use the
+/// same rule (character_reader.cpp), because glTF places skinned meshes by their bones, whichever node refers to them.
+Transform placement_of(const aiMesh& part, const Transform& of_node,
+                       const std::unordered_map<std::string, Transform>& placed) {
+  Transform placing = of_node;
+  double most = 0;
+  for (const aiBone* bone : std::span(part.mBones, part.mNumBones)) {
+    double total = 0;
+    for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights)) total += w.mWeight;
+    const auto found = placed.find(bone->mName.C_Str());
+    if (!(total > most) || found == placed.end()) continue;
+    const Transform held = found->second * to_eigen(bone->mOffsetMatrix);
+    const double size = held.topLeftCorner<3, 3>().norm();
+    constexpr double kMinVolumeRatio = 1e-9;  // minimum |det M| / ‖M‖³; nearly singular transforms are ignored
+    if (!held.allFinite() ||
+        !(std::abs(held.topLeftCorner<3, 3>().determinant()) > kMinVolumeRatio * size * size * size))
+      continue;
+    most = total, placing = held;
+  }
+  return placing;
+}
+
+template <class T>
+void put(std::string& bytes, const std::vector<T>& list) {
+  const std::size_t count = list.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  bytes.append(reinterpret_cast<const char*>(list.data()), count * sizeof(T));
+}
+
+template <class T>
+void take(std::string_view& bytes, std::vector<T>& list) {
+  std::size_t count = 0;
+  if (bytes.size() >= sizeof count) std::memcpy(&count, bytes.data(), sizeof count);
+  if (bytes.size() < sizeof count || (bytes.size() - sizeof count) / sizeof(T) < count)
+    throw std::runtime_error("the reader's answer was cut short");
+  bytes.remove_prefix(sizeof count);
+  list.resize(count);
+  if (count > 0) std::memcpy(static_cast<void*>(list.data()), bytes.data(), count * sizeof(T));
+  bytes.remove_prefix(count * sizeof(T));
+}
+
+}  // namespace
+
+void append_face(Soup& soup, std::span<const Index> corners) {
+  if (corners.size() == 4) {
+    soup.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
+  } else {
+    mesh::triangulate_face(corners, soup.positions, soup.triangles);
+  }
+}
+
+Soup read_soup(const std::filesystem::path& file, const std::string& object) {
+  Assimp::Importer importer;
+  const aiScene* scene = &import(importer, file, aiProcess_ValidateDataStructure);
+  Soup soup;
+  std::set<std::string> names;
+  const std::vector<PlacedNode> nodes = placed_nodes(*scene->mRootNode);
+  std::unordered_map<std::string, Transform> placed;  // by name; of nodes with the same name, the first
+  for (const auto& [node, to_world] : nodes) placed.emplace(node->mName.C_Str(), to_world);
+  for (const auto& [node, to_world] : nodes)
+    for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) {
+      const aiMesh& part = *scene->mMeshes[m];
+      names.insert({node->mName.C_Str(), part.mName.C_Str()});
+      if (object.empty() || object == node->mName.C_Str() || object == part.mName.C_Str())
+        append_mesh(soup, part, placement_of(part, to_world, placed));
+    }
+  if (!object.empty() && soup.positions.empty()) {
+    names.erase("");
+    throw std::runtime_error(
+        fmt::format("expected a mesh or node named \"{}\", got {}", object,
+                    names.empty() ? "none with a name" : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  if (const auto metres = metres_per_unit(*scene))
+    for (Vec3& x : soup.positions) x *= *metres;
+  if (const auto up = up_axis(importer, *scene)) soup.up = {*up};
+  return soup;
+}
+
+mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles) {
+  mesh::Topology topology;
+  topology.triangles = mesh::split_quads(soup.quads, soup.positions);
+  const auto flat = [&](const mesh::Triangle& t) { return !has_area(t, soup.positions); };
+  if (soup.triangles.empty() && std::none_of(topology.triangles.begin(), topology.triangles.end(), flat)) {
+    topology.quads = soup.quads;
+  } else {
+    topology.triangles.insert(topology.triangles.end(), soup.triangles.begin(), soup.triangles.end());
+    removed_triangles = std::erase_if(topology.triangles, flat);
+  }
+  return topology;
+}
+
+std::string to_bytes(const Soup& soup) {
+  std::string bytes;
+  put(bytes, soup.positions);
+  put(bytes, soup.uv);
+  put(bytes, soup.colors);
+  put(bytes, soup.weights);
+  std::vector<char> names;  // each with a terminating zero
+  for (const std::string& name : soup.group_names)
+    names.insert(names.end(), name.c_str(), name.c_str() + name.size() + 1);
+  put(bytes, names);
+  put(bytes, soup.triangles);
+  put(bytes, soup.quads);
+  put(bytes, soup.up);
+  return bytes;
+}
+
+Soup from_bytes(std::string_view bytes) {
+  Soup soup;
+  take(bytes, soup.positions);
+  take(bytes, soup.uv);
+  take(bytes, soup.colors);
+  take(bytes, soup.weights);
+  std::vector<char> names;
+  take(bytes, names);
+  for (auto begin = names.begin(); begin != names.end();) {
+    const auto end = std::find(begin, names.end(), '\0');
+    soup.group_names.emplace_back(begin, end);
+    begin = end == names.end() ? end : end + 1;
+  }
+  take(bytes, soup.triangles);
+  take(bytes, soup.quads);
+  take(bytes, soup.up);
+  return soup;
+}
+
+}  // namespace weft::assets

@@ -1,0 +1,50 @@
+// Raw faces of a file, before any merging or removal.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "physics/mesh/mesh.hpp"
+#include "physics/mesh/topology.hpp"
+
+namespace weft::assets {
+
+/// Triangles and quads. Several vertices may have the same position; all indices are in range.
+struct Soup {
+  std::vector<Vec3> positions;  ///< in metres if the file states its unit
+  std::vector<Vec2> uv;         ///< per position, v upward; NaN if its mesh has none
+  std::vector<Vec3> colors;     ///< per position; NaN if its mesh has none
+  /// Weight of a vertex in a group or bone; `group` and `vertex`: indices into group_names and positions.
+  struct Weight {
+    Index group, vertex;
+    double weight;
+  };
+  std::vector<Weight> weights;
+  std::vector<std::string> group_names;
+  std::vector<mesh::Triangle> triangles;
+  std::vector<mesh::Quad> quads;
+  std::vector<int> up;  ///< up axis of the file or its format, 0 x, 1 y, 2 z; empty: not stated
+};
+
+/// Reads the meshes whose name or whose node's name is `object` (empty: all), transformed to the world. Triangulates
+/// polygons with more than four corners; ignores points and lines. Throws std::runtime_error with assimp's message, or
+/// with the existing names if there is no such object. Damaged files can crash assimp or block it for ever: call this
+/// function through run_isolated.
+Soup read_soup(const std::filesystem::path& file, const std::string& object = {});
+
+/// Appends a polygon; one with more than four corners is triangulated.
+void append_face(Soup& soup, std::span<const Index> corners);
+
+/// The surface of a soup: quads if the soup contains only quads and both halves of each have an area, else triangles.
+/// Triangles without area (a repeated corner, or all corners on a line) are left out and counted.
+mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles);
+
+/// Serialises a soup for transfer between two processes of the same program, and back.
+std::string to_bytes(const Soup& soup);
+Soup from_bytes(std::string_view bytes);
+
+}  // namespace weft::assets

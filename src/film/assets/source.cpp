@@ -1,0 +1,71 @@
+#include "film/assets/source.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <system_error>
+
+#include "core/error.hpp"
+#include "core/input_file.hpp"
+#include "core/isolated.hpp"
+
+namespace weft::assets {
+namespace {
+
+constexpr std::uint64_t kMaxAddressSpace = std::uint64_t{16} << 30;  // address space limit for reading [bytes]
+
+/// Refuses a PLY header without an end: it blocks assimp 5.2 until the time limit.
+void check_ply_header(const Source& source) {
+  constexpr std::size_t kHeaderBytes = 1 << 16;  // a hundred times the size of real headers
+  const std::string start = read_start(source.file, kHeaderBytes);
+  const bool ply = start.starts_with("ply") || start.starts_with("PLY");
+  if (ply && start.find("\nend_header\n") == std::string::npos && start.find("\nend_header\r") == std::string::npos)
+    source.fail("expected a line end_header in the first 64 kB of a PLY file, got none");
+}
+
+/// CPU time limit for reading [s]: many times what assimp needs for its slowest text formats (about 10 MB/s). Thus only
+/// files that block it for ever exceed the limit.
+unsigned time_limit(std::uintmax_t bytes) {
+  return 5 + static_cast<unsigned>(bytes >> 20);
+}
+
+/// Wall time limit / CPU time limit; large, since many processes can share a machine.
+constexpr unsigned kWallFactor = 20;
+
+}  // namespace
+
+void Source::fail(const std::string& why) const {
+  throw Error(ExitCode::asset_unreadable, describe(why));
+}
+
+std::string Source::describe(const std::string& what) const {
+  return fmt::format("{}: {} file {}: {}", where, kind, file.string(), what);
+}
+
+void Source::check() const {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) fail("expected a readable file, got none at this path");
+  if (!std::filesystem::is_regular_file(status)) fail("expected a regular file, got a folder or a device");
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (error) fail(error.message());
+  if (bytes == 0) fail(fmt::format("expected a {}, got an empty file", kind));
+  if (bytes > kMaxMeshFileBytes)
+    fail(fmt::format("expected at most {} bytes, got {}; reduce the mesh", kMaxMeshFileBytes, bytes));
+  check_ply_header(*this);
+}
+
+std::string Source::read(const std::function<std::string()>& read) const {
+  check();
+  try {
+    const unsigned seconds = time_limit(std::filesystem::file_size(file));
+    return run_isolated(read, {.name = "the reader",
+                               .cpu_seconds = seconds,
+                               .wall_seconds = kWallFactor * seconds,
+                               .addresses = kMaxAddressSpace});
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+}  // namespace weft::assets

@@ -1,0 +1,36 @@
+// Description of a frame cache, readable by people and scripts: `manifest.json`.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+
+namespace weft::cache {
+
+struct Manifest {
+  std::string scene;  ///< its name
+  std::string title;  ///< may be empty
+  std::uint64_t scene_hash = 0;
+  std::uint64_t simulation_hash = 0;  ///< hash of what affects the simulation; scenes with equal hashes share frames
+  std::vector<std::uint64_t> former_hashes;  ///< of former scenes with this simulation; frames may have their looks
+  double fps = 25;
+  int frame_count = 1;               ///< of the scene; the cache may contain fewer
+  int preroll_frames = 0;            ///< simulated before frame 0 and not stored
+  int width = 1280, height = 720;    ///< default size of pictures [pixels]
+  std::string camera;                ///< default camera; may be empty
+  std::vector<std::string> cameras;  ///< names
+  std::string weft_version, cpu_target;
+  std::string program;  ///< fingerprint of the build; only the identical program can resume the simulation
+  std::vector<frame::ObjectInfo> objects;
+};
+
+std::string manifest_text(const Manifest& manifest);
+
+/// Throws std::runtime_error with the defect.
+Manifest parse_manifest(std::string_view text);
+
+}  // namespace weft::cache

@@ -1,0 +1,64 @@
+// Reads a frame cache from disk. Any number of processes may read it at the same time, also while it is written.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/cache/codec.hpp"
+#include "film/cache/container.hpp"
+#include "film/cache/manifest.hpp"
+
+namespace weft::cache {
+
+/// Bytes of Simulation::save.
+struct SolverState {
+  int frame = 0;  ///< frame of the state; negative in the preroll
+  std::string bytes;
+};
+
+/// Which looks (colours, cameras, lights) of frames the reader accepts: only those of the scene, or also those of
+/// former scenes. Frames with former looks exist until a run with --resume replaces them.
+enum class Looks { of_scene, any };
+
+/// All functions are thread-safe, and throw Error(asset_unreadable) with the file name and the defect.
+class Reader {
+ public:
+  /// Reads what all frames share. A cache without frames is valid.
+  explicit Reader(std::filesystem::path folder, Looks looks = Looks::of_scene);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  const Manifest& manifest() const { return manifest_; }
+  /// The effective scene as TOML, for people.
+  std::string scene_text() const;
+
+  /// Frames whose files exist now, ascending. Each call reads the folder again.
+  std::vector<int> frames() const;
+  bool has(int frame) const;
+
+  CachedFrame read(int frame) const;
+  frame::SnapshotPtr snapshot(int frame) const { return read(frame).snapshot; }
+  simulation::FrameReport report(int frame) const { return read(frame).report; }
+
+  /// Checks the file of a frame without decompressing it.
+  void verify(int frame) const;
+
+  /// nullopt if no state is stored.
+  std::optional<SolverState> state() const;
+
+ private:
+  std::string read_part(const char* name, Kind kind, std::optional<int> frame, Label* label = nullptr) const;
+  void check_objects() const;
+  void check_scene(std::uint64_t hash) const;
+
+  std::filesystem::path folder_;
+  Looks looks_;
+  Manifest manifest_;
+  std::optional<Surfaces> surfaces_;  // absent if frame 0 did not exist when the reader was created
+};
+
+/// Whether the folder has a manifest, readable or not.
+bool is_cache(const std::filesystem::path& folder);
+
+}  // namespace weft::cache

@@ -1,0 +1,78 @@
+// Axes of body parts, independent of the axes of the joints in a file.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "film/character/character.hpp"
+#include "film/character/joints.hpp"
+#include "film/character/pose.hpp"
+
+namespace weft::character {
+
+/// A skeleton. `joints`: for each of joint_names(), the node with that role; -1 if there is none.
+struct Rig {
+  const Character& character;
+  std::span<const Index> joints;
+};
+
+/// Positions and rotations of the joints of a skeleton in one pose, in the world. Missing joints have meaningless
+/// values.
+struct Posture {
+  std::array<Vec3, kJointCount> places;
+  std::array<Quat, kJointCount> rotations;
+  std::array<Vec3, kJointCount> ends;  ///< mean position of the child nodes of a joint; its own position if it has none
+  std::array<Vec3, 2> knuckles;        ///< vector from the index to the little finger, left and right; zero if unknown
+};
+
+class Skeleton {
+ public:
+  explicit Skeleton(const Rig& rig);
+
+  bool has(Joint joint) const { return rig_.joints[place_of(joint)] >= 0; }
+  Posture at(const Pose& pose) const;
+
+  /// Vector from a joint to the next existing one: outward along limbs, upward along the trunk. At the end of a limb,
+  /// vector to the mean of the child nodes; zero if there are none.
+  Vec3 bone(const Posture& posture, Joint joint) const;
+  /// Vector from the right hip joint to the left one; zero if one is missing.
+  Vec3 across_hips(const Posture& posture) const;
+  Vec3 across_shoulders(const Posture& posture) const;
+  /// Midpoint between the hip joints; the position of the hips if one of them is missing.
+  Vec3 middle_of_hips(const Posture& posture) const;
+  /// Vector from middle_of_hips() to the midpoint of the upper-arm joints; if one of these is missing, to the neck,
+  /// head, chest or spine, the first that exists.
+  Vec3 trunk(const Posture& posture) const;
+  /// Mean length from hip to ankle of the complete legs; 0 if none is complete.
+  double leg_length(const Posture& posture) const;
+  /// Mean length of the arms from shoulder to wrist; 0 if an arm is incomplete.
+  double arm_length(const Posture& posture) const;
+
+ private:
+  Vec3 across(const Posture& posture, Joint left) const;
+
+  const Rig rig_;
+  std::array<std::vector<Index>, kJointCount> children_;  // child nodes of each joint
+  std::array<std::array<Index, 2>, 2> fingers_{};  // nodes of index and little finger, left and right; -1: unknown
+};
+
+/// How far the left and the right foot stand flat on the floor in a posture: weights from 0 (not) to 1 (fully).
+using Flat = std::array<double, 2>;
+
+/// Finds, for each joint, the rotation from the axes of its body part to the joint's own axes. Axes of body parts:
+/// - Hips, spine, chest, neck and head: x to their left, z up when the body stands upright. Shoulders: as the chest.
+/// - Arms and legs: z along the bone, x along the hinge axis of elbow or knee. Hands likewise, with x out of the left
+///   palm and out of the back of the right hand.
+/// - Feet and toes: z up when they are flat on the floor, x toward the toes.
+/// The axes follow from positions alone, as means over all postures that determine them: the trunk in upright postures,
+/// hinges weighted by their bend, feet in postures in which they are flat. Neither the first pose of a file nor the
+/// pose at zero angles matters. Axes that no posture determines are guessed from neighbouring joints. `flat`: one entry
+/// per posture. `up`: unit vector.
+std::array<Quat, kJointCount> find_anatomy(const Skeleton& skeleton, std::span<const Posture> postures,
+                                           std::span<const Flat> flat, const Vec3& up);
+
+/// The rotation whose z axis points along `z` and whose x axis is as close as possible to `x`.
+Quat axes_along(const Vec3& z, const Vec3& x);
+
+}  // namespace weft::character

@@ -1,0 +1,174 @@
+#include "film/character/figure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <span>
+
+#include "film/character/mannequin_parts.hpp"
+#include "film/character/mannequin_shape.hpp"
+
+namespace weft::character {
+namespace {
+
+// All positions below are in cm, for a height of kTableHeight.
+
+/// A colour (sRGB, 0 to 1) that covers the colour below by `fraction`.
+struct Ink {
+  Vec3 color = Vec3::Zero();
+  double fraction = 0;
+
+  void add(const Vec3& over, double by) {
+    const double sum = by + fraction * (1 - by);
+    if (sum > 0) color = (by * over + fraction * (1 - by) * color) / sum;
+    fraction = sum;
+  }
+};
+
+/// 1 inside (`depth` > 0), 0 outside, with a soft edge of width `edge` [cm].
+double inside(double depth, double edge) {
+  const double t = std::clamp(0.5 + depth / edge, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+/// Second coordinate of a polyline where the first one, which ascends, is `at`; constant beyond the ends.
+double height(std::span<const Vec2> line, double at) {
+  if (at <= line.front().x()) return line.front().y();
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    if (at > line[i].x()) continue;
+    const double t = (at - line[i - 1].x()) / (line[i].x() - line[i - 1].x());
+    return line[i - 1].y() + t * (line[i].y() - line[i - 1].y());
+  }
+  return line.back().y();
+}
+
+const Vec3 kHair(0.20, 0.135, 0.095), kShoe(0.13, 0.12, 0.125), kSole(0.07, 0.065, 0.065), kLip(0.62, 0.27, 0.25),
+    kBlush(0.74, 0.40, 0.33), kShade(0.30, 0.17, 0.13), kLash(0.10, 0.07, 0.055), kWhite(0.80, 0.77, 0.73),
+    kIris(0.27, 0.19, 0.13), kPupil(0.05, 0.04, 0.035);
+
+/// Shoes, seen from the side; y from front to back.
+Ink body_ink(double y, double z) {
+  // From the toes over the instep to the heel.
+  static const Vec2 kShoeline[] = {{-11.5, 9.0}, {-9.2, 3.6}, {-4, 2.8}, {1, 3.8}, {5, 5.6}, {7, 6.2}};
+  Ink ink;
+  const double shoe = inside(height(kShoeline, y) - z, 0.15) * inside(10 - z, 0.2);
+  ink.add(kShoe, shoe);
+  ink.add(kSole, shoe * inside(0.9 - z, 0.15));
+  return ink;
+}
+
+/// Hair, seen from the side, with strands that run to the knot and around it. Ears are slightly redder than the skin.
+Ink head_ink(double y, double z) {
+  Ink ink;
+  ink.add(kBlush, 0.18 * inside(1 - std::hypot((y - 1.4) / 2.6, (z - 162.4) / 3.6), 0.8));
+  const double back = y - kKnot.x(), up = z - kKnot.y(), r = std::hypot(back, up), angle = std::atan2(up, back);
+  // Near the knot, strands would be finer than the picture's pixels.
+  const double fine = 0.5 * std::sin(31 * angle + 1) * std::sin(13 * angle + 0.3 * r) +
+                      0.5 * std::sin(71 * angle + 0.5 * r) * std::sin(9 * angle + 2);
+  const double coiled = 0.8 * std::sin(3 * angle + 4.6 * r) * std::sin(2 * angle + 1.3 * r + 1);
+  const double on_head = inside(r - kKnotRadius, 1.0);
+  const double strands = on_head * std::min(1.0, r / 5) * fine + (1 - on_head) * coiled;
+  ink.add(kHair * (1 + 0.45 * strands), inside(-hairline_distance(y, z), 0.35));
+  return ink;
+}
+
+/// Brows, eyes, nostrils and lips, seen from the front; symmetric.
+Ink face_ink(double x, double z) {
+  Ink ink;
+  const double side = std::abs(x), from_eye = side - 3.05;
+  const auto ellipse = [](double across, double up, double wide, double high) {
+    return 1 - std::hypot(across / wide, up / high);
+  };
+  // Cheeks, and the shade of the eye sockets.
+  ink.add(kBlush, 0.14 * inside(ellipse(side - 3.7, z - 160.6, 2.0, 1.7), 1.2));
+  ink.add(kShade, 0.16 * inside(ellipse(from_eye, z - 164.3, 2.3, 1.2), 1.0));
+  // Almond-shaped opening between the lids with the eye in it, and lashes along the upper lid.
+  const double t = from_eye / 1.35, arc = std::max(1 - t * t, 0.0);
+  const double low = 163.62 - 0.30 * arc + 0.05 * t, high = 163.62 + 0.42 * arc + 0.05 * t;
+  const double open = inside(std::min(z - low, high - z), 0.10) * inside(1.3 - std::abs(from_eye), 0.2);
+  const double from_iris = std::hypot(from_eye, z - 163.70);
+  ink.add(kWhite, open);
+  ink.add(kIris, open * inside(0.46 - from_iris, 0.10));
+  ink.add(kPupil, open * inside(0.20 - from_iris, 0.10));
+  ink.add(kLash, 0.45 * open * inside(z - high + 0.16, 0.2));
+  ink.add(kLash, 0.9 * inside(0.075 - std::abs(z - high), 0.10) * inside(1.45 - std::abs(from_eye), 0.3));
+  ink.add(kShade, 0.45 * inside(0.05 - std::abs(z - low), 0.12) * inside(1.3 - std::abs(from_eye), 0.5));
+  const double brow = 165.85 + 0.10 * from_eye - 0.10 * from_eye * from_eye;
+  const double thick = 0.27 - 0.06 * from_eye;
+  ink.add(kHair, 0.62 * inside(thick - std::abs(z - brow), 0.3) * inside(1.9 - std::abs(from_eye), 0.9));
+  ink.add(kShade * 0.5, 0.8 * inside(ellipse(side - 0.58, z - 159.35, 0.36, 0.22), 0.6));
+  // Lips: the upper one has a bow; a line separates them.
+  const double bow = 0.16 * std::cos(2.2 * side), end = inside(2.35 - side, 0.5);
+  const double wide = std::max(1 - side * side / (2.45 * 2.45), 0.0);
+  const double mouth = 157.2 + 0.25 * bow;
+  const double top = mouth + (0.62 + 0.8 * bow) * std::sqrt(wide), bottom = mouth - 0.95 * wide;
+  ink.add(kLip, 0.62 * end * inside(std::min(z - bottom, top - z), 0.22));
+  ink.add(kShade * 0.7, 0.65 * inside(0.06 - std::abs(z - mouth), 0.12) * inside(2.2 - side, 0.5));
+  return ink;
+}
+
+using Painter = std::function<Ink(double, double)>;
+
+/// Paints a picture of the area between `low` and `high` [cm].
+Material paint(std::string name, const Vec2& low, const Vec2& high, int width, int height, const Painter& painter) {
+  Material material;
+  material.name = std::move(name);
+  material.wrap_u = material.wrap_v = Material::Wrap::clamp;
+  material.width = width;
+  material.height = height;
+  for (int row = height - 1; row >= 0; --row) {
+    for (int column = 0; column < width; ++column) {
+      const Vec2 fraction((column + 0.5) / width, (row + 0.5) / height);
+      const Vec2 at = low + fraction.cwiseProduct(high - low);
+      const Ink ink = painter(at.x(), at.y());
+      for (int k = 0; k < 3; ++k)
+        material.pixels.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(ink.color[k], 0.0, 1.0))));
+      material.pixels.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(ink.fraction, 0.0, 1.0))));
+    }
+  }
+  return material;
+}
+
+struct PictureArea {
+  Vec2 low, high;  // [cm]
+};
+const PictureArea kBody{{-22, -1}, {14, 177}}, kFace{{-6, 153}, {6, 169}}, kHead{{-15, 150}, {15, 177}};
+
+/// Triangles above this height use the picture of the head or the face [cm].
+constexpr double kHeadFrom = 152;
+
+}  // namespace
+
+Coloring paint_figure(const mesh::Mesh& mesh, const MannequinBuild& build) {
+  const double cm = build.height / kTableHeight;
+  enum : Index { body, face, head };
+  Coloring coloring;
+  coloring.covers_look = true;
+  coloring.materials = {paint("body", kBody.low, kBody.high, 192, 896, body_ink),
+                        paint("face", kFace.low, kFace.high, 288, 384, face_ink),
+                        paint("head", kHead.low, kHead.high, 512, 512, head_ink)};
+  for (const auto& t : mesh.topology.triangles) {
+    std::array<Vec3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.positions[t[k]] / cm;
+    const auto on_face = [](const Vec3& p) {
+      return p.y() < -5.0 && std::abs(p.x()) < 5.8 && p.z() > 153.5 && p.z() < 168.8 &&
+             hairline_distance(p.y(), p.z()) > 0.6;
+    };
+    const auto on_head = [](const Vec3& p) { return p.z() > kHeadFrom && std::abs(p.x()) < 12; };
+    const Index which = std::ranges::all_of(corners, on_face)   ? face
+                        : std::ranges::all_of(corners, on_head) ? head
+                                                                : body;
+    const PictureArea& sheet = which == face ? kFace : which == head ? kHead : kBody;
+    std::array<Vec2, 3> places;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& p = corners[k];
+      const Vec2 at = which == face ? Vec2(p.x(), p.z()) : Vec2(p.y(), p.z());
+      places[k] = (at - sheet.low).cwiseQuotient(sheet.high - sheet.low);
+    }
+    coloring.material_of_triangle.push_back(which);
+    coloring.uv.push_back(places);
+  }
+  return coloring;
+}
+
+}  // namespace weft::character

@@ -1,0 +1,13 @@
+// Colours painted on the mannequin so that it looks like a person: hair, brows, lids, lips, fingers and shoes.
+#pragma once
+
+#include "film/character/character.hpp"
+#include "film/character/mannequin.hpp"
+
+namespace weft::character {
+
+/// Colours for the mesh of a mannequin at rest, z up. Pictures are projected along an axis, so that their outlines are
+/// equally sharp on coarse and fine triangles. The geometry that cloth touches does not change.
+Coloring paint_figure(const mesh::Mesh& mesh, const MannequinBuild& build);
+
+}  // namespace weft::character

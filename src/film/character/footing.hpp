@@ -1,0 +1,60 @@
+// Foot contacts of a motion, and the leg poses that keep them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "film/character/anatomy.hpp"
+
+namespace weft::character {
+
+/// A range of keys, `first` and `last` included, in which the ball of a foot stays in place.
+struct Contact {
+  std::size_t first = 0, last = 0;
+};
+
+struct Footsteps {
+  std::array<std::vector<Contact>, 2> contacts;  ///< of the left and the right foot, in order
+  std::vector<Flat> flat;                        ///< per posture
+  double ankle_height = 0;                       ///< height of the ankles of flat feet [m]
+};
+
+/// Finds the contacts of a motion from the speed and the height of the toes, or of the ankles of feet without toes.
+/// `times`: of the postures, increasing [s]. `up`: unit vector. Without feet or steps there are no contacts, and
+/// ankle_height is that of the lowest ankle.
+Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
+                         const Vec3& up);
+
+/// A leg at one key. reach() also accepts an arm: `hip`, `knee` and `ankle` are then its shoulder, elbow and wrist.
+struct Leg {
+  Vec3 hip, knee, ankle;
+  Vec3 ball, heel;  ///< points of the sole, below the toe joint and below the ankle
+  Vec3 hinge;       ///< unit vector of the axis about which the shin bends backward
+};
+
+/// The left and the right leg.
+using Legs = std::array<Leg, 2>;
+
+/// Corrections at one key. They keep feet that are in contact in place.
+struct Stance {
+  double rise = 0;                                          ///< of the hips [m]
+  std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< of the feet, relative to the motion [m]
+  std::array<bool, 2> in_contact{};
+};
+
+/// Keeps the ball of each foot at its mean position during a contact, with the sole on the floor. Outside contacts no
+/// foot goes below the floor, and feet return to the motion within 0.15 s. Hips move down if a leg is too short to
+/// reach its ankle, and up if a knee would bend too far. `floor`: height of the sole at rest [m].
+std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
+                               double floor, const Vec3& up);
+
+/// Rotations of the upper and the lower leg from the present pose, in world axes. They bring the ankle to a given
+/// position, or as near to it as the leg reaches. The knee bends in the plane of the leg.
+struct LegTurns {
+  Quat upper, lower;
+};
+LegTurns reach(const Leg& leg, const Vec3& ankle);
+
+}  // namespace weft::character

@@ -1,0 +1,48 @@
+#include "film/character/four_legs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace weft::character {
+namespace {
+
+/// Maximum mean sine of the trunk's slope on all fours [1]: 30 degrees.
+constexpr double kMaxTrunkSlope = 0.5;
+
+/// Maximum height of hands on the floor above the lowest foot, in leg lengths.
+constexpr double kMaxHandHeight = 0.25;
+
+double lowest_height(const Skeleton& skeleton, const Posture& posture, std::initializer_list<Joint> joints,
+                     const Vec3& up) {
+  double height = std::numeric_limits<double>::infinity();
+  for (const Joint joint : joints)
+    if (skeleton.has(joint)) height = std::min(height, up.dot(posture.places[place_of(joint)]));
+  return height;
+}
+
+}  // namespace
+
+std::optional<std::string> warn_if_on_all_fours(const Skeleton& skeleton, std::span<const Posture> postures,
+                                                const Vec3& up) {
+  if (postures.empty()) return std::nullopt;
+  const double leg = skeleton.leg_length(postures.front());
+  double steepness = 0, on_floor = 0;
+  for (const Posture& posture : postures) {
+    steepness += std::abs(up.dot(skeleton.trunk(posture).normalized()));
+    const double feet = lowest_height(skeleton, posture,
+                                      {Joint::left_foot, Joint::left_toes, Joint::right_foot, Joint::right_toes}, up);
+    const double hands = lowest_height(skeleton, posture, {Joint::left_hand, Joint::right_hand}, up);
+    on_floor += hands - feet < kMaxHandHeight * leg ? 1 : 0;
+  }
+  const auto count = static_cast<double>(postures.size());
+  if (steepness > kMaxTrunkSlope * count || 2 * on_floor < count) return std::nullopt;
+  return fmt::format(
+      "it goes on all fours in {:.0f} % of its time, as animals with four legs do, whose motions do not fit a body on "
+      "two legs",
+      100 * on_floor / count);
+}
+
+}  // namespace weft::character

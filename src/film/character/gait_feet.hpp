@@ -1,0 +1,59 @@
+// Motion of the feet in stance and swing, height of the hips above them, and bend of the knees.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "film/character/gait_track.hpp"
+
+namespace weft::character {
+
+struct FootState {
+  Vec3 ankle = Vec3::Zero();
+  double yaw = 0;    ///< of the foot relative to rest [rad]
+  double pitch = 0;  ///< [rad], + toes up; 0 flat
+  double toes = 0;   ///< bend of the toes relative to the foot [rad], + up
+};
+
+/// Positions of the hip joints relative to the middle of the pelvis, per key from the first key of the track.
+using HipOffsets = std::vector<std::array<Vec3, 2>>;
+
+/// Computes the paths of both feet and the height of the pelvis, such that knees bend as those of people.
+///
+/// From shortly after its strike until shortly before the strike of the other foot, the stance leg determines the
+/// height of the pelvis: its knee follows the curve `knee`. In between, the height is interpolated. The trailing leg
+/// raises its heel as far as this curve requires. In swing, knee bend and leg direction are interpolated from toe-off
+/// to the strike, with matching velocities and accelerations. A foot in stance rolls without sliding: over its round
+/// heel, then flat, then bending about the ball with flat toes.
+class Feet {
+ public:
+  /// All arguments must outlive the object.
+  Feet(const Physique& body, const StepPlan& plan, const Track& track, const HipOffsets& hips);
+
+  /// Valid for keys at least one stride from both ends of the track.
+  FootState at(int side, int key) const;
+  double pelvis_height(int key) const { return heights_[track_.index(key)]; }
+
+ private:
+  const Plant& plant(int side, std::size_t number) const { return plan_.plants[side][number]; }
+  double next_size(int side, std::size_t number) const;
+  Vec3 hip(int side, int key) const;
+  double knee(int side, std::size_t number, int key) const;
+  double leg_extent(double knee) const;
+  double strike_pitch(const Plant& plant, int key) const;
+  double standing_pitch(int side, std::size_t number, int key) const;
+  static double toe_pitch(double pitch);
+  Vec3 rolling_ankle(const Plant& plant, double pitch) const;
+  FootState standing(int side, std::size_t number, int key) const;
+  FootState swinging(int side, std::size_t number, int key) const;
+  double height_above(int side, std::size_t number, int key) const;
+  void find_heights();
+
+  const Physique& body_;
+  const StepPlan& plan_;
+  const Track& track_;
+  const HipOffsets& hips_;
+  std::vector<double> heights_;
+};
+
+}  // namespace weft::character

@@ -1,0 +1,204 @@
+#include "film/character/gait_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/character/gait_curves.hpp"
+
+namespace weft::character {
+namespace {
+
+constexpr double kKeysPerSecond = 60;
+constexpr double kHalfTrack = 0.048;     ///< ankle to midline / height; recorded: 0.038, but thighs would touch
+constexpr double kOutwardDetour = 0.07;  ///< outward detour of a foot that turns with the body [m]
+constexpr double kFirstStepRatio = 0.65, kLastStepRatio = 0.75;  ///< first and last step / steady step
+constexpr double kWeightShiftFraction = 0.45;  ///< time to shift the weight before the first step [strides]
+
+/// Turn of the body per step on the small arc of a turn, toward the side of the foot that takes the first step of the
+/// turn [degrees]. The inner foot turns by more than the outer one, so that toes do not collide.
+constexpr std::array<double, 4> kTurnAngles{54, 36, 54, 36};
+constexpr double kTurnStep = 0.11;  ///< forward distance per step of a turn [m], for a height of 1.75 m
+
+Vec2 forward_of(double yaw) {
+  return {std::sin(yaw), -std::cos(yaw)};
+}
+Vec2 left_of(double yaw) {
+  return {std::cos(yaw), std::sin(yaw)};
+}
+
+/// Size of steady steps relative to the recorded ones.
+double step_size(const Physique& body, const Pace& pace) {
+  const double recorded = walking::kSpeed * walking::kPeriod / 2 * body.leg() / walking::kLegLength;
+  return std::clamp(pace.step_length / recorded, 0.5, 1.2);
+}
+
+/// One step: motion of the body relative to the preceding step; the foot is placed beside it.
+struct Step {
+  double forward = 0, left = 0;  ///< [m]
+  double turn = 0;               ///< [rad]
+  double size = 1;
+};
+
+/// Collects the steps of a walk.
+class Planner {
+ public:
+  Planner(const Physique& body, const Pace& pace, double stand) : body_(body) {
+    plan.step_keys = keys_of_step(pace);
+    plan.key_time = pace.step_time / plan.step_keys;
+    plan.speed = pace.step_length / pace.step_time;
+    next_strike_ = static_cast<int>(std::round(stand / plan.key_time)) + keys_of_fraction(kWeightShiftFraction) +
+                   keys_of_fraction(kSwing);
+    for (int side = 0; side < 2; ++side) plan.plants[side].push_back(plant_of(side));
+  }
+
+  /// Moves the middle of the body and places one foot beside it.
+  void step(int side, const Step& step) {
+    yaw_ += step.turn;
+    middle_ += step.forward * forward_of(yaw_) + step.left * left_of(yaw_);
+    auto& plants = plan.plants[side];
+    Plant plant = plant_of(side);
+    plant.strike = next_strike_;
+    plant.size = step.size;
+    if (step.turn != 0) plant.aside = kOutwardDetour;
+    plants.back().off = next_strike_ - keys_of_fraction(kSwing);
+    plants.push_back(plant);
+    plan.strikes.push_back({next_strike_, side});
+    next_strike_ += plan.step_keys;
+  }
+
+  StepPlan plan;
+
+ private:
+  int keys_of_fraction(double of_stride) const { return static_cast<int>(std::round(of_stride * plan.period())); }
+
+  Plant plant_of(int side) const {
+    const double sign = side == 0 ? 1 : -1;
+    Plant plant;
+    plant.at = middle_ + sign * kHalfTrack * body_.height * left_of(yaw_) - body_.stance_forward * forward_of(yaw_);
+    plant.yaw = yaw_;
+    plant.foot_yaw = yaw_ + sign * body_.foot_yaw;
+    return plant;
+  }
+
+  const Physique& body_;
+  Vec2 middle_ = Vec2::Zero();
+  double yaw_ = 0;
+  int next_strike_ = 0;
+};
+
+/// Adds the steps of a straight path. `left`: total sideways offset, spread over at most four steps from step `from`.
+/// Returns the side of the next foot.
+int add_straight_steps(Planner& planner, const Physique& body, const Pace& pace, int steps, int side, double left,
+                       int from) {
+  const int aside = std::min(4, steps);
+  for (int k = 0; k < steps; ++k, side = 1 - side) {
+    Step step;
+    step.size = step_size(body, pace);
+    step.forward = pace.step_length * (k == 0 ? kFirstStepRatio : k + 1 == steps ? kLastStepRatio : 1);
+    if (k == 0) step.size *= 0.8;
+    if (k >= from && k < from + aside) step.left = left / aside;
+    planner.step(side, step);
+  }
+  return side;
+}
+
+/// Turns by 180° on a small arc; returns the side of the next foot.
+int add_turn_steps(Planner& planner, const Physique& body, int side) {
+  const double sign = side == 0 ? 1 : -1, forward = kTurnStep * body.height / 1.75;
+  for (const double turn : kTurnAngles) {
+    planner.step(side, {forward, 0, sign * turn * kDegree, 0.5});
+    side = 1 - side;
+  }
+  return side;
+}
+
+/// Displacement ahead and to the left by a turn to the left, in the axes before the turn [m].
+Vec2 turn_displacement(const Physique& body) {
+  double yaw = 0;
+  Vec2 displacement = Vec2::Zero();
+  for (const double turn : kTurnAngles) {
+    yaw += turn * kDegree;
+    displacement += kTurnStep * body.height / 1.75 * Vec2(std::cos(yaw), std::sin(yaw));
+  }
+  return displacement;
+}
+
+}  // namespace
+
+Physique physique_of(const Character& mannequin) {
+  const auto z = [](Joint joint) { return static_cast<std::size_t>(joint); };
+  Physique body;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const Node& node = mannequin.nodes[j];
+    body.joints[j] = node.local.translation();
+    if (node.parent >= 0) body.joints[j] += body.joints[node.parent];
+  }
+  const Vec3 hip = body.joints[z(Joint::left_upper_leg)], knee = body.joints[z(Joint::left_lower_leg)],
+             ankle = body.joints[z(Joint::left_foot)], ball = body.joints[z(Joint::left_toes)] - ankle;
+  body.height = hip.z() / 0.530;
+  body.foot_yaw = std::atan2(ball.x(), -ball.y());
+  const double cm = body.height / 175;
+  body.ankle_height = ankle.z();
+  body.ball_forward = std::hypot(ball.x(), ball.y());
+  body.ball_height = ankle.z() + ball.z();
+  body.heel_back = 3.35 * cm;
+  body.heel_radius = 2.4 * cm;
+  body.toe_length = 6.0 * cm;
+  body.toe_radius = 1.0 * cm;
+  body.thigh = (knee - hip).norm();
+  body.shin = (ankle - knee).norm();
+  body.stance_forward = 1.3 * cm;
+  // The bounds select the trunk: hands at rest are farther out.
+  for (const Vec3& p : mannequin.mesh.positions)
+    if (p.z() > 75 * cm && p.z() < 98 * cm && p.x() < 35 * cm)
+      body.hips_half_width = std::max(body.hips_half_width, p.x());
+  return body;
+}
+
+Pace pace_of(double speed, double height) {
+  constexpr double walk_ratio = 0.0062;     // m/(steps/min), from the recording
+  constexpr double recorded_height = 1.70;  // m, estimated from the walker's legs
+  const double length = std::sqrt(walk_ratio * height / recorded_height * 60 * speed);
+  return {length, length / speed};
+}
+
+int keys_of_step(const Pace& pace) {
+  return 2 * static_cast<int>(std::round(kKeysPerSecond / 2 * pace.step_time));
+}
+
+std::size_t StepPlan::plant_at(int side, int key) const {
+  const auto& list = plants[side];
+  std::size_t plant = 0;
+  while (plant + 1 < list.size() && key >= list[plant + 1].strike) ++plant;
+  return plant;
+}
+
+StepPlan plan_walk(const Physique& body, const Walk& walk) {
+  Pace pace = pace_of(walk.speed, body.height);
+  // A whole number of steps; the first and the last are shorter.
+  constexpr double shorter = 2 - kFirstStepRatio - kLastStepRatio;
+  const int steps = std::max(2, static_cast<int>(std::round(walk.distance / pace.step_length + shorter)));
+  pace.step_length = walk.distance / (steps - shorter);
+  pace.step_time = pace.step_length / walk.speed;
+  Planner planner(body, pace, walk.stand);
+  int side = 1;
+  if (walk.turn_back) {
+    // Half of the sideways offset of the turn is walked before it, half after it.
+    const Vec2 arc = turn_displacement(body);
+    // The first step of the turn still goes forward.
+    const double ahead = std::cos(kTurnAngles[0] * kDegree) * kTurnStep * body.height / 1.75;
+    pace.step_length -= ahead / (steps - shorter);
+    const double aside = (1 + steps) % 2 == 0 ? -0.5 * arc.y() : 0.5 * arc.y();
+    side = add_straight_steps(planner, body, pace, steps, side, aside, std::max(0, steps - 4));
+    side = add_turn_steps(planner, body, side);
+    Pace back = pace;
+    back.step_length += arc.x() / (steps - shorter);
+    side = add_straight_steps(planner, body, back, steps, side, -aside, 0);
+  } else {
+    side = add_straight_steps(planner, body, pace, steps, side, 0, 0);
+  }
+  planner.step(side, {0, 0, 0, 0.6});
+  return std::move(planner.plan);
+}
+
+}  // namespace weft::character

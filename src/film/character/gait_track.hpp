@@ -1,0 +1,30 @@
+// Horizontal motion of the body above its feet: balance.
+#pragma once
+
+#include <vector>
+
+#include "film/character/gait_steps.hpp"
+
+namespace weft::character {
+
+/// Values per key, from key `first`.
+struct Track {
+  int first = 0;
+  std::vector<Vec2> place;    ///< middle of the hips [m]
+  std::vector<double> yaw;    ///< heading of the body, 0 toward -y, + to the left [rad]
+  std::vector<double> speed;  ///< mean over a step, relative to the steady walking speed
+  std::vector<double> phase;  ///< integer at a strike of the left heel, integer + 0.5 at one of the right
+
+  std::size_t index(int key) const { return static_cast<std::size_t>(key - first); }
+  int last() const { return first + static_cast<int>(place.size()) - 1; }
+  double yaw_at(int key) const;  ///< clamped to the ends
+};
+
+/// Treats the body as an inverted pendulum on the feet: x'' = ω² (x - p), where x is the middle of the hips, p the
+/// point that bears the weight, and ω = √(g / height of the centre of mass) (Kajita et al., "The 3D linear inverted
+/// pendulum mode", 2001). The only bounded solution is the mean of p over past and future, with weights ω/2 exp(-ω |τ|)
+/// at the time difference τ. Therefore the weight moves to the stance leg before the other foot lifts off, and the body
+/// leans into the first step and slows down before it stops.
+Track balance_body(const Physique& body, const StepPlan& plan, int first, int last);
+
+}  // namespace weft::character

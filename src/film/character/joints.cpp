@@ -1,0 +1,344 @@
+#include "film/character/joints.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include "film/character/nameless.hpp"
+
+namespace weft::character {
+namespace {
+
+/// A body part and its names, in order of preference if a rig has several of them.
+struct BodyPart {
+  std::string name;
+  std::vector<std::string> aliases;
+};
+
+// Names in the rigs of Mixamo, Rokoko and MotionBuilder; Rigify; Character Creator; Unreal; Unity, VRM and Bandai;
+// SMPL; CMU as BVH and as Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman; our
+// mannequin.
+const std::vector<BodyPart> kMiddle = {
+    {"Hips", {"hips", "pelvis", "hip"}},
+    {"Spine",
+     {"spine", "abdomen", "lowerback", "spine01", "spine001", "waist", "ab", "abdomenlower", "spine1", "torso"}},
+    {"Chest",
+     {"upperchest", "chest", "spine03", "spine003", "spine3", "spine2", "spine02", "spine1", "thorax", "chestupper"}},
+    {"Neck", {"neck", "neck01", "neck1", "necktwist01", "lowerneck", "necklower", "spine004"}},
+    {"Head", {"head", "spine006"}},
+};
+const std::vector<BodyPart> kSides = {
+    {"Shoulder", {"clavicle", "collar", "shoulder", "thorax"}},
+    {"UpperArm", {"upperarm", "arm", "shldr", "shldrbend", "uparm", "upperarm01", "humerus", "shoulder"}},
+    {"LowerArm", {"lowerarm", "forearm", "forearmbend", "lowarm", "lowerarm01", "radius", "elbow"}},
+    {"Hand", {"wrist", "hand"}},
+    {"UpperLeg", {"upperleg", "upleg", "thigh", "thighbend", "upperleg01", "femur", "hip", "leg"}},
+    {"LowerLeg", {"lowerleg", "lowleg", "calf", "shin", "lowerleg01", "tibia", "knee", "leg"}},
+    {"Foot", {"ankle", "foot"}},
+    {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
+};
+
+/// Whether a word of a node name names neither a side nor a part: words of Biped, Rigify, Source, VRM, Character
+/// Creator, Meebits, and of Mixamo if a program left out the colon.
+bool is_filler_word(const std::string& word) {
+  static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
+                                                  "j", "bip", "biped", "valve", "m",    "bone"};
+  return word.starts_with("bip0") || word.starts_with("mixamorig") || std::ranges::find(kWords, word) != kWords.end();
+}
+
+/// The words of a name in lower case: "Bip01 L UpperArm" and "upper_arm.L" contain "upper", "arm" and "l". Digits stay
+/// with the preceding word. A name of a rig before a colon is dropped.
+std::vector<std::string> words_of(const std::string& name) {
+  std::vector<std::string> words;
+  bool inside = false;
+  const std::size_t start = name.rfind(':') == std::string::npos ? 0 : name.rfind(':') + 1;
+  for (std::size_t i = start; i < name.size(); ++i) {
+    const auto c = static_cast<unsigned char>(name[i]);
+    if (std::isalnum(c) == 0) {
+      inside = inside && i + 1 < name.size() && std::isdigit(static_cast<unsigned char>(name[i + 1])) != 0;
+      continue;
+    }
+    // A capital letter begins a word after a small letter, and before one: "LeftArm", "LHipJoint".
+    const bool after_small = i > start && std::isupper(static_cast<unsigned char>(name[i - 1])) == 0;
+    const bool before_small = i + 1 < name.size() && std::islower(static_cast<unsigned char>(name[i + 1])) != 0;
+    if (!inside || (std::isupper(c) != 0 && (after_small || before_small))) words.emplace_back();
+    inside = true;
+    words.back() += static_cast<char>(std::tolower(c));
+  }
+  return words;
+}
+
+/// Side ("", "Left" or "Right") and the remaining words of a name, joined.
+std::pair<std::string, std::string> side_and_part(const std::string& name) {
+  std::string side, part;
+  for (const std::string& word : words_of(name)) {
+    if (word == "l" || word == "left") {
+      side = "Left";
+    } else if (word == "r" || word == "right") {
+      side = "Right";
+    } else if (!is_filler_word(word) || (word == "base" && !part.empty())) {
+      part += word;
+    }
+  }
+  // "lfemur", "righthand": side and part without any separator.
+  for (const auto& [letters, which] : {std::pair{"left", "Left"}, {"right", "Right"}, {"l", "Left"}, {"r", "Right"}})
+    if (side.empty() && part.starts_with(letters)) {
+      const std::string rest = part.substr(std::string(letters).size());
+      for (const BodyPart& known : kSides)
+        if (std::ranges::find(known.aliases, rest) != known.aliases.end()) return {which, rest};
+    }
+  return {side, part};
+}
+
+/// A node and its ancestors, upward.
+std::vector<Index> ancestors_of(std::span<const Node> nodes, Index node) {
+  std::vector<Index> line;
+  for (; node >= 0; node = nodes[node].parent) line.push_back(node);
+  return line;
+}
+
+/// The lowest node that is an ancestor of both, or one of them; -1 if there is none.
+Index common_ancestor(std::span<const Node> nodes, Index a, Index b) {
+  if (a < 0 || b < 0) return -1;
+  const std::vector<Index> line = ancestors_of(nodes, a);
+  for (const Index node : ancestors_of(nodes, b))
+    if (std::ranges::find(line, node) != line.end()) return node;
+  return -1;
+}
+
+bool is_above(std::span<const Node> nodes, Index above, Index node) {
+  const std::vector<Index> line = ancestors_of(nodes, node);
+  return above >= 0 && above != node && std::ranges::find(line, above) != line.end();
+}
+
+/// Determines the trunk from the tree: the hips are the node at which legs and spine branch, or a named one above it;
+/// the chest is the node at which the arms branch; the spine is halfway between, the lower of two candidates.
+void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
+  const auto at = [&](Joint joint) -> Index& { return joints[place_of(joint)]; };
+  Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
+  const Index legs = common_ancestor(nodes, at(Joint::left_upper_leg), at(Joint::right_upper_leg));
+  const Index branching = common_ancestor(nodes, legs, arms);
+  if (branching >= 0 && branching != arms && at(Joint::hips) != branching &&
+      !is_above(nodes, at(Joint::hips), branching))
+    at(Joint::hips) = branching;
+  if (at(Joint::hips) < 0) at(Joint::hips) = legs;
+  // In Biped, arms are children of the neck.
+  if (arms >= 0 && arms == at(Joint::neck)) arms = nodes[arms].parent;
+  if (!is_above(nodes, at(Joint::hips), arms)) return;
+  at(Joint::chest) = arms;
+  std::vector<Index> between;  // from the chest down, without a rotation-only node at the hips
+  for (Index n = nodes[arms].parent; n != at(Joint::hips); n = nodes[n].parent)
+    if (!nodes[n].local.translation().isZero() || nodes[n].parent != at(Joint::hips)) between.push_back(n);
+  at(Joint::spine) = between.empty() ? -1 : between[between.size() / 2];
+}
+
+/// Whether all limb joints that a moving body needs were found.
+bool has_all_limbs(const std::vector<Index>& joints) {
+  return std::ranges::all_of(
+      std::array{Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_upper_leg, Joint::left_lower_leg},
+      [&](Joint left) { return joints[place_of(left)] >= 0 && joints[place_of(on_side(left, true))] >= 0; });
+}
+
+/// An affix counts as the name of a rig if at least this number of nodes share it: the size of a minimal skeleton.
+constexpr std::size_t kMinRigNodes = 15;
+
+/// Minimum length of a prefix without a separator; shorter ones are shared by chance, or name the sides of a body.
+constexpr std::size_t kMinPrefixLength = 3;
+
+/// Prefixes that end with a separator and are shared by at least kMinRigNodes nodes, longest first.
+std::vector<std::string> prefixes_with_separator(std::span<const Node> nodes) {
+  std::map<std::string, std::size_t> counts;
+  for (const Node& node : nodes)
+    for (std::size_t i = 1; i < node.name.size(); ++i)
+      if (std::isalnum(static_cast<unsigned char>(node.name[i - 1])) == 0) ++counts[node.name.substr(0, i)];
+  std::vector<std::string> prefixes;
+  for (const auto& [text, count] : counts)
+    if (count >= kMinRigNodes) prefixes.push_back(text);
+  std::ranges::stable_sort(prefixes, std::greater(), &std::string::size);
+  return prefixes;
+}
+
+/// Prefixes without a separator ("EthanHips", "EthanLeftArm") that at least kMinRigNodes nodes share and that cannot be
+/// extended without losing nodes; longest first.
+std::vector<std::string> prefixes_without_separator(const std::vector<std::string>& names) {
+  std::map<std::string, std::size_t> counts;
+  for (const std::string& name : names)
+    for (std::size_t i = 1; i < name.size(); ++i) ++counts[name.substr(0, i)];
+  std::vector<std::string> prefixes;
+  for (const auto& [text, count] : counts) {
+    if (text.size() < kMinPrefixLength || count < kMinRigNodes) continue;
+    // Entries that begin with this text follow it in order.
+    bool is_maximal = true;
+    for (auto next = counts.upper_bound(text); next != counts.end() && next->first.starts_with(text); ++next)
+      is_maximal = is_maximal && next->second < count;
+    if (is_maximal) prefixes.push_back(text);
+  }
+  std::ranges::stable_sort(prefixes, std::greater(), &std::string::size);
+  return prefixes;
+}
+
+/// Prefix and suffix that a rig adds to the names of body parts.
+struct Affixes {
+  std::string prefix, end;
+
+  /// The name without both; empty if it does not have both.
+  std::string strip(const std::string& name) const {
+    if (name.size() <= prefix.size() + end.size() || !name.starts_with(prefix) || !name.ends_with(end)) return {};
+    return name.substr(prefix.size(), name.size() - prefix.size() - end.size());
+  }
+};
+
+/// Affixes in order: prefixes with a separator, prefixes without one, then suffixes.
+std::vector<Affixes> shared_affixes(std::span<const Node> nodes) {
+  std::vector<std::string> names, reversed;
+  for (const Node& node : nodes) {
+    names.push_back(node.name);
+    reversed.emplace_back(node.name.rbegin(), node.name.rend());
+  }
+  std::vector<std::string> prefixes = prefixes_with_separator(nodes);
+  for (std::string& text : prefixes_without_separator(names))
+    if (std::ranges::find(prefixes, text) == prefixes.end()) prefixes.push_back(std::move(text));
+  std::vector<Affixes> affixes;
+  for (const std::string& prefix : prefixes) affixes.push_back({prefix, {}});
+  prefixes.insert(prefixes.begin(), std::string());
+  for (const std::string& end : prefixes_without_separator(reversed))
+    for (const std::string& prefix : prefixes) affixes.push_back({prefix, std::string(end.rbegin(), end.rend())});
+  return affixes;
+}
+
+}  // namespace
+
+std::string_view name(Joint joint) {
+  constexpr std::array<std::string_view, kJointCount> names{
+      "Hips",          "Spine",         "Chest",         "Neck",          "Head",         "LeftShoulder",
+      "LeftUpperArm",  "LeftLowerArm",  "LeftHand",      "LeftUpperLeg",  "LeftLowerLeg", "LeftFoot",
+      "LeftToes",      "RightShoulder", "RightUpperArm", "RightLowerArm", "RightHand",    "RightUpperLeg",
+      "RightLowerLeg", "RightFoot",     "RightToes"};
+  return names[place_of(joint)];
+}
+
+Joint parent(Joint joint) {
+  switch (joint) {
+    case Joint::hips:
+    case Joint::spine:
+    case Joint::left_upper_leg:
+    case Joint::right_upper_leg:
+      return Joint::hips;
+    case Joint::chest:
+      return Joint::spine;
+    case Joint::neck:
+    case Joint::left_shoulder:
+    case Joint::right_shoulder:
+      return Joint::chest;
+    case Joint::head:
+      return Joint::neck;
+    default:
+      return static_cast<Joint>(place_of(joint) - 1);
+  }
+}
+
+const std::vector<std::string>& joint_names() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (std::size_t j = 0; j < kJointCount; ++j) names.emplace_back(name(static_cast<Joint>(j)));
+    return names;
+  }();
+  return kNames;
+}
+
+Index joint_number(const std::string& name) {
+  const auto& names = joint_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<Index>(found - names.begin());
+}
+
+std::vector<Index> find_named_joints(std::span<const Node> nodes) {
+  std::map<std::pair<std::string, std::string>, Index> known;  // the first node of each name counts
+  for (std::size_t n = 0; n < nodes.size(); ++n) known.emplace(side_and_part(nodes[n].name), static_cast<Index>(n));
+  std::vector<Index> joints;
+  const auto find = [&](const std::string& side, const BodyPart& part) {
+    for (const std::string& alias : part.aliases)
+      if (const auto found = known.find({side, alias}); found != known.end()) return found->second;
+    return Index{-1};
+  };
+  for (const BodyPart& part : kMiddle) joints.push_back(find("", part));
+  for (const char* side : {"Left", "Right"}) {
+    const std::size_t shoulder = joints.size();
+    for (const BodyPart& part : kSides) joints.push_back(find(side, part));
+    // Resolve ambiguous names: a "shoulder" is the upper arm if no other node is, a "foot" is the toes if there is an
+    // ankle, and a "leg" is the lower leg if no other node is.
+    if (joints[shoulder + 4] == joints[shoulder + 5]) joints[shoulder + 4] = -1;
+    if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
+    if (joints.back() == joints[joints.size() - 2]) joints.back() = -1;
+  }
+  if (joints[place_of(Joint::spine)] == joints[place_of(Joint::chest)]) joints[place_of(Joint::chest)] = -1;
+  determine_trunk(nodes, joints);
+  return joints;
+}
+
+namespace {
+
+/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l knee_048"). Removes
+/// numbers only if at least kMinRigNodes names end so and almost all numbers differ, unlike those of spines and
+/// fingers.
+std::vector<Node> without_numbers(std::vector<Node> nodes) {
+  const auto number_of = [](const std::string& name) {
+    const std::size_t mark = name.rfind('_');
+    const bool ends_so = mark != std::string::npos && mark > 0 && mark + 1 < name.size() &&
+                         std::all_of(name.begin() + static_cast<std::ptrdiff_t>(mark) + 1, name.end(),
+                                     [](unsigned char c) { return std::isdigit(c) != 0; });
+    return ends_so ? name.substr(mark) : std::string();
+  };
+  std::set<std::string> numbers;
+  std::size_t count = 0;
+  for (const Node& node : nodes)
+    if (std::string number = number_of(node.name); !number.empty()) {
+      ++count;
+      numbers.insert(std::move(number));
+    }
+  if (numbers.size() < kMinRigNodes || 10 * numbers.size() < 9 * count) return nodes;
+  for (Node& node : nodes) node.name.resize(node.name.size() - number_of(node.name).size());
+  return nodes;
+}
+
+/// Joints by name. If names do not suffice, tries names without the affixes of a rig ("UnityChan_LeftArm",
+/// "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"). Of several rigs, selects the one with most joints that influence
+/// skin or move.
+std::vector<Index> find_prefixed_joints(const Character& character) {
+  std::vector<Index> best = find_named_joints(character.nodes);
+  if (has_all_limbs(best)) return best;
+  const std::vector<Node> plain = without_numbers(character.nodes);
+  if (std::vector<Index> joints = find_named_joints(plain); has_all_limbs(joints)) return joints;
+  std::vector<bool> is_active(character.nodes.size(), false);
+  for (const Bone& bone : character.bones) is_active[bone.node] = true;
+  for (const Clip& clip : character.clips)
+    for (const Channel& channel : clip.channels) is_active[channel.node] = true;
+  std::size_t best_count = 0;
+  for (const Affixes& affixes : shared_affixes(plain)) {
+    std::vector<Node> nodes = plain;
+    for (Node& node : nodes) node.name = affixes.strip(node.name);
+    std::vector<Index> joints = find_named_joints(nodes);
+    const auto count = static_cast<std::size_t>(
+        std::ranges::count_if(joints, [&](Index node) { return node >= 0 && is_active[node]; }));
+    if (!has_all_limbs(joints) || count <= best_count) continue;
+    best_count = count;
+    best = std::move(joints);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<Index> find_joints(const Character& character) {
+  std::vector<Index> joints = find_prefixed_joints(character);
+  if (has_all_limbs(joints)) return joints;
+  const std::vector<Index> nameless = find_nameless_joints(character);
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (joints[j] < 0 && std::ranges::find(joints, nameless[j]) == joints.end()) joints[j] = nameless[j];
+  determine_trunk(character.nodes, joints);
+  return joints;
+}
+
+}  // namespace weft::character

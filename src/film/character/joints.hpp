@@ -1,0 +1,70 @@
+// The joints of a human body, and their names in common rigs.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "film/character/character.hpp"
+
+namespace weft::character {
+
+/// Joints, parents first. All joints of the left side come first, then their mirror images on the right.
+enum class Joint : std::uint8_t {
+  hips,
+  spine,
+  chest,
+  neck,
+  head,
+  left_shoulder,
+  left_upper_arm,
+  left_lower_arm,
+  left_hand,
+  left_upper_leg,
+  left_lower_leg,
+  left_foot,
+  left_toes,
+  right_shoulder,
+  right_upper_arm,
+  right_lower_arm,
+  right_hand,
+  right_upper_leg,
+  right_lower_leg,
+  right_foot,
+  right_toes,
+};
+inline constexpr std::size_t kJointCount = 21;
+inline constexpr std::size_t kSideJointCount = 8;  ///< per side
+
+constexpr std::size_t place_of(Joint joint) {
+  return static_cast<std::size_t>(joint);
+}
+
+/// A joint of the left side, or its mirror image if `right`.
+constexpr Joint on_side(Joint left, bool right) {
+  return static_cast<Joint>(place_of(left) + (right ? kSideJointCount : 0));
+}
+
+std::string_view name(Joint joint);
+/// The parent joint; for the hips, the hips.
+Joint parent(Joint joint);
+
+/// Names in the order of Joint: Hips, Spine, Chest, Neck, Head, then for Left and Right: Shoulder, UpperArm, LowerArm,
+/// Hand, UpperLeg, LowerLeg, Foot, Toes.
+const std::vector<std::string>& joint_names();
+
+/// Index of a name in joint_names(); -1 for other names.
+Index joint_number(const std::string& name);
+
+/// For each of joint_names(), the node with that role, found by the names of common rigs (a table in joints.cpp); -1 if
+/// there is none. Prefixes, case, spaces and underscores are ignored. The places at which limbs branch off determine
+/// hips, spine and chest.
+std::vector<Index> find_named_joints(std::span<const Node> nodes);
+
+/// Like find_named_joints(), but also handles rigs whose node names share a prefix or suffix with the name of the rig.
+/// If upper or lower arms or legs are not found by name, the tree determines the joints (nameless.hpp).
+std::vector<Index> find_joints(const Character& character);
+
+}  // namespace weft::character

@@ -1,0 +1,15 @@
+// The implicit surface of the mannequin, before triangulation.
+#pragma once
+
+#include "film/character/loft.hpp"
+#include "film/character/mannequin.hpp"
+
+namespace weft::character {
+
+/// Body height that the tables refer to [cm].
+inline constexpr double kTableHeight = 175;
+
+/// The body as a field [m], negative inside.
+BlendedBody mannequin_body(const MannequinBuild& build);
+
+}  // namespace weft::character

@@ -1,0 +1,17 @@
+// Skinning weights of the mannequin.
+#pragma once
+
+#include <array>
+
+#include "film/character/mannequin.hpp"
+
+namespace weft::character {
+
+/// Weight of each joint at a point of the left half, x >= 0. They sum to 1 and vary smoothly; at most four are > 0.
+std::array<double, kJointCount> mannequin_weights(const std::array<Vec3, kJointCount>& joints, double height,
+                                                  const Vec3& p);
+
+/// From 0 at `low` to 1 at `high`, twice continuously differentiable.
+double smooth_ramp(double x, double low, double high);
+
+}  // namespace weft::character

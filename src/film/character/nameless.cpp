@@ -1,0 +1,344 @@
+#include "film/character/nameless.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "film/character/joints.hpp"
+#include "film/character/pose.hpp"
+
+namespace weft::character {
+namespace {
+
+/// Maximum difference between the chains of both sides, in their first bones and as a whole, relative to the longer
+/// chain. Left and right legs of recordings differ by 2 %; hands end at different fingers.
+constexpr double kMaxChainDifference = 0.1;
+/// Number of bones that are compared one by one: an auxiliary bone, the upper and the lower bone.
+constexpr int kComparedBones = 3;
+/// Minimum number of chains that branch at a hand.
+constexpr int kMinFingers = 3;
+/// Of two candidates for the elbow, the outer one is chosen if the shorter of its two bones is longer than this
+/// fraction of the shorter bone of the inner candidate. Some recordings have collarbones of 13 cm and forearms of 9 cm;
+/// hands up to the fingers are shorter than half a forearm.
+constexpr double kMinOuterElbowRatio = 0.6;
+/// Maximum relative difference of two halves of a bone, and ratio of upper and lower bones of limbs (1.0 to 1.3 in
+/// adults).
+constexpr double kMaxHalfDifference = 0.01, kMaxLimbBoneRatio = 1.5;
+/// If a node above the arms is inactive, its bone belongs to the neck if it is shorter than this fraction of a leg. A
+/// longer bone is the head itself.
+constexpr double kMaxNeckBone = 0.17;
+/// Number of samples of a clip that determine the posture.
+constexpr int kPostureSamples = 32;
+/// Smaller rotations of a clip count as no motion [radians].
+constexpr double kMinRotation = 1e-4;
+/// Minimum triple product (trunk, forward, across) that determines the left side, in cubed leg lengths: 0.03 for a body
+/// with known feet, 2e-4 for knees that are 1 mm in front of a straight leg.
+constexpr double kMinLeftSignal = 1e-4;
+
+/// Nodes of a limb, from the trunk outward; -1 if missing.
+struct Chain {
+  Index shoulder = -1, upper = -1, lower = -1, end = -1, tip = -1;
+  double length = 0;  ///< of upper and lower bone [m]
+};
+
+/// Two chains that leave one node.
+struct Pair {
+  Index from = -1, a = -1, b = -1;
+  double reach = 0;  ///< length of the shorter one [m]
+};
+
+bool moves(const Channel& channel) {
+  return std::ranges::any_of(channel.rotation.values, [&](const Quat& turned) {
+    return turned.angularDistance(channel.rotation.values.front()) > kMinRotation;
+  });
+}
+
+class NamelessFinder {
+ public:
+  explicit NamelessFinder(const Character& character)
+      : character_(character), count_(character.nodes.size()), joints_(kJointCount, -1) {
+    const std::vector<Affine> at_rest = global_transforms(character, rest_pose(character));
+    length_.assign(count_, 0);
+    children_.resize(count_);
+    for (std::size_t n = 0; n < count_; ++n) {
+      const Index parent = character.nodes[n].parent;
+      if (parent < 0) continue;
+      // Rotations do not change lengths, so any pose would do.
+      length_[n] = (at_rest[n].translation() - at_rest[parent].translation()).norm();
+      children_[parent].push_back(static_cast<Index>(n));
+    }
+    compute_reach();
+    find_ends();
+  }
+
+  std::vector<Index> find() {
+    const auto pairs = find_pairs();
+    if (!pairs) return joints_;
+    const auto& [legs, arms] = *pairs;
+    const std::array leg{chain_of(legs.a, 1), chain_of(legs.b, 1)},
+        arm{chain_of(arms.a, kMinOuterElbowRatio), chain_of(arms.b, kMinOuterElbowRatio)};
+    const auto across = [&](const std::array<Chain, 2>& limb) {
+      return mean_over_clip([&](const std::vector<Vec3>& at) {
+        return (at[limb[0].upper] - at[limb[1].upper]).dot(to_the_left(at, leg, arm));
+      });
+    };
+    const double legs_across = across(leg), arms_across = across(arm), size = legs.reach * legs.reach * legs.reach;
+    if (!(std::min(std::abs(legs_across), std::abs(arms_across)) > kMinLeftSignal * size)) return joints_;
+    for (const bool right : {false, true}) {
+      const Chain &l = leg[right != (legs_across < 0)], &a = arm[right != (arms_across < 0)];
+      set_joint(Joint::left_upper_leg, right, l.upper);
+      set_joint(Joint::left_lower_leg, right, l.lower);
+      set_joint(Joint::left_foot, right, l.end);
+      set_joint(Joint::left_toes, right, l.tip);
+      set_joint(Joint::left_shoulder, right, a.shoulder);
+      set_joint(Joint::left_upper_arm, right, a.upper);
+      set_joint(Joint::left_lower_arm, right, a.lower);
+      set_joint(Joint::left_hand, right, a.end);
+    }
+    find_head(arms, leg, arm);
+    return joints_;
+  }
+
+ private:
+  void set_joint(Joint left, bool right, Index node) { joints_[place_of(on_side(left, right))] = node; }
+
+  /// Computes the length of the longest chain below each node, and the child along which it runs.
+  void compute_reach() {
+    reach_.assign(count_, 0);
+    next_.assign(count_, -1);
+    for (std::size_t n = count_; n-- > 0;)
+      for (const Index child : children_[n])
+        if (const double reach = length_[child] + reach_[child]; next_[n] < 0 || reach > reach_[n]) {
+          reach_[n] = reach;
+          next_[n] = child;
+        }
+  }
+
+  void find_ends() {
+    is_active_.assign(count_, false);
+    for (const Influence& influence : character_.influences) is_active_[character_.bones[influence.bone].node] = true;
+    for (const Clip& clip : character_.clips)
+      for (const Channel& channel : clip.channels)
+        if (moves(channel)) is_active_[channel.node] = true;
+    is_joint_ = is_active_;
+    for (std::size_t n = 0; n < count_; ++n)
+      if (!children_[n].empty()) is_joint_[n] = true;
+  }
+
+  bool is_below(Index node, Index above) const {
+    while (node >= 0 && node != above) node = character_.nodes[node].parent;
+    return node >= 0;
+  }
+
+  bool are_alike(Index a, Index b) const {
+    const double max_difference = kMaxChainDifference * std::max(reach_[a], reach_[b]);
+    if (std::abs(reach_[a] - reach_[b]) > max_difference) return false;
+    for (int k = 0; k < kComparedBones; ++k) {
+      a = next_[a];
+      b = next_[b];
+      if (a < 0 || b < 0) return a == b;
+      if (std::abs(length_[a] - length_[b]) > max_difference) return false;
+    }
+    return true;
+  }
+
+  /// Finds the pairs of legs and arms.
+  std::optional<std::pair<Pair, Pair>> find_pairs() const {
+    std::vector<Pair> pairs;
+    for (std::size_t n = 0; n < count_; ++n)
+      for (std::size_t i = 0; i < children_[n].size(); ++i)
+        for (std::size_t j = i + 1; j < children_[n].size(); ++j) {
+          const Index a = children_[n][i], b = children_[n][j];
+          if (are_alike(a, b) && chain_of(a, 1).end >= 0 && chain_of(b, 1).end >= 0)
+            pairs.push_back({static_cast<Index>(n), a, b, std::min(reach_[a], reach_[b])});
+        }
+    std::ranges::stable_sort(pairs, std::greater(), &Pair::reach);
+    // The spine may be as long as a leg. A pair that contains the spine overlaps all others.
+    for (std::size_t first = 0; first < pairs.size(); ++first)
+      for (std::size_t second = first + 1; second < pairs.size(); ++second)
+        if (are_disjoint(pairs[first], pairs[second])) return legs_and_arms(pairs[first], pairs[second]);
+    return {};
+  }
+
+  bool are_disjoint(const Pair& p, const Pair& q) const {
+    const auto meet = [&](Index x, Index y) { return is_below(x, y) || is_below(y, x); };
+    return !meet(p.a, q.a) && !meet(p.a, q.b) && !meet(p.b, q.a) && !meet(p.b, q.b);
+  }
+
+  std::pair<Pair, Pair> legs_and_arms(const Pair& p, const Pair& q) const {
+    const bool p_above = p.from != q.from && is_below(q.from, p.from);
+    const bool q_above = p.from != q.from && is_below(p.from, q.from);
+    const bool p_longer = chain_of(p.a, 1).length > chain_of(q.a, 1).length;
+    return p_above || (!q_above && p_longer) ? std::pair{p, q} : std::pair{q, p};
+  }
+
+  /// `outer`: an outer pair of bones is preferred if its shorter bone is longer than this fraction of that of the best
+  /// pair so far.
+  Chain chain_of(Index from, double outer) const {
+    std::vector<Index> nodes;
+    std::size_t last = 0, hand = 0;  // last node that may end the lower bone; node where fingers branch
+    for (Index n = from; n >= 0; n = next_[n]) {
+      nodes.push_back(n);
+      if (is_joint_[n]) last = nodes.size() - 1;
+      if (hand == 0 && std::ranges::count_if(children_[n], [&](Index c) { return reach_[c] > 0; }) >= kMinFingers)
+        hand = nodes.size() - 1;
+    }
+    if (hand >= 2) last = hand;
+    if (last < 2) last = nodes.size() - 1;  // an arm without a hand
+    join_halves(nodes, last);
+    Chain chain;
+    double longest = 0;
+    for (std::size_t i = 0; i + 2 <= last; ++i) {
+      const double upper = length_between(nodes[i], nodes[i + 1]), lower = length_between(nodes[i + 1], nodes[i + 2]);
+      const double shorter = std::min(upper, lower);
+      if (shorter <= outer * longest) continue;
+      longest = std::max(longest, shorter);
+      const auto joint = [&](std::size_t k) { return k < nodes.size() && is_joint_[nodes[k]] ? nodes[k] : -1; };
+      chain = {i > 0 ? nodes[i - 1] : -1, nodes[i], nodes[i + 1], joint(i + 2), joint(i + 3), upper + lower};
+    }
+    return chain;
+  }
+
+  /// Total length of the bones from a node to one below it.
+  double length_between(Index above, Index below) const {
+    double sum = 0;
+    for (; below != above; below = character_.nodes[below].parent) sum += length_[below];
+    return sum;
+  }
+
+  /// Merges upper and lower bones that are split into halves, as in rigs with twist bones: four bones in two pairs of
+  /// equal bones, with pairs of similar length.
+  void join_halves(std::vector<Index>& nodes, std::size_t& last) const {
+    for (std::size_t i = 0; i + 4 <= last; ++i) {
+      const auto bone = [&](std::size_t k) { return length_[nodes[i + k]]; };
+      const auto same = [](double a, double b) { return std::abs(a - b) < kMaxHalfDifference * std::max(a, b); };
+      const double ratio = bone(3) / bone(1);
+      if (!same(bone(1), bone(2)) || !same(bone(3), bone(4)) ||
+          !(ratio > 1 / kMaxLimbBoneRatio && ratio < kMaxLimbBoneRatio))
+        continue;
+      nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i + 3));
+      nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i + 1));
+      last -= 2;
+      return;
+    }
+  }
+
+  /// Mean of `figure(positions of all nodes)` over the first clip, or its value at rest if there is no clip.
+  template <class Figure>
+  double mean_over_clip(const Figure& figure) const {
+    const bool clip = !character_.clips.empty();
+    const int samples = clip ? kPostureSamples : 1;
+    double sum = 0;
+    std::vector<Vec3> places(count_);
+    for (int k = 0; k < samples; ++k) {
+      const Pose pose =
+          clip ? pose_at(character_, character_.clips.front(), character_.clips.front().duration * k / samples)
+               : rest_pose(character_);
+      const std::vector<Affine> globals = global_transforms(character_, pose);
+      for (std::size_t n = 0; n < count_; ++n) places[n] = globals[n].translation();
+      sum += figure(places);
+    }
+    return sum / samples;
+  }
+
+  static Vec3 trunk(const std::vector<Vec3>& at, const std::array<Chain, 2>& leg, const std::array<Chain, 2>& arm) {
+    return (at[arm[0].upper] + at[arm[1].upper] - at[leg[0].upper] - at[leg[1].upper]) / 2;
+  }
+
+  /// Vector to the left: the trunk crossed with the forward direction of feet and of bent knees.
+  Vec3 to_the_left(const std::vector<Vec3>& at, const std::array<Chain, 2>& leg,
+                   const std::array<Chain, 2>& arm) const {
+    Vec3 forward = Vec3::Zero();
+    for (const Chain& l : leg) {
+      if (next_[l.end] >= 0) forward += at[next_[l.end]] - at[l.end];
+      forward += at[l.lower] - (at[l.upper] + at[l.end]) / 2;
+    }
+    return trunk(at, leg, arm).cross(forward);
+  }
+
+  /// Finds neck and head: the highest chain below the arms' node, up to where it branches or ends.
+  void find_head(const Pair& arms, const std::array<Chain, 2>& leg, const std::array<Chain, 2>& arm) {
+    Index neck = -1;
+    double highest = 0;
+    for (const Index child : children_[arms.from]) {
+      if (child == arms.a || child == arms.b || !is_joint_[child]) continue;
+      Index tip = child;
+      while (next_[tip] >= 0) tip = next_[tip];
+      if (is_below(leg[0].upper, child)) continue;
+      const double height = mean_over_clip(
+          [&](const std::vector<Vec3>& at) { return (at[tip] - at[arms.from]).dot(trunk(at, leg, arm)); });
+      if (height <= highest) continue;
+      highest = height;
+      neck = child;
+    }
+    if (neck < 0) return;
+    Index head = neck;
+    while (true) {
+      Index only = -1;
+      int below = 0;
+      for (const Index child : children_[head])
+        if (is_active_[child] || (is_joint_[child] && length_[child] < kMaxNeckBone * leg[0].length)) {
+          only = child;
+          ++below;
+        }
+      if (below != 1) break;
+      head = only;
+    }
+    if (head != neck) joints_[place_of(Joint::neck)] = neck;
+    joints_[place_of(Joint::head)] = head;
+  }
+
+  const Character& character_;
+  const std::size_t count_;
+  std::vector<Index> joints_;
+  std::vector<double> length_;                // of the bone that ends at a node, at rest [m]
+  std::vector<std::vector<Index>> children_;  // of each node
+  std::vector<double> reach_;                 // of the longest chain below a node [m]
+  std::vector<Index> next_;                   // child along that chain, or -1
+  std::vector<bool> is_active_;               // influences skin, or moves in a clip
+  std::vector<bool> is_joint_;                // is active, or has nodes below it
+};
+
+}  // namespace
+
+std::vector<Index> find_nameless_joints(const Character& character) {
+  return NamelessFinder(character).find();
+}
+
+std::array<Index, 2> find_knuckles(const Character& character, Index hand) {
+  const std::vector<Node>& nodes = character.nodes;
+  std::vector<double> reach(nodes.size(), 0);  // of the longest chain from its parent through a node
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    reach[n] += nodes[n].local.translation().norm();
+    if (const Index parent = nodes[n].parent; parent >= 0) reach[parent] = std::max(reach[parent], reach[n]);
+  }
+  const auto place = [&](Index finger) -> Vec3 { return nodes[finger].local.translation(); };
+  std::vector<Index> fingers;
+  Vec3 along = Vec3::Zero();
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const auto finger = static_cast<Index>(n);
+    if (nodes[n].parent != hand || !(reach[n] > place(finger).norm())) continue;
+    fingers.push_back(finger);
+    along += place(finger);
+  }
+  constexpr std::size_t kMinFingerChains = 4;
+  if (fingers.size() < kMinFingerChains) return {-1, -1};
+  const Index thumb = *std::ranges::min_element(fingers, {}, [&](Index f) { return reach[f]; });
+  std::erase(fingers, thumb);
+  std::array<Index, 2> ends{-1, -1};
+  double widest = 0;
+  for (const Index a : fingers)
+    for (const Index b : fingers)
+      if (const double width = (place(a) - place(b)).norm(); width > widest) {
+        widest = width;
+        ends = {a, b};
+      }
+  if (ends[0] < 0) return ends;
+  Vec3 across = place(ends[1]) - place(ends[0]);
+  across -= across.dot(along) / along.squaredNorm() * along;
+  if ((2 * place(thumb) - place(ends[0]) - place(ends[1])).dot(across) > 0) std::swap(ends[0], ends[1]);
+  return ends;
+}
+
+}  // namespace weft::character

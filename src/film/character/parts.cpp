@@ -1,0 +1,177 @@
+#include "film/character/parts.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+#include <limits>
+
+#include "film/character/joints.hpp"
+
+namespace weft::character {
+namespace {
+
+/// A part of several joints. `sides`: joints that exist left and right, without their side.
+struct PartGroup {
+  std::string name;
+  std::vector<std::string> middle, sides;
+};
+
+const std::vector<PartGroup> kGroups = {
+    {"hands", {}, {"Hand"}},
+    {"feet", {}, {"Foot", "Toes"}},
+    {"arms", {}, {"UpperArm", "LowerArm", "Hand"}},
+    {"legs", {}, {"UpperLeg", "LowerLeg", "Foot", "Toes"}},
+    {"head", {"Neck", "Head"}, {}},
+    {"torso", {"Hips", "Spine", "Chest"}, {"Shoulder"}},
+};
+
+std::string normalise_word(const std::string& name) {
+  std::string word;
+  for (const char c : name)
+    if (c != '_') word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return word;
+}
+
+/// The vertices with at least half of their weight on bones whose nodes pass the test.
+VertexMask vertices_weighted_by(const Character& character, const std::function<bool(Index node)>& test) {
+  const std::size_t vertices = character.mesh.positions.size();
+  VertexMask mask(vertices, 0);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    double weight = 0;
+    for (Index i = character.first_influence[v]; i < character.first_influence[v + 1]; ++i) {
+      const Influence& influence = character.influences[i];
+      if (test(character.bones[influence.bone].node)) weight += influence.weight;
+    }
+    mask[v] = weight >= 0.5;
+  }
+  return mask;
+}
+
+}  // namespace
+
+const std::vector<std::string>& part_names() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const PartGroup& group : kGroups) names.push_back(group.name);
+    names.insert(names.end(), joint_names().begin(), joint_names().end());
+    return names;
+  }();
+  return kNames;
+}
+
+std::vector<Index> joints_of_part(const std::string& name) {
+  const std::string word = normalise_word(name);
+  std::vector<Index> joints;
+  for (const PartGroup& group : kGroups) {
+    if (group.name != word) continue;
+    for (const std::string& joint : group.middle) joints.push_back(joint_number(joint));
+    for (const char* side : {"Left", "Right"})
+      for (const std::string& joint : group.sides) joints.push_back(joint_number(side + joint));
+    return joints;  // returns before the joint of the same name ("head")
+  }
+  for (std::size_t j = 0; j < joint_names().size(); ++j)
+    if (normalise_word(joint_names()[j]) == word) joints.push_back(static_cast<Index>(j));
+  return joints;
+}
+
+VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints) {
+  // For each node, the joint that it is or that is nearest above it; -1: none.
+  std::vector<Index> joint_of(character.nodes.size(), -1);
+  for (std::size_t n = 0; n < joint_of.size(); ++n) {
+    const auto own = std::ranges::find(nodes, static_cast<Index>(n));
+    const Index parent = character.nodes[n].parent;
+    if (own != nodes.end()) {
+      joint_of[n] = static_cast<Index>(own - nodes.begin());
+    } else if (parent >= 0) {
+      joint_of[n] = joint_of[parent];
+    }
+  }
+  return vertices_weighted_by(character,
+                              [&](Index node) { return std::ranges::find(joints, joint_of[node]) != joints.end(); });
+}
+
+std::vector<Limb> limbs_of(const Character& character, std::span<const Index> nodes) {
+  static const std::vector<std::string> kArm{"UpperArm", "LowerArm", "Hand"},
+      kLeg{"UpperLeg", "LowerLeg", "Foot", "Toes"};
+  std::vector<Limb> limbs(character.mesh.positions.size(), Limb::trunk);
+  const auto mark = [&](Limb limb, const std::string& side, const std::vector<std::string>& names) {
+    std::vector<Index> joints;
+    for (const std::string& name : names) joints.push_back(joint_number(side + name));
+    const VertexMask mask = vertices_of(character, nodes, joints);
+    for (std::size_t v = 0; v < limbs.size(); ++v)
+      if (mask[v] != 0) limbs[v] = limb;
+  };
+  mark(Limb::left_arm, "Left", kArm);
+  mark(Limb::right_arm, "Right", kArm);
+  mark(Limb::left_leg, "Left", kLeg);
+  mark(Limb::right_leg, "Right", kLeg);
+  return limbs;
+}
+
+VertexMask vertices_below(const Character& character, Index node) {
+  std::vector<bool> below(character.nodes.size(), false);
+  for (std::size_t n = 0; n < below.size(); ++n) {
+    const Index parent = character.nodes[n].parent;
+    below[n] = static_cast<Index>(n) == node || (parent >= 0 && below[parent]);
+  }
+  return vertices_weighted_by(character, [&](Index n) { return below[n]; });
+}
+
+VertexMask vertices_of_material(const Character& character, Index material) {
+  VertexMask mask;
+  for (const Index m : character.material_of_vertex) mask.push_back(m == material);
+  return mask;
+}
+
+void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places) {
+  // Radius of the mean: multiples of the distance from the skin and of the body size (3 cm for a person). With a
+  // smaller radius, neighbouring positions diverge with single faces; with a larger one, a shoulder moves a neck.
+  constexpr double kRadiusPerDistance = 2, kRadiusPerSize = 0.015;
+  std::vector<Vec3> skinned(character.mesh.positions.size());
+  skin(character, pose, skinned);
+  const std::vector<Affine> globals = global_transforms(character, pose);
+  Box3 box;
+  for (const Vec3& x : skinned) box.extend(x);
+  for (const Vec3& place : places) {
+    double nearest_sq = std::numeric_limits<double>::infinity();
+    for (std::size_t v = 0; v < part.size(); ++v)
+      if (part[v] != 0) nearest_sq = std::min(nearest_sq, (skinned[v] - place).squaredNorm());
+    const double radius = kRadiusPerDistance * std::sqrt(nearest_sq) + kRadiusPerSize * box.diagonal().norm();
+    std::vector<double> weights(character.bones.size(), 0);
+    double total = 0;
+    for (std::size_t v = 0; v < part.size(); ++v) {
+      const double near = 1 - (skinned[v] - place).squaredNorm() / (radius * radius);
+      if (part[v] == 0 || near <= 0) continue;
+      total += near * near;
+      for (Index i = character.first_influence[v]; i < character.first_influence[v + 1]; ++i)
+        weights[character.influences[i].bone] += near * near * character.influences[i].weight;
+    }
+    Affine map;
+    map.matrix().setZero();
+    for (std::size_t b = 0; b < weights.size(); ++b) {
+      if (weights[b] == 0) continue;
+      character.influences.push_back({static_cast<Index>(b), weights[b] / total});
+      const Bone& bone = character.bones[b];
+      map.matrix() += weights[b] / total * (globals[bone.node] * bone.offset).matrix();
+    }
+    character.first_influence.push_back(static_cast<Index>(character.influences.size()));
+    character.mesh.positions.push_back(map.inverse() * place);
+    for (MorphTarget& morph : character.morphs) morph.displacements.push_back(Vec3::Zero());
+  }
+}
+
+bool has_fingers(const Character& character, std::span<const Index> nodes) {
+  std::vector<bool> holds(character.nodes.size(), false);  // influences skin, by itself or by a node below it
+  for (const Influence& influence : character.influences) holds[character.bones[influence.bone].node] = true;
+  for (std::size_t n = holds.size(); n-- > 0;)
+    if (holds[n] && character.nodes[n].parent >= 0) holds[character.nodes[n].parent] = true;
+  constexpr int kFewest = 3;
+  return std::ranges::any_of(joints_of_part("hands"), [&](Index joint) {
+    int chains = 0;
+    for (std::size_t n = 0; n < holds.size(); ++n)
+      chains += nodes[joint] >= 0 && character.nodes[n].parent == nodes[joint] && holds[n];
+    return chains >= kFewest;
+  });
+}
+
+}  // namespace weft::character

@@ -1,0 +1,88 @@
+#include "film/character/performance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace weft::character {
+
+double clip_time(const Timing& timing, double t) {
+  const double elapsed = t - timing.dressing;
+  if (elapsed <= 0) return timing.start;
+  if (elapsed >= timing.blend) return timing.start + timing.speed * (elapsed - timing.blend / 2);
+  // The integral of ease(): the speed rises smoothly from 0.
+  const double u = elapsed / timing.blend;
+  return timing.start + timing.speed * timing.blend * (u * u * u * (1 - u / 2));
+}
+
+Performance::Performance(const Character& character, const Clip& clip, const Playing& playing, const Vec3& up)
+    : character_(character), clip_(clip), playing_(playing), up_(up) {
+  root_ = traveling_node(clip);
+  if (root_ >= 0) {
+    const Index parent = character.nodes[root_].parent;
+    if (parent >= 0) root_to_world_ = global_transforms(character, rest_pose(character))[parent].linear();
+  }
+  const double fade = std::min(playing.crossfade, clip.duration / 2);
+  playing_.crossfade = fade;
+  period_ = clip.duration - fade;
+  if (playing.loop)
+    travel_ = displacement_between(pose_at(character, clip, fade / 2), pose_at(character, clip, period_ + fade / 2));
+  if (playing.stance) shift_ = displacement_between(at_clip_time(playing.timing.start), *playing.stance);
+}
+
+Vec3 Performance::displacement_between(const Pose& a, const Pose& b) const {
+  if (root_ < 0) return Vec3::Zero();
+  const auto node = static_cast<std::size_t>(root_);
+  const Vec3 whole = root_to_world_ * (b.nodes[node].position - a.nodes[node].position);
+  return whole - whole.dot(up_) * up_;
+}
+
+void Performance::translate(Pose& pose, const Vec3& by) const {
+  if (root_ >= 0) pose.nodes[root_].position += root_to_world_.inverse() * by;
+}
+
+Pose Performance::at_clip_time(double t) const {
+  if (!playing_.loop || period_ <= 0) return pose_at(character_, clip_, t);
+  const double round = std::floor(t / period_), round_time = t - round * period_;
+  Pose pose = pose_at(character_, clip_, round_time);
+  translate(pose, round * travel_);
+  if (round >= 1 && round_time < playing_.crossfade) {
+    Pose last = pose_at(character_, clip_, period_ + round_time);
+    translate(last, (round - 1) * travel_);
+    pose = blend(last, pose, ease(round_time / playing_.crossfade));
+  }
+  return pose;
+}
+
+Pose Performance::at(double t) const {
+  const Timing& timing = playing_.timing;
+  if (playing_.stance && t <= timing.dressing) return *playing_.stance;
+  Pose pose = at_clip_time(clip_time(timing, t));
+  translate(pose, shift_);
+  if (playing_.stance && t < timing.dressing + timing.blend)
+    pose = blend(*playing_.stance, pose, ease((t - timing.dressing) / timing.blend));
+  return pose;
+}
+
+double Performance::gap() const {
+  if (!playing_.loop || playing_.crossfade > 0) return 0;
+  std::vector<Vec3> end(character_.mesh.positions.size()), begin(end.size());
+  Pose next = pose_at(character_, clip_, 0);
+  translate(next, travel_);
+  skin(character_, pose_at(character_, clip_, clip_.duration), end);
+  skin(character_, next, begin);
+  double gap = 0;
+  for (std::size_t v = 0; v < end.size(); ++v) gap = std::max(gap, (end[v] - begin[v]).norm());
+  return gap;
+}
+
+double key_rate(const Clip& clip) {
+  std::size_t max_keys = 1;
+  for (const Channel& channel : clip.channels)
+    max_keys =
+        std::max({max_keys, channel.position.times.size(), channel.rotation.times.size(), channel.scale.times.size()});
+  for (const MorphChannel& channel : clip.morphs) max_keys = std::max(max_keys, channel.weight.times.size());
+  return clip.duration > 0 ? static_cast<double>(max_keys - 1) / clip.duration : 0;
+}
+
+}  // namespace weft::character

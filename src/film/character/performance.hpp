@@ -1,0 +1,61 @@
+// Playback of a clip in a scene: standing at first, then accelerating, once or in a loop.
+#pragma once
+
+#include <optional>
+
+#include "film/character/character.hpp"
+#include "film/character/pose.hpp"
+
+namespace weft::character {
+
+/// Timing of a clip in the scene.
+struct Timing {
+  double dressing = 0;  ///< time of the scene before which the clip does not move [s]
+  double blend = 0;     ///< time in which it then accelerates to `speed` [s]
+  double start = 0;     ///< time of the clip at which it begins to play [s]
+  double speed = 1;
+};
+
+/// Time of the clip [s] at time t of the scene [s]; twice continuously differentiable if `blend` is positive.
+double clip_time(const Timing& timing, double t);
+
+struct Playing {
+  Timing timing;
+  bool loop = false;     ///< each round continues horizontally from the end of the last
+  double crossfade = 0;  ///< end of a round that is blended into the next one [s of the clip]; at most half of the clip
+  std::optional<Pose> stance = {};  ///< initial pose of the body, in place of the clip's pose at `start`
+};
+
+class Performance {
+ public:
+  /// The character and the clip must outlive it. `up`: unit vector.
+  Performance(const Character& character, const Clip& clip, const Playing& playing, const Vec3& up);
+
+  /// The pose at time t [s] of the scene.
+  Pose at(double t) const;
+
+  /// Largest jump of a vertex from the end of a round to the start of the next [m]; 0 without a loop or with a
+  /// crossfade.
+  double gap() const;
+
+ private:
+  Pose at_clip_time(double t) const;
+  /// Translates a pose of the clip in the world [m].
+  void translate(Pose& pose, const Vec3& by) const;
+  /// Horizontal displacement of the clip from pose a to pose b, in the world [m].
+  Vec3 displacement_between(const Pose& a, const Pose& b) const;
+
+  const Character& character_;
+  const Clip& clip_;
+  Playing playing_;
+  Vec3 up_;
+  Index root_ = -1;                        // uppermost node that the clip translates; -1: none
+  Mat3 root_to_world_ = Mat3::Identity();  // axes of the root's parent, in the world
+  double period_ = 0;                      // of a round [s]
+  Vec3 travel_{0, 0, 0}, shift_{0, 0, 0};  // travel per round, shift of all poses of the clip [m]
+};
+
+/// Keys per second of the channel with the most keys; 0 for a clip that does not move.
+double key_rate(const Clip& clip);
+
+}  // namespace weft::character

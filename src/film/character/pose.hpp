@@ -1,0 +1,62 @@
+// Poses: the transform of every node of a character at one time.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "film/character/character.hpp"
+
+namespace weft::character {
+
+/// Smooth step from 0 at u = 0 to 1 at u = 1, with zero slope at both ends; constant beyond.
+inline double ease(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * (3 - 2 * u);
+}
+
+/// Node to parent, decomposed for blending of poses: the affine map x -> position + rotation · stretch · x.
+struct Placement {
+  Vec3 position{0, 0, 0};           ///< [m]
+  Quat rotation{1, 0, 0, 0};        ///< of unit length
+  Mat3 stretch = Mat3::Identity();  ///< scale, mirroring and shear
+
+  Affine to_affine() const;
+};
+
+struct Pose {
+  std::vector<Placement> nodes;
+  std::vector<double> morphs;  ///< weight of each morph target
+};
+
+/// Decomposes an affine map without loss, up to rounding errors; shear is part of the stretch.
+Placement to_placement(const Affine& map);
+
+/// The pose at rest.
+Pose rest_pose(const Character& character);
+
+/// The pose of a clip at time t [s] after its start; outside the clip, that of the nearer end.
+Pose pose_at(const Character& character, const Clip& clip, double t);
+
+/// Distinct times >= 0 of all rotation and position keys of a clip, ascending; always includes 0.
+std::vector<double> key_times(const Clip& clip);
+
+/// The uppermost node whose position changes in a clip; -1 if none does.
+Index traveling_node(const Clip& clip);
+
+/// Interpolates from `a` (weight 0) to `b` (weight 1): positions and stretches linearly, rotations along the shortest
+/// arc.
+Pose blend(const Pose& a, const Pose& b, double weight);
+
+/// The rotation by the smallest angle that takes the direction of `from` to that of `to`; if they are opposite, about
+/// an axis perpendicular to them. Replaces Eigen's function, whose singular value decomposition takes long to compile.
+Quat shortest_rotation(const Vec3& from, const Vec3& to);
+
+/// Transforms from node to world, for every node.
+std::vector<Affine> global_transforms(const Character& character, const Pose& pose);
+
+/// Writes the positions of the vertices in a pose: linear blend skinning over the blended shapes, parallel over
+/// vertices. `out`: one per vertex of the mesh.
+void skin(const Character& character, const Pose& pose, std::span<Vec3> out);
+
+}  // namespace weft::character

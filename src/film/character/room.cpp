@@ -1,0 +1,256 @@
+#include "film/character/room.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/parallel.hpp"
+#include "film/character/dressing.hpp"
+#include "physics/mesh/triangle_grid.hpp"
+
+namespace weft::character {
+namespace {
+
+/// Skin whose limb weights differ by more than this belongs to another limb (1: no common bone, 0: equal weights). Near
+/// a joint, where weights change gradually, skin folds onto itself.
+constexpr float kMinWeightDifference = 0.15F;
+
+/// Lines per task; such a task takes some hundred microseconds.
+constexpr std::size_t kLinesPerTask = 512;
+
+/// Number of grid cells along the longest side of the body: 3 cm for a person.
+constexpr double kCellsPerSide = 60;
+
+/// Maximum number of rounds. One suffices if both sides face each other; elsewhere each round halves the remainder.
+constexpr int kMaxRounds = 8;
+
+/// Tolerated missing clearance at the end, as a fraction of the clearance.
+constexpr double kMissingTolerance = 0.02;
+
+/// Smoothing passes per round: dents extend over at least this number of edges.
+constexpr int kSmoothingPasses = 3;
+
+/// Clearance between body and ground, as a fraction of the clearance between limbs.
+constexpr double kGroundClearanceRatio = 0.5;
+
+/// Each of two limbs moves back by at most this fraction of the missing clearance.
+constexpr double kMaxGivenFraction = 0.5;
+
+/// Minimum fraction of the distance from bone to skin that remains of a limb; a thinner limb looks deflated.
+constexpr double kMinRemainingFraction = 0.5;
+
+/// Skin without cloth nearby moves by at most this distance along with its neighbours [m]; 5 mm are visible.
+constexpr double kMaxMoveWithoutCloth = 0.004;
+
+/// Skin near cloth moves by at most this distance, or twice the clearance [m]. Limbs that overlap more deeply still
+/// overlap afterwards, since larger moves would be visible.
+constexpr double kMaxMoveNearCloth = 0.03;
+
+/// Skin without cloth of its own that is deeper in the other limb than this does not count as near cloth [m].
+constexpr double kMaxNearClothDepth = 0.05;
+
+/// Over edges up to this length [m] skin fully follows its neighbours, over longer ones less, so that dents in coarse
+/// bodies are as narrow as in fine ones.
+constexpr double kFullFollowEdge = 0.02;
+
+/// The limb of each joint, in the order of joints. The trunk includes neck, head and shoulders; hands belong to lower
+/// arms, feet to lower legs. Hands and feet are too thin to move back separately.
+constexpr std::array<std::uint8_t, kJointCount> kLimbOf = {0, 0, 0, 0, 0, 0, 1, 2, 2, 3, 4,
+                                                           4, 4, 0, 5, 6, 6, 7, 8, 8, 8};
+constexpr std::array<const char*, 9> kLimbNames = {"trunk",           "left upper arm",  "left lower arm",
+                                                   "left upper leg",  "left lower leg",  "right upper arm",
+                                                   "right lower arm", "right upper leg", "right lower leg"};
+
+const char* name_of(const Room::LimbWeights& weights) {
+  return kLimbNames[static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin())];
+}
+
+std::vector<Room::LimbWeights> limb_weights_of(const Rig& rig) {
+  const Character& body = rig.character;
+  std::vector<std::uint8_t> limb_of_node(body.nodes.size(), 0);
+  for (std::size_t n = 0; n < limb_of_node.size(); ++n) {
+    const auto own = std::ranges::find(rig.joints, static_cast<Index>(n));
+    if (own != rig.joints.end()) {
+      limb_of_node[n] = kLimbOf[static_cast<std::size_t>(own - rig.joints.begin())];
+    } else if (body.nodes[n].parent >= 0) {
+      limb_of_node[n] = limb_of_node[body.nodes[n].parent];
+    }
+  }
+  std::vector<Room::LimbWeights> weights(body.mesh.positions.size(), Room::LimbWeights{});
+  for (std::size_t v = 0; v < weights.size(); ++v)
+    for (Index i = body.first_influence[v]; i < body.first_influence[v + 1]; ++i)
+      weights[v][limb_of_node[body.bones[body.influences[i].bone].node]] +=
+          static_cast<float>(body.influences[i].weight);
+  return weights;
+}
+
+/// Half of the sum of all differences: 0 for equal weights, 1 for disjoint ones.
+float difference(const Room::LimbWeights& a, const Room::LimbWeights& b) {
+  float sum = 0;
+  for (std::size_t l = 0; l < a.size(); ++l) sum += std::abs(a[l] - b[l]);
+  return 0.5F * sum;
+}
+
+/// The body with a new bound mesh, whose vertices have the positions `places` in the rest pose.
+Character rebind_to_bones(const Character& body, const std::vector<Vec3>& places) {
+  Character rebound{body.nodes, body.bones, {}, body.first_influence, body.influences, {}, {}, {}, {}, {}};
+  const Pose rest = rest_pose(rebound);
+  // Images of the origin and of the axis ends under the map of each vertex.
+  std::array<std::vector<Vec3>, 4> images;
+  for (int k = 0; k < 4; ++k) {
+    rebound.mesh.positions.assign(places.size(), k == 0 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(k - 1)));
+    images[k].resize(places.size());
+    skin(rebound, rest, images[k]);
+  }
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    Mat3 map;
+    for (int k = 0; k < 3; ++k) map.col(k) = images[k + 1][v] - images[0][v];
+    rebound.mesh.positions[v] = map.fullPivLu().solve(places[v] - images[0][v]);
+  }
+  return rebound;
+}
+
+}  // namespace
+
+Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cloth, double room,
+           std::vector<Ground> grounds)
+    : room_(room),
+      grounds_(std::move(grounds)),
+      limb_weights_(limb_weights_of(rig)),
+      near_(std::move(near_cloth)),
+      touched_(touched),
+      foot_(vertices_of(rig.character, rig.joints, joints_of_part("feet"))) {
+  for (const mesh::Triangle& t : rig.character.mesh.topology.triangles) {
+    if (std::ranges::any_of(t, [&](Index v) { return touched_[v] == 0; })) continue;
+    triangles_.push_back(t);
+    near_of_triangle_.push_back(std::min({near_[t[0]], near_[t[1]], near_[t[2]]}));
+    LimbWeights& mean = limb_weights_of_triangle_.emplace_back();
+    for (std::size_t l = 0; l < mean.size(); ++l)
+      mean[l] = (limb_weights_[t[0]][l] + limb_weights_[t[1]][l] + limb_weights_[t[2]][l]) / 3;
+    for (int k = 0; k < 3; ++k) edges_.push_back({t[k], t[(k + 1) % 3]});
+  }
+  const Pose rest = rest_pose(rig.character);
+  std::vector<Vec3> places = growth_start_positions(rig.character, rest);
+  bones_ = rebind_to_bones(rig.character, places);
+  std::vector<Vec3> skinned(rig.character.mesh.positions.size());
+  skin(rig.character, rest, skinned);
+  missing_at_rest_.assign(touched_.size(), 0);
+  std::vector<Missing> missing(touched_.size());
+  find_missing(places, skinned, skinned, missing);
+  for (std::size_t v = 0; v < missing.size(); ++v) missing_at_rest_[v] = missing[v].distance;
+}
+
+// Computes how much of the line from the bone through the skin, up to the clearance beyond it, lies in another limb.
+// `skin` defines the lines, `x` is the current position of the skin.
+void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
+                        std::vector<Missing>& missing) const {
+  Box3 box;
+  for (const mesh::Triangle& t : triangles_) box.extend(x[t[0]]);
+  if (triangles_.empty()) return;
+  const mesh::TriangleGrid grid(triangles_, x, box.diagonal().maxCoeff() / kCellsPerSide);
+  parallel_for(touched_.size(), kLinesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      missing[v] = {};
+      const double length = (skin[v] - from[v]).norm();
+      // If more than the clearance is missing at rest, limbs cross there on purpose, as plates of armour do.
+      if (touched_[v] == 0 || !(length > 0) || missing_at_rest_[v] > room_) continue;
+      const Vec3 to = x[v] + room_ / length * (skin[v] - from[v]);
+      const mesh::Entry entry = grid.find_first_crossing(from[v], to, [&](Index t) {
+        return difference(limb_weights_of_triangle_[t], limb_weights_[v]) > kMinWeightDifference;
+      });
+      if (entry.triangle < 0) continue;
+      const double all = (1 - entry.t) * (to - from[v]).norm();
+      const double shallow = std::clamp(2 - 2 * (all - room_) / kMaxNearClothDepth, 0.0, 1.0);
+      missing[v] = {std::max(0.0, all - missing_at_rest_[v]),
+                    std::max(near_[v], static_cast<float>(shallow) * near_of_triangle_[entry.triangle]),
+                    entry.triangle};
+    }
+  });
+}
+
+// Moves each vertex back at least by the mean fraction of its neighbours, which counts less over edges longer than
+// kFullFollowEdge.
+void Room::smooth(std::span<const double> lengths, std::vector<double>& remaining) const {
+  std::vector<double> sums(remaining.size()), counts(remaining.size());
+  for (int round = 0; round < kSmoothingPasses; ++round) {
+    std::ranges::fill(sums, 0);
+    std::ranges::fill(counts, 0);
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      const auto [a, b] = edges_[e];
+      const double along = std::min(1.0, kFullFollowEdge / lengths[e]);
+      sums[a] += along * (1 - remaining[b]), sums[b] += along * (1 - remaining[a]);
+      ++counts[a], ++counts[b];
+    }
+    for (std::size_t v = 0; v < remaining.size(); ++v)
+      if (counts[v] > 0) remaining[v] = std::min(remaining[v], 1 - sums[v] / counts[v]);
+  }
+}
+
+// Lifts skin out of the ground. Limbs whose bones are in the ground stay there: the scene intends this, or moving skin
+// does not help.
+void Room::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const {
+  for (const Ground& ground : grounds_)
+    for (std::size_t v = 0; v < touched_.size(); ++v) {
+      if (touched_[v] == 0 || foot_[v] != 0 || near_[v] <= 0) continue;
+      const double missing = ground.height + kGroundClearanceRatio * room_ - ground.up.dot(x[v]);
+      const double lift_fraction = std::clamp((ground.up.dot(from[v]) - ground.height) / room_, 0.0, 1.0);
+      if (missing > 0) x[v] += static_cast<double>(near_[v]) * lift_fraction * missing * ground.up;
+    }
+}
+
+Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> x, std::span<const Index> other) const {
+  Moved moved;
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    const double distance = (x[v] - before[v]).norm();
+    if (distance > moved.distance) moved.distance = distance, moved.vertex = static_cast<Index>(v);
+  }
+  if (moved.vertex < 0) return moved;
+  moved.limb = name_of(limb_weights_[moved.vertex]);
+  const Index triangle = other[moved.vertex];
+  moved.away_from = triangle < 0 ? "the ground" : name_of(limb_weights_of_triangle_[triangle]);
+  return moved;
+}
+
+Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
+  const std::vector<Vec3> original(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(touched_.size()));
+  std::vector<Vec3> from(touched_.size());
+  skin(bones_, {pose.nodes, {}}, from);
+  std::vector<double> lengths;
+  for (const auto& [a, b] : edges_) lengths.push_back((original[a] - original[b]).norm());
+  std::vector<double> remaining(touched_.size(), 1);
+  // Largest move of each vertex on its own account [m]; smoothing may move it farther, along with its neighbours.
+  std::vector<double> max_given(touched_.size(), 0);
+  std::vector<float> near = near_;
+  std::vector<Index> other(touched_.size(), -1);
+  std::vector<Missing> missing(touched_.size());
+  for (int round = 0; round < kMaxRounds; ++round) {
+    find_missing(from, original, x, missing);
+    bool changed = false;
+    for (std::size_t v = 0; v < remaining.size(); ++v) {
+      if (missing[v].distance <= 0 || missing[v].near <= 0) continue;
+      if (other[v] < 0) other[v] = missing[v].triangle;
+      near[v] = std::max(near[v], missing[v].near);
+      max_given[v] =
+          std::max(max_given[v], kMaxGivenFraction * static_cast<double>(missing[v].near) * missing[v].distance);
+      const double length = (original[v] - from[v]).norm(), before = remaining[v];
+      const double lower_limit = std::max(kMinRemainingFraction, 1 - max_given[v] / length);
+      remaining[v] = std::min(before, std::max(lower_limit, before - kMaxGivenFraction * missing[v].distance / length));
+      changed |= (before - remaining[v]) * length > kMissingTolerance * room_;
+    }
+    // Smooth in every round: a vertex that moves back alone leaves its neighbours inside the other limb.
+    smooth(lengths, remaining);
+    for (std::size_t v = 0; v < remaining.size(); ++v) {
+      if (!(remaining[v] < 1)) continue;
+      const double max_move =
+          std::lerp(kMaxMoveWithoutCloth, std::max(kMaxMoveNearCloth, 2 * room_), static_cast<double>(near[v]));
+      remaining[v] = std::max({remaining[v], kMinRemainingFraction, 1 - max_move / (original[v] - from[v]).norm()});
+      x[v] = from[v] + remaining[v] * (original[v] - from[v]);
+    }
+    if (!changed) break;
+  }
+  lift_from_ground(from, x);
+  return farthest(original, x, other);
+}
+
+}  // namespace weft::character

@@ -1,0 +1,97 @@
+#include "film/character/touching.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace weft::character {
+namespace {
+
+// Distances of the wrist, in arm lengths (0.55 m in an adult), up to which a hand counts as touching; at twice these
+// distances it does not. Wrists of joined hands are 5 to 12 cm apart, so half of that from their midpoint; a hand that
+// holds an elbow has its wrist 8 to 13 cm from the joint, a hand on a hip has it 17 to 22 cm from the midpoint between
+// the hip joints.
+constexpr double kHandsDistance = 0.12, kElbowDistance = 0.2, kHipsDistance = 0.4;
+// Arms bent by less than the first angle hang, by more than the second reach for something [radians].
+constexpr double kHangingBend = 40 * std::numbers::pi / 180, kReachingBend = 70 * std::numbers::pi / 180;
+
+// A hand rests on the hips if it moves less than this distance against them, in arm lengths, within kRestTime [s] to
+// either side: 5 cm in 0.2 s. Hands in walking and running move 20 to 60 cm.
+constexpr double kMaxRestMotion = 0.09, kRestTime = 0.1;
+
+class Puller {
+ public:
+  Puller(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
+         const Proportions& proportions)
+      : theirs_(theirs), ours_(ours), both_(both), proportions_(proportions) {}
+
+  Vec3 pull(bool right, double rests) {
+    const auto at = [&](Joint left) { return place_of(on_side(left, right)); };
+    const auto across = [&](Joint left) { return place_of(on_side(left, !right)); };
+    const std::size_t shoulder = at(Joint::left_upper_arm), elbow = at(Joint::left_lower_arm);
+    hand_ = at(Joint::left_hand);
+    if (!both_[shoulder] || !both_[elbow] || !both_[hand_]) return Vec3::Zero();
+    sum_.setZero();
+    weights_ = 0;
+    const Vec3 upper = theirs_[elbow] - theirs_[shoulder], lower = theirs_[hand_] - theirs_[elbow];
+    const double bend = std::atan2(upper.cross(lower).norm(), upper.dot(lower));
+    const double bent = ease((bend - kHangingBend) / (kReachingBend - kHangingBend));
+    add_target(hand_, across(Joint::left_hand), 0.5, kHandsDistance, proportions_.arm);
+    add_target(across(Joint::left_lower_arm), across(Joint::left_lower_arm), 0, kElbowDistance, proportions_.arm);
+    add_target(at(Joint::left_upper_leg), across(Joint::left_upper_leg), 0.5, kHipsDistance * bent, proportions_.trunk,
+               rests);
+    return sum_ / std::max(1.0, weights_);
+  }
+
+ private:
+  /// Adds the displacement relative to a point that lies at the fraction `fraction` between joints `a` and `b`.
+  void add_target(std::size_t a, std::size_t b, double fraction, double distance, double ratio, double max_weight = 1) {
+    if (!both_[a] || !both_[b] || !(distance > 0)) return;
+    const auto place = [&](const Places& of) -> Vec3 { return (1 - fraction) * of[a] + fraction * of[b]; };
+    const Vec3 offset = theirs_[hand_] - place(theirs_);
+    const double weight = max_weight * (1 - ease(offset.norm() / (distance * proportions_.their_arm) - 1));
+    sum_ += weight * (place(ours_) + ratio * offset - ours_[hand_]);
+    weights_ += weight;
+  }
+
+  const Places &theirs_, &ours_;
+  const std::array<bool, kJointCount>& both_;
+  const Proportions& proportions_;
+  std::size_t hand_ = 0;
+  Vec3 sum_{0, 0, 0};
+  double weights_ = 0;
+};
+
+}  // namespace
+
+std::array<Vec3, 2> displace_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
+                                   const Proportions& proportions, const std::array<double, 2>& rests) {
+  if (!(proportions.their_arm > 0)) return {Vec3::Zero(), Vec3::Zero()};
+  Puller puller(theirs, ours, both, proportions);
+  return {puller.pull(false, rests[0]), puller.pull(true, rests[1])};
+}
+
+std::vector<std::array<double, 2>> find_resting_hands(std::span<const Posture> postures, std::span<const double> times,
+                                                      double arm) {
+  std::vector<std::array<double, 2>> rests(postures.size());
+  for (const bool right : {false, true}) {
+    // Offsets are in the axes of the hips, since resting hands move with the hips.
+    std::vector<Vec3> offsets;
+    for (const Posture& p : postures)
+      offsets.push_back(p.rotations[0].conjugate() *
+                        (p.places[place_of(on_side(Joint::left_hand, right))] - p.places[place_of(Joint::hips)]));
+    for (std::size_t k = 0; k < offsets.size(); ++k) {
+      double furthest = 0;
+      const auto extend_to = [&](std::size_t at) {
+        furthest = std::max(furthest, (offsets[at] - offsets[k]).norm());
+        return std::abs(times[at] - times[k]) < kRestTime;
+      };
+      for (std::size_t at = k; at > 0 && extend_to(at - 1);) --at;
+      for (std::size_t at = k; at + 1 < offsets.size() && extend_to(at + 1);) ++at;
+      rests[k][right] = 1 - ease(furthest / (kMaxRestMotion * arm) - 1);
+    }
+  }
+  return rests;
+}
+
+}  // namespace weft::character

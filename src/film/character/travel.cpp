@@ -1,0 +1,186 @@
+#include "film/character/travel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "film/character/pose.hpp"
+
+namespace weft::character {
+namespace {
+
+/// Smoothing time of paths to either side [s]; people take a step in 0.4 to 0.7 s.
+constexpr double kPathWindow = 0.6;
+/// Smoothing time of foot speeds, whose contacts begin and end abruptly [s].
+constexpr double kFootWindow = 0.05;
+/// Balls of feet up to this height above the lowest one carry the body [leg lengths].
+constexpr double kMaxFootHeight = 0.05;
+/// Minimum speed of passing feet in a walk [leg lengths/s].
+constexpr double kMinFeetSpeed = 0.1;
+
+/// A clip, sampled at its keys.
+class Path {
+ public:
+  Path(const Rig& rig, const Clip& clip, const Vec3& up)
+      : rig_(rig), skeleton_(rig), clip_(clip), up_(up), times_(key_times(clip)) {
+    const Index hips = rig.joints[place_of(Joint::hips)], middle = hips >= 0 ? hips : traveling_node(clip);
+    for (const double t : times_) {
+      const Pose pose = pose_at(rig.character, clip, t);
+      postures_.push_back(skeleton_.at(pose));
+      middles_.push_back(Vec3::Zero());
+      if (middle >= 0) middles_.back() = horizontal(global_transforms(rig.character, pose)[middle].translation());
+    }
+  }
+
+  /// The clip, translated by a displacement at each key.
+  Clip translate(const std::vector<Vec3>& by) const {
+    Index node = traveling_node(clip_);
+    if (node < 0) node = rig_.joints[place_of(Joint::hips)];
+    if (node < 0) return clip_;
+    const Index parent = rig_.character.nodes[node].parent;
+    Curve<Vec3> position;
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      const Pose pose = pose_at(rig_.character, clip_, times_[k]);
+      Mat3 to_world = Mat3::Identity();
+      if (parent >= 0) to_world = global_transforms(rig_.character, pose)[parent].linear();
+      position.times.push_back(times_[k]);
+      position.values.emplace_back(pose.nodes[node].position + to_world.inverse() * by[k]);
+    }
+    Clip result = clip_;
+    auto channel = std::ranges::find(result.channels, node, &Channel::node);
+    if (channel == result.channels.end()) channel = result.channels.insert(channel, {node, {}, {}, {}});
+    channel->position = std::move(position);
+    return result;
+  }
+
+  /// Displacements that remove the travel.
+  std::vector<Vec3> displacements_in_place() const {
+    std::vector<Vec3> by;
+    const double window = std::min(kPathWindow, times_.back() / 2);
+    for (const double t : times_) by.emplace_back(middles_.front() - smoothed(middles_, t, window));
+    return by;
+  }
+
+  /// Displacements along the path that keeps feet in place, at a mean speed of `speed`. `feet`: speed that the feet
+  /// imply.
+  std::vector<Vec3> displacements_at_speed(double speed, double& feet) const {
+    std::vector<Vec3> velocities = implied_velocities();
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t k = 0; k + 1 < times_.size(); ++k)
+      mean += (times_[k + 1] - times_[k]) / times_.back() * (velocities[k] + velocities[k + 1]) / 2;
+    feet = mean.norm();
+    if (!(feet > kMinFeetSpeed * skeleton_.leg_length(postures_.front()))) {
+      feet = 0;
+      mean = Vec3::UnitY();
+      velocities.assign(velocities.size(), mean);
+    }
+    std::vector<Vec3> by{Vec3::Zero()};
+    for (std::size_t k = 0; k + 1 < times_.size(); ++k) {
+      const Vec3 velocity = (heading(k) * velocities[k] + heading(k + 1) * velocities[k + 1]) / 2;
+      by.emplace_back(by.back() + speed / mean.norm() * (times_[k + 1] - times_[k]) * velocity);
+    }
+    return by;
+  }
+
+ private:
+  Vec3 horizontal(const Vec3& v) const { return v - v.dot(up_) * up_; }
+
+  /// Axes of the body: left, ahead (both horizontal), and up.
+  Mat3 heading(std::size_t k) const {
+    const Posture& p = postures_[k];
+    const Vec3 across = horizontal(skeleton_.across_hips(p).normalized() + skeleton_.across_shoulders(p).normalized());
+    const Vec3 left = across.norm() > 0 ? Vec3(across.normalized()) : up_.unitOrthogonal();
+    Mat3 axes;
+    axes << left, left.cross(up_), up_;
+    return axes;
+  }
+
+  /// Mean over a window around t. Beyond its ends, the path is continued by point reflection at the end points.
+  Vec3 smoothed(const std::vector<Vec3>& path, double t, double window) const {
+    const auto at = [&](double s) -> Vec3 {
+      const auto next = std::ranges::upper_bound(times_, s);
+      if (next == times_.end()) return path.back();
+      if (next == times_.begin()) return path.front();
+      const auto k = static_cast<std::size_t>(next - times_.begin());
+      const double fraction = (s - times_[k - 1]) / (times_[k] - times_[k - 1]);
+      return (1 - fraction) * path[k - 1] + fraction * path[k];
+    };
+    const double end = times_.back();
+    constexpr int kSamples = 32;
+    Vec3 sum = Vec3::Zero();
+    for (int i = -kSamples; i <= kSamples; ++i) {
+      const double s = t + window * i / kSamples;
+      sum += s < 0 ? Vec3(2 * path.front() - at(-s)) : s > end ? Vec3(2 * path.back() - at(2 * end - s)) : at(s);
+    }
+    return sum / (2 * kSamples + 1);
+  }
+
+  /// Velocities of the body that the feet in stance imply, in the axes of heading().
+  std::vector<Vec3> implied_velocities() const {
+    std::array<Joint, 2> balls{};
+    double floor = std::numeric_limits<double>::infinity();
+    for (const bool right : {false, true}) {
+      const Joint toes = on_side(Joint::left_toes, right), foot = on_side(Joint::left_foot, right);
+      balls[right] = skeleton_.has(toes) ? toes : foot;
+      for (const Posture& p : postures_)
+        if (skeleton_.has(balls[right])) floor = std::min(floor, up_.dot(p.places[place_of(balls[right])]));
+    }
+    const double low = kMaxFootHeight * skeleton_.leg_length(postures_.front());
+    std::vector<double> weights(times_.size(), 0);
+    std::vector<Vec3> velocities(times_.size(), Vec3::Zero());
+    for (const Joint ball : balls) {
+      if (!skeleton_.has(ball) || low <= 0) continue;
+      for (std::size_t k = 0; k < times_.size(); ++k) {
+        const std::size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, times_.size() - 1);
+        const Vec3 &from = postures_[a].places[place_of(ball)], &to = postures_[b].places[place_of(ball)];
+        const double weight = 1 - (up_.dot(postures_[k].places[place_of(ball)]) - floor) / low;
+        if (weight <= 0 || a == b) continue;
+        weights[k] += weight;
+        velocities[k] -= weight / (times_[b] - times_[a]) * (heading(k).transpose() * horizontal(to - from));
+      }
+    }
+    // Keys without a contact are interpolated.
+    std::size_t known = times_.size();
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      if (weights[k] == 0) continue;
+      velocities[k] /= weights[k];
+      const Vec3 first = known < times_.size() ? velocities[known] : velocities[k];
+      const std::size_t begin = known < times_.size() ? known + 1 : 0;
+      for (std::size_t i = begin; i < k; ++i)
+        velocities[i] =
+            first + static_cast<double>(i - begin + 1) / static_cast<double>(k - begin + 1) * (velocities[k] - first);
+      known = k;
+    }
+    for (std::size_t k = known + 1; k < times_.size(); ++k) velocities[k] = velocities[known];
+    std::vector<Vec3> smooth;
+    for (const double t : times_) smooth.push_back(smoothed(velocities, t, std::min(kFootWindow, times_.back() / 2)));
+    return smooth;
+  }
+
+  const Rig& rig_;
+  const Skeleton skeleton_;
+  const Clip& clip_;
+  const Vec3 up_;
+  const std::vector<double> times_;
+  std::vector<Posture> postures_;
+  std::vector<Vec3> middles_;  // horizontal positions of the hips, or else of the travelling node
+};
+
+}  // namespace
+
+Clip in_place(const Rig& rig, const Clip& clip, const Vec3& up) {
+  const Path path(rig, clip, up);
+  return path.translate(path.displacements_in_place());
+}
+
+TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up) {
+  const Clip still = in_place(rig, clip, up);
+  const Path path(rig, still, up);
+  TravelResult result;
+  const std::vector<Vec3> by = path.displacements_at_speed(speed, result.feet);
+  result.clip = path.translate(by);
+  return result;
+}
+
+}  // namespace weft::character

@@ -1,0 +1,23 @@
+// Horizontal travel of a clip: unchanged, in place, or at a given speed.
+#pragma once
+
+#include "film/character/anatomy.hpp"
+#include "film/character/character.hpp"
+
+namespace weft::character {
+
+/// Removes the travel of a clip: subtracts the horizontal path of the hips, smoothed over about two steps. Sway about
+/// the path remains. The clip begins and ends in the same place.
+Clip in_place(const Rig& rig, const Clip& clip, const Vec3& up);
+
+struct TravelResult {
+  Clip clip;
+  double feet = 0;  ///< mean speed of feet in stance relative to a body in place [m/s]; 0: too slow for a walk
+};
+
+/// Gives a clip in place a mean speed of `speed` [m per second of clip time], along the path that its feet in stance
+/// imply; feet do not slide if `speed` equals TravelResult::feet. If this is 0, the clip moves straight ahead. Travel
+/// of the clip is removed first. `up`: unit vector.
+TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up);
+
+}  // namespace weft::character

@@ -1,0 +1,500 @@
+#include "film/environment/acting.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/error.hpp"
+#include "film/assets/character_file.hpp"
+#include "film/assets/sequence_file.hpp"
+#include "film/assets/source.hpp"
+#include "film/character/dressing.hpp"
+#include "film/character/gait.hpp"
+#include "film/character/joints.hpp"
+#include "film/character/mannequin.hpp"
+#include "film/character/parts.hpp"
+#include "film/character/performance.hpp"
+#include "film/character/retarget.hpp"
+#include "film/character/room.hpp"
+#include "film/character/travel.hpp"
+#include "film/environment/body_parts.hpp"
+#include "film/environment/cast.hpp"
+#include "film/environment/clearance.hpp"
+#include "film/environment/plausibility.hpp"
+#include "film/scene/sequence_files.hpp"
+#include "physics/mesh/topology.hpp"
+
+namespace weft::environment {
+namespace {
+
+/// Bounds of the rate of key frames that follows from the rate of a clip [1/s].
+constexpr double kMinKeyRate = 10, kMaxKeyRate = 120;
+
+/// Smallest rate of key frames of a body that grows or lowers its arms [1/s].
+constexpr double kDressingRate = 25;
+
+/// Largest size of the key frames of one character [bytes]; a larger one suggests a mistyped rate.
+constexpr std::size_t kMaxKeyFrameBytes = std::size_t{8} << 30;
+
+/// Largest distance between the ends of a clip that is not visible [m].
+constexpr double kMaxInvisibleGap = 1e-3;
+
+/// Largest relative difference of the speeds of feet and body that is not reported: 5 cm of sliding in a step of 0.7 m.
+constexpr double kMaxFootSlide = 0.07;
+
+/// Smallest vertical component of the trunk's direction, averaged over a motion, of a body that stands.
+constexpr double kMinUprightness = 0.7;
+
+/// If the soles at rest are within this distance from the height of the file's origin, they count as at it [m].
+constexpr double kMaxSoleOffset = 0.05;
+
+/// The clip that the scene names, or else the first one.
+const character::Clip& choose_clip(const Cast& cast, const std::optional<std::string>& name,
+                                   const std::vector<character::Clip>& clips, const std::string& source) {
+  if (!name) return clips.front();
+  std::vector<std::string> names;
+  for (const character::Clip& clip : clips) {
+    if (clip.name == *name) return clip;
+    names.push_back(clip.name);
+  }
+  if (names.empty()) cast.fail("clip", fmt::format("expected an animation in {}, got none; leave the key out", source));
+  cast.fail("clip", fmt::format("expected one of the {} clips of {}, \"{}\", got \"{}\"{}", names.size(), source,
+                                fmt::join(names, "\", \""), *name, did_you_mean(*name, names)));
+}
+
+void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::vector<character::Node>& nodes,
+                const std::string& source) {
+  if (joints[character::joint_number("Hips")] >= 0) return;
+  std::vector<std::string> names;
+  for (const character::Node& node : nodes) names.push_back(node.name);
+  cast.fail("joint", fmt::format("expected a node of {} that is known as the hips, got \"{}\"; name each joint in a "
+                                 "[[character.joint]], the hips with name = \"Hips\"",
+                                 source, fmt::join(names, "\", \"")));
+}
+
+/// Loads a motion file. If neither the scene nor the format (BVH) states the up axis, it is y, or z if bodies in the
+/// file stand along z.
+assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acting,
+                                     std::vector<std::string>& warnings) {
+  const auto load = [&](scene::FileUp up) {
+    return assets::load_motion(*acting.motion, {{}, up, cast.scene.up}, cast.where);
+  };
+  assets::LoadedCharacter motion = load(acting.motion_up);
+  if (acting.motion_up != scene::FileUp::as_file || !assets::is_bvh(*acting.motion)) return motion;
+  const auto joints =
+      joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, acting.motion->string());
+  const character::Clip& clip = choose_clip(cast, acting.clip, motion.character.clips, acting.motion->string());
+  const Vec3 trunk = character::mean_trunk({motion.character, joints}, clip);
+  const Mat3 from_y = assets::turn_up(1, cast.scene.up), from_z = assets::turn_up(2, cast.scene.up);
+  const double along_y = trunk.dot(cast.up()), along_z = (from_z * from_y.transpose() * trunk).dot(cast.up());
+  if (along_z < kMinUprightness || along_y > along_z) return motion;
+  warnings.push_back(
+      fmt::format("{}: motion file {}: bodies stand along z, which is taken to be up; if y is, write "
+                  "motion_up = \"y\"",
+                  cast.where, acting.motion->string()));
+  return load(scene::FileUp::z);
+}
+
+double leg_length(const character::Rig& rig) {
+  const character::Skeleton skeleton(rig);
+  return skeleton.leg_length(skeleton.at(character::rest_pose(rig.character)));
+}
+
+/// The clip with the travel that the scene asks for. `size`: leg length of the body / that of the clip's skeleton.
+character::Clip travel(const Cast& cast, const scene::Acting& acting, const character::Rig& rig,
+                       const character::Clip& clip, double size, std::vector<std::string>& warnings) {
+  if (acting.travel.kind == scene::Travel::Kind::file || clip.duration <= 0) return clip;
+  if (acting.travel.kind == scene::Travel::Kind::none) return character::in_place(rig, clip, cast.up());
+  const double to_scene = size * cast.settings.speed, speed = acting.travel.speed;
+  character::TravelResult traveled = character::at_speed(rig, clip, speed / to_scene, cast.up());
+  const double feet = to_scene * traveled.feet;
+  if (feet == 0) {
+    warnings.push_back(
+        fmt::format("{}: travel: clip \"{}\" takes no steps: feet slide at {:g} m/s", cast.where, clip.name, speed));
+  } else if (std::abs(feet - speed) > kMaxFootSlide * feet) {
+    warnings.push_back(
+        fmt::format("{}: travel: feet of clip \"{}\" go at {:.3g} m/s and slide at {:g} m/s; speed = {:.3g} would make "
+                    "them fit",
+                    cast.where, clip.name, feet, speed, cast.settings.speed * speed / feet));
+  }
+  return std::move(traveled.clip);
+}
+
+/// Moves the soles of a body to the height of its file's origin, so that a motion from another file walks on the floor.
+void put_on_floor(const Cast& cast, Body& body) {
+  const Vec3 up = cast.up();
+  std::vector<Vec3> x(body.character.mesh.positions.size());
+  character::skin(body.character, character::rest_pose(body.character), x);
+  const double soles = up.dot(std::ranges::min(x, {}, [&](const Vec3& v) { return up.dot(v); }));
+  if (std::abs(soles) < kMaxSoleOffset) return;
+  for (character::Node& node : body.character.nodes)
+    if (node.parent < 0) node.local.pretranslate(-soles * up);
+  body.warnings.push_back(
+      fmt::format("{}: {} has its soles {:.3g} m {} its origin; they are put at the height of position", cast.where,
+                  body.source, std::abs(soles), soles < 0 ? "below" : "above"));
+}
+
+/// Retargets the clip of a motion file to the body.
+character::Clip retarget_motion(const Cast& cast, const scene::Acting& acting, Body& body) {
+  const std::string file = acting.motion->string();
+  assets::LoadedCharacter motion = load_upright(cast, acting, body.warnings);
+  body.warnings.insert(body.warnings.end(), motion.warnings.begin(), motion.warnings.end());
+  const auto ours = joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source);
+  const auto theirs = joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, file);
+  check_hips(cast, ours, body.character.nodes, body.source);
+  check_hips(cast, theirs, motion.character.nodes, file);
+  std::vector<std::string> still;
+  for (std::size_t j = 0; j < ours.size(); ++j)
+    if (ours[j] >= 0 && theirs[j] < 0) still.push_back(character::joint_names()[j]);
+  if (!still.empty())
+    body.warnings.push_back(
+        fmt::format("{}: motion file {}: nothing that moves {}", cast.where, file, fmt::join(still, ", ")));
+  put_on_floor(cast, body);
+  const character::Rig from{motion.character, theirs}, to{body.character, ours};
+  const double their_leg = leg_length(from), size = their_leg > 0 ? leg_length(to) / their_leg : 1;
+  const character::Clip clip =
+      travel(cast, acting, from, choose_clip(cast, acting.clip, motion.character.clips, file), size, body.warnings);
+  character::Retargeted result = character::retarget(to, from, clip, cast.up());
+  for (const std::string& doubt : result.doubts)
+    body.warnings.push_back(fmt::format("{}: motion file {}: {}", cast.where, file, doubt));
+  return std::move(result.clip);
+}
+
+/// Objects of the file that cloths of the scene use, and that are therefore no part of the body.
+std::vector<std::string> taken_by_cloths(const Cast& cast, const std::filesystem::path& file) {
+  std::vector<std::string> taken;
+  std::error_code ignored;
+  for (const scene::Cloth& cloth : cast.scene.cloths)
+    if (cloth.shape == scene::ClothShape::mesh && !cloth.object.empty() &&
+        std::filesystem::equivalent(cloth.file, file, ignored))
+      taken.push_back(cloth.object);
+  return taken;
+}
+
+/// The body in a file, without the objects that cloths use.
+Body make_body(const Cast& cast, const scene::CharacterFile& source) {
+  assets::LoadedCharacter loaded = assets::load_character(
+      source.path, cast.axes(), cast.where, {source.meshes, source.without, taken_by_cloths(cast, source.path)});
+  return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings), loaded.scale};
+}
+
+/// The mannequin with its walk.
+Body make_body(const Cast& cast, const scene::Mannequin& source) {
+  Body body{"the mannequin",
+            character::make_mannequin({source.height, source.girth, source.masculinity, source.edge_length}),
+            {},
+            {}};
+  if (source.walk > 0)
+    body.character.clips.push_back(character::make_walk(
+        body.character,
+        {.speed = source.pace, .distance = source.walk, .turn_back = source.turn_back, .arms_out = source.arms_out}));
+  // The same rotation as in turned_up() of environment.cpp.
+  const Mat3 z_to_y{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+  if (cast.scene.up == scene::UpAxis::y) assets::transform(body.character, 1, z_to_y);
+  return body;
+}
+
+/// The body, with its clip if it plays one.
+template <class Source>
+Body make_playing_body(const Cast& cast, const Source& source) {
+  Body body = make_body(cast, source);
+  if (source.motion) {
+    body.clip = retarget_motion(cast, source, body);
+  } else if (source.clip || !body.character.clips.empty()) {
+    const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
+    body.clip = travel(cast, source, {body.character, joints},
+                       choose_clip(cast, source.clip, body.character.clips, body.source), 1, body.warnings);
+  }
+  if (body.clip)
+    if (const auto doubt = warn_of_missing_skin(body.character, *body.clip))
+      body.warnings.push_back(fmt::format("{}: {} {}", cast.where, body.source, *doubt));
+  if (body.clip && !source.loop && cast.settings.start > body.clip->duration)
+    cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,
+                                   body.clip->duration, cast.settings.start));
+  return body;
+}
+
+/// Adds the particles of a pin to the vertices of the body. `vertices`: number of vertices that the body has itself.
+void add_following_pin(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& parts,
+                       const character::Pose& start, std::size_t vertices, character::Character& body) {
+  character::VertexMask mask(vertices, 1);
+  if (!pin.part.empty()) mask = std::ranges::find(parts, pin.part, &Part::name)->vertices;
+  const scene::Pose& pose = cast.settings.pose;
+  std::vector<Vec3> places;
+  for (const Vec3& place : pin.places) places.push_back(pose.rotation.conjugate() * (place - pose.position));
+  character::add_followers(body, start, mask, places);
+}
+
+/// Start of the run [s].
+double begin_of(const scene::Scene& scene) {
+  return -scene.preroll_frames() / scene.time.fps;
+}
+
+/// Times of the key frames of a character: k / rate, for `count` numbers k from `first` on.
+struct KeyTimes {
+  double rate = kMinKeyRate;  // [1/s]
+  long first = 0;
+  std::size_t count = 1;
+
+  std::size_t bytes(std::size_t vertices, scene::Interpolation interpolation) const {
+    const std::size_t stored = interpolation == scene::Interpolation::cubic && count > 1 ? 2 : 1;
+    return count * vertices * stored * sizeof(Vec3);
+  }
+};
+
+/// `clip_rate`: key frames per second of the sampled motion; 0 if nothing moves.
+KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
+  const scene::Character& settings = cast.settings;
+  KeyTimes times;
+  const double duration = cast.scene.time.duration, begin = begin_of(cast.scene);
+  const bool grows = settings.grow > 0, moves = (clip_rate > 0 || changes_stance) && duration > cast.motion_start();
+  if (!grows && !moves) return times;
+  times.rate = settings.keys_per_second.value_or(std::clamp(clip_rate * settings.speed, kMinKeyRate, kMaxKeyRate));
+  if (!settings.keys_per_second && (grows || changes_stance)) times.rate = std::max(times.rate, kDressingRate);
+  times.first = static_cast<long>(std::floor((grows ? begin : cast.motion_start()) * times.rate));
+  // Add a key past the end, so that the velocity at the end is defined.
+  const double end = moves ? duration : begin + settings.grow;
+  times.count = static_cast<std::size_t>(static_cast<long>(std::ceil(end * times.rate)) + 2 - times.first);
+  return times;
+}
+
+void check_memory(const Cast& cast, const KeyTimes& times, std::size_t vertices) {
+  const std::size_t bytes = times.bytes(vertices, cast.settings.interpolation);
+  if (bytes > kMaxKeyFrameBytes)
+    cast.fail("keys_per_second", fmt::format("expected at most {} bytes of key frames, got {}: {} of {} vertices",
+                                             kMaxKeyFrameBytes, bytes, times.count, vertices));
+}
+
+/// Samples a body at the times of its key frames. `vertices_at` writes its vertices, in its own coordinates, at a time
+/// of the scene.
+KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
+                 const std::function<void(double, std::vector<Vec3>&)>& vertices_at) {
+  check_memory(cast, times, vertices);
+  const scene::Pose& pose = cast.settings.pose;
+  std::vector<std::vector<Vec3>> keys(times.count, std::vector<Vec3>(vertices));
+  for (std::size_t k = 0; k < times.count; ++k) {
+    const double t = static_cast<double>(times.first + static_cast<long>(k)) / times.rate;
+    vertices_at(t, keys[k]);
+    for (std::size_t v = 0; v < vertices; ++v) {
+      Vec3& x = keys[k][v];
+      x = pose.position + pose.rotation * x;
+      if (!(x.cwiseAbs().maxCoeff() < assets::kMaxCoordinate))
+        throw Error(ExitCode::asset_unreadable,
+                    "{}: expected coordinates below {:g} m, got ({:g}, {:g}, {:g}) for vertex {} at {:g} s", cast.where,
+                    assets::kMaxCoordinate, x.x(), x.y(), x.z(), v, t);
+    }
+  }
+  return {cast.settings.interpolation, static_cast<double>(times.first) / times.rate, 1 / times.rate, std::move(keys),
+          cast.settings.dressing > 0};
+}
+
+/// Warns of a body whose size suggests that its file has another unit.
+void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body) {
+  std::vector<Vec3> x(body.character.mesh.positions.size());
+  character::skin(body.character, character::rest_pose(body.character), x);
+  if (const auto doubt = warn_of_height(x, cast.up(), body.scale, cast.settings.scale.has_value()))
+    body.warnings.push_back(fmt::format("{}: {} {}", cast.where, source.path.string(), *doubt));
+}
+
+void check_size(const Cast&, const scene::Mannequin&, Body&) {}
+
+/// The motion that a body performs. The body and the clip must outlive it.
+template <class Source>
+character::Performance performance_of(const Cast& cast, const Source& source, const Body& body,
+                                      const character::Clip& clip) {
+  std::optional<character::Pose> stance;
+  if (source.stance == scene::Stance::rest && body.clip) stance = character::rest_pose(body.character);
+  if (source.stance_arms) {
+    if (!stance) stance = character::pose_at(body.character, clip, cast.settings.start);
+    const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
+    stance = character::raise_arms({body.character, joints}, *stance, *source.stance_arms, cast.up());
+  }
+  return {body.character, clip, {cast.timing(), source.loop, source.crossfade, std::move(stance)}, cast.up()};
+}
+
+template <class Source>
+StandingBody make_standing(const Cast& cast, const Source& source, const std::string& /*where*/) {
+  const Body body = make_playing_body(cast, source);
+  const character::Character& character = body.character;
+  const character::Clip still;
+  const character::Pose pose =
+      performance_of(cast, source, body, body.clip ? *body.clip : still).at(begin_of(cast.scene));
+  const scene::Pose& placed = cast.settings.pose;
+  StandingBody standing;
+  standing.mesh = character.mesh;
+  character::skin(character, pose, standing.mesh.positions);
+  for (Vec3& x : standing.mesh.positions) x = placed.position + placed.rotation * x;
+  const std::vector<Index> nodes = joints_of(cast, source.joints, &scene::JointNames::body, character, body.source);
+  const std::vector<character::Affine> globals = character::global_transforms(character, pose);
+  for (const Index node : nodes) {
+    auto& joint = standing.joints.emplace_back();
+    if (node >= 0) joint = placed.position + placed.rotation * globals[node].translation();
+  }
+  standing.limbs = character::limbs_of(character, nodes);
+  return standing;
+}
+
+StandingBody make_standing(const Cast& cast, const scene::MeshSequence& /*source*/, const std::string& where) {
+  throw Error(ExitCode::scene_invalid,
+              "{}: expected a wearer with bones for a pattern with panels around its parts, got '{}', a sequence of "
+              "meshes",
+              where, cast.settings.name);
+}
+
+/// Space for cloth between the limbs and under the body; none if no cloth is near.
+template <class Source>
+std::optional<character::Room> room_of(const Cast& cast, const Source& source, const Body& body,
+                                       const character::Performance& performance, const std::vector<Part>& parts,
+                                       std::span<const ClothAtStart> cloths) {
+  const double room = clearance_between_limbs(cast);
+  if (room == 0 || !body.clip) return std::nullopt;
+  std::vector<float> near_cloth = nearness_of_cloths(cast, body.character, performance, cloths);
+  if (std::ranges::all_of(near_cloth, [](float near) { return near <= 0; })) return std::nullopt;
+  character::VertexMask touched(body.character.mesh.positions.size(), 1);
+  for (const Part& part : parts)
+    for (std::size_t v = 0; v < part.vertices.size(); ++v)
+      if (!part.collide && part.vertices[v] != 0) touched[v] = 0;
+  const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
+  return character::Room({body.character, joints}, touched, std::move(near_cloth), room, grounds_below(cast));
+}
+
+/// The largest displacement of the skin over all keys, its time and its place (body's coordinates) [m].
+struct MaxDisplacement {
+  character::Moved moved;
+  double time = 0;  // [s]
+  Vec3 place{0, 0, 0};
+
+  void add(const character::Moved& now, double t, std::span<const Vec3> x) {
+    if (now.distance <= moved.distance) return;
+    moved = now, time = t, place = x[now.vertex];
+  }
+};
+
+/// Smallest displacement of skin that is reported [m]; smaller ones are not visible.
+constexpr double kMinReportedDisplacement = 1e-3;
+
+std::optional<std::string> describe(const Cast& cast, const MaxDisplacement& most) {
+  if (most.moved.distance < kMinReportedDisplacement) return std::nullopt;
+  const Vec3 x = cast.settings.pose.position + cast.settings.pose.rotation * most.place;
+  return fmt::format(
+      "{}: room: skin of the {} moves by up to {:.3g} mm, at ({:.3g}, {:.3g}, {:.3g}) m and {:.3g} s, to leave space "
+      "for cloth beside the {}; room = 0 prevents this",
+      cast.where, most.moved.limb, 1e3 * most.moved.distance, x.x(), x.y(), x.z(), most.time, most.moved.away_from);
+}
+
+template <class Source>
+Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> following,
+          std::span<const ClothAtStart> cloths) {
+  Body body = make_playing_body(cast, source);
+  check_size(cast, source, body);
+  const character::Clip still;
+  const character::Clip& clip = body.clip ? *body.clip : still;
+  const character::Performance performance = performance_of(cast, source, body, clip);
+  if (const double gap = performance.gap(); gap > kMaxInvisibleGap)
+    body.warnings.push_back(
+        fmt::format("{}: clip \"{}\" does not close: its end and its beginning are {:.3g} m apart; "
+                    "a crossfade would join them",
+                    cast.where, clip.name, gap));
+  std::vector<Part> parts = parts_of(cast, source, following, body);
+  const std::size_t vertices = body.character.mesh.positions.size();
+  const std::optional<character::Room> room = room_of(cast, source, body, performance, parts, cloths);
+  MaxDisplacement moved;
+  std::vector<Index> limbs;
+  for (const character::Limb limb : character::limbs_of(
+           body.character, joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source)))
+    limbs.push_back(static_cast<Index>(limb));
+  const character::Pose start = performance.at(begin_of(cast.scene));
+  for (const FollowingPin& pin : following) add_following_pin(cast, pin, parts, start, vertices, body.character);
+  const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
+  std::vector<Vec3> bones;  // points on the bones from which the body's vertices (not those of pins) grow
+  if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
+  bones.resize(std::min(bones.size(), vertices));
+  const std::vector<character::Ground> grounds = grounds_below(cast);
+  std::vector<double> lowest;  // height of the lowest vertex over the floor at each key [m]
+  KeyFrames keys = sample(cast, times, body.character.mesh.positions.size(), [&](double t, std::vector<Vec3>& x) {
+    const character::Pose pose = performance.at(t);
+    character::skin(body.character, pose, x);
+    if (grounds.size() == 1) lowest.push_back(height_over(grounds[0], std::span(x).first(vertices)));
+    if (room) moved.add(room->make(pose, x), t, x);
+    const double since = t - begin_of(cast.scene);
+    if (since >= cast.settings.grow) return;
+    for (std::size_t v = 0; v < bones.size(); ++v)
+      x[v] = bones[v] + character::grown(since, cast.settings.grow) * (x[v] - bones[v]);
+  });
+  if (const auto doubt = warn_of_speed(keys, static_cast<double>(times.first) / times.rate, times.rate, times.count,
+                                       body.character.mesh.positions.size()))
+    body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
+  if (const auto doubt = warn_of_floor_distance(std::move(lowest), cast.scene.obstacles.size() == 1))
+    body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
+  std::vector<std::string> notes;
+  if (auto note = describe(cast, moved)) notes.push_back(*std::move(note));
+  mesh::Mesh mesh = std::move(body.character.mesh);
+  mesh.positions.resize(vertices);
+  keys.at(0, mesh.positions);
+  std::shared_ptr<const character::Coloring> coloring;
+  if (!body.character.coloring.material_of_triangle.empty())
+    coloring = std::make_shared<const character::Coloring>(std::move(body.character.coloring));
+  return {std::move(mesh),          std::move(keys),  std::move(parts),   std::move(limbs),
+          std::move(body.warnings), std::move(notes), std::move(coloring)};
+}
+
+Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const FollowingPin> following,
+          std::span<const ClothAtStart> /*cloths*/) {
+  assets::LoadedSequence loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
+  const std::size_t vertices = loaded.mesh.positions.size();
+  if (!cast.settings.parts.empty() || !std::ranges::all_of(following, [](const auto& pin) { return pin.part.empty(); }))
+    cast.fail("part", "expected none of a body from a sequence of meshes, which has no bones");
+  if (cast.settings.grow > 0) cast.fail("grow", "expected 0 of a body from a sequence of meshes, which has no bones");
+  const KeyFrames files(cast.settings.interpolation, 0, 1 / source.fps, std::move(loaded.positions), false);
+  KeyFrames keys = sample(cast, key_times(cast, source.fps, false), vertices,
+                          [&](double t, std::vector<Vec3>& x) { files.at(character::clip_time(cast.timing(), t), x); });
+  keys.at(0, loaded.mesh.positions);
+  std::vector<Index> limbs = mesh::components(loaded.mesh.topology.triangles, vertices);
+  return {std::move(loaded.mesh), std::move(keys), {}, std::move(limbs), {}, {}};
+}
+
+KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertices) {
+  return {times.count, vertices, times.bytes(vertices, cast.settings.interpolation)};
+}
+
+template <class Source>
+KeyFrameCount count(const Cast& cast, const Source& source) {
+  Body body = make_playing_body(cast, source);
+  KeyFrameCount counted =
+      count(cast, key_times(cast, body.clip ? character::key_rate(*body.clip) : 0, source.stance_arms.has_value()),
+            body.character.mesh.positions.size());
+  for (const Part& part : parts_of(cast, source, {}, body))
+    if (!part.collide) counted.left_out.emplace_back(part.name, std::ranges::count(part.vertices, 1));
+  return counted;
+}
+
+KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {
+  const std::vector<std::filesystem::path> files = scene::sequence_files(source.files);
+  const auto first = assets::load_sequence(std::span(files).first(1), cast.axes(), cast.where);
+  return count(cast, key_times(cast, source.fps, false), first.mesh.positions.size());
+}
+
+}  // namespace
+
+Actor make_actor(const scene::Scene& scene, const scene::Character& character, std::span<const FollowingPin> following,
+                 std::span<const ClothAtStart> cloths) {
+  const Cast cast = make_cast(scene, character);
+  return std::visit([&](const auto& source) { return act(cast, source, following, cloths); }, character.source);
+}
+
+StandingBody make_standing_body(const scene::Scene& scene, const scene::Character& character,
+                                const std::string& where) {
+  const Cast cast = make_cast(scene, character);
+  return std::visit([&](const auto& source) { return make_standing(cast, source, where); }, character.source);
+}
+
+KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character) {
+  const Cast cast = make_cast(scene, character);
+  return std::visit([&](const auto& source) { return count(cast, source); }, character.source);
+}
+
+}  // namespace weft::environment

@@ -1,0 +1,83 @@
+// Makes the key frames of a character of the scene.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "film/character/parts.hpp"
+#include "film/scene/scene.hpp"
+#include "physics/mesh/mesh.hpp"
+#include "physics/mesh/topology.hpp"
+#include "physics/motion/key_frames.hpp"
+
+namespace weft::environment {
+
+using motion::KeyFrames;
+
+/// A part of a character that pins follow, or that has contact settings of its own.
+struct Part {
+  std::string name;
+  character::VertexMask vertices;  ///< of the body's mesh
+  bool collide = true;
+  std::optional<double> friction;  ///< absent: that of the body
+  double thickness = 0;            ///< [m]
+
+  bool is_patch() const { return friction || thickness > 0; }
+};
+
+/// Start positions of the particles of a pin that follows a character [m].
+struct FollowingPin {
+  std::string part;  ///< of the character; empty: the whole character
+  std::vector<Vec3> places;
+};
+
+/// A cloth when it is put on.
+struct ClothAtStart {
+  std::span<const Vec3> x;  ///< positions of its particles [m]
+  std::span<const mesh::Triangle> triangles;
+  double put_on = 0;  ///< time since the start of the run at which it is put on [s]
+};
+
+/// A body that moves by key frames of its vertices, computed before the simulation starts.
+struct Actor {
+  mesh::Mesh mesh;           ///< in the world at time 0
+  KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the particles of all following pins
+  std::vector<Part> parts;   ///< those of the scene, and those that pins follow
+  std::vector<Index> limbs;  ///< per vertex: number of its character::Limb; of a sequence: its connected component
+  std::vector<std::string> warnings;
+  std::vector<std::string> notes;                                 ///< for the summary: changes made to the body
+  std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if that has none
+};
+
+/// Reads the files of a character and computes its key frames. They begin when the character begins to grow or move.
+/// They end when it has grown or, if it moves, with the scene. A character that does neither has one key. Moves its
+/// skin to leave space for the `cloths` on it. Throws Error(asset_unreadable, scene_invalid) that names scene line,
+/// file and the mesh, bone or clip.
+Actor make_actor(const scene::Scene& scene, const scene::Character& character,
+                 std::span<const FollowingPin> following = {}, std::span<const ClothAtStart> cloths = {});
+
+/// A body with bones at the start of a scene, before its preroll.
+struct StandingBody {
+  mesh::Mesh mesh;                          ///< in the world [m]
+  std::vector<std::optional<Vec3>> joints;  ///< positions of joint_names() in the world [m]; absent: unknown
+  std::vector<character::Limb> limbs;       ///< of each vertex of the mesh
+};
+
+/// Reads the files of a character before make_actor() does, because making a garment needs its wearer. Throws as
+/// make_actor() does, and Error(scene_invalid) that begins with `where` for a sequence of meshes.
+StandingBody make_standing_body(const scene::Scene& scene, const scene::Character& character, const std::string& where);
+
+/// Size of the key frames of a character, which `weft check --plan` prints.
+struct KeyFrameCount {
+  std::size_t keys = 0, vertices = 0, bytes = 0;
+  /// Parts that do not collide, with their numbers of vertices.
+  std::vector<std::pair<std::string, std::size_t>> left_out = {};
+};
+/// Counts the key frames without sampling the motion.
+KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character);
+
+}  // namespace weft::environment

@@ -1,0 +1,51 @@
+#include "film/environment/cast.hpp"
+
+#include <fmt/format.h>
+
+#include "core/error.hpp"
+#include "core/nearest.hpp"
+#include "film/character/joints.hpp"
+
+namespace weft::environment {
+
+void Cast::fail(const std::string& key, const std::string& why) const {
+  throw Error(ExitCode::scene_invalid, "{}.{}: {}", where, key, why);
+}
+
+Cast make_cast(const scene::Scene& scene, const scene::Character& settings) {
+  return {scene, settings,
+          fmt::format("{}:{}:{}: character.{}", scene.file.string(), settings.line, settings.column, settings.name)};
+}
+
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(name, known);
+  return nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
+}
+
+Index named_node(const Cast& cast, const std::string& key, const std::string& name,
+                 const std::vector<character::Node>& nodes, const std::string& source) {
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (nodes[n].name == name) return static_cast<Index>(n);
+    names.push_back(nodes[n].name);
+  }
+  cast.fail(key,
+            fmt::format("expected the name of a node of {}, got \"{}\"{}", source, name, did_you_mean(name, names)));
+}
+
+std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
+                             std::optional<std::string> scene::JointNames::*name, const character::Character& character,
+                             const std::string& source) {
+  std::vector<Index> joints = character::find_joints(character);
+  for (const scene::JointNames& joint : given) {
+    const Index number = character::joint_number(joint.name);
+    const std::string key = fmt::format("joint.{}", joint.name);
+    if (number < 0)
+      cast.fail(key + ".name", fmt::format("expected a joint of the body, got \"{}\"{}", joint.name,
+                                           did_you_mean(joint.name, character::joint_names())));
+    if (joint.*name) joints[number] = named_node(cast, key, *(joint.*name), character.nodes, source);
+  }
+  return joints;
+}
+
+}  // namespace weft::environment

@@ -1,0 +1,18 @@
+// Finds the particles of a cloth to which its pins, weights and attachments apply, with a fraction for each.
+#pragma once
+
+#include <string>
+
+#include "film/assets/mesh_file.hpp"
+#include "film/environment/environment.hpp"
+#include "film/scene/scene.hpp"
+
+namespace weft::environment {
+
+/// Adds the pins and weights of a cloth whose rest shape is made, without their motion, and its attachments. `file`:
+/// data of the vertices in the mesh file; empty for other cloth. Throws Error(scene_invalid) that begins with `where`
+/// for a region that holds no particle, and for an edge, UVs, colours or a group that the cloth does not have.
+void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,
+                      const std::string& where, MadeCloth& made);
+
+}  // namespace weft::environment

@@ -1,0 +1,56 @@
+// All objects of a scene (seed, Fig. 1): topology, geometry, start of cloth, and positions of bodies at any time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/types.hpp"
+#include "film/assets/mesh_file.hpp"
+#include "film/character/character.hpp"
+#include "film/environment/acting.hpp"
+#include "film/environment/made_cloth.hpp"
+#include "film/scene/scene.hpp"
+#include "physics/mesh/mesh.hpp"
+#include "physics/mesh/sheet.hpp"
+#include "physics/model/model.hpp"
+
+namespace weft::environment {
+
+/// What an obstacle or character of the scene has besides what is simulated.
+struct BodyDetails {
+  scene::Look look;
+  std::shared_ptr<const character::Coloring> coloring;  ///< from the file of a character; null if there is none
+  std::vector<Part> parts;                              ///< of characters
+  std::vector<std::uint8_t> passed_through;  ///< per triangle of the mesh: 1 if it does not collide; empty: all collide
+};
+
+/// The shape of an obstacle in its own coordinates, and the UVs of its file. Throws as Environment() does.
+assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obstacle);
+
+struct Followers;
+
+/// All objects of a scene: what is simulated, and what is only drawn.
+class Environment {
+ public:
+  /// Makes meshes and motions. Throws Error(asset_unreadable, scene_invalid) with file and scene line.
+  explicit Environment(const scene::Scene& scene);
+
+  model::Model model;                         ///< bodies: in the order of scene.obstacles, then of scene.characters
+  std::vector<ClothDetails> cloths;           ///< one per cloth of the model
+  std::vector<BodyDetails> bodies;            ///< one per body of the model
+  std::vector<model::Parent> camera_parents;  ///< one per camera; empty: no camera follows anything
+
+ private:
+  /// Particles of each scene::Attachment that names one cloth.
+  using Attached = std::vector<std::vector<model::Chosen>>;
+  std::vector<Attached> add_cloths(const scene::Scene& scene);
+  void add_parents(const scene::Scene& scene);
+  void add_characters(const scene::Scene& scene);
+  void add_part_parents(const scene::Scene& scene, const scene::Character& character, const Followers& followers,
+                        const motion::KeyFrames& keys);
+  void add_pin_motions(const scene::Scene& scene);
+  void add_attachments(const scene::Scene& scene, const std::vector<Attached>& attached);
+};
+
+}  // namespace weft::environment

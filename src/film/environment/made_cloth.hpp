@@ -1,0 +1,48 @@
+// A cloth of a scene as it starts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+#include "film/environment/wearers.hpp"
+#include "film/scene/scene.hpp"
+#include "physics/mesh/sheet.hpp"
+#include "physics/model/model.hpp"
+
+namespace weft::environment {
+
+/// What a cloth of the scene has besides what is simulated.
+struct ClothDetails {
+  std::vector<Vec2> fractions;  ///< position of each particle along weft and warp, in fractions of the rest size
+  std::map<std::string, std::vector<Index>> edges;  ///< of a pattern: particles by "panel.edge"
+  std::vector<std::string> panels;                  ///< of a pattern: names
+  std::vector<std::int32_t> panel_of;               ///< of a pattern: panel number of each triangle
+  /// Of cloth sewn from panels: coordinates of the corners of each triangle in its panel (weft, warp) [m].
+  std::vector<std::array<Vec2, 3>> paint_uv;
+  std::string fitted;     ///< of a pattern that was scaled to its wearer: describes how
+  std::string rest_from;  ///< of a mesh file: what gives the rest shape, and why
+  std::vector<std::string> warnings;
+};
+
+/// A cloth made from its table in the scene alone: `over` and the motions of its pins are still to be filled in.
+struct MadeCloth {
+  model::Cloth cloth;
+  ClothDetails details;
+  std::vector<std::vector<model::Chosen>> attachments;  ///< particles of each scene::Attachment that names this cloth
+};
+
+/// Rest positions of the particles of a rectangular cloth.
+mesh::Grid grid_of(const scene::Cloth& cloth);
+
+/// Throws Error(scene_invalid) if the cells of a rectangle are too uneven for contact with obstacles. make_cloth()
+/// calls this, and also checks the triangles of all other cloths.
+void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
+
+/// Makes a cloth as it starts. Throws Error(asset_unreadable, scene_invalid) with the scene line.
+MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers);
+
+}  // namespace weft::environment

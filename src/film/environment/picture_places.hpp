@@ -1,0 +1,26 @@
+// Where a picture lies on an obstacle.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/types.hpp"
+#include "film/assets/mesh_file.hpp"
+#include "film/scene/scene.hpp"
+
+namespace weft::environment {
+
+/// Coordinates in a picture of the corners of each triangle: 0 to 1 from left to right and from bottom to top; other
+/// values are in its repetitions.
+using PicturePlaces = std::vector<std::array<Vec2, 3>>;
+
+/// `shape`: as environment::mesh_of() makes it for this scene. `tile`: size of one repetition [m], measured along the
+/// surface; if none, the picture lies once around the shape, once on each side of a box, or according to the UVs of a
+/// file. Seen from outside, with the front toward −y and z up, pictures are upright, and on round shapes their middle
+/// is at the front. A picture that goes around a shape is scaled to a whole number of repetitions. Throws
+/// Error(asset_unreadable) with the scene line if a file has no UVs.
+PicturePlaces picture_places(const scene::Scene& scene, const scene::Obstacle& obstacle,
+                             const assets::LoadedMesh& shape, const std::optional<Vec2>& tile);
+
+}  // namespace weft::environment

@@ -1,0 +1,30 @@
+// Warns of implausible sizes, speeds and heights of characters, which suggest a wrong unit or rate.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "film/character/character.hpp"
+#include "physics/motion/key_frames.hpp"
+
+namespace weft::environment {
+
+/// Warns of an implausible height of a body along `up`. `x`: its vertices [m]; `scale`: metres per unit of its file;
+/// `said`: whether the scene sets the scale; if so, heights up to ten times beyond the limits are accepted.
+std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said);
+
+/// Warns of a body whose skin is all bound to one node, although the clip turns several others.
+std::optional<std::string> warn_of_missing_skin(const character::Character& body, const character::Clip& clip);
+
+/// Warns of an implausible speed of a body: of the mean position of its vertices. `vertices`: their number. The speed
+/// is measured over `count` key frames from `begin` [s] on, `rate` per second.
+std::optional<std::string> warn_of_speed(const motion::KeyFrames& keys, double begin, double rate, std::size_t count,
+                                         std::size_t vertices);
+
+/// Warns of a body in or above the only floor. `lowest`: height of its lowest vertex over the floor at each key frame
+/// [m]; `alone`: there is no other obstacle to stand on.
+std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone);
+
+}  // namespace weft::environment

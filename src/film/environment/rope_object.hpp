@@ -1,0 +1,12 @@
+// A rope as it starts.
+#pragma once
+
+#include "film/environment/environment.hpp"
+
+namespace weft::environment {
+
+/// Fills in the particles of a rope and its pieces. A piece is a triangle whose last two corners are equal, so that
+/// code for triangles treats it as an edge.
+void use_rope(const scene::Scene& scene, const scene::Rope& rope, MadeCloth& made);
+
+}  // namespace weft::environment

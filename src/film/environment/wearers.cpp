@@ -1,0 +1,105 @@
+#include "film/environment/wearers.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.hpp"
+#include "film/character/joints.hpp"
+#include "film/environment/acting.hpp"
+
+namespace weft::environment {
+namespace {
+
+using Joints = std::vector<std::optional<Vec3>>;
+
+const std::optional<Vec3>& joint(const Joints& joints, const std::string& name) {
+  return joints[character::joint_number(name)];
+}
+
+/// Axes of a wearer: x to its left, z up, origin on the floor below the middle of its legs, or of its arms.
+Eigen::Isometry3d axes_of(const StandingBody& standing, const Vec3& up, const std::string& where) {
+  for (const char* name : {"UpperLeg", "UpperArm"}) {
+    const auto &left = joint(standing.joints, std::string("Left") + name),
+               &right = joint(standing.joints, std::string("Right") + name);
+    if (!left || !right) continue;
+    Vec3 across = *left - *right;
+    across -= across.dot(up) * up;
+    if (across.norm() == 0) continue;
+    across.normalize();
+    double floor = std::numeric_limits<double>::infinity();
+    for (const Vec3& x : standing.mesh.positions) floor = std::min(floor, up.dot(x));
+    const Vec3 middle = 0.5 * (*left + *right);
+    Eigen::Isometry3d axes = Eigen::Isometry3d::Identity();
+    axes.linear() << across, up.cross(across), up;
+    axes.translation() = middle + (floor - up.dot(middle)) * up;
+    return axes;
+  }
+  throw Error(ExitCode::scene_invalid,
+              "{}: expected a wearer that stands upright with two joints UpperLeg or UpperArm, got one without; "
+              "[[character.joint]] names them",
+              where);
+}
+
+garment::Wearer make_wearer(const StandingBody& standing, const Vec3& up, const std::string& where) {
+  garment::Wearer wearer;
+  wearer.to_world = axes_of(standing, up, where);
+  const Eigen::Isometry3d to_own = wearer.to_world.inverse();
+  for (const Vec3& x : standing.mesh.positions) wearer.skin.push_back(to_own * x);
+  wearer.triangles = standing.mesh.topology.triangles;
+  const auto region_of = [](character::Limb limb) {
+    switch (limb) {
+      case character::Limb::left_arm:
+        return garment::Region::left_arm;
+      case character::Limb::right_arm:
+        return garment::Region::right_arm;
+      case character::Limb::left_leg:
+        return garment::Region::left_leg;
+      case character::Limb::right_leg:
+        return garment::Region::right_leg;
+      case character::Limb::trunk:
+        break;
+    }
+    return garment::Region::trunk;
+  };
+  for (const character::Limb limb : standing.limbs) wearer.regions.push_back(region_of(limb));
+  const auto limb = [&](const std::string& side, const std::array<const char*, 3>& names) {
+    std::optional<garment::Limb> joints(std::in_place);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto& place = joint(standing.joints, side + names[k]);
+      if (!place) return std::optional<garment::Limb>();
+      (*joints)[k] = to_own * *place;
+    }
+    return joints;
+  };
+  constexpr std::array kArm{"UpperArm", "LowerArm", "Hand"}, kLeg{"UpperLeg", "LowerLeg", "Foot"};
+  wearer.left_arm = limb("Left", kArm), wearer.right_arm = limb("Right", kArm);
+  wearer.left_leg = limb("Left", kLeg), wearer.right_leg = limb("Right", kLeg);
+  // If the neck joint is unknown, estimates its height from the top of the head.
+  double crown = 0;
+  for (const Vec3& x : wearer.skin) crown = std::max(crown, x.z());
+  constexpr double kNeck = 0.83;  // neck height over body height
+  wearer.neck = kNeck * crown;
+  if (const auto& neck = joint(standing.joints, "Neck")) wearer.neck = (to_own * *neck).z();
+  return wearer;
+}
+
+}  // namespace
+
+const garment::Wearer& Wearers::of(const scene::Cloth& cloth, const std::string& where) {
+  const auto& characters = scene_.characters;
+  if (characters.empty())
+    throw Error(ExitCode::scene_invalid,
+                "{}: expected a [[character]] to put the garment on, whose panels are around its parts, got none",
+                where);
+  if (cloth.wearer.empty() && characters.size() > 1)
+    throw Error(ExitCode::scene_invalid, "{}: expected the wearer, one of {} characters such as {}, got none", where,
+                characters.size(), characters[0].name);
+  const auto found =
+      std::ranges::find(characters, cloth.wearer.empty() ? characters[0].name : cloth.wearer, &scene::Character::name);
+  const auto known = made_.find(found->name);
+  if (known != made_.end()) return known->second;
+  const Vec3 up = scene_.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+  return made_.emplace(found->name, make_wearer(make_standing_body(scene_, *found, where), up, where)).first->second;
+}
+
+}  // namespace weft::environment

@@ -1,0 +1,26 @@
+// Finds the character that wears a garment, and prepares its body for the garment.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "film/garment/wearer.hpp"
+#include "film/scene/scene.hpp"
+
+namespace weft::environment {
+
+/// The wearers of garments in a scene, each made when it is first needed.
+class Wearers {
+ public:
+  explicit Wearers(const scene::Scene& scene) : scene_(scene) {}
+
+  /// The wearer of a cloth. Throws Error(scene_invalid) that begins with `where` if there is no character, if the cloth
+  /// names no wearer and there are several, or if the wearer has no bones or not the joints that define its axes.
+  const garment::Wearer& of(const scene::Cloth& cloth, const std::string& where);
+
+ private:
+  const scene::Scene& scene_;
+  std::map<std::string, garment::Wearer> made_;
+};
+
+}  // namespace weft::environment

@@ -1,0 +1,70 @@
+#include "film/garment/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+
+namespace weft::garment {
+namespace {
+
+// Height of the hip joints of a wearer without legs, as a fraction of the body height.
+constexpr double kHipHeightRatio = 0.52;
+// Heights, as fractions of the distance from hip joints to neck: lower end of the hips, lowest and highest waist, and
+// armpits. Above the armpits the sections include the shoulders.
+constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kArmpits = 0.75;
+// Distance between measured sections [m].
+constexpr double kSpacing = 0.01;
+// Minimum ratio of the wearer's hip girth to the waist girth of a garment that stays up (measured: at 1.05 it slides
+// down, at 1.16 it holds).
+constexpr double kMinHipToWaistRatio = 1.1;
+
+}  // namespace
+
+Measures measure(const Wearer& wearer) {
+  const Tube torso(wearer, Around::torso);
+  const double height = torso.high();
+  double hips = kHipHeightRatio * height;
+  if (wearer.left_leg && wearer.right_leg) hips = 0.5 * ((*wearer.left_leg)[0].z() + (*wearer.right_leg)[0].z());
+  const auto at = [&](double fraction) { return hips + fraction * (wearer.neck - hips); };
+  const auto girth = [&](double s) { return torso.girth(s, 0); };
+  double waist = at(kLowestWaist);
+  for (double s = waist; s <= at(kHighestWaist); s += kSpacing)
+    if (girth(s) < girth(waist)) waist = s;
+  const auto max_girth = [&](double low, double high) {
+    double largest = 0;
+    for (double s = low; s <= high; s += kSpacing) largest = std::max(largest, girth(s));
+    return largest;
+  };
+  return {max_girth(waist, at(kArmpits)), girth(waist), max_girth(at(kLowestHip), waist), height};
+}
+
+Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string& where) {
+  const Measures& drawn = pattern.measures;
+  if (!drawn.chest && !drawn.waist && !drawn.hip && !drawn.height)
+    throw Error(ExitCode::scene_invalid,
+                "{}.fit: expected a pattern that names the measures it is drawn for, as [measures] with chest, waist, "
+                "hip or height, got none in {}",
+                where, pattern.file.string());
+  const Measures own = measure(wearer);
+  double across = 0, up = 1;
+  for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip})
+    if (drawn.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
+  if (drawn.height) up = *own.height / *drawn.height;
+  return {across > 0 ? across : up, up};
+}
+
+std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {
+  const Measures& drawn = pattern.measures;
+  if (!drawn.waist || drawn.chest) return {};
+  const double waist = *drawn.waist * factors.x(), hips = *measure(wearer).hip;
+  if (hips >= kMinHipToWaistRatio * waist) return {};
+  return fmt::format(
+      "its waist is {:.2f} m around and the hips of its wearer {:.2f} m, too narrow to hold it up: pin its waist, as "
+      "in "
+      "pin = [{{ edge = \"{}\", follow = \"WEARER.torso\" }}]",
+      waist, hips, pattern.panels.empty() ? "PANEL.EDGE" : pattern.panels.front().name + ".EDGE");
+}
+
+}  // namespace weft::garment

@@ -1,0 +1,258 @@
+#include "film/garment/outline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace weft::garment {
+namespace {
+
+// Maximum number of curves of an outline; a drawn pattern piece has about twenty.
+constexpr std::size_t kMaxCurves = 10000;
+// Larger coordinates are treated as damaged data.
+constexpr double kMaxCoordinate = 1e6;
+// Number of pieces per curve for measuring its length. The relative error of a quarter circle is then 2e-6.
+constexpr int kPiecesPerCurve = 256;
+
+Curve quadratic(const Vec2& from, const Vec2& control, const Vec2& to) {
+  return {{from, from + 2.0 / 3 * (control - from), to + 2.0 / 3 * (control - to), to}, false};
+}
+
+double angle_between(const Vec2& a, const Vec2& b) {
+  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+}
+
+/// An elliptic arc by its end points (SVG 1.1, appendix F.6.5).
+struct Arc {
+  Vec2 radii;
+  double turn;  // angle of the ellipse's x axis [rad]
+  bool large, sweep;
+};
+
+void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outline) {
+  const Eigen::Rotation2Dd turn(arc.turn);
+  Vec2 r = arc.radii.cwiseAbs();
+  if (r.minCoeff() == 0) {
+    outline.push_back(straight(from, to));
+    return;
+  }
+  // In the frame of the ellipse, with the radii as units, the arc lies on a unit circle. Radii that are too small are
+  // enlarged.
+  const Vec2 half = turn.inverse() * Vec2(0.5 * (from - to));
+  const double radius_ratio = half.cwiseQuotient(r).norm();
+  if (radius_ratio > 1) r *= radius_ratio;
+  const Vec2 p = half.cwiseQuotient(r);
+  const double off = std::sqrt(std::max(0.0, 1 / p.squaredNorm() - 1)) * (arc.large == arc.sweep ? -1 : 1);
+  const Vec2 centre = off * Vec2(p.y(), -p.x());
+  const Vec2 begin = p - centre, end = -p - centre;
+  double sweep = angle_between(begin, end);
+  if (arc.sweep && sweep < 0) sweep += 2 * std::numbers::pi;
+  if (!arc.sweep && sweep > 0) sweep -= 2 * std::numbers::pi;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / (0.5 * std::numbers::pi) - 1e-9)));
+  const double each = sweep / pieces, handle_length = 4.0 / 3 * std::tan(0.25 * each);
+  const Vec2 middle = 0.5 * (from + to) + turn * Vec2(r.cwiseProduct(centre));
+  const auto placed = [&](const Vec2& unit) -> Vec2 { return middle + turn * Vec2(r.cwiseProduct(unit)); };
+  Vec2 a = begin, at = from;
+  for (int i = 1; i <= pieces; ++i) {
+    const Vec2 b = Eigen::Rotation2Dd(each) * a;
+    const Vec2 next = i == pieces ? to : placed(b);
+    outline.push_back(
+        {{at, placed(a + handle_length * Vec2(-a.y(), a.x())), placed(b - handle_length * Vec2(-b.y(), b.x())), next},
+         i > 1});
+    a = b, at = next;
+  }
+}
+
+/// Reads path data command by command.
+class PathReader {
+ public:
+  explicit PathReader(std::string_view data) : data_(data) {}
+
+  ParsedPath read() {
+    while (result_.mistake.empty() && skip_space()) command();
+    if (result_.mistake.empty() && !closed_)
+      fail("expected a closed outline, which ends with Z, got one that is open at the end");
+    Outline& outline = result_.outline;
+    std::erase_if(outline, [](const Curve& c) {
+      return c.control[1] == c.start() && c.control[2] == c.start() && c.end() == c.start();
+    });
+    if (result_.mistake.empty() && outline.size() < 2) fail("expected an outline of two curves or more, got fewer");
+    return std::move(result_);
+  }
+
+ private:
+  void fail(std::string text) {
+    if (result_.mistake.empty()) result_.mistake = std::move(text);
+  }
+  void fail_here(std::string_view expected) {
+    const std::string got = at_ < data_.size() ? fmt::format("\"{}\"", printable(data_[at_])) : "the end";
+    fail(fmt::format("expected {}, got {} at character {}", expected, got, at_ + 1));
+  }
+  static char printable(char c) { return c >= 0x20 && c < 0x7F ? c : '?'; }
+
+  // Skips white space; returns whether text remains.
+  bool skip_space() {
+    while (at_ < data_.size() && std::string_view(" \t\r\n").find(data_[at_]) != std::string_view::npos) ++at_;
+    return at_ < data_.size();
+  }
+  void skip_separator() {
+    if (skip_space() && data_[at_] == ',') ++at_;
+    skip_space();
+  }
+  bool number_follows() {
+    return skip_space() && std::string_view("+-.0123456789").find(data_[at_]) != std::string_view::npos;
+  }
+  double number() {
+    if (!number_follows()) {
+      fail_here("a number");
+      return 0;
+    }
+    const std::size_t start = at_ + (data_[at_] == '+' ? 1 : 0);
+    double value = 0;
+    const auto [end, error] = std::from_chars(data_.data() + start, data_.data() + data_.size(), value);
+    if (error != std::errc() || !(std::abs(value) <= kMaxCoordinate)) {
+      fail_here(fmt::format("a number from -{0:g} to {0:g}", kMaxCoordinate));
+      return 0;
+    }
+    at_ = static_cast<std::size_t>(end - data_.data());
+    skip_separator();
+    return value;
+  }
+  bool flag() {
+    if (!skip_space() || (data_[at_] != '0' && data_[at_] != '1')) {
+      fail_here("0 or 1");
+      return false;
+    }
+    const bool value = data_[at_++] == '1';
+    skip_separator();
+    return value;
+  }
+  Vec2 point(bool relative) {
+    const double x = number(), y = number();
+    return relative ? Vec2(pen_ + Vec2(x, y)) : Vec2(x, y);
+  }
+
+  void command() {
+    if (closed_) return fail_here("nothing after the closed outline");
+    const char letter = data_[at_];
+    if (std::string_view("MmLlHhVvCcSsQqTtAaZz").find(letter) == std::string_view::npos)
+      return fail_here("a command of SVG paths");
+    ++at_;
+    const bool relative = letter >= 'a';
+    const char kind = static_cast<char>(relative ? letter - 'a' + 'A' : letter);
+    if (started_ == (kind == 'M'))
+      return fail(started_ ? "expected one outline, got a second M" : "expected M at the start, got another command");
+    if (kind == 'Z') return close();
+    bool first = true;
+    do {
+      if (kind == 'M' && first) {
+        pen_ = first_ = point(relative);
+        started_ = true;
+      } else {
+        draw(kind == 'M' ? 'L' : kind, relative);
+      }
+      first = false;
+      if (result_.outline.size() > kMaxCurves) fail(fmt::format("expected at most {} curves, got more", kMaxCurves));
+    } while (result_.mistake.empty() && number_follows());
+  }
+
+  void close() {
+    closed_ = true;
+    // An end that misses the start by rounded digits only is moved to the start.
+    const double slack = 1e-6 * std::max(1e-9, (farthest_ - nearest_).norm());
+    if ((pen_ - first_).norm() > slack) return add(straight(pen_, first_));
+    if (!result_.outline.empty()) result_.outline.back().control[3] = first_;
+  }
+
+  void draw(char kind, bool relative) {
+    const Vec2 from = pen_;
+    Vec2 handle = from;  // last control point, which S and T reflect
+    if (kind == 'L') {
+      add(straight(from, point(relative)));
+    } else if (kind == 'H') {
+      add(straight(from, {number() + (relative ? from.x() : 0), from.y()}));
+    } else if (kind == 'V') {
+      add(straight(from, {from.x(), number() + (relative ? from.y() : 0)}));
+    } else if (kind == 'C' || kind == 'S') {
+      const Vec2 a = kind == 'C' ? point(relative) : reflected("CS");
+      const Vec2 b = point(relative), end = point(relative);
+      handle = b;
+      add({{from, a, b, end}, false});
+    } else if (kind == 'Q' || kind == 'T') {
+      const Vec2 a = kind == 'Q' ? point(relative) : reflected("QT");
+      handle = a;
+      add(quadratic(from, a, point(relative)));
+    } else {
+      const Vec2 radii(number(), 0);
+      Arc arc{{radii.x(), number()}, number() * std::numbers::pi / 180, flag(), flag()};
+      const Vec2 end = point(relative);
+      const std::size_t before = result_.outline.size();
+      if (result_.mistake.empty() && end != from) append_arc(from, arc, end, result_.outline);
+      for (std::size_t i = before; i < result_.outline.size(); ++i) extend_bounds(result_.outline[i]);
+      pen_ = end;
+    }
+    handle_ = handle;
+    last_ = kind;
+  }
+
+  Vec2 reflected(std::string_view after) const {
+    return after.find(last_) == std::string_view::npos ? pen_ : Vec2(2 * pen_ - handle_);
+  }
+  void add(const Curve& curve) {
+    result_.outline.push_back(curve);
+    extend_bounds(curve);
+    pen_ = curve.end();
+  }
+  void extend_bounds(const Curve& curve) {
+    nearest_ = nearest_.cwiseMin(curve.start()).cwiseMin(curve.end());
+    farthest_ = farthest_.cwiseMax(curve.start()).cwiseMax(curve.end());
+  }
+
+  std::string_view data_;
+  std::size_t at_ = 0;
+  ParsedPath result_;
+  bool started_ = false, closed_ = false;
+  char last_ = 'M';
+  Vec2 pen_ = Vec2::Zero(), first_ = Vec2::Zero(), handle_ = Vec2::Zero();
+  Vec2 nearest_ = Vec2::Constant(kMaxCoordinate), farthest_ = Vec2::Constant(-kMaxCoordinate);
+};
+
+}  // namespace
+
+Vec2 Curve::at(double t) const {
+  const double s = 1 - t;
+  return s * s * s * control[0] + 3 * s * s * t * control[1] + 3 * s * t * t * control[2] + t * t * t * control[3];
+}
+
+Curve straight(const Vec2& from, const Vec2& to) {
+  return {{from, from + (to - from) / 3, to - (to - from) / 3, to}, false};
+}
+
+ParsedPath parse_path(std::string_view data) {
+  return PathReader(data).read();
+}
+
+Arclength::Arclength(const std::vector<Curve>& chain) {
+  points_.push_back(chain.front().start());
+  sums_.push_back(0);
+  for (const Curve& curve : chain)
+    for (int i = 1; i <= kPiecesPerCurve; ++i) {
+      const Vec2 next = i == kPiecesPerCurve ? curve.end() : curve.at(double(i) / kPiecesPerCurve);
+      sums_.push_back(sums_.back() + (next - points_.back()).norm());
+      points_.push_back(next);
+    }
+}
+
+Vec2 Arclength::at(double fraction) const {
+  if (fraction <= 0) return points_.front();
+  if (fraction >= 1) return points_.back();
+  const double s = fraction * length();
+  const auto i = static_cast<std::size_t>(std::upper_bound(sums_.begin(), sums_.end(), s) - sums_.begin());
+  const double piece = sums_[i] - sums_[i - 1];
+  return points_[i - 1] + (s - sums_[i - 1]) / piece * (points_[i] - points_[i - 1]);
+}
+
+}  // namespace weft::garment

@@ -1,0 +1,93 @@
+#include "film/garment/start_shape.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "film/garment/joined_places.hpp"
+
+namespace weft::garment {
+namespace {
+
+// Weight of the term that holds each vertex at its position in the panel alone, relative to the weight of an edge. It
+// determines the position of panels that no seam joins to others, and hardly anything else.
+constexpr double kAnchorWeight = 1e-4;
+// Number of smoothing rounds after the depth is computed.
+constexpr int kSmoothingRounds = 10;
+
+double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 side = b - a;
+  const double fraction = std::clamp((p - a).dot(side) / std::max(side.squaredNorm(), 1e-30), 0.0, 1.0);
+  return (a + fraction * side - p).norm();
+}
+
+using VertexPair = std::array<Index, 2>;
+
+// Sides of triangles as pairs of vertices, separate for front and back.
+std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) {
+  std::array<std::set<VertexPair>, 2> sides;
+  for (const LaidPanel& panel : panels)
+    for (const mesh::Triangle& t : panel.triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+        sides[panel.back].insert({low, high});
+      }
+  return sides;
+}
+
+// Moves the vertices with `free` set halfway to the mean of their neighbours, all at once, in each round.
+void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector<char>& free, std::vector<Vec3>& x) {
+  for (int round = 0; round < kSmoothingRounds; ++round) {
+    const std::vector<Vec3> before = x;
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      if (!free[v]) continue;
+      Vec3 sum = Vec3::Zero();
+      for (Index n : neighbours[v]) sum += before[at(n)];
+      x[v] = 0.5 * (before[v] + sum / static_cast<double>(neighbours[v].size()));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices) {
+  JoinedPlaces<2> places(vertices, kAnchorWeight);
+  for (const LaidPanel& panel : panels)
+    for (std::size_t t = 0; t < panel.triangles.size(); ++t) places.add(panel.triangles[t], panel.corners[t]);
+  return places.solve();
+}
+
+std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth) {
+  const auto sides = sides_of(panels);
+  std::vector<VertexPair> shared;
+  std::ranges::set_intersection(sides[0], sides[1], std::back_inserter(shared));
+  std::vector<std::vector<Index>> neighbours(plane.size());
+  std::vector<char> free(plane.size(), 1);
+  std::vector<double> side_sign(plane.size());  // side of the plane: −1 front, 1 back
+  for (std::size_t half = 0; half < 2; ++half)
+    for (const auto& [a, b] : sides[half]) {
+      neighbours[at(a)].push_back(b);
+      neighbours[at(b)].push_back(a);
+      side_sign[at(a)] = side_sign[at(b)] = half == 0 ? -1 : 1;
+    }
+  for (const auto& [a, b] : shared) free[at(a)] = free[at(b)] = 0;
+
+  std::vector<Vec3> x(plane.size());
+  for (std::size_t v = 0; v < plane.size(); ++v) {
+    double d = shared.empty() ? depth : std::numeric_limits<double>::infinity();
+    for (const auto& [a, b] : shared) d = std::min(d, distance(plane[v], plane[at(a)], plane[at(b)]));
+    d = free[v] ? std::min(d, depth) : 0;
+    x[v] = {plane[v].x(), side_sign[v] * std::sqrt(d * (2 * depth - d)), plane[v].y()};
+  }
+  // The rims of openings keep their positions.
+  std::vector<mesh::Triangle> all;
+  for (const LaidPanel& panel : panels) all.insert(all.end(), panel.triangles.begin(), panel.triangles.end());
+  for (const mesh::Edge& edge : mesh::collect_edges(all).edges)
+    if (edge.triangles[1] < 0) free[at(edge.vertices[0])] = free[at(edge.vertices[1])] = 0;
+  smooth(neighbours, free, x);
+  return x;
+}
+
+}  // namespace weft::garment

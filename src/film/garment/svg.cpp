@@ -1,0 +1,390 @@
+#include "film/garment/svg.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <pugixml.hpp>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/input_file.hpp"
+#include "core/nearest.hpp"
+#include "core/nesting.hpp"
+
+namespace weft::garment {
+namespace {
+
+constexpr double kMetresPerPixel = 0.0254 / 96;
+// Minimum angle between two curves at a corner. Pieces of one curve meet within 1 or 2 degrees, seam and hem at 60 or
+// more.
+constexpr double kMinCornerAngle = 25 * std::numbers::pi / 180;
+// Maximum count of numbers read from one attribute.
+constexpr std::size_t kMaxNumbers = 20000;
+using Affine = Eigen::Affine2d;
+
+/// Stops the traversal at elements that are too deep for the recursive functions of this file. (pugixml itself does not
+/// recurse.)
+struct DepthLimit : pugi::xml_tree_walker {
+  bool for_each(pugi::xml_node&) override { return depth() < kMaxDepth; }
+};
+
+/// A parsed SVG file, with its error reporting.
+class Drawing {
+ public:
+  explicit Drawing(const std::filesystem::path& file) : file_(file) {
+    try {
+      text_ = read_bytes(file, kMaxSvgBytes);
+    } catch (const std::runtime_error& error) {
+      refuse(0, fmt::format("expected a file, got none that can be read: {}", error.what()));
+    }
+    const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
+    if (!result) refuse(result.offset, fmt::format("expected valid XML: {}", result.description()));
+    DepthLimit limit;
+    if (!document_.traverse(limit)) refuse(0, fmt::format("expected at most {} nested elements, got more", kMaxDepth));
+  }
+
+  [[noreturn]] void refuse(std::ptrdiff_t offset, const std::string& text) const {
+    const auto end = text_.begin() + std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));
+    const auto line = std::find(std::reverse_iterator(end), text_.rend(), '\n').base();
+    throw Error(ExitCode::asset_unreadable, "{}:{}:{}: {}", file_.string(), 1 + std::count(text_.begin(), end, '\n'),
+                1 + (end - line), text);
+  }
+  [[noreturn]] void refuse(const pugi::xml_node& node, const std::string& text) const {
+    refuse(node.offset_debug(), fmt::format("{}{}: {}", node.name(), id_of(node), text));
+  }
+
+  pugi::xml_node root() const { return document_.document_element(); }
+  pugi::xml_node find(const std::string& id) const {
+    for (const char* key : {"id", "inkscape:label"})
+      if (const auto found = document_.find_node([&](const auto& n) { return id == n.attribute(key).value(); }))
+        return found;
+    if (const auto numbered = find_numbered(id)) return numbered;
+    refuse(0, fmt::format("expected an element with the id or label \"{}\", got none; {}", id, suggest_ids(id)));
+  }
+
+ private:
+  static bool is_shape(const pugi::xml_node& node) {
+    const std::string_view name = node.name();
+    return name == "path" || name == "polygon" || name == "rect" || name == "g";
+  }
+
+  /// Finds "path:2", the second path in the order of the drawing: programs such as Valentina write no ids.
+  pugi::xml_node find_numbered(const std::string& id) const {
+    const std::size_t colon = id.find(':');
+    if (colon == std::string::npos) return {};
+    std::size_t number = 0, seen = 0;
+    const auto [end, error] = std::from_chars(id.data() + colon + 1, id.data() + id.size(), number);
+    if (error != std::errc() || end != id.data() + id.size()) return {};
+    return document_.find_node([&](const pugi::xml_node& node) {
+      return is_shape(node) && id.compare(0, colon, node.name()) == 0 && ++seen == number;
+    });
+  }
+
+  /// Suggestions for the message about an unknown id.
+  std::string suggest_ids(const std::string& id) const {
+    std::vector<std::string> known;
+    std::size_t paths = 0;
+    document_.find_node([&](const pugi::xml_node& node) {
+      paths += std::string_view(node.name()) == "path" ? 1 : 0;
+      for (const char* key : {"id", "inkscape:label"})
+        if (const std::string text = node.attribute(key).value(); is_shape(node) && !text.empty())
+          known.push_back(text);
+      return false;
+    });
+    if (known.empty())
+      return fmt::format("none of its {} paths has one: \"path:1\" is the first of them, in the order of the file",
+                         paths);
+    const std::string nearest = nearest_name(id, known);
+    if (!nearest.empty()) return fmt::format("did you mean \"{}\"?", nearest);
+    constexpr std::size_t kMaxSuggestions = 12;
+    const std::size_t named = std::min(known.size(), kMaxSuggestions);
+    return fmt::format("it has \"{}\"{}", fmt::join(std::span(known).first(named), "\", \""),
+                       named < known.size() ? ", ..." : "");
+  }
+
+  static std::string id_of(const pugi::xml_node& node) {
+    const std::string id = node.attribute("id").value();
+    return id.empty() ? "" : fmt::format(" \"{}\"", id.substr(0, 40));
+  }
+
+  std::filesystem::path file_;
+  std::string text_;
+  pugi::xml_document document_;
+};
+
+// The numbers of a text, separated by white space or commas; nothing if it contains anything else.
+std::optional<std::vector<double>> parse_numbers(std::string_view text) {
+  std::vector<double> numbers;
+  for (;;) {
+    const std::size_t start = text.find_first_not_of(" \t\r\n,");
+    if (start == std::string_view::npos) return numbers;
+    text.remove_prefix(text[start] == '+' ? start + 1 : start);
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value) || numbers.size() == kMaxNumbers) return std::nullopt;
+    numbers.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  }
+}
+
+// A length such as "210mm" in [m]; nothing for percentages and invalid text.
+std::optional<double> parse_length(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || !(value > 0) || !std::isfinite(value)) return std::nullopt;
+  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (unit.empty() || unit == "px") return value * kMetresPerPixel;
+  if (unit == "mm") return value * 1e-3;
+  if (unit == "cm") return value * 1e-2;
+  if (unit == "in") return value * 0.0254;
+  if (unit == "pt") return value * 0.0254 / 72;
+  if (unit == "pc") return value * 0.0254 / 6;
+  return std::nullopt;
+}
+
+// Size of one unit of the drawing [m].
+double metres_per_unit(const Drawing& drawing) {
+  const pugi::xml_node root = drawing.root();
+  const auto width = parse_length(root.attribute("width").value());
+  const auto box = parse_numbers(root.attribute("viewBox").value());
+  if (!root.attribute("viewBox")) return kMetresPerPixel;
+  if (!box || box->size() != 4 || !((*box)[2] > 0) || !((*box)[3] > 0))
+    drawing.refuse(root, "viewBox: expected x, y, width > 0 and height > 0, got something else");
+  if (!width) return kMetresPerPixel;
+  double unit = *width / (*box)[2];
+  // If the height is given too, the smaller of both units counts, as in browsers.
+  if (const auto height = parse_length(root.attribute("height").value())) unit = std::min(unit, *height / (*box)[3]);
+  return unit;
+}
+
+// One of the transforms of SVG 1.1, section 7.6; nothing if it is invalid.
+std::optional<Affine> transform_of(std::string_view kind, const std::vector<double>& p) {
+  const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
+  Affine t = Affine::Identity();
+  const std::size_t n = p.size();
+  if (kind == "matrix" && n == 6) {
+    t.matrix().topRows<2>() << p[0], p[2], p[4], p[1], p[3], p[5];
+  } else if (kind == "translate" && (n == 1 || n == 2)) {
+    t.translate(Vec2(p[0], n == 2 ? p[1] : 0));
+  } else if (kind == "scale" && (n == 1 || n == 2)) {
+    t.scale(Vec2(p[0], n == 2 ? p[1] : p[0]));
+  } else if (kind == "rotate" && (n == 1 || n == 3)) {
+    const Vec2 about = n == 3 ? Vec2(p[1], p[2]) : Vec2(0, 0);
+    t.translate(about).rotate(radians(p[0])).translate(-about);
+  } else if (kind == "skewX" && n == 1) {
+    t.matrix()(0, 1) = std::tan(radians(p[0]));
+  } else if (kind == "skewY" && n == 1) {
+    t.matrix()(1, 0) = std::tan(radians(p[0]));
+  } else {
+    return std::nullopt;
+  }
+  return t;
+}
+
+Affine parse_transform(const Drawing& drawing, const pugi::xml_node& node) {
+  std::string_view text = node.attribute("transform").value();
+  Affine all = Affine::Identity();
+  for (;;) {
+    const std::size_t start = text.find_first_not_of(" \t\r\n,");
+    if (start == std::string_view::npos) return all;
+    const std::size_t open = text.find('(', start), close = text.find(')', start);
+    std::optional<Affine> one;
+    if (open < close && close != std::string_view::npos) {
+      std::string_view kind = text.substr(start, open - start);
+      kind = kind.substr(0, kind.find_last_not_of(" \t\r\n") + 1);
+      if (const auto numbers = parse_numbers(text.substr(open + 1, close - open - 1)))
+        one = transform_of(kind, *numbers);
+    }
+    if (!one) drawing.refuse(node, "transform: expected such as translate(1 2) or rotate(30), got something else");
+    all = all * *one;
+    text.remove_prefix(close + 1);
+  }
+}
+
+// The outline in the coordinates of the element.
+Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
+  const std::string_view kind = node.name();
+  std::string data = node.attribute("d").value();
+  if (kind == "polygon") {
+    data = fmt::format("M {} Z", node.attribute("points").value());
+  } else if (kind == "rect") {
+    const auto number = [&](const char* key) { return parse_numbers(node.attribute(key).value()); };
+    const auto x = number("x"), y = number("y"), width = number("width"), height = number("height");
+    if (!x || !y || x->size() > 1 || y->size() > 1 || !width || width->size() != 1 || !height || height->size() != 1)
+      drawing.refuse(node, "expected x, y, width and height as numbers, got something else");
+    data = fmt::format("M {} {} h {} v {} h {} Z", x->empty() ? 0 : (*x)[0], y->empty() ? 0 : (*y)[0], (*width)[0],
+                       (*height)[0], -(*width)[0]);
+  } else if (kind != "path") {
+    drawing.refuse(node, "expected a path, polygon or rect, got another element; id names the outline itself");
+  }
+  ParsedPath parsed = parse_path(data);
+  if (!parsed.mistake.empty()) drawing.refuse(node, parsed.mistake);
+  return std::move(parsed.outline);
+}
+
+/// Converts coordinates of elements to metres, y upward.
+class Sheet {
+ public:
+  explicit Sheet(const Drawing& drawing) : drawing_(drawing), unit_(metres_per_unit(drawing)) {}
+
+  Affine to_metres(const pugi::xml_node& element) const {
+    Affine transform = Affine::Identity();
+    for (pugi::xml_node node = element; node && node != drawing_.root(); node = node.parent())
+      transform = parse_transform(drawing_, node) * transform;
+    return Eigen::Scaling(unit_, -unit_) * transform;
+  }
+
+  Outline place(Outline outline, const pugi::xml_node& element) const {
+    const Affine transform = to_metres(element);
+    for (Curve& curve : outline)
+      for (Vec2& p : curve.control) {
+        p = transform * p;
+        if (!p.allFinite()) drawing_.refuse(element, "expected finite coordinates, got others");
+      }
+    return outline;
+  }
+
+ private:
+  const Drawing& drawing_;
+  const double unit_;
+};
+
+struct Label {
+  std::string text;
+  Vec2 place;  ///< [m]
+};
+
+/// Content of a group.
+struct Group {
+  std::vector<pugi::xml_node> outlines;
+  std::vector<Label> edges;
+  std::optional<Vec2> origin;
+};
+
+/// The text of a node and of its descendants.
+std::string words_in(const pugi::xml_node& node) {
+  std::string words = node.value();
+  for (const pugi::xml_node& child : node.children()) words += words_in(child);
+  return words;
+}
+
+void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node, Group& group) {
+  std::istringstream stream(words_in(node));
+  std::string first, name, more;
+  stream >> first;
+  if (first != "origin" && !first.starts_with("edge:")) return;
+  pugi::xml_node at = node;
+  if (!at.attribute("x")) at = node.child("tspan");
+  const auto x = parse_numbers(at.attribute("x").value()), y = parse_numbers(at.attribute("y").value());
+  if (!x || !y || x->empty() || y->empty())
+    drawing.refuse(node, "expected x and y where a label stands, got something else");
+  const Vec2 place = sheet.to_metres(at) * Vec2(x->front(), y->front());
+  if (!place.allFinite()) drawing.refuse(node, "expected finite coordinates, got others");
+  if (first == "origin") {
+    group.origin = place;
+    return;
+  }
+  name = first.substr(5);
+  if (name.empty()) stream >> name;
+  const auto is_name_character = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  };
+  if (name.empty() || !std::ranges::all_of(name, is_name_character) || stream >> more)
+    drawing.refuse(node, "expected edge: and a name of letters, digits, _ and -, got something else");
+  group.edges.push_back({name, place});
+}
+
+void read_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node, Group& group) {
+  for (const pugi::xml_node& child : node.children()) {
+    const std::string_view kind = child.name();
+    if (kind == "text") {
+      read_text(drawing, sheet, child, group);
+    } else if (kind == "g") {
+      read_group(drawing, sheet, child, group);
+    } else if (kind == "polygon" || kind == "rect") {
+      group.outlines.push_back(child);
+    } else if (kind == "path" && parse_path(child.attribute("d").value()).mistake.empty()) {
+      std::istringstream classes(child.attribute("class").value());
+      if (std::find(std::istream_iterator<std::string>(classes), {}, "sa") == std::istream_iterator<std::string>())
+        group.outlines.push_back(child);
+    }
+  }
+}
+
+double distance(const Curve& curve, const Vec2& from) {
+  constexpr int kPoints = 16;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kPoints; ++i) nearest = std::min(nearest, (curve.at(double(i) / kPoints) - from).norm());
+  return nearest;
+}
+
+bool has_corner(const Curve& before, const Curve& after) {
+  constexpr double kEndOffset = 1e-3;  // direction at an end is taken at this offset: control points may coincide
+  const Vec2 in = before.end() - before.at(1 - kEndOffset), out = after.at(kEndOffset) - after.start();
+  return std::abs(std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out))) > kMinCornerAngle;
+}
+
+/// Determines a name for each curve.
+std::vector<std::string> name_edges(const Outline& outline, const std::vector<Label>& labels) {
+  const std::size_t n = outline.size();
+  std::vector<std::size_t> edge(n, 0);  // edge number of each curve, counted from the first corner
+  std::size_t first = 0, edges = 0;
+  while (first < n && !has_corner(outline[(first + n - 1) % n], outline[first])) ++first;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = (first + i) % n;
+    if (i > 0 && has_corner(outline[(k + n - 1) % n], outline[k])) ++edges;
+    edge[k] = edges;
+  }
+  std::vector<std::vector<const Label*>> of_edge(edges + 1);
+  for (const Label& label : labels) {
+    const auto nearest =
+        std::ranges::min_element(outline, {}, [&](const Curve& c) { return distance(c, label.place); });
+    of_edge[edge[static_cast<std::size_t>(nearest - outline.begin())]].push_back(&label);
+  }
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& own = of_edge[edge[k]];
+    const auto away = [&](const Label* label) { return (outline[k].at(0.5) - label->place).norm(); };
+    names.push_back(own.empty() ? std::to_string(edge[k] + 1) : (*std::ranges::min_element(own, {}, away))->text);
+  }
+  return names;
+}
+
+DrawnPanel read_panel_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node) {
+  Group group;
+  read_group(drawing, sheet, node, group);
+  if (group.outlines.size() != 1)
+    drawing.refuse(node,
+                   fmt::format("expected a group with one closed outline, got {}; name the outline itself by its id",
+                               group.outlines.size()));
+  DrawnPanel panel{sheet.place(outline_of(drawing, group.outlines[0]), group.outlines[0]), {}};
+  if (!group.edges.empty()) panel.names = name_edges(panel.outline, group.edges);
+  // Without an origin text, the group's own origin counts, so that moving the group on the sheet changes nothing.
+  const Vec2 origin = group.origin.value_or(sheet.to_metres(node) * Vec2(0, 0));
+  for (Curve& curve : panel.outline)
+    for (Vec2& p : curve.control) p -= origin;
+  return panel;
+}
+
+}  // namespace
+
+DrawnPanel load_svg_panel(const std::filesystem::path& file, const std::string& id) {
+  const Drawing drawing(file);
+  const Sheet sheet(drawing);
+  const pugi::xml_node element = drawing.find(id);
+  if (std::string_view(element.name()) == "g") return read_panel_group(drawing, sheet, element);
+  return {sheet.place(outline_of(drawing, element), element), {}};
+}
+
+}  // namespace weft::garment

@@ -1,0 +1,285 @@
+#include "film/garment/wearer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "core/error.hpp"
+
+namespace weft::garment {
+namespace {
+
+// Fraction of the upper arm, from the shoulder, whose sections are replaced by the nearest one farther out, since they
+// cut the shoulder obliquely.
+constexpr double kShoulderFraction = 0.25;
+// Length by which the tube of an arm extends beyond the wrist, as a fraction of the forearm.
+constexpr double kWristExtension = 0.3;
+// Fraction of head and neck, down from the crown, in which the widest section is sought.
+constexpr double kHeadFraction = 0.6;
+// Height of the end of a hood's dome above the crown [m], and ratio of its narrowest section to the widest.
+constexpr double kDomeHeight = 0.08, kMinDomeScale = 0.3;
+// Minimum number of skin points of a section.
+constexpr std::size_t kMinSectionPoints = 6;
+
+double radians(int direction, int directions) {
+  return 2 * std::numbers::pi * direction / directions;
+}
+
+/// A polygonal axis: corners from its low end to its high end.
+struct Axis {
+  std::vector<Vec3> corners;
+  double first = 0;  // s of the first corner
+
+  double length() const {
+    double sum = 0;
+    for (std::size_t k = 1; k < corners.size(); ++k) sum += (corners[k] - corners[k - 1]).norm();
+    return sum;
+  }
+  /// Point and direction at a length from the low end; the direction changes gradually around a corner.
+  std::pair<Vec3, Vec3> at(double length) const {
+    constexpr double kCornerBlend = 0.06;  // [m] on each side of a corner
+    Vec3 along = Vec3::Zero(), point = corners.front();
+    double from = 0;
+    for (std::size_t k = 1; k < corners.size(); ++k) {
+      const Vec3 side = corners[k] - corners[k - 1];
+      const double to = from + side.norm();
+      const bool last = k + 1 == corners.size();
+      if (length >= from && (length <= to || last)) point = corners[k - 1] + (length - from) * side.normalized();
+      const double overlap = std::min(last ? length + kCornerBlend : to, length + kCornerBlend) -
+                             std::max(k == 1 ? length - kCornerBlend : from, length - kCornerBlend);
+      if (overlap > 0) along += overlap * side.normalized();
+      from = to;
+    }
+    return {point, along.normalized()};
+  }
+};
+
+const Limb& limb(const std::optional<Limb>& limb, const std::string& name, const char* joints) {
+  if (limb) return *limb;
+  throw Error(ExitCode::scene_invalid,
+              "expected a wearer with the joints {} for panels around {}, got one without; [[character.joint]] names "
+              "them",
+              joints, name);
+}
+
+}  // namespace
+
+Around mirrored(Around part) {
+  switch (part) {
+    case Around::left_arm:
+      return Around::right_arm;
+    case Around::right_arm:
+      return Around::left_arm;
+    case Around::left_leg:
+      return Around::right_leg;
+    case Around::right_leg:
+      return Around::left_leg;
+    default:
+      return part;
+  }
+}
+
+std::optional<Tube::Section> Tube::cut(const Wearer& wearer, const std::vector<mesh::Triangle>& skin,
+                                       const Section& plane) const {
+  std::vector<Vec2> points;
+  for (const mesh::Triangle& t : skin)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = wearer.skin[t[k]] - plane.centre, b = wearer.skin[t[(k + 1) % 3]] - plane.centre;
+      const double ha = a.dot(plane.along), hb = b.dot(plane.along);
+      if ((ha < 0) == (hb < 0)) continue;
+      const Vec3 p = a + ha / (ha - hb) * (b - a);
+      points.emplace_back(p.dot(plane.front), p.dot(plane.left));
+    }
+  if (points.size() < kMinSectionPoints) return std::nullopt;
+  Section section = plane;
+  Vec2 low = points[0], high = points[0];
+  for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const Vec2 middle = 0.5 * (low + high);
+  section.centre += middle.x() * plane.front + middle.y() * plane.left;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = radians(k, kDirections);
+    const Vec2 n(std::cos(angle), std::sin(angle));
+    double support = -std::numeric_limits<double>::infinity();
+    for (const Vec2& p : points) support = std::max(support, n.dot(p - middle));
+    section.support[static_cast<std::size_t>(k)] = support;
+  }
+  return section;
+}
+
+Tube::Tube(const Wearer& wearer, Around part) {
+  double floor = std::numeric_limits<double>::infinity(), crown = -floor;
+  for (const Vec3& x : wearer.skin) floor = std::min(floor, x.z()), crown = std::max(crown, x.z());
+  const std::string& name = kAroundNames[static_cast<std::size_t>(part)];
+  Axis axis{{Vec3(0, 0, floor), Vec3(0, 0, part == Around::head ? crown + kDomeHeight : crown)}, floor};
+  const bool arm = part == Around::left_arm || part == Around::right_arm;
+  const bool leg = part == Around::left_leg || part == Around::right_leg;
+  const bool left = part == Around::left_arm || part == Around::left_leg;
+  if (arm) {
+    const Limb& joints = limb(left ? wearer.left_arm : wearer.right_arm, name, "UpperArm, LowerArm and Hand");
+    const Vec3 end = joints[2] + kWristExtension * (joints[2] - joints[1]);
+    axis.corners = {end, joints[1], joints[0]};
+    axis.first = -axis.length();
+  } else if (leg) {
+    const Limb& joints = limb(left ? wearer.left_leg : wearer.right_leg, name, "UpperLeg, LowerLeg and Foot");
+    axis.corners = {Vec3(joints[2].x(), joints[2].y(), floor), joints[2], joints[1], joints[0],
+                    Vec3(joints[0].x(), joints[0].y(), wearer.neck)};
+    axis.first = floor;
+  }
+
+  // Select the skin that the tube goes around.
+  std::vector<mesh::Triangle> skin;
+  for (const mesh::Triangle& t : wearer.triangles) {
+    const auto is = [&](Region region) {
+      return (wearer.regions[t[0]] == region) + (wearer.regions[t[1]] == region) + (wearer.regions[t[2]] == region) >=
+             2;
+    };
+    const bool on_side = (wearer.skin[t[0]] + wearer.skin[t[1]] + wearer.skin[t[2]]).x() * (left ? 1 : -1) > 0;
+    bool belongs = true;
+    if (arm) {
+      belongs = is(left ? Region::left_arm : Region::right_arm);
+    } else if (leg) {
+      belongs = is(left ? Region::left_leg : Region::right_leg) || (is(Region::trunk) && on_side);
+    } else if (part != Around::body) {
+      belongs = !is(Region::left_arm) && !is(Region::right_arm);
+    }
+    if (belongs) skin.push_back(t);
+  }
+
+  const auto count = static_cast<int>(axis.length() / kSpacing) + 1;
+  first_ = axis.first;
+  std::vector<std::optional<Section>> cuts;
+  for (int i = 0; i < count; ++i) {
+    const auto [point, along] = axis.at(i * kSpacing);
+    Section plane;
+    plane.centre = point, plane.along = along;
+    plane.front = (-Vec3::UnitY() + along.y() * along).normalized();
+    plane.left = along.cross(plane.front);
+    cuts.push_back(cut(wearer, skin, plane));
+    const double s = first_ + i * kSpacing;
+    if (arm && -s < kShoulderFraction * (axis.corners[2] - axis.corners[1]).norm()) cuts.back() = std::nullopt;
+  }
+  // A hood hangs from the widest section of the head.
+  double widest = first_;
+  if (part == Around::head) {
+    const auto girth_of = [](const std::optional<Section>& section) {
+      return section ? std::accumulate(section->support.begin(), section->support.end(), 0.0) : 0.0;
+    };
+    const double low = crown - kHeadFraction * (crown - wearer.neck);
+    const auto first = cuts.begin() + std::clamp(static_cast<int>((low - first_) / kSpacing), 0, count - 1);
+    const auto found = std::ranges::max_element(first, cuts.end(), {}, girth_of);
+    const std::optional<Section> section = *found;
+    std::ranges::fill(cuts, std::nullopt);
+    *found = section;
+    widest = first_ + static_cast<double>(found - cuts.begin()) * kSpacing;
+  }
+  // A position without a section of its own uses the nearest section, moved along the axis.
+  std::vector<std::size_t> known;
+  for (std::size_t i = 0; i < cuts.size(); ++i)
+    if (cuts[i]) known.push_back(i);
+  if (known.empty())
+    throw Error(ExitCode::scene_invalid, "expected a wearer with skin around {} for the panels there, got none", name);
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    const auto above = std::ranges::lower_bound(known, i);
+    std::size_t nearest = above == known.end() ? known.back() : *above;
+    if (above != known.begin() && above != known.end() && i - *(above - 1) < nearest - i) nearest = *(above - 1);
+    Section section = *cuts[nearest];
+    section.centre +=
+        axis.at(static_cast<double>(i) * kSpacing).first - axis.at(static_cast<double>(nearest) * kSpacing).first;
+    sections_.push_back(section);
+  }
+  // A hood closes above the head: seams that meet at its crown then start near it.
+  if (part == Around::head)
+    for (std::size_t i = 0; i < sections_.size(); ++i) {
+      const double height =
+          std::clamp((first_ + static_cast<double>(i) * kSpacing - widest) / (crown + kDomeHeight - widest), 0.0, 1.0);
+      const double scale = std::max(std::sqrt(1 - height * height), kMinDomeScale);
+      sections_[i].scale = scale;
+      for (double& support : sections_[i].support) support *= scale;
+    }
+  // A cloak hangs from the widest section above, so each section is widened to contain the one above it.
+  if (part == Around::body)
+    for (std::size_t i = sections_.size() - 1; i-- > 0;) {
+      const Section& above = sections_[i + 1];
+      const Vec3 shift = above.centre - sections_[i].centre;
+      for (int k = 0; k < kDirections; ++k) {
+        const double angle = radians(k, kDirections);
+        double& support = sections_[i].support[static_cast<std::size_t>(k)];
+        support =
+            std::max(support, above.support[static_cast<std::size_t>(k)] + std::cos(angle) * shift.dot(above.front) +
+                                  std::sin(angle) * shift.dot(above.left));
+      }
+    }
+}
+
+Tube::Section Tube::section(double s) const {
+  const double place = (s - first_) / kSpacing;
+  const double last = static_cast<double>(sections_.size() - 1);
+  const double inside = std::clamp(place, 0.0, last);
+  const auto below = std::min(static_cast<std::size_t>(inside), sections_.size() - 2);
+  const double fraction = inside - static_cast<double>(below);
+  const Section &a = sections_[below], &b = sections_[below + 1];
+  Section mixed = a;
+  mixed.centre = (1 - fraction) * a.centre + fraction * b.centre;
+  mixed.along = ((1 - fraction) * a.along + fraction * b.along).normalized();
+  mixed.front = (-Vec3::UnitY() + mixed.along.y() * mixed.along).normalized();
+  mixed.left = mixed.along.cross(mixed.front);
+  for (std::size_t k = 0; k < mixed.support.size(); ++k)
+    mixed.support[k] = (1 - fraction) * a.support[k] + fraction * b.support[k];
+  mixed.scale = (1 - fraction) * a.scale + fraction * b.scale;
+  mixed.centre += (place - inside) * kSpacing * mixed.along;
+  return mixed;
+}
+
+// Boundary curve of a support function h: h n + h' t, with the unit vectors n of the direction and t, 90° further.
+Tube::Ring Tube::ring(const Section& section, double outward) {
+  Ring points;
+  const double step = 2 * std::numbers::pi / kDirections;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = radians(k, kDirections), h = section.support[static_cast<std::size_t>(k)] + outward;
+    const double slope = (section.support[static_cast<std::size_t>((k + 1) % kDirections)] -
+                          section.support[static_cast<std::size_t>((k + kDirections - 1) % kDirections)]) /
+                         (2 * std::sin(step));
+    const double f = h * std::cos(angle) - slope * std::sin(angle), l = h * std::sin(angle) + slope * std::cos(angle);
+    points[static_cast<std::size_t>(k)] = section.centre + f * section.front + l * section.left;
+  }
+  return points;
+}
+
+double Tube::length(const Ring& points) {
+  double sum = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) sum += (points[(k + 1) % points.size()] - points[k]).norm();
+  return sum;
+}
+
+double Tube::girth(double s, double outward) const {
+  const Section here = section(s);
+  return length(ring(here, here.scale * outward)) / here.scale;
+}
+
+Vec3 Tube::at(double s, double angle, double length, double outward) const {
+  const Section here = section(s);
+  const Ring points = ring(here, here.scale * outward);
+  const auto n = static_cast<long>(points.size());
+  const auto point = [&](long k) -> const Vec3& { return points[static_cast<std::size_t>(((k % n) + n) % n)]; };
+  // Walk along the ring from the direction of the angle, forward or backward.
+  const double place = angle / (2 * std::numbers::pi) * kDirections;
+  auto k = static_cast<long>(std::floor(place));
+  double fraction = place - std::floor(place);
+  const double total = Tube::length(points);
+  if (!(total > 0)) return here.centre;
+  length = std::remainder(here.scale * length, total);
+  length += fraction * (point(k + 1) - point(k)).norm();
+  while (length < 0) --k, length += (point(k + 1) - point(k)).norm();
+  while (length > (point(k + 1) - point(k)).norm()) length -= (point(k + 1) - point(k)).norm(), ++k;
+  const double side = (point(k + 1) - point(k)).norm();
+  fraction = side > 0 ? length / side : 0;
+  return (1 - fraction) * point(k) + fraction * point(k + 1);
+}
+
+Vec3 Tube::along(double s) const {
+  return section(s).along;
+}
+
+}  // namespace weft::garment

@@ -1,0 +1,324 @@
+#include "film/garment/wrapping.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <unordered_map>
+
+#include "film/garment/joined_places.hpp"
+#include "physics/mesh/geometry.hpp"
+
+namespace weft::garment {
+namespace {
+
+// Distance between layers at the start [m]: more than any fabric's contact thickness.
+constexpr double kLayerDistance = 0.01;
+// Slack in a ring with a closure [m], so that the two edges of the closure do not start in the same place.
+constexpr double kClosureSlack = 0.03;
+// Minimum distance between a narrow sleeve and the skin at the start [m]; decrease in width at the start of its cap
+// [m].
+constexpr double kMinSleeveGap = 0.006, kCapNarrowing = 0.01;
+// Number of sample points along a seam, and of rounds, for moving a panel to its neighbour.
+constexpr int kSeamPoints = 16, kSeamRounds = 6;
+// Distance over which closing a seam bends panels [m]. If it is smaller, sleeves crease at the cap; if it is larger,
+// sleeves move off the arm's axis.
+constexpr double kBendingDistance = 0.1;
+
+double radians(double degrees) {
+  return degrees * std::numbers::pi / 180;
+}
+
+/// Length across and height [m] of a point of a panel on the tube that the panel is bent around, as seen from outside.
+Vec2 unrolled_position(const Panel& panel, const Vec2& position, const Vec2& p) {
+  const Vec2 turned = Eigen::Rotation2Dd(radians(panel.rotation)) * Vec2(panel.scale.cwiseProduct(p));
+  const Vec2 q = position + turned;
+  return {panel.side == Side::back ? -q.x() : q.x(), q.y()};
+}
+
+class PanelPlacer {
+ public:
+  PanelPlacer(const Pattern& pattern, std::span<const FlatMesh> meshes, const Wearer& wearer)
+      : pattern_(pattern), meshes_(meshes), positions_(pattern.panels.size()) {
+    for (const Panel& panel : pattern.panels)
+      if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
+  }
+
+  /// Uses the given positions, then finds the others from seams. Returns a panel that still has none, or null.
+  const Panel* find_positions() {
+    for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
+    update_eases();
+    for (bool found = true; found;) {
+      // All positions of one round are found from those of the previous round, so that mirror images are treated alike.
+      std::vector<std::optional<Vec2>> next = positions_;
+      for (std::size_t p = 0; p < positions_.size(); ++p)
+        if (!positions_[p]) next[p] = position_from_seams(p);
+      found = next != positions_;
+      positions_ = std::move(next);
+    }
+    update_eases();
+    for (std::size_t p = 0; p < positions_.size(); ++p)
+      if (!positions_[p]) return &pattern_.panels[p];
+    return nullptr;
+  }
+
+  std::vector<Vec3> bent_points(std::size_t p) const {
+    std::vector<Vec3> points;
+    for (const Vec2& point : meshes_[p].points) points.push_back(place(p, *positions_[p], point));
+    return points;
+  }
+
+ private:
+  static Around part_of(const Panel& panel) { return panel.around == Around::none ? Around::torso : panel.around; }
+  static double angle_of(const Panel& panel) {
+    if (panel.angle) return radians(*panel.angle);
+    if (panel.side) return *panel.side == Side::back ? std::numbers::pi : 0;
+    const bool left = panel.around == Around::left_arm, right = panel.around == Around::right_arm;
+    return left ? 0.5 * std::numbers::pi : right ? -0.5 * std::numbers::pi : 0;
+  }
+
+  Vec3 place(std::size_t p, const Vec2& position, const Vec2& point) const {
+    const Panel& panel = pattern_.panels[p];
+    const Vec2 q = unrolled_position(panel, position, point);
+    return tubes_.at(part_of(panel)).at(q.y(), angle_of(panel), q.x(), outward(panel, q.y()));
+  }
+  double outward(const Panel& panel, double s) const {
+    double ease = 0;
+    if (const auto found = eases_.find(part_of(panel)); found != eases_.end()) {
+      const auto& [first, of_height] = found->second;
+      const double place = std::clamp((s - first) / kStep, 0.0, static_cast<double>(of_height.size() - 1));
+      const auto below = std::min(static_cast<std::size_t>(place), of_height.size() - 1);
+      const double fraction = place - static_cast<double>(below);
+      ease = (1 - fraction) * of_height[below] + fraction * of_height[std::min(below + 1, of_height.size() - 1)];
+    }
+    return pattern_.gap + kLayerDistance * panel.layer + ease;
+  }
+
+  // Total width of the panels that form a ring around each part, per height in steps of kStep.
+  std::map<Around, std::map<long, double>> widths() const {
+    std::map<Around, std::map<long, double>> of_part;
+    for (std::size_t p = 0; p < positions_.size(); ++p) {
+      const Panel& panel = pattern_.panels[p];
+      if (!positions_[p] || panel.layer > 0) continue;
+      std::map<long, std::pair<double, double>> extents;
+      for (const mesh::Triangle& t : meshes_[p].triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+          Vec2 a = unrolled_position(panel, *positions_[p], meshes_[p].points[at(t[k])]);
+          Vec2 b = unrolled_position(panel, *positions_[p], meshes_[p].points[at(t[(k + 1) % 3])]);
+          if (a.y() > b.y()) std::swap(a, b);
+          for (auto level = static_cast<long>(std::ceil(a.y() / kStep)); level * kStep <= b.y() && b.y() > a.y();
+               ++level) {
+            const double x = a.x() + (level * kStep - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+            auto [entry, fresh] = extents.try_emplace(level, x, x);
+            auto& [low, high] = entry->second;
+            low = std::min(low, x), high = std::max(high, x);
+          }
+        }
+      for (const auto& [level, extent] : extents) of_part[part_of(panel)][level] += extent.second - extent.first;
+    }
+    return of_part;
+  }
+  // Whether a ring around the part has a closure.
+  bool has_closure(Around part) const {
+    return std::ranges::any_of(pattern_.seams, [&](const Seam& seam) {
+      return seam.closure() && part_of(pattern_.panels[pattern_.find(seam.a).first]) == part;
+    });
+  }
+
+  // Computes the ease of each ring: how far outward the panels must move to close the ring. Narrow sleeves move toward
+  // the skin, since closing them across an arm would pull them through the arm.
+  void update_eases() {
+    eases_.clear();
+    for (const auto& [part, of_level] : widths()) {
+      auto& [first, of_height] = eases_[part];
+      first = kStep * static_cast<double>(of_level.begin()->first);
+      const double slack = has_closure(part) ? kClosureSlack : 0;
+      const bool arm = part == Around::left_arm || part == Around::right_arm;
+      const double min_ease = arm ? std::min(kMinSleeveGap - pattern_.gap, 0.0) : 0;
+      std::vector<double> raw;
+      double widest = 0;
+      for (const auto& [level, width] : of_level) {
+        const double girth = tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap);
+        const double ease = std::max(min_ease, (width + slack - girth) / (2 * std::numbers::pi));
+        // The cap of a sleeve narrows and does not close: it keeps the ease of the level below.
+        raw.push_back(arm && width < widest - kCapNarrowing ? raw.back() : ease);
+        widest = std::max(widest, width);
+      }
+      // Smooth over height: where a panel begins or ends, the width changes abruptly.
+      constexpr long kSmooth = 4;
+      const auto count = static_cast<long>(raw.size());
+      for (long i = 0; i < count; ++i) {
+        double sum = 0;
+        for (long k = i - kSmooth; k <= i + kSmooth; ++k)
+          sum += raw[static_cast<std::size_t>(std::clamp(k, 0L, count - 1))];
+        of_height.push_back(sum / (2 * kSmooth + 1));
+      }
+    }
+  }
+
+  // Position along its part at which the seams with placed panels are shortest.
+  std::optional<Vec2> position_from_seams(std::size_t p) const {
+    struct Pair {
+      Vec2 own;
+      Vec3 other;
+    };
+    std::vector<Pair> pairs;
+    for (const Seam& seam : pattern_.seams)
+      for (const bool swapped : {false, true}) {
+        const auto [own, edge] = pattern_.find(swapped ? seam.b : seam.a);
+        const auto [other, other_edge] = pattern_.find(swapped ? seam.a : seam.b);
+        if (own != p || other == p || !positions_[other]) continue;
+        const Panel &panel = pattern_.panels[own], &neighbour = pattern_.panels[other];
+        const Arclength along(panel.edges[edge].curves), beside(neighbour.edges[other_edge].curves);
+        const bool reversed = are_drawn_from_same_side(panel, neighbour);
+        for (int k = 0; k <= kSeamPoints; ++k) {
+          const double fraction = double(k) / kSeamPoints;
+          pairs.push_back(
+              {along.at(fraction), place(other, *positions_[other], beside.at(reversed ? 1 - fraction : fraction))});
+        }
+      }
+    if (pairs.empty()) return std::nullopt;
+    const Tube& tube = tubes_.at(part_of(pattern_.panels[p]));
+    // Start from the end nearest to the trunk.
+    Vec2 position(0, tube.high());
+    for (int round = 0; round < kSeamRounds; ++round) {
+      double sum = 0;
+      for (const Pair& pair : pairs) {
+        const double s = unrolled_position(pattern_.panels[p], position, pair.own).y();
+        sum += (pair.other - place(p, position, pair.own)).dot(tube.along(s));
+      }
+      position.y() += sum / static_cast<double>(pairs.size());
+    }
+    return position;
+  }
+
+  static constexpr double kStep = 0.01;  // step of the heights at which widths are measured [m]
+
+  const Pattern& pattern_;
+  std::span<const FlatMesh> meshes_;
+  std::vector<std::optional<Vec2>> positions_;
+  std::map<Around, Tube> tubes_;
+  std::map<Around, std::pair<double, std::vector<double>>> eases_;  // first height, and the ease at each step [m]
+};
+
+/// Nearest-neighbour search among the vertices of the skin, sorted into cubic cells.
+class SkinSearch {
+ public:
+  SkinSearch(const Wearer& wearer, double radius)
+      : wearer_(wearer), radius_(radius), normals_(wearer.skin.size(), Vec3::Zero()) {
+    for (const mesh::Triangle& t : wearer.triangles) {
+      const Vec3 area = mesh::area_vector(t, wearer.skin);
+      for (const Index v : t) normals_[at(v)] += area;
+    }
+    for (std::size_t v = 0; v < normals_.size(); ++v) {
+      if (normals_[v].norm() > 0) normals_[v].normalize();
+      cells_[key(cell(wearer.skin[v]))].push_back(static_cast<Index>(v));
+    }
+  }
+  /// The nearest vertex within the search radius; −1: none.
+  Index nearest(const Vec3& x) const {
+    const auto middle = cell(x);
+    double best = radius_ * radius_;
+    Index found = -1;
+    for (long i = -1; i <= 1; ++i)
+      for (long j = -1; j <= 1; ++j)
+        for (long k = -1; k <= 1; ++k) {
+          const auto of_cell = cells_.find(key({middle[0] + i, middle[1] + j, middle[2] + k}));
+          if (of_cell == cells_.end()) continue;
+          for (const Index v : of_cell->second)
+            if (const double d = (wearer_.skin[at(v)] - x).squaredNorm(); d < best) best = d, found = v;
+        }
+    return found;
+  }
+  const Vec3& normal(Index v) const { return normals_[at(v)]; }
+
+ private:
+  std::array<long, 3> cell(const Vec3& x) const {
+    return {std::lround(std::floor(x.x() / radius_)), std::lround(std::floor(x.y() / radius_)),
+            std::lround(std::floor(x.z() / radius_))};
+  }
+  static std::int64_t key(const std::array<long, 3>& c) {
+    constexpr std::int64_t kCellOffset = 1 << 20;
+    return ((c[0] + kCellOffset) * 2 * kCellOffset + c[1] + kCellOffset) * 2 * kCellOffset + c[2] + kCellOffset;
+  }
+  const Wearer& wearer_;
+  double radius_;
+  std::vector<Vec3> normals_;
+  std::unordered_map<std::int64_t, std::vector<Index>> cells_;
+};
+
+}  // namespace
+
+bool are_drawn_from_same_side(const Panel& a, const Panel& b) {
+  return a.from_inside() == b.from_inside();
+}
+
+std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,
+                                           const Wearer& wearer,
+                                           const std::function<void(const std::string&)>& refuse) {
+  PanelPlacer placer(pattern, meshes, wearer);
+  if (const Panel* unplaced = placer.find_positions())
+    refuse(
+        fmt::format("panel {}: expected a position, or a seam to a panel that has one, got neither", unplaced->name));
+  std::vector<std::vector<Vec3>> points;
+  for (std::size_t p = 0; p < pattern.panels.size(); ++p) points.push_back(placer.bent_points(p));
+  return points;
+}
+
+std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
+                                std::size_t vertices, double spacing) {
+  // With this weight, the anchor acts over the distance kBendingDistance.
+  JoinedPlaces<3> places(vertices, spacing * spacing / (kBendingDistance * kBendingDistance));
+  for (std::size_t t = 0; t < triangles.size(); ++t) places.add(triangles[t], corners[t]);
+  return places.solve();
+}
+
+void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
+                      std::span<Vec3> x) {
+  constexpr double kMaxSkinDepth = 0.08;  // search radius: maximum depth in the skin from which cloth is moved out [m]
+  constexpr int kRounds = 30, kRings = 3;
+  const SkinSearch skin(wearer, kMaxSkinDepth);
+  std::vector<std::vector<Index>> neighbours(x.size());
+  std::vector<char> rim(x.size(), 0);
+  const std::vector<mesh::Triangle> all(triangles.begin(), triangles.end());
+  const mesh::EdgeSet edges = mesh::collect_edges(all);
+  for (const mesh::Edge& edge : edges.edges)
+    if (edge.triangles[1] < 0) rim[at(edge.vertices[0])] = rim[at(edge.vertices[1])] = 1;
+  for (const mesh::Edge& edge : edges.edges) {
+    const auto [a, b] = edge.vertices;
+    // Of the neighbours of a vertex on the rim, only those along the rim count.
+    if (!rim[at(a)] || edge.triangles[1] < 0) neighbours[at(a)].push_back(b);
+    if (!rim[at(b)] || edge.triangles[1] < 0) neighbours[at(b)].push_back(a);
+  }
+  std::vector<char> moving(x.size(), 0);
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      const Index near = skin.nearest(x[v]);
+      if (near < 0) continue;
+      const double missing = clearance - (x[v] - wearer.skin[at(near)]).dot(skin.normal(near));
+      if (missing <= 0) continue;
+      x[v] += missing * skin.normal(near);
+      moving[v] = 1;
+    }
+    if (std::ranges::none_of(moving, [](char m) { return m != 0; }) || round + 1 == kRounds) break;
+    if (round == 0)
+      for (int ring = 0; ring < kRings; ++ring) {
+        const std::vector<char> before = moving;
+        for (std::size_t v = 0; v < x.size(); ++v)
+          for (const Index n : neighbours[v]) moving[v] |= before[at(n)];
+      }
+    const std::vector<Vec3> before(x.begin(), x.end());
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      if (!moving[v] || neighbours[v].empty()) continue;
+      Vec3 sum = Vec3::Zero();
+      for (const Index n : neighbours[v]) sum += before[at(n)];
+      x[v] = 0.5 * (before[v] + sum / static_cast<double>(neighbours[v].size()));
+    }
+  }
+}
+
+}  // namespace weft::garment

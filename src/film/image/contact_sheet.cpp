@@ -1,0 +1,104 @@
+#include "film/image/contact_sheet.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "film/image/text.hpp"
+
+namespace weft::image {
+namespace {
+
+constexpr Color kPaper{244, 244, 242}, kInk{38, 38, 42}, kFaintInk{112, 112, 118};
+
+/// Sizes derived from the width of a picture [pixels].
+struct Layout {
+  explicit Layout(int width)
+      : text(std::clamp(width / 24, 9, 28)), heading(text * 4 / 3), gap(text), caption(text * 2) {}
+  int text, heading;
+  int gap;      // around pictures
+  int caption;  // height of the first line below each picture
+  int line() const { return text * 5 / 4; }
+};
+
+void paste(Image& onto, const Image& image, int x, int y) {
+  for (int row = 0; row < image.height; ++row)
+    std::copy_n(image.pixel(0, row), 3 * static_cast<std::size_t>(image.width), onto.pixel(x, y + row));
+}
+
+// Length of the longest prefix of `text` that is at most `max_width` pixels wide [bytes]; at least one character.
+std::size_t fitting(const Font& font, std::string_view text, int max_width) {
+  std::size_t length =
+      std::min(text.size(), 4 * static_cast<std::size_t>(std::max(1, max_width)));  // at most 4 bytes per pixel
+  const auto is_continued = [&](std::size_t at) { return at < text.size() && (text[at] & 0xC0) == 0x80; };  // UTF-8
+  while (length > 1 && (is_continued(length) || font.width(text.substr(0, length)) > max_width)) --length;
+  while (is_continued(length)) ++length;
+  return length;
+}
+
+// Longer captions are cut, to limit the height of a sheet.
+constexpr std::size_t kMaxCaptionLines = 60;
+
+// Wraps a text at blanks to lines no wider than `max_width` [pixels]; splits a word that is longer than a line.
+std::vector<std::string> wrapped(const Font& font, std::string_view text, int max_width) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    if (lines.size() == kMaxCaptionLines) {
+      lines.back() = "…";
+      break;
+    }
+    std::size_t length = fitting(font, text, max_width);
+    const std::size_t blank = length < text.size() ? text.rfind(' ', length) : std::string_view::npos;
+    if (blank != std::string_view::npos && blank > 0) length = blank;
+    const std::string_view line = text.substr(0, length);
+    lines.emplace_back(line.substr(0, line.find_last_not_of(' ') + 1));
+    text.remove_prefix(length);
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  }
+  return lines;
+}
+
+// The lines below a picture; `right` is on the last line if it fits, else on an additional line.
+std::vector<std::string> caption_lines(const Font& font, const SheetPicture& picture, int width, int gap) {
+  std::vector<std::string> lines = wrapped(font, picture.left, width);
+  if (lines.empty() || font.width(lines.back()) + gap + font.width(picture.right) > width) lines.emplace_back();
+  return lines;
+}
+
+}  // namespace
+
+Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const std::string& heading) {
+  if (pictures.empty() || columns < 1) throw Error(ExitCode::internal, "contact sheet: expected pictures and columns");
+  const int width = pictures[0].image.width, height = pictures[0].image.height;
+  columns = std::min(columns, static_cast<int>(pictures.size()));
+  const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
+  const Layout layout(width);
+  const int top = 2 * layout.gap + layout.heading;
+  const Font heading_font(layout.heading), font(layout.text);
+  std::vector<std::vector<std::string>> captions;
+  std::size_t max_lines = 1;
+  for (const SheetPicture& picture : pictures) {
+    captions.push_back(caption_lines(font, picture, width, layout.gap / 2));
+    max_lines = std::max(max_lines, captions.back().size());
+  }
+  const int caption = layout.caption + (static_cast<int>(max_lines) - 1) * layout.line();
+
+  Image sheet(layout.gap + columns * (width + layout.gap), top + rows * (height + caption) + layout.gap / 2);
+  for (std::size_t i = 0; i < sheet.rgb.size(); ++i) sheet.rgb[i] = kPaper[i % 3];
+  heading_font.draw(sheet, layout.gap, layout.gap + layout.heading * 4 / 5, heading, kInk);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const SheetPicture& picture = pictures[i];
+    if (picture.image.width != width || picture.image.height != height)
+      throw Error(ExitCode::internal, "contact sheet: expected pictures of one size");
+    const int x = layout.gap + static_cast<int>(i) % columns * (width + layout.gap);
+    const int y = top + static_cast<int>(i) / columns * (height + caption);
+    paste(sheet, picture.image, x, y);
+    int baseline = y + height;
+    for (const std::string& line : captions[i]) font.draw(sheet, x, baseline += layout.line(), line, kInk);
+    font.draw(sheet, x + width - font.width(picture.right), baseline, picture.right, kFaintInk);
+  }
+  return sheet;
+}
+
+}  // namespace weft::image

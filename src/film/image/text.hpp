@@ -1,0 +1,34 @@
+// Text on pictures, in a font that is built into the program.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "film/image/image.hpp"
+
+namespace weft::image {
+
+using Color = std::array<std::uint8_t, 3>;  ///< sRGB
+
+/// DejaVu Sans in one size. Text is UTF-8; invalid bytes and characters missing in the font are drawn as boxes.
+class Font {
+ public:
+  /// `pixels`: size of the em square, clamped to 4 to 400.
+  explicit Font(int pixels);
+  ~Font();
+  Font(const Font&) = delete;
+  Font& operator=(const Font&) = delete;
+
+  int width(std::string_view text) const;  ///< [pixels]
+
+  /// Draws a line of text from (x, baseline) on, clipped to the picture.
+  void draw(Image& image, int x, int baseline, std::string_view text, const Color& color) const;
+
+ private:
+  struct Face;
+  std::unique_ptr<Face> face_;
+};
+
+}  // namespace weft::image

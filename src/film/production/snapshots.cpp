@@ -1,0 +1,462 @@
+#include "film/production/snapshots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <numbers>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/log.hpp"
+#include "film/assets/camera_file.hpp"
+#include "film/image/color.hpp"
+#include "film/image/picture.hpp"
+#include "film/scene/fabrics.hpp"
+
+namespace weft::production {
+namespace {
+
+using CameraValue = motion::Spline<7>::Value;
+using LightValue = motion::Spline<10>::Value;
+
+// Characters are round: faces that meet below this angle are shaded smoothly [degrees].
+constexpr double kCharacterCrease = 80;
+
+// Largest roll of a camera in a file that is ignored without a warning [degrees].
+constexpr double kMaxIgnoredRoll = 0.1;
+
+// Default paleness of the back of a cloth: fraction of the way from the front's colour to white.
+constexpr double kBackPaleness = 0.35;
+
+frame::Appearance appearance(const scene::Look& look) {
+  frame::Appearance result;
+  result.roughness = look.roughness;
+  result.metal = look.metal;
+  result.finish = {look.gloss.value_or(0), look.warp_fraction, look.fuzz.value_or(0), look.sheer.value_or(0),
+                   look.threads};
+  result.thread_spacing = look.thread_spacing;
+  result.thickness = look.cloth_thickness;
+  result.hem = look.hem.value_or(0);
+  result.checker = look.checker;
+  return result;
+}
+
+/// Default widths of hems: of garments and of other cloth [m].
+constexpr double kGarmentHem = 0.015, kHem = 0.010;
+// Thickness per density of fabrics without a name, estimated from the named ones [m per kg/m²].
+constexpr double kThicknessPerDensity = 2.2e-3;
+// Lay length of a rope (along which a strand turns once), in diameters. Smallest diameter with strands [m]: strands
+// finer than pixels would flicker.
+constexpr double kStrandTurnLength = 3.2, kMinTwistedDiameter = 0.009;
+
+/// The look of a cloth. Values that the scene does not set come from the finish of its fabric.
+scene::Look look_of(const scene::Cloth& cloth) {
+  scene::Look look = cloth.look;
+  if (cloth.rope) {
+    look.cloth_thickness = cloth.rope->diameter;
+    look.thread_spacing =
+        look.strands && cloth.rope->diameter >= kMinTwistedDiameter ? kStrandTurnLength * cloth.rope->diameter : 0;
+    return look;
+  }
+  const scene::Fabric* fabric = scene::find_fabric(cloth.material.fabric);
+  const scene::Finish finish = fabric ? fabric->finish : scene::fabrics().front().finish;
+  look.gloss = look.gloss.value_or(finish.gloss);
+  look.fuzz = look.fuzz.value_or(finish.fuzz);
+  look.sheer = look.sheer.value_or(finish.sheer);
+  look.warp_fraction = finish.warp_fraction;
+  look.threads = finish.threads;
+  look.cloth_thickness = fabric ? fabric->measured.thickness.value : kThicknessPerDensity * cloth.material.density;
+  const double hem = cloth.shape == scene::ClothShape::pattern ? kGarmentHem : kHem;
+  look.hem = look.hem.value_or(!fabric || fabric->frays ? hem : 0);
+  return look;
+}
+
+/// Sets the colours of a look and, if there is a picture, lays it along weft and warp.
+void apply_paint(frame::Appearance& look, const scene::Paint& paint, Pictures& pictures) {
+  look.color = paint.color;
+  look.back_color = paint.back_color.value_or(paint.color + kBackPaleness * (Vec3::Ones() - paint.color));
+  look.back_painted = !paint.back_color;
+  look.back_paleness = kBackPaleness;
+  look.paint = {};
+  if (!paint.image) return;
+  look.paint.texture = pictures.of_file(*paint.image);
+  const double height = paint.image_width * look.paint.texture->height / look.paint.texture->width;
+  const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-paint.image_rotation * std::numbers::pi / 180).toRotationMatrix();
+  const Eigen::Matrix2d to_tiles = Vec2(1 / paint.image_width, 1 / height).asDiagonal() * turned;
+  look.paint.texture_from_uv << to_tiles, -to_tiles * paint.image_offset;
+  look.paint.wrap_u = look.paint.wrap_v = paint.image_repeat ? frame::Paint::Wrap::repeat : frame::Paint::Wrap::once;
+  look.paint.alpha = paint.cutout ? frame::Paint::Alpha::cutout : frame::Paint::Alpha::over_color;
+  if (paint.cutout) look.color.setOnes();
+}
+
+/// Makes the picture on a floor opaque, and sets the floor's colour to the mean light of the picture: the light that
+/// the floor reflects to other objects.
+void make_opaque(frame::Appearance& look) {
+  auto filled = std::make_shared<frame::Texture>(*look.paint.texture);
+  const Vec3 below = image::linear_from_srgb(look.color);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < filled->rgba.size(); i += 4) {
+    std::uint8_t* pixel = &filled->rgba[i];
+    const double opacity = pixel[3] / 255.0;
+    const Vec3 shown =
+        opacity * image::linear_from_srgb(Vec3(pixel[0], pixel[1], pixel[2]) / 255) + (1 - opacity) * below;
+    sum += shown;
+    for (int c = 0; c < 3; ++c)
+      pixel[c] = static_cast<std::uint8_t>(std::lround(255 * image::srgb_from_linear(shown[c])));
+    pixel[3] = 255;
+  }
+  look.paint.texture = std::move(filled);
+  look.color = image::srgb_from_linear(Vec3(sum * 4 / static_cast<double>(look.paint.texture->rgba.size())));
+}
+
+void apply_look(frame::Surface& surface, const scene::Look& look, Pictures& pictures) {
+  surface.visible = look.visible;
+  surface.appearance = appearance(look);
+  apply_paint(surface.appearance, look, pictures);
+  if (surface.kind != frame::ObjectKind::cloth && surface.kind != frame::ObjectKind::rope)
+    surface.appearance.thread_spacing = 0;
+  // On obstacles, texture coordinates are in units of the picture.
+  if (surface.kind == frame::ObjectKind::obstacle) {
+    surface.appearance.paint.texture_from_uv.setIdentity();
+    surface.appearance.coat = look.gloss.value_or(0);
+  }
+  if (surface.infinite_floor && look.image) make_opaque(surface.appearance);
+  // The parts already have the materials of the character's file.
+  if (surface.kind == frame::ObjectKind::character && look.as_file) return;
+  for (frame::SurfacePart& part : surface.parts) {
+    const frame::Paint figure = part.appearance.paint;
+    part.appearance = surface.appearance;
+    // The mannequin's hair, face and shoes are painted over any colour.
+    if (surface.kind == frame::ObjectKind::character) part.appearance.paint = figure;
+    for (const scene::PanelPaint& panel : look.panels)
+      if (panel.name == part.name) apply_paint(part.appearance, panel, pictures);
+  }
+}
+
+std::shared_ptr<frame::Surface> make_surface(const std::string& name, frame::ObjectKind kind, const mesh::Mesh& mesh) {
+  auto surface = std::make_shared<frame::Surface>();
+  surface->name = name;
+  surface->kind = kind;
+  surface->triangles = mesh.topology.triangles;
+  surface->quads = mesh.topology.quads;
+  surface->uv = mesh.uv;
+  if (kind == frame::ObjectKind::cloth) surface->crease_angle = 180;
+  return surface;
+}
+
+std::shared_ptr<frame::Surface> make_cloth_surface(const model::Cloth& cloth, const environment::ClothDetails& details,
+                                                   const scene::Look& look, Pictures& pictures) {
+  auto surface = make_surface(cloth.name, cloth.rope ? frame::ObjectKind::rope : frame::ObjectKind::cloth, cloth.mesh);
+  for (const std::string& panel : details.panels) surface->parts.push_back({panel, {}});
+  surface->part_of_triangle = details.panel_of;
+  surface->paint_uv = details.paint_uv;
+  apply_look(*surface, look, pictures);
+  return surface;
+}
+
+std::shared_ptr<const frame::Texture> texture_of(image::Picture picture) {
+  return std::make_shared<const frame::Texture>(frame::Texture{picture.width, picture.height, std::move(picture.rgba)});
+}
+
+/// Surface part with a material of a file. Warns if a picture cannot be decoded, and leaves it out.
+frame::SurfacePart part_of(const character::Material& material, const std::string& body) {
+  frame::SurfacePart part{material.name, {}};
+  part.appearance.color = part.appearance.back_color = image::srgb_from_linear(material.color);
+  frame::Paint& paint = part.appearance.paint;
+  if (!material.pixels.empty()) {
+    paint.texture =
+        std::make_shared<const frame::Texture>(frame::Texture{material.width, material.height, material.pixels});
+    paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::clamp;
+    paint.alpha = frame::Paint::Alpha::over_color;
+    return part;
+  }
+  if (material.picture.empty()) return part;
+  try {
+    paint.texture = texture_of(image::decode_picture(material.picture));
+  } catch (const std::exception& error) {
+    log::warn(
+        fmt::format("character.{}: material \"{}\": its picture is left out: {}", body, material.name, error.what()));
+  }
+  paint.wrap_u = static_cast<frame::Paint::Wrap>(material.wrap_u);
+  paint.wrap_v = static_cast<frame::Paint::Wrap>(material.wrap_v);
+  paint.alpha = material.cutout ? frame::Paint::Alpha::cutout : frame::Paint::Alpha::ignored;
+  return part;
+}
+
+std::shared_ptr<frame::Surface> make_body_surface(const model::Body& body, const environment::BodyDetails& details,
+                                                  Pictures& pictures) {
+  auto surface =
+      make_surface(body.name, body.deforms() ? frame::ObjectKind::character : frame::ObjectKind::obstacle, body.mesh);
+  surface->infinite_floor = body.infinite_floor;
+  surface->passed_through = details.passed_through;
+  if (!body.collide) surface->passed_through.assign(surface->triangles.size(), 1);
+  if (body.deforms()) surface->crease_angle = kCharacterCrease;
+  scene::Look look = details.look;
+  const bool covers_look = details.coloring && details.coloring->covers_look;
+  if (covers_look) look.as_file = false;
+  if (details.coloring && (look.as_file || covers_look)) {
+    for (const character::Material& material : details.coloring->materials)
+      surface->parts.push_back(part_of(material, body.name));
+    surface->part_of_triangle = details.coloring->material_of_triangle;
+    surface->paint_uv = details.coloring->uv;
+  }
+  apply_look(*surface, look, pictures);
+  return surface;
+}
+
+/// Where the picture of an obstacle lies; the obstacle must have one.
+environment::PicturePlaces places_of(const scene::Scene& scene, const scene::Obstacle& obstacle, Pictures& pictures) {
+  std::optional<Vec2> tile;
+  if (obstacle.look.tile_width) {
+    const frame::Texture& texture = *pictures.of_file(*obstacle.look.image);
+    tile = Vec2(1, static_cast<double>(texture.height) / texture.width) * *obstacle.look.tile_width;
+  }
+  return environment::picture_places(scene, obstacle, environment::mesh_of(scene, obstacle), tile);
+}
+
+std::shared_ptr<const frame::Stage> make_stage(const scene::Scene& scene) {
+  auto stage = std::make_shared<frame::Stage>();
+  stage->up = scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+  stage->look = static_cast<frame::Stage::Look>(scene.render.look);
+  stage->sky_color = scene.render.sky_color;
+  stage->ground_color = scene.render.ground_color;
+  stage->sky_intensity = scene.render.sky_intensity;
+  stage->exposure = scene.render.exposure;
+  stage->motion_blur = scene.render.motion_blur;
+  switch (scene.render.heat) {
+    case scene::HeatQuantity::none:
+      stage->heat = frame::Stage::Heat::none;
+      break;
+    case scene::HeatQuantity::strain:
+      stage->heat = frame::Stage::Heat::strain;
+      break;
+    case scene::HeatQuantity::speed:
+      stage->heat = frame::Stage::Heat::speed;
+      break;
+  }
+  stage->heat_max = scene.render.heat_max;
+  return stage;
+}
+
+Box3 box_around(std::span<const Vec3> positions) {
+  Box3 box;
+  for (const Vec3& position : positions) box.extend(position);
+  return box;
+}
+
+/// Bounding box of a body at sampled times from 0 to `duration` [s].
+Box3 bounds_over_run(const model::Model& model, std::size_t body, double duration) {
+  constexpr int kSamples = 100;
+  std::vector<Vec3> positions(model.bodies[body].mesh.positions.size());
+  Box3 bounds;
+  for (int k = 0; k <= (model.bodies[body].moving ? kSamples : 0); ++k) {
+    model.place(body, duration * k / kSamples, positions);
+    bounds.extend(box_around(positions));
+  }
+  return bounds;
+}
+
+/// Sensor height of a camera with a focal length [mm], else 0. The sensor's width lies along the longer side of the
+/// picture.
+double sensor_height(const scene::Camera& camera, const scene::Render& render) {
+  if (!scene::has_focal_length(camera)) return 0;
+  return camera.sensor_width * std::min(1.0, static_cast<double>(render.height) / render.width);
+}
+
+motion::Spline<7> camera_track(const scene::Camera& camera) {
+  std::vector<double> times;
+  std::vector<CameraValue> values;
+  for (const scene::CameraKey& key : camera.keys) {
+    times.push_back(key.time);
+    const double lens = scene::has_focal_length(camera) ? key.focal_length : key.field_of_view;
+    values.push_back((CameraValue() << key.position, key.target, lens).finished());
+  }
+  return {camera.interpolation, std::move(times), std::move(values)};
+}
+
+// Track of a camera from a file, where y is up and the front faces z.
+motion::Spline<7> camera_track(const scene::Scene& scene, const scene::Camera& camera) {
+  const std::string where =
+      fmt::format("{}:{}:{}: camera.{}", scene.file.string(), camera.line, camera.column, camera.name);
+  const assets::LoadedCamera loaded = assets::load_camera(camera.file, camera.object, where);
+  if (loaded.roll > kMaxIgnoredRoll)
+    log::warn(fmt::format("{}: it is tilted to a side by up to {:.2g} degrees, which is left out", where, loaded.roll));
+  const auto turned = [&](const Vec3& x) { return scene.up == scene::UpAxis::z ? Vec3(x.x(), -x.z(), x.y()) : x; };
+  const double target_distance = camera.focus > 0 ? camera.focus : 1;  // distance of the target [m]
+  std::vector<double> times;
+  std::vector<CameraValue> values;
+  for (std::size_t i = 0; i < loaded.times.size(); ++i) {
+    const Vec3 eye = camera.scale * turned(loaded.positions[i]);
+    times.push_back(camera.start + loaded.times[i]);
+    values.push_back(
+        (CameraValue() << eye, eye + target_distance * turned(loaded.forward[i]), loaded.field_of_view).finished());
+  }
+  return {scene::Interpolation::linear, std::move(times), std::move(values)};
+}
+
+motion::Spline<10> light_track(const scene::Light& light) {
+  std::vector<double> times;
+  std::vector<LightValue> values;
+  for (const scene::LightKey& key : light.keys) {
+    times.push_back(key.time);
+    values.push_back((LightValue() << key.direction, key.position, key.target, key.intensity).finished());
+  }
+  return {light.interpolation, std::move(times), std::move(values)};
+}
+
+}  // namespace
+
+std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::path& file) {
+  std::shared_ptr<const frame::Texture>& texture = known_[file];
+  if (texture) return texture;
+  try {
+    return texture = texture_of(image::read_picture(file));
+  } catch (const std::exception& error) {
+    throw Error(ExitCode::scene_invalid, "{}: expected a picture (PNG, JPEG or TGA): {}", file.string(), error.what());
+  }
+}
+
+Looks::Looks(const scene::Scene& scene, const environment::Environment* environment) : stage_(make_stage(scene)) {
+  for (const auto& cloth : scene.cloths) looks_[cloth.name] = look_of(cloth);
+  for (const auto& obstacle : scene.obstacles) {
+    looks_[obstacle.name] = obstacle.look;
+    if (obstacle.look.image) picture_places_[obstacle.name] = places_of(scene, obstacle, pictures_);
+  }
+  for (const auto& character : scene.characters) looks_[character.name] = character.look;
+  for (const scene::Camera& camera : scene.cameras) {
+    cameras_.push_back({.name = camera.name,
+                        .kind = scene::is_computed(camera.kind) ? static_cast<frame::Camera::Kind>(camera.kind)
+                                                                : frame::Camera::Kind::placed,
+                        .subjects = camera.subjects,
+                        .azimuth = camera.azimuth,
+                        .elevation = camera.elevation,
+                        .margin = camera.margin,
+                        .smoothing = camera.smoothing});
+    cameras_.back().aperture = camera.aperture;
+    cameras_.back().focus = camera.focus;
+    camera_tracks_.push_back(camera.kind == scene::CameraKind::file ? camera_track(scene, camera)
+                                                                    : camera_track(camera));
+    orbits_.push_back(camera.orbit);
+    sensor_heights_.push_back(sensor_height(camera, scene.render));
+    // The renderer assumes a film 24 mm high: scale the f-number so that the aperture has the same diameter there.
+    constexpr double kFilmHeight = 24;  // [mm]
+    if (sensor_heights_.back() > 0) cameras_.back().aperture *= kFilmHeight / sensor_heights_.back();
+  }
+  for (const scene::Light& light : scene.lights) {
+    frame::Light result;
+    result.name = light.name;
+    result.kind = light.spot ? frame::Light::Kind::spot : frame::Light::Kind::sun;
+    result.cone_angle = light.cone_angle;
+    result.color = light.color;
+    result.softness = light.softness;
+    lights_.push_back(result);
+    light_tracks_.push_back(light_track(light));
+  }
+  const auto follows = [](const scene::Camera& camera) { return !camera.follow.empty(); };
+  if (std::ranges::none_of(scene.cameras, follows)) return;
+  if (environment) {
+    mounts_.emplace(scene, *environment);
+  } else {
+    mounts_.emplace(scene, environment::Environment(scene));
+  }
+}
+
+std::vector<frame::Camera> Looks::cameras_at(double time) const {
+  std::vector<frame::Camera> cameras = cameras_;
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    const CameraValue value = camera_tracks_[c].at(time).value;
+    cameras[c].position = value.segment<3>(0);
+    cameras[c].target = value.segment<3>(3);
+    const double height = sensor_heights_[c];
+    cameras[c].field_of_view =
+        height > 0 ? 360 / std::numbers::pi * std::atan(height / (2 * value[6])) : static_cast<double>(value[6]);
+    cameras[c].azimuth += orbits_[c] * time;
+  }
+  return cameras;
+}
+
+std::vector<frame::Light> Looks::lights_at(double time) const {
+  std::vector<frame::Light> lights = lights_;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const LightValue value = light_tracks_[l].at(time).value;
+    lights[l].direction = value.segment<3>(0);
+    lights[l].position = value.segment<3>(3);
+    lights[l].target = value.segment<3>(6);
+    lights[l].intensity = value[9];
+  }
+  return lights;
+}
+
+void Looks::surround(frame::FrameSnapshot& snapshot) const {
+  snapshot.stage = stage_;
+  snapshot.cameras = cameras_at(snapshot.time);
+  if (mounts_) mounts_->move(snapshot);
+  snapshot.lights = lights_at(snapshot.time);
+}
+
+frame::SnapshotPtr Looks::put_on(const frame::FrameSnapshot& snapshot) {
+  if (surfaces_.empty())
+    for (const auto& surface : snapshot.surfaces) surfaces_.push_back(dressed(*surface));
+  auto copy = std::make_shared<frame::FrameSnapshot>(snapshot);
+  copy->surfaces = surfaces_;
+  surround(*copy);
+  return copy;
+}
+
+std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surface) {
+  auto copy = std::make_shared<frame::Surface>(surface);
+  apply_look(*copy, looks_.at(surface.name), pictures_);
+  place_picture(*copy);
+  return copy;
+}
+
+void Looks::place_picture(frame::Surface& surface) const {
+  const auto places = picture_places_.find(surface.name);
+  if (places != picture_places_.end()) surface.paint_uv = places->second;
+}
+
+SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment)
+    : looks_(scene, &environment) {
+  Pictures pictures;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const model::Cloth& cloth = environment.model.cloths[c];
+    const auto surface = make_cloth_surface(cloth, environment.cloths[c], look_of(scene.cloths[c]), pictures);
+    surface->run_bounds = box_around(cloth.start);
+    surfaces_.push_back(surface);
+  }
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
+    const auto surface = make_body_surface(environment.model.bodies[b], environment.bodies[b], pictures);
+    looks_.place_picture(*surface);
+    surface->run_bounds = bounds_over_run(environment.model, b, scene.time.duration);
+    surfaces_.push_back(surface);
+  }
+}
+
+frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const model::Model& model,
+                                       std::span<const Vec3> particles, std::vector<std::vector<float>> heat,
+                                       std::vector<std::vector<Vec3>> moved) const {
+  auto snapshot = std::make_shared<frame::FrameSnapshot>();
+  snapshot->frame = frame;
+  snapshot->time = time;
+  snapshot->surfaces = surfaces_;
+  for (const model::Cloth& cloth : model.cloths) {
+    const auto of_cloth = particles.first(cloth.start.size());
+    snapshot->states.push_back({{of_cloth.begin(), of_cloth.end()}, {}});
+    particles = particles.subspan(of_cloth.size());
+  }
+  for (std::size_t c = 0; c < heat.size(); ++c) snapshot->states[c].heat = std::move(heat[c]);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (b < moved.size() && !moved[b].empty()) {
+      snapshot->states.push_back({std::move(moved[b]), {}});
+      continue;
+    }
+    snapshot->states.push_back({std::vector<Vec3>(model.bodies[b].mesh.positions.size()), {}});
+    model.place(b, time, snapshot->states.back().positions);
+  }
+  looks_.surround(*snapshot);
+  return snapshot;
+}
+
+}  // namespace weft::production

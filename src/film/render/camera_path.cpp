@@ -1,0 +1,233 @@
+#include "film/render/camera_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/render/transforms.hpp"
+
+namespace weft::render {
+namespace {
+
+using Kind = frame::Camera::Kind;
+
+// Cloth is kept in view up to this distance from the subjects of the first frame, in diagonals of their box. Without a
+// limit, cloth that falls for ever would shrink everything else to a dot.
+constexpr double kClothRange = 1.5;
+
+// The Gaussian kernel ends at this number of standard deviations; 0.3 % of its weight is cut off.
+constexpr double kKernelSigmas = 3;
+
+constexpr double kMaxFieldOfView = 100;   // maximum of computed fields of view [degrees]
+constexpr double kMinEyeDistance = 0.05;  // minimum distance of an eye from the centre of its subjects [m]
+
+Vec3 up_of(const frame::FrameSnapshot& snapshot) {
+  return snapshot.stage ? snapshot.stage->up : Vec3(Vec3::UnitZ());
+}
+
+/// Flags the surfaces that the camera must show.
+std::vector<bool> subjects_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) {
+  const auto chosen = [&](const auto& wanted) {
+    std::vector<bool> which;
+    for (const auto& surface : snapshot.surfaces) which.push_back(wanted(*surface));
+    return which;
+  };
+  const auto some = [](const std::vector<bool>& of) { return std::ranges::find(of, true) != of.end(); };
+  if (!camera.subjects.empty())
+    return chosen([&](const frame::Surface& surface) {
+      return std::ranges::find(camera.subjects, surface.name) != camera.subjects.end();
+    });
+  for (const frame::ObjectKind kind : {frame::ObjectKind::character, frame::ObjectKind::cloth}) {
+    if (camera.kind == Kind::whole) break;
+    auto of_kind = chosen([&](const frame::Surface& surface) { return is_subject(surface) && surface.kind == kind; });
+    if (some(of_kind)) return of_kind;
+  }
+  return chosen(is_subject);
+}
+
+/// Weights of a Gaussian from its centre outward; both sides together sum to 1. `width`: standard deviation [entries].
+std::vector<double> gaussian(double width) {
+  std::vector<double> weights{1};
+  double sum = 1;
+  for (int i = 1; i <= kKernelSigmas * width; ++i) {
+    weights.push_back(std::exp(-0.5 * i * i / (width * width)));
+    sum += 2 * weights.back();
+  }
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
+}  // namespace
+
+bool CameraPath::is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera) {
+  const frame::Camera* named = find_camera(snapshot, camera);
+  return named == nullptr || named->kind != Kind::placed;
+}
+
+void CameraPath::see(const frame::FrameSnapshot& snapshot) {
+  const frame::Camera* named = find_camera(snapshot, name_);
+  Frame frame;
+  frame.number = snapshot.frame;
+  frame.time = snapshot.time;
+  frame.camera = named ? *named : automatic_camera();
+  const ViewAxes axes = axes_from_angles(frame.camera, up_of(snapshot));
+  frame.fit = FrustumFit(axes, frame.camera, aspect_);
+  azimuth_changes_ = azimuth_changes_ || (!frames_.empty() && frames_.front().camera.azimuth != frame.camera.azimuth);
+  const std::vector<bool> chosen = subjects_of(snapshot, frame.camera);
+  Box3 all;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!chosen[i]) continue;
+    for (const Vec3& position : snapshot.states[i].positions) all.extend(position);
+  }
+  if (!cloth_box_ && !all.isEmpty()) {
+    const Vec3 margin = Vec3::Constant(kClothRange * all.diagonal().norm());
+    cloth_box_ = Box3(all.min() - margin, all.max() + margin);
+  }
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!chosen[i]) continue;
+    const bool is_limited = frame.camera.kind == Kind::whole && snapshot.surfaces[i]->kind == frame::ObjectKind::cloth;
+    for (const Vec3& position : snapshot.states[i].positions) {
+      const Vec3 kept = is_limited ? Vec3(position.cwiseMax(cloth_box_->min()).cwiseMin(cloth_box_->max())) : position;
+      frame.fit.add(kept);
+      frame.subjects.extend(kept);
+    }
+  }
+  if (frame.subjects.isEmpty()) {
+    frame.subjects = Box3(Vec3::Constant(-0.5), Vec3::Constant(0.5));
+    frame.fit.add(frame.subjects.min());
+    frame.fit.add(frame.subjects.max());
+  }
+  subject_bounds_.extend(frame.subjects);
+  frames_.push_back(std::move(frame));
+}
+
+void CameraPath::find() {
+  if (frames_.empty()) return;
+  switch (frames_.front().camera.kind) {
+    case Kind::placed:
+      return;
+    case Kind::whole:
+      return azimuth_changes_ ? compute_orbit() : compute_fixed_camera();
+    case Kind::follow:
+    case Kind::close:
+      return compute_following_camera();
+    case Kind::track:
+      return compute_tracking_camera();
+  }
+}
+
+frame::Camera CameraPath::at(const frame::FrameSnapshot& snapshot) const {
+  if (!is_computed(snapshot, name_)) return *find_camera(snapshot, name_);
+  auto found = std::ranges::upper_bound(frames_, snapshot.frame, {}, &Frame::number);
+  if (found != frames_.begin()) --found;
+  return found->camera;
+}
+
+frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string& camera, double aspect) {
+  CameraPath path(camera, aspect);
+  if (CameraPath::is_computed(snapshot, camera)) {
+    path.see(snapshot);
+    path.find();
+  }
+  frame::Camera result = path.at(snapshot);
+  result.kind = Kind::placed;
+  return result;
+}
+
+/// Places one camera as close as all frames together allow.
+void CameraPath::compute_fixed_camera() {
+  FrustumFit all = frames_.front().fit;
+  for (const Frame& frame : frames_) all.add(frame.fit);
+  for (Frame& frame : frames_) all.place(frame.camera, subject_bounds_.center());
+}
+
+/// Orbits the centre of everything seen, at the smallest distance that shows every frame.
+void CameraPath::compute_orbit() {
+  const Vec3 center = subject_bounds_.center();
+  double distance = kMinEyeDistance;
+  for (const Frame& frame : frames_) distance = std::max(distance, frame.fit.distance(center));
+  for (Frame& frame : frames_) {
+    frame.camera.target = center;
+    frame.camera.position = center - distance * frame.fit.axes().forward;
+  }
+}
+
+double CameraPath::frames_in(double seconds) const {
+  const double length = frames_.back().time - frames_.front().time;
+  return length > 0 ? seconds * static_cast<double>(frames_.size() - 1) / length : 0;
+}
+
+/// Gaussian means of the subjects' centres over neighbouring frames. Beyond each end, the trajectory is continued by
+/// point reflection about that end, so that the camera follows a steady walk steadily from the first frame on.
+std::vector<Vec3> CameraPath::smooth_centers() const {
+  const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
+  const auto last = static_cast<std::ptrdiff_t>(frames_.size()) - 1;
+  const auto center = [&](std::ptrdiff_t i) -> Vec3 {
+    const std::ptrdiff_t end = i < 0 ? 0 : last, inside = std::clamp<std::ptrdiff_t>(2 * end - i, 0, last);
+    if (i >= 0 && i <= last) return frames_[i].subjects.center();
+    return 2 * frames_[end].subjects.center() - frames_[inside].subjects.center();
+  };
+  std::vector<Vec3> smooth;
+  for (std::ptrdiff_t k = 0; k <= last; ++k) {
+    Vec3 sum = weights[0] * center(k);
+    for (std::ptrdiff_t i = 1; i < static_cast<std::ptrdiff_t>(weights.size()); ++i)
+      sum += weights[i] * (center(k - i) + center(k + i));
+    smooth.push_back(sum);
+  }
+  return smooth;
+}
+
+/// The camera moves with the centre of the subjects. `follow`: its distance is the largest that any frame needs.
+/// `close`: for each frame, the maximum of the needed distances within the kernel is computed. The kernel then smooths
+/// these maxima; the result is never less than the distance that the frame itself needs.
+void CameraPath::compute_following_camera() {
+  const std::vector<Vec3> centers = smooth_centers();
+  const auto count = static_cast<std::ptrdiff_t>(frames_.size());
+  std::vector<double> needed_distances;
+  for (std::ptrdiff_t k = 0; k < count; ++k)
+    needed_distances.push_back(std::max(kMinEyeDistance, frames_[k].fit.distance(centers[k])));
+  std::vector<double> distances(needed_distances.size(), *std::ranges::max_element(needed_distances));
+  if (frames_.front().camera.kind == Kind::close) {
+    const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
+    const auto reach = static_cast<std::ptrdiff_t>(weights.size()) - 1;
+    const auto largest_around = [&](std::ptrdiff_t k) {
+      k = std::clamp<std::ptrdiff_t>(k, 0, count - 1);
+      return *std::max_element(needed_distances.begin() + std::max<std::ptrdiff_t>(0, k - reach),
+                               needed_distances.begin() + std::min(count, k + reach + 1));
+    };
+    std::vector<double> around;
+    for (std::ptrdiff_t k = -reach; k < count + reach; ++k) around.push_back(largest_around(k));
+    for (std::ptrdiff_t k = 0; k < count; ++k) {
+      distances[k] = weights[0] * around[k + reach];
+      for (std::ptrdiff_t i = 1; i <= reach; ++i)
+        distances[k] += weights[i] * (around[k + reach - i] + around[k + reach + i]);
+    }
+  }
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    frames_[k].camera.target = centers[k];
+    frames_[k].camera.position = centers[k] - distances[k] * frames_[k].fit.axes().forward;
+  }
+}
+
+/// The camera stays in place and turns towards the centre of the subjects. If the scene gives no field of view, it is
+/// chosen so that the subjects' boxes are in view in all frames.
+void CameraPath::compute_tracking_camera() {
+  const std::vector<Vec3> centers = smooth_centers();
+  double tangent = 0;
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    frame::Camera& camera = frames_[k].camera;
+    camera.target = centers[k];
+    const ViewAxes axes = view_axes(camera.target - camera.position, frames_[k].fit.axes().up);
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto which = static_cast<Box3::CornerType>(corner);
+      const Vec3 to = frames_[k].subjects.corner(which) - camera.position;
+      const double forward = std::max(1e-6, axes.forward.dot(to));
+      tangent =
+          std::max({tangent, std::abs(axes.up.dot(to)) / forward, std::abs(axes.right.dot(to)) / (forward * aspect_)});
+    }
+  }
+  const double found = 2 * std::atan(tangent / (1 - frames_.front().camera.margin)) / radians(1);
+  for (Frame& frame : frames_)
+    if (frame.camera.field_of_view == 0) frame.camera.field_of_view = std::clamp(found, 1.0, kMaxFieldOfView);
+}
+
+}  // namespace weft::render

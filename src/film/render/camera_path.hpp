@@ -1,0 +1,58 @@
+// The camera of a run: placed by the scene, or computed from all frames before the first is drawn.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "film/render/framing.hpp"
+
+namespace weft::render {
+
+class CameraPath {
+ public:
+  /// `camera`: name of the camera; empty: the first of the scene or, if it has none, one that shows the whole run.
+  /// `aspect`: width / height of the pictures.
+  CameraPath(std::string camera, double aspect) : name_(std::move(camera)), aspect_(aspect) {}
+
+  /// Whether the camera needs all frames before the first can be drawn. Throws as find_camera() does.
+  static bool is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera);
+
+  /// Call see() with every frame of the run, in order; then find().
+  void see(const frame::FrameSnapshot& snapshot);
+  void find();
+
+  /// The camera of a frame. A computed camera is that of the last frame, not later than this one, that see() received;
+  /// see() must have received at least one frame.
+  frame::Camera at(const frame::FrameSnapshot& snapshot) const;
+
+ private:
+  /// What a frame requires of the camera, and the camera computed for it.
+  struct Frame {
+    int number = 0;
+    double time = 0;
+    frame::Camera camera;
+    FrustumFit fit;
+    Box3 subjects;
+  };
+
+  void compute_fixed_camera();
+  void compute_orbit();
+  void compute_following_camera();
+  void compute_tracking_camera();
+  double frames_in(double seconds) const;
+  std::vector<Vec3> smooth_centers() const;
+
+  std::string name_;
+  double aspect_;
+  std::vector<Frame> frames_;
+  std::optional<Box3> cloth_box_;  // box outside which cloth is ignored
+  Box3 subject_bounds_;            // bounds of the subjects of all frames
+  bool azimuth_changes_ = false;   // the azimuth differs between frames
+};
+
+/// The camera for a single frame, computed from this frame alone.
+frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string& camera, double aspect);
+
+}  // namespace weft::render

@@ -1,0 +1,52 @@
+// Numeric passes for compositors: depth, position, normal, ids and motion at the centre of each pixel.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "film/image/exr.hpp"
+#include "film/render/surface_buffers.hpp"
+#include "film/render/view.hpp"
+
+namespace weft::render {
+
+/// An earlier frame and the view that it was drawn from.
+struct Before {
+  const frame::FrameSnapshot& snapshot;
+  View view;
+
+  /// Earlier positions of the surface of this name with `count` vertices; null if `snapshot` has none.
+  const std::vector<Vec3>* positions(const frame::Surface& surface, std::size_t count) const;
+};
+
+/// Finds the front triangle of each pixel by rasterising on the CPU in single precision. Then intersects the pixel's
+/// ray with the plane of this triangle in double precision. Holes that pictures cut into cloth (lace) count as cloth.
+class DataPasses {
+ public:
+  DataPasses(int width, int height) : width_(width), height_(height) {}
+
+  /// Appends to `layers`, as 32-bit floats:
+  /// - depth.Z: distance along the view axis [m]; infinite where nothing is visible
+  /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, towards the viewer
+  /// - id.object: 0 nothing, 1 the floor, 2 + i surface i of the picture; id.part: 1 + i part i of that surface, else 0
+  /// - uv.U, .V: rest coordinates (weft, warp) [m]
+  /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the motion of the
+  ///   camera; a surface that `before` does not contain counts as still
+  /// - heat.V: strain or speed, if Stage::heat selects one; otherwise there is no such layer
+  void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
+            const std::optional<Before>& before, image::Layers& layers);
+
+ private:
+  struct Hit {
+    float nearness = 0;  // 1 / distance [1/m]
+    std::int32_t surface = -1, triangle = -1;
+  };
+  void find_hits(std::span<const SurfaceBuffers> surfaces, const View& view);
+  Vec2 to_picture(const View& view, const Vec3& position) const;
+
+  int width_, height_;
+  std::vector<Hit> hits_;  // lowest row first
+};
+
+}  // namespace weft::render

@@ -1,0 +1,59 @@
+// Rasterises triangles on the CPU.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "film/render/transforms.hpp"
+
+namespace weft::render {
+
+/// Calls write(index, covered, depth, weight_b, weight_c) for each texel of the triangle's bounding box, row by row.
+/// `covered`: whether the triangle covers the texel's centre. Corners: x, y in texels; z is the depth, interpolated
+/// linearly.
+template <class Write>
+void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, int width, int height,
+                   const Write& write) {
+  const float b_x = b.x() - a.x(), b_y = b.y() - a.y(), c_x = c.x() - a.x(), c_y = c.y() - a.y();
+  const float area = b_x * c_y - c_x * b_y;
+  if (!(std::abs(area) > 1e-12f)) return;  // edge-on
+  // First and last texel whose centre may be inside.
+  const auto first = [](float low) { return std::max(0, static_cast<int>(std::ceil(low - 0.5f))); };
+  const auto last = [](float high, int size) { return std::min(size - 1, static_cast<int>(std::floor(high - 0.5f))); };
+  const auto [x_min, x_max] = std::minmax({a.x(), b.x(), c.x()});
+  const auto [y_min, y_max] = std::minmax({a.y(), b.y(), c.y()});
+  if (!(x_max > 0 && y_max > 0 && x_min < static_cast<float>(width) && y_min < static_cast<float>(height))) return;
+  const int x0 = first(x_min), x1 = last(x_max, width), y0 = first(y_min), y1 = last(y_max, height);
+  // Steps of the barycentric weights of b and c along x.
+  const float b_step = c_y / area, c_step = -b_y / area;
+  const float depth_b = b.z() - a.z(), depth_c = c.z() - a.z();
+  for (int y = y0; y <= y1; ++y) {
+    const float dx = static_cast<float>(x0) + 0.5f - a.x(), dy = static_cast<float>(y) + 0.5f - a.y();
+    const float b_first = (dx * c_y - c_x * dy) / area, c_first = (b_x * dy - dx * b_y) / area;
+    for (int x = x0; x <= x1; ++x) {
+      const float step = static_cast<float>(x - x0), to_b = b_first + step * b_step, to_c = c_first + step * c_step;
+      // The tolerance closes gaps from rounding.
+      const bool covered = std::min(std::min(to_b, to_c), 1 - to_b - to_c) >= -1e-5f;
+      write(y * width + x, covered, a.z() + to_b * depth_b + to_c * depth_c, to_b, to_c);
+    }
+  }
+}
+
+/// Clips a triangle in clip space at the near plane and calls `visit(a, b, c)` for each of up to two triangles that
+/// remain (Sutherland and Hodgman 1974).
+template <class Visit>
+void clip_near(const std::array<Eigen::Vector4d, 3>& corners, const Visit& visit) {
+  const auto before = [](const Eigen::Vector4d& corner) { return corner.z() + corner.w(); };
+  std::array<Eigen::Vector4d, 4> left;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector4d &from = corners[i], &to = corners[(i + 1) % 3];
+    const double there = before(from), next = before(to);
+    if (there >= 0) left[count++] = from;
+    if ((there >= 0) != (next >= 0)) left[count++] = from + there / (there - next) * (to - from);
+  }
+  for (std::size_t i = 2; i < count; ++i) visit(left[0], left[i - 1], left[i]);
+}
+
+}  // namespace weft::render

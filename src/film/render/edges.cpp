@@ -1,0 +1,93 @@
+#include "film/render/edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::render {
+namespace {
+
+constexpr double kLineOpacity = 0.62;  // fraction of a pixel's light that a line removes
+constexpr double kDepthTolerance =
+    4e-3;  // relative depth tolerance: an edge farther behind the visible surface is hidden
+
+std::vector<std::pair<Index, Index>> edges_of(const frame::Surface& surface) {
+  std::vector<std::pair<Index, Index>> edges;
+  const auto add = [&](const auto& faces) {
+    for (const auto& face : faces)
+      for (std::size_t k = 0; k < face.size(); ++k) edges.push_back(std::minmax(face[k], face[(k + 1) % face.size()]));
+  };
+  surface.quads.empty() ? add(surface.triangles) : add(surface.quads);
+  std::ranges::sort(edges);
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+/// Position of a vertex in the picture [pixels], and 1 / distance [1/m].
+struct Place {
+  double x, y, nearness;
+};
+
+class Canvas {
+ public:
+  Canvas(int width, int height, std::span<const Seen> seen, std::span<std::uint64_t> picture)
+      : width_(width), height_(height), seen_(seen), picture_(picture) {}
+
+  void line(Place a, Place b, float surface) {
+    const bool steep = std::abs(b.y - a.y) > std::abs(b.x - a.x);
+    const auto along = [&](const Place& p) { return steep ? p.y : p.x; };
+    const auto across = [&](const Place& p) { return steep ? p.x : p.y; };
+    if (along(a) > along(b)) std::swap(a, b);
+    const double length = along(b) - along(a);
+    if (!(length > 0)) return;
+    const int from = std::max(0, static_cast<int>(std::ceil(along(a) - 0.5)));
+    const int to = std::min(steep ? height_ : width_, static_cast<int>(std::ceil(along(b) - 0.5)));
+    for (int step = from; step < to; ++step) {
+      const double share = (step + 0.5 - along(a)) / length;
+      const double place = across(a) + share * (across(b) - across(a)) - 0.5;
+      const double nearness = a.nearness + share * (b.nearness - a.nearness);
+      const double pixel = std::floor(place);
+      for (int side = 0; side < 2; ++side) {
+        const int other = static_cast<int>(pixel) + side;
+        const double cover = side ? place - pixel : 1 - (place - pixel);
+        steep ? darken(other, step, nearness, surface, cover) : darken(step, other, nearness, surface, cover);
+      }
+    }
+  }
+
+ private:
+  void darken(int x, int y, double nearness, float surface, double cover) {
+    if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
+    const std::size_t at = static_cast<std::size_t>(y) * width_ + x;
+    if (std::floor(seen_[at].surface) != surface || nearness * seen_[at].distance < 1 - kDepthTolerance) return;
+    const double keep = 1 - kLineOpacity * cover;
+    std::uint64_t dark = picture_[at] & ~((std::uint64_t{1} << 48) - 1);
+    for (int k = 0; k < 48; k += 16)
+      dark |= static_cast<std::uint64_t>(static_cast<double>(picture_[at] >> k & 0xFFFF) * keep) << k;
+    picture_[at] = dark;
+  }
+
+  int width_, height_;
+  std::span<const Seen> seen_;
+  std::span<std::uint64_t> picture_;
+};
+
+}  // namespace
+
+void draw_edges(std::span<const SurfaceBuffers> surfaces, const View& view, int width, int height,
+                std::span<const Seen> seen, std::span<std::uint64_t> picture) {
+  Canvas canvas(width, height, seen, picture);
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    std::vector<Eigen::Vector4d> clip;
+    for (const Vec3& position : surfaces[i].state().positions)
+      clip.push_back(view.clip_from_world * position.homogeneous());
+    const auto place = [&](const Eigen::Vector4d& at) {
+      return Place{(0.5 + 0.5 * at.x() / at.w()) * width, (0.5 + 0.5 * at.y() / at.w()) * height, 1 / at.w()};
+    };
+    for (const auto& [a, b] : edges_of(surfaces[i].surface())) {
+      if (std::min(clip[a].w(), clip[b].w()) < view.near) continue;
+      canvas.line(place(clip[a]), place(clip[b]), static_cast<float>(kFirstSurface + i));
+    }
+  }
+}
+
+}  // namespace weft::render

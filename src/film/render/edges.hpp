@@ -1,0 +1,18 @@
+// Edges of the simulated faces, drawn over a finished picture.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "film/render/seen.hpp"
+#include "film/render/surface_buffers.hpp"
+#include "film/render/view.hpp"
+
+namespace weft::render {
+
+/// Darkens `picture` (format as in Outlines) along the edges of the faces that are visible according to `seen`. Lines
+/// are one pixel wide and antialiased. Surface i has the number kFirstSurface + i.
+void draw_edges(std::span<const SurfaceBuffers> surfaces, const View& view, int width, int height,
+                std::span<const Seen> seen, std::span<std::uint64_t> picture);
+
+}  // namespace weft::render

@@ -1,0 +1,70 @@
+// Which part of the world a picture shows: the camera that a scene names, or one that frames everything.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "film/render/transforms.hpp"
+
+namespace weft::render {
+
+/// True for visible surfaces other than infinite floors.
+bool is_subject(const frame::Surface& surface);
+
+/// Smallest box around all subjects [m]; a metre around the origin if there are none.
+Box3 subject_bounds(const frame::FrameSnapshot& snapshot);
+
+/// Box around all places that the subjects reach during the run [m]; the same in all frames. Backdrop and floor
+/// depend on it. If the snapshot stores no such box: subject_bounds().
+Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot);
+
+/// The camera for scenes that name none: it shows the whole run.
+frame::Camera automatic_camera();
+
+/// Axes of a computed camera, from its azimuth and elevation.
+ViewAxes axes_from_angles(const frame::Camera& camera, const Vec3& up);
+
+/// Where an eye with given axes may stand so that all points are in its picture. t is the tangent of half the field of
+/// view, less the margin. A point (x, y, z) in the eye's axes (z forward) is between the left and right edges of the
+/// picture of an eye at (cx, cz) if |x - cx| <= t (z - cz). All points together require t cz - cx <= min(t z - x) = low
+/// and t cz + cx <= min(t z + x) = high; the same holds for y.
+class FrustumFit {
+ public:
+  FrustumFit() = default;
+  /// Uses the field of view and margin of `camera`.
+  FrustumFit(const ViewAxes& axes, const frame::Camera& camera, double aspect);
+
+  void add(const Vec3& point);
+  /// Adds all points of another fit with the same axes.
+  void add(const FrustumFit& other);
+
+  const ViewAxes& axes() const { return axes_; }
+  /// Distance from `center` that an eye looking at it needs, so that all points are in the picture [m].
+  double distance(const Vec3& center) const;
+  /// Sets position and target of the camera. The eye is as close as the points allow; they are centred along the
+  /// picture direction that needs the larger distance. The target has the depth of `center`.
+  void place(frame::Camera& camera, const Vec3& center) const;
+
+ private:
+  struct Span {
+    double tangent = 1;
+    double low = std::numeric_limits<double>::max(), high = low;
+    void add(double across, double forward) {
+      low = std::min(low, tangent * forward - across);
+      high = std::min(high, tangent * forward + across);
+    }
+    double across() const { return 0.5 * (high - low); }
+    double forward() const { return 0.5 * (low + high) / tangent; }
+  };
+  ViewAxes axes_;
+  Span horizontal_, vertical_;
+};
+
+/// The camera called `name`, or the first if `name` is empty; null if the snapshot has no cameras. Throws Error(usage)
+/// that lists the names if none matches.
+const frame::Camera* find_camera(const frame::FrameSnapshot& snapshot, const std::string& name);
+
+}  // namespace weft::render

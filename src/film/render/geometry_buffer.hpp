@@ -1,0 +1,91 @@
+// What each pixel shows before shading: normal, heat, rest coordinates, distance and surface.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "film/render/gl/program.hpp"
+#include "film/render/paints.hpp"
+#include "film/render/seen.hpp"
+#include "film/render/surface_buffers.hpp"
+
+namespace weft::render {
+
+/// Stencil values that select the shading pass. Shading turns `floor` into `shaded_floor` in the areas where light is
+/// missing or added; the lower two bits stay the same.
+enum class PixelClass : int { backdrop = 0, cloth = 1, solid = 2, floor = 3, shaded_floor = 7 };
+
+class GeometryBuffer {
+ public:
+  GeometryBuffer(const Gl& gl, int width, int height);
+
+  /// Draws all surfaces except those flagged in `left_out` (empty: none) and, if not null, the floor, as seen from
+  /// `eye`. `far`: distance stored where nothing is visible [m]. Binds the results to units 4, 5 and 8; colours to unit
+  /// 10 if something is painted; trims to unit 11 if cloth has hems.
+  void draw(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, const FloorBuffers* floor,
+            const Vec3& eye, double far);
+  /// Draws the nearest layer of the surfaces flagged in `left_out` over the result of draw(), with class cloth. An
+  /// earlier layer is replaced. `deeper`: draws the nearest layer behind the one of the previous call instead.
+  void draw_layer(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, bool deeper);
+
+  /// Whether a surface of the last picture has a picture on it, or parts of different colours.
+  bool painted() const { return painted_; }
+  /// Whether some cloth has visible hems or seams.
+  bool trimmed() const { return trimmed_; }
+  /// For each range of a painted mesh: the opacity of its picture, or null if it has no holes. For class Holes.
+  std::vector<const Opacity*> opacity_of(const PaintedMesh& mesh);
+
+  /// Reads back what each pixel shows, lowest row first.
+  void read_seen(std::vector<Seen>& seen) const;
+  /// For each pixel that shows a surface: world normal times (1 + rise(), see geometry.frag); w: heat.
+  void read_normals(std::vector<Eigen::Vector4f>& normals) const;
+
+  /// Distance and surface number of each pixel; see Seen.
+  const Texture& seen() const { return seen_; }
+  /// Depth and stencil, for the passes that shade by class.
+  const Texture& depth_stencil() const { return depth_stencil_; }
+
+ private:
+  /// Shader variant. If any surface has paint (trims), the shaders of all surfaces write a pixel's paint (trims).
+  struct Variant {
+    bool painted = false, pictured = false, holes = false, trimmed = false, peeled = false;
+    auto operator<=>(const Variant&) const = default;
+  };
+  struct GeometryProgram {
+    Program program;
+    GLint surface, nearer, picture_u, picture_v, laid, color, back_color;
+    GeometryProgram(const Gl& gl, const Variant& variant);
+  };
+  const GeometryProgram& use(const Variant& variant);
+  void set_class(PixelClass pixel_class) const;
+  void attach(bool painted, bool trimmed);
+  void begin(std::span<const SurfaceBuffers> surfaces);
+  void end();
+  void draw(const SurfaceBuffers& surface, float number, bool peeled);
+  void copy(const Texture& from, const Texture& to) const;
+
+  /// Resources created on first use: Painting for painted surfaces, Layers for translucent cloth.
+  struct Painting {
+    Texture colors;
+    Paints paints;
+    Painting(const Gl& gl, int width, int height);
+  };
+  struct Layers {
+    Texture peeled, seen, depth_stencil;
+    Layers(const Gl& gl, int width, int height);
+  };
+
+  const Gl* gl_;
+  int width_, height_;
+  std::map<Variant, GeometryProgram> programs_;
+  Texture normal_heat_, uv_, seen_, depth_stencil_, trims_;
+  Framebuffer target_;
+  std::optional<Painting> painting_;
+  std::optional<Layers> layers_;
+  bool painted_ = false, trimmed_ = false;
+};
+
+}  // namespace weft::render

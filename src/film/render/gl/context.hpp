@@ -1,0 +1,65 @@
+// OpenGL contexts: a library opened at run time provides a 4.5 core context without a window.
+#pragma once
+
+#include <glad/gl.h>
+
+#include <memory>
+#include <string>
+
+#include "film/render/renderer.hpp"
+
+namespace weft::render {
+
+/// All functions of one context. Stored per context, because each backend brings its own copies of the functions.
+using Gl = GladGLContext;
+
+/// An OpenGL 4.5 core context. It has no usable default framebuffer: draw only into framebuffers made in it.
+class Context {
+ public:
+  virtual ~Context() = default;
+
+  /// Binds the context to the calling thread. Throws Error(internal) with the library's message.
+  virtual void make_current() = 0;
+  /// Unbinds it, so that another thread can bind it.
+  virtual void release() = 0;
+
+  const Gl& gl() const { return gl_; }
+  /// "OSMesa 8 (libOSMesa.so.8)" and the reason for the choice, then the strings of the driver.
+  const std::string& description() const { return description_; }
+
+ protected:
+  using Loader = GLADapiproc (*)(const char* name);
+  /// Fills gl_ and description_; the context must be current. Throws Error(usage) if the driver provides less
+  /// than 4.5 core.
+  void load_functions(Loader loader, const std::string& backend);
+
+ private:
+  Gl gl_{};
+  std::string description_;
+};
+
+/// Makes a context, bound to the calling thread. `automatic` takes OSMesa, or EGL if there is no OSMesa. `threads`:
+/// number of threads of the software rasteriser (0: its default); the driver reads it once per process, so the first
+/// context decides. Throws Error(usage) if a library is absent, Error(internal) if a call fails. If `automatic` finds
+/// that neither library works, it throws Error(usage), which names each library and its error.
+std::unique_ptr<Context> make_context(Backend backend, int threads);
+
+/// CPU seconds that the threads of llvmpipe have used so far in all contexts; 0 for other drivers.
+double rasteriser_cpu_seconds();
+
+std::unique_ptr<Context> make_osmesa_context();
+std::unique_ptr<Context> make_egl_context();
+
+/// Binds a context for a scope.
+class CurrentContext {
+ public:
+  explicit CurrentContext(Context& context) : context_(context) { context_.make_current(); }
+  ~CurrentContext() { context_.release(); }
+  CurrentContext(const CurrentContext&) = delete;
+  CurrentContext& operator=(const CurrentContext&) = delete;
+
+ private:
+  Context& context_;
+};
+
+}  // namespace weft::render

@@ -1,0 +1,86 @@
+// EGL without a surface (EGL_MESA_platform_surfaceless): for Mesa 25.1 and later, which ship no OSMesa.
+#include <array>
+
+#include "core/error.hpp"
+#include "film/render/gl/context.hpp"
+#include "film/render/gl/shared_library.hpp"
+
+namespace weft::render {
+namespace {
+
+constexpr const char* kEgl = "libEGL.so.1";
+
+// The few EGL 1.5 names used here, so that building needs no EGL headers. Values: Khronos registry, egl.xml.
+using EglHandle = void*;
+using EglInt = int;
+using EglBoolean = unsigned;
+using EglEnum = unsigned;
+constexpr EglEnum kPlatformSurfaceless = 0x31DD, kOpenGlApi = 0x30A2;
+constexpr EglInt kSurfaceType = 0x3033, kRenderableType = 0x3040, kOpenGlBit = 0x0008, kNone = 0x3038;
+constexpr EglInt kMajorVersion = 0x3098, kMinorVersion = 0x30FB, kProfileMask = 0x30FD, kCoreProfile = 0x1;
+
+class EglContext : public Context {
+ public:
+  EglContext() {
+    display_ = get_platform_display_(kPlatformSurfaceless, nullptr, nullptr);
+    check(display_ && initialize_(display_, nullptr, nullptr), "eglInitialize of the surfaceless platform");
+    check(bind_api_(kOpenGlApi), "eglBindAPI(EGL_OPENGL_API)");
+    const std::array<EglInt, 5> wanted{kSurfaceType, 0, kRenderableType, kOpenGlBit, kNone};
+    EglHandle config = nullptr;
+    EglInt count = 0;
+    check(choose_config_(display_, wanted.data(), &config, 1, &count) && count == 1, "eglChooseConfig");
+    const std::array<EglInt, 7> attributes{kMajorVersion, 4, kMinorVersion, 5, kProfileMask, kCoreProfile, kNone};
+    context_ = create_context_(display_, config, nullptr, attributes.data());
+    check(context_, "eglCreateContext of OpenGL 4.5 core");
+    make_current();
+    load_functions(get_proc_, std::string("EGL surfaceless (") + kEgl + ")");
+  }
+
+  // All contexts of the process share the display, which stays initialised.
+  ~EglContext() override { destroy_context_(display_, context_); }
+  EglContext(const EglContext&) = delete;
+  EglContext& operator=(const EglContext&) = delete;
+
+  void make_current() override {
+    check(bind_api_(kOpenGlApi) && make_current_(display_, nullptr, nullptr, context_), "eglMakeCurrent");
+  }
+
+  void release() override { make_current_(display_, nullptr, nullptr, nullptr); }
+
+ private:
+  void check(bool good, const char* what) const {
+    if (!good) throw Error(ExitCode::internal, "{}: {} failed with EGL error {:#x}", kEgl, what, get_error_());
+  }
+  bool check(EglHandle handle, const char* what) const {
+    check(handle != nullptr, what);
+    return true;
+  }
+
+  SharedLibrary library_{kEgl};
+  using GetPlatformDisplay = EglHandle (*)(EglEnum, void*, const std::intptr_t*);
+  using Initialize = EglBoolean (*)(EglHandle, EglInt*, EglInt*);
+  using BindApi = EglBoolean (*)(EglEnum);
+  using ChooseConfig = EglBoolean (*)(EglHandle, const EglInt*, EglHandle*, EglInt, EglInt*);
+  using CreateContext = EglHandle (*)(EglHandle, EglHandle, EglHandle, const EglInt*);
+  using DestroyContext = EglBoolean (*)(EglHandle, EglHandle);
+  using MakeCurrent = EglBoolean (*)(EglHandle, EglHandle, EglHandle, EglHandle);
+  using GetError = EglInt (*)();
+  GetPlatformDisplay get_platform_display_ = library_.function<GetPlatformDisplay>("eglGetPlatformDisplay");
+  Initialize initialize_ = library_.function<Initialize>("eglInitialize");
+  BindApi bind_api_ = library_.function<BindApi>("eglBindAPI");
+  ChooseConfig choose_config_ = library_.function<ChooseConfig>("eglChooseConfig");
+  CreateContext create_context_ = library_.function<CreateContext>("eglCreateContext");
+  DestroyContext destroy_context_ = library_.function<DestroyContext>("eglDestroyContext");
+  MakeCurrent make_current_ = library_.function<MakeCurrent>("eglMakeCurrent");
+  GetError get_error_ = library_.function<GetError>("eglGetError");
+  Loader get_proc_ = library_.function<Loader>("eglGetProcAddress");
+  EglHandle display_ = nullptr, context_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Context> make_egl_context() {
+  return std::make_unique<EglContext>();
+}
+
+}  // namespace weft::render

@@ -1,0 +1,53 @@
+#include "film/render/gl/objects.hpp"
+
+#include "core/error.hpp"
+
+namespace weft::render {
+namespace {
+
+void set_sampling(const Gl& gl, const Texture& texture, GLenum filter) {
+  gl.TextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
+  gl.TextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
+  gl.TextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl.TextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+const char* error_name(GLenum error) {
+  switch (error) {
+    case GL_INVALID_ENUM:
+      return "GL_INVALID_ENUM";
+    case GL_INVALID_VALUE:
+      return "GL_INVALID_VALUE";
+    case GL_INVALID_OPERATION:
+      return "GL_INVALID_OPERATION";
+    case GL_OUT_OF_MEMORY:
+      return "GL_OUT_OF_MEMORY";
+    case GL_INVALID_FRAMEBUFFER_OPERATION:
+      return "GL_INVALID_FRAMEBUFFER_OPERATION";
+    default:
+      return "an unknown error";
+  }
+}
+
+}  // namespace
+
+Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum filter) {
+  Texture texture(gl, GLenum{GL_TEXTURE_2D});
+  gl.TextureStorage2D(texture.name(), 1, format, width, height);
+  set_sampling(gl, texture, filter);
+  return texture;
+}
+
+void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what) {
+  const GLenum status = gl.CheckNamedFramebufferStatus(framebuffer.name(), GL_FRAMEBUFFER);
+  if (status != GL_FRAMEBUFFER_COMPLETE) {
+    throw Error(ExitCode::internal, "{}: OpenGL cannot draw to this framebuffer (status {:#x})", what, status);
+  }
+}
+
+void check_errors(const Gl& gl, const char* what) {
+  const GLenum error = gl.GetError();
+  if (error != GL_NO_ERROR) throw Error(ExitCode::internal, "{}: OpenGL reports {}", what, error_name(error));
+}
+
+}  // namespace weft::render

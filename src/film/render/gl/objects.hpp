@@ -1,0 +1,96 @@
+// OpenGL objects that delete themselves. Their context must be current on destruction.
+#pragma once
+
+#include <span>
+#include <utility>
+
+#include "film/render/gl/context.hpp"
+
+namespace weft::render {
+
+/// Owner of one GL name. `Kind` defines how it is made and deleted.
+template <class Kind>
+class GlObject {
+ public:
+  GlObject() = default;
+  template <class... Args>
+  explicit GlObject(const Gl& gl, Args... args) : gl_(&gl), name_(Kind::create(gl, args...)) {}
+  ~GlObject() { reset(); }
+  GlObject(GlObject&& other) noexcept : gl_(std::exchange(other.gl_, nullptr)), name_(std::exchange(other.name_, 0)) {}
+  GlObject& operator=(GlObject&& other) noexcept {
+    std::swap(gl_, other.gl_);
+    std::swap(name_, other.name_);
+    return *this;
+  }
+
+  GLuint name() const { return name_; }
+  explicit operator bool() const { return name_ != 0; }
+
+ private:
+  void reset() {
+    if (name_) Kind::destroy(*gl_, name_);
+  }
+
+  const Gl* gl_ = nullptr;
+  GLuint name_ = 0;
+};
+
+struct BufferKind {
+  static GLuint create(const Gl& gl) {
+    GLuint name = 0;
+    gl.CreateBuffers(1, &name);
+    return name;
+  }
+  static void destroy(const Gl& gl, GLuint name) { gl.DeleteBuffers(1, &name); }
+};
+struct VertexArrayKind {
+  static GLuint create(const Gl& gl) {
+    GLuint name = 0;
+    gl.CreateVertexArrays(1, &name);
+    return name;
+  }
+  static void destroy(const Gl& gl, GLuint name) { gl.DeleteVertexArrays(1, &name); }
+};
+struct TextureKind {
+  static GLuint create(const Gl& gl, GLenum target) {
+    GLuint name = 0;
+    gl.CreateTextures(target, 1, &name);
+    return name;
+  }
+  static void destroy(const Gl& gl, GLuint name) { gl.DeleteTextures(1, &name); }
+};
+struct FramebufferKind {
+  static GLuint create(const Gl& gl) {
+    GLuint name = 0;
+    gl.CreateFramebuffers(1, &name);
+    return name;
+  }
+  static void destroy(const Gl& gl, GLuint name) { gl.DeleteFramebuffers(1, &name); }
+};
+struct ProgramKind {
+  static GLuint create(const Gl& gl) { return gl.CreateProgram(); }
+  static void destroy(const Gl& gl, GLuint name) { gl.DeleteProgram(name); }
+};
+
+using Buffer = GlObject<BufferKind>;
+using VertexArray = GlObject<VertexArrayKind>;
+using Texture = GlObject<TextureKind>;
+using Framebuffer = GlObject<FramebufferKind>;
+using ProgramName = GlObject<ProgramKind>;
+
+/// A texture of one mip level; sampled with `filter` (GL_NEAREST or GL_LINEAR), clamped to its edge.
+Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum filter);
+
+/// Throws Error(internal) that names `what` if the framebuffer is incomplete.
+void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what);
+
+/// Replaces the content of a buffer that changes from frame to frame.
+template <class T>
+void upload(const Gl& gl, const Buffer& buffer, std::span<const T> data) {
+  gl.NamedBufferData(buffer.name(), static_cast<GLsizeiptr>(data.size_bytes()), data.data(), GL_STREAM_DRAW);
+}
+
+/// Throws Error(internal) with the error's name if GL has recorded an error since the last call.
+void check_errors(const Gl& gl, const char* what);
+
+}  // namespace weft::render

@@ -1,0 +1,73 @@
+// Off-screen Mesa: draws into memory without display or device. Mesa 25.1 and later do not include it.
+#include <array>
+#include <cstdint>
+
+#include "core/error.hpp"
+#include "film/render/gl/context.hpp"
+#include "film/render/gl/shared_library.hpp"
+
+namespace weft::render {
+namespace {
+
+constexpr const char* kOsMesa = "libOSMesa.so.8";
+
+// The OSMesa 8 names used here, so that building needs no OSMesa headers. Values: GL/osmesa.h.
+using OsmesaHandle = void*;
+constexpr int kOsmesaFormat = 0x22, kOsmesaDepthBits = 0x30, kOsmesaProfile = 0x33, kOsmesaCoreProfile = 0x34;
+constexpr int kOsmesaMajorVersion = 0x36, kOsmesaMinorVersion = 0x37;
+
+class OsmesaContext : public Context {
+ public:
+  OsmesaContext() {
+    const std::array<int, 11> attributes{kOsmesaFormat,
+                                         GL_RGBA,
+                                         kOsmesaDepthBits,
+                                         0,
+                                         kOsmesaProfile,
+                                         kOsmesaCoreProfile,
+                                         kOsmesaMajorVersion,
+                                         4,
+                                         kOsmesaMinorVersion,
+                                         5,
+                                         0};
+    context_ = create_(attributes.data(), nullptr);
+    if (!context_) throw Error(ExitCode::internal, "{}: makes no OpenGL 4.5 core context", kOsMesa);
+    make_current();
+    load_functions(get_proc_, std::string("OSMesa (") + kOsMesa + ")");
+  }
+
+  ~OsmesaContext() override { destroy_(context_); }
+  OsmesaContext(const OsmesaContext&) = delete;
+  OsmesaContext& operator=(const OsmesaContext&) = delete;
+
+  void make_current() override {
+    if (!make_current_(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide)) {
+      throw Error(ExitCode::internal, "{}: OSMesaMakeCurrent failed", kOsMesa);
+    }
+  }
+
+  void release() override { make_current_(nullptr, nullptr, 0, 0, 0); }
+
+ private:
+  // OSMesa requires a buffer; this one is never drawn to.
+  static constexpr int kSide = 4;
+  std::array<std::uint8_t, kSide * kSide * 4> pixels_{};
+
+  SharedLibrary library_{kOsMesa};
+  using CreateContext = OsmesaHandle (*)(const int*, OsmesaHandle);
+  using DestroyContext = void (*)(OsmesaHandle);
+  using MakeCurrent = GLboolean (*)(OsmesaHandle, void*, GLenum, GLsizei, GLsizei);
+  CreateContext create_ = library_.function<CreateContext>("OSMesaCreateContextAttribs");
+  DestroyContext destroy_ = library_.function<DestroyContext>("OSMesaDestroyContext");
+  MakeCurrent make_current_ = library_.function<MakeCurrent>("OSMesaMakeCurrent");
+  Loader get_proc_ = library_.function<Loader>("OSMesaGetProcAddress");
+  OsmesaHandle context_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Context> make_osmesa_context() {
+  return std::make_unique<OsmesaContext>();
+}
+
+}  // namespace weft::render

@@ -1,0 +1,32 @@
+// Shader programs from the sources in shaders/, which the build embeds in the library.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "film/render/gl/objects.hpp"
+
+namespace weft::render {
+
+/// One linked program.
+class Program {
+ public:
+  Program() = default;
+  /// `vertex` and `fragment`: file names in shaders/; `fragment` may be empty if only depth is drawn. `defines`
+  /// ("CLOTH", "TAPS 16") precede the sources. Throws Error(internal) with the compiler's message.
+  Program(const Gl& gl, const std::string& vertex, const std::string& fragment,
+          const std::vector<std::string>& defines = {});
+
+  void use() const { gl_->UseProgram(program_.name()); }
+  /// Location of a uniform; -1 if the compiler removed it as unused, which GL then ignores.
+  GLint uniform(const char* name) const { return gl_->GetUniformLocation(program_.name(), name); }
+
+ private:
+  const Gl* gl_ = nullptr;
+  ProgramName program_;
+};
+
+/// Source of a file in shaders/ with each `#include "name"` line replaced by that file.
+std::string shader_source(const std::string& file);
+
+}  // namespace weft::render

@@ -1,0 +1,30 @@
+// Motion blur and depth of field: a blurred picture is the mean of sharp ones, drawn at several times while the shutter
+// is open and from several points of the lens.
+#pragma once
+
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+
+namespace weft::render {
+
+/// Time and point on the lens of one of the sharp pictures.
+struct Instant {
+  double back = 0;  ///< time before the drawn frame [frames]
+  Vec2 lens{0, 0};  ///< point on the lens [radii of the lens]
+};
+
+/// `count` instants, evenly spread over the lens and over the time in which the shutter is open: `shutter` degrees (360
+/// per frame), ending at the frame. Empty if `shutter` is 0 and `lens` is false.
+std::vector<Instant> instants(double shutter, bool lens, int count);
+
+/// Interpolates positions and lights linearly between a frame (back = 0) and the one before (back = 1). What `before`
+/// lacks stays as in `now`.
+frame::FrameSnapshot between(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before, double back);
+frame::Camera between(const frame::Camera& now, const frame::Camera& before, double back);
+
+/// The camera with its eye moved to a point of its lens, and turned so that points in focus stay at the same place of
+/// the picture.
+frame::Camera through_lens(const frame::Camera& camera, const Vec3& up, const Vec2& lens);
+
+}  // namespace weft::render

@@ -1,0 +1,27 @@
+// Direct light without shadows, for eight points at a time: the same formulas as toward_light() in shaders/lights.glsl.
+#pragma once
+
+#include "film/render/lighting.hpp"
+#include "film/render/ray_scene.hpp"
+
+namespace weft::render {
+
+/// Directions from eight points toward a lamp, and the intensity at these points: 1 at the target of a spot.
+struct Toward {
+  Lanes3 direction;  ///< unit length
+  Lanes distance;    ///< of a spot [m]; 1e30 for suns
+  Lanes intensity;
+};
+inline Toward toward(const Lamp& lamp, const Lanes3& point) {
+  const LightUniform& light = lamp.packed;
+  const auto all = [](float value) { return Lanes(Lanes::Constant(value)); };
+  const Lanes3 axis{all(light.toward_light.x()), all(light.toward_light.y()), all(light.toward_light.z())};
+  if (!lamp.is_spot()) return {axis, all(1e30f), all(1)};
+  const Lanes3 way{light.position.x() - point.x, light.position.y() - point.y, light.position.z() - point.z};
+  const Lanes square = dot(way, way).max(1e-6f), distance = square.sqrt();
+  const Lanes3 direction = (1 / distance) * way;
+  const Lanes t = ((dot(direction, axis) - light.position.w()) * light.color.w()).max(0.0f).min(1.0f);
+  return {direction, distance, t * t * (3 - 2 * t) * light.toward_light.w() / square};
+}
+
+}  // namespace weft::render

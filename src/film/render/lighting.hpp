@@ -1,0 +1,55 @@
+// Lights in the layout of the shaders.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <compare>
+#include <span>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "film/render/transforms.hpp"
+
+namespace weft::render {
+
+/// Maximum number of lights; further ones are ignored. Each light costs rays at every pixel.
+inline constexpr int kMaxLights = 4;
+
+/// The snapshot's lights, at most kMaxLights. If it has none, the lights of the look: a warm key light from above,
+/// beside the camera; the look `stage` has a second light from the other side.
+std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, frame::Stage::Look look,
+                                           const ViewAxes& camera, const Vec3& up);
+
+/// Light configuration that selects shader variants.
+struct LightSet {
+  std::size_t count = 1;  ///< 1 to kMaxLights
+  bool spots = false;     ///< some lights are spots
+  auto operator<=>(const LightSet&) const = default;
+};
+LightSet light_set(std::span<const frame::Light> lights);
+
+/// One light in the light block of shaders/lights.glsl, std140.
+struct LightUniform {
+  Eigen::Vector4f toward_light;  ///< unit; w: squared distance of a spot from its target [m²]; sun: 0
+  Eigen::Vector4f position;      ///< [m]; w: cosine of half the cone angle
+  Eigen::Vector4f color;         ///< linear, times intensity; w: 1 / (cosine of the fully lit cone - position.w)
+};
+static_assert(sizeof(LightUniform) == 3 * 16);
+struct LightsUniform {
+  std::array<LightUniform, kMaxLights> lights;
+};
+
+/// A light of a picture.
+struct Lamp {
+  LightUniform packed;
+  float source_tangent = 0;  ///< tangent of half the angular size of its source; of a spot: seen from its target
+
+  bool is_spot() const { return packed.toward_light.w() != 0; }
+  /// Distance of a spot from its target [m].
+  float reach() const { return std::sqrt(packed.toward_light.w()); }
+};
+
+/// `scale`: factor on the intensity for each channel.
+Lamp make_lamp(const frame::Light& light, const Vec3& scale);
+
+}  // namespace weft::render

@@ -1,0 +1,46 @@
+// Reflections in a glossy floor: the subjects as seen from below it, drawn small.
+#pragma once
+
+#include <span>
+
+#include "film/render/geometry_buffer.hpp"
+#include "film/render/shading.hpp"
+#include "film/render/traced_light.hpp"
+
+namespace weft::render {
+
+/// The view mirrored at the floor: it shows what the floor reflects, upside down.
+View mirrored(const View& view, const Floor& floor);
+
+class Mirror {
+ public:
+  /// For pictures of width x height pixels; reflections have half that size.
+  Mirror(const Gl& gl, const QualitySettings& quality, int width, int height);
+
+  /// The scene, as the main passes hold it.
+  struct Subjects {
+    std::span<const SurfaceBuffers> surfaces;
+    std::span<const Shading::Material> materials;
+    std::span<const TracedLight::Surface> traced;
+    const ReflectedLight& light;
+    double heat_scale;
+    bool painted;  ///< whether pictures on surfaces are shown
+  };
+  /// The light block must be bound. Binds the reflection to unit 13 and its distances to unit 14. Leaves the frame
+  /// block and the other units bound to the data of this pass.
+  void draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+ private:
+  const Gl* gl_;
+  int width_, height_;
+  GeometryBuffer geometry_;
+  TracedLight traced_light_;
+  Shading shading_;
+  Buffer frame_block_;
+  Texture picture_;  // with mip levels, for blurred reflections
+};
+
+}  // namespace weft::render

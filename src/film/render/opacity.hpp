@@ -1,0 +1,49 @@
+// Opacity of a picture (alpha of a texture), for passes on the CPU.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+
+namespace weft::render {
+
+/// One mip level: premultiplied linear colour and alpha, rows from the bottom.
+struct MipLevel {
+  int width = 0, height = 0;
+  std::vector<Eigen::Vector4f> texels;
+};
+
+/// The next smaller mip level: each texel is the mean of those it covers. `level` must be larger than 1 x 1.
+MipLevel next_mip_level(const MipLevel& level);
+
+/// Level 0 of the picture; `opaque` ignores alpha and uses 1.
+MipLevel base_mip_level(const frame::Texture& texture, bool opaque);
+
+class Opacity {
+ public:
+  Opacity(std::vector<MipLevel> levels, frame::Paint::Wrap wrap_u, frame::Paint::Wrap wrap_v);
+
+  /// Interpolated opacity at a point of the picture. `footprint`: width of the sampled area, in texels of level 0.
+  float at(const Eigen::Vector2f& place, float footprint) const;
+  /// Width and height of level 0 [texels].
+  Eigen::Vector2f size() const;
+
+ private:
+  struct Level {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> alpha;
+  };
+  std::vector<Level> levels_;
+  frame::Paint::Wrap wrap_u_, wrap_v_;
+};
+
+/// Ordered dithering: thresholds from 1/32 to 31/32, evenly spread over any 4x4 pixels, so that the fraction of opaque
+/// pixels equals the opacity (Bayer, "An optimum method for two-level rendition of continuous-tone pictures", 1973).
+inline float threshold_at(int x, int y) {
+  constexpr std::uint8_t kOrder[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+  return (2.0f * static_cast<float>(kOrder[4 * (y & 3) + (x & 3)]) + 1.0f) / 32.0f;
+}
+
+}  // namespace weft::render

@@ -1,0 +1,76 @@
+// Antialiasing: pixels in which a surface ends or folds get 16 samples. Each sample takes the colour of its own surface
+// from the neighbouring pixels.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "film/render/seen.hpp"
+#include "film/render/shaded_mesh.hpp"
+#include "film/render/view.hpp"
+
+namespace weft::render {
+
+/// Works on the CPU: only a few thousand pixels of a picture have outlines, and OpenGL can only multisample all of
+/// them.
+class Outlines {
+ public:
+  Outlines(int width, int height);
+
+  /// Antialiases `picture`, RGBA of 16 bits each with the lowest row first, inside `area`. `seen`: what each of its
+  /// pixels shows. `meshes`: all surfaces except the floor; mesh i has the number kFirstSurface + i.
+  void smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
+              const View& view, const PixelArea& area, std::span<std::uint64_t> picture);
+
+  /// The surfaces of the last picture without floor and backdrop, lowest row first: linear colours premultiplied by
+  /// coverage, and coverage. `unsmoothed`: the picture before smooth().
+  void cut_out(std::span<const Seen> seen, std::span<const std::uint64_t> unsmoothed,
+               std::vector<Eigen::Vector4f>& surfaces) const;
+
+  /// Number of pixels of the last picture that were sampled.
+  std::size_t count() const { return pixels_.size(); }
+
+ private:
+  static constexpr int kSamples = 16;
+  /// What the samples of one pixel show: 1 / distance [1/m] (0: nothing), its change from pixel to pixel in the plane
+  /// of the triangle [1/m], and the surface.
+  struct Samples {
+    float nearness[kSamples] = {}, slope_x[kSamples] = {}, slope_y[kSamples] = {}, surface[kSamples] = {};
+  };
+  /// A vertex in the picture: pixels from the lower left corner, and 1 / distance [1/m].
+  struct Vertex {
+    float x, y, nearness;
+  };
+  struct Pixel {
+    int x, y;
+  };
+  using Bits = std::uint64_t;
+
+  void find_outlines(std::span<const Seen> seen, const PixelArea& area);
+  void number_samples();
+  void sample(const DrawnMesh& mesh, float surface, const View& view);
+  /// Predicate for triangles without holes: every point is opaque.
+  struct AlwaysOpaque {};
+  template <class Shows = AlwaysOpaque>
+  void sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface, const Shows& shows = {});
+  void sample_with_holes(const DrawnMesh& mesh, float surface, const View& view);
+  void sample_floor(const Floor& floor, const View& view);
+  std::array<std::size_t, kSamples> find_sources(std::size_t slot, std::span<const Seen> seen) const;
+  Vertex to_picture(const Eigen::Vector4d& clip) const;
+
+  int width_, height_, words_;  // words_: bit words in a row
+  float kink_ = 0;              // relative change of the slope of 1 / distance per pixel that counts as a fold
+  std::vector<Bits> bits_;      // a bit for each pixel with an outline
+  std::vector<int> first_;      // index of the first sample of each word
+  std::vector<Pixel> pixels_;
+  std::vector<Samples> samples_;
+  std::vector<std::uint64_t> resolved_;
+  std::vector<float> nearness_;
+  std::vector<Eigen::Vector4d> clip_;
+  std::vector<Vertex> vertices_;
+};
+
+}  // namespace weft::render

@@ -1,0 +1,46 @@
+// Picture coordinates on a drawn mesh, and the holes that pictures cut into it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "film/render/opacity.hpp"
+#include "film/render/shaded_mesh.hpp"
+
+namespace weft::render {
+
+/// Consecutive triangles of one appearance.
+struct PaintedRange {
+  std::size_t first = 0, count = 0;
+  const frame::Appearance* look = nullptr;
+};
+
+/// What a painted surface has in addition to its drawn mesh.
+struct PaintedMesh {
+  std::vector<Eigen::Vector2f> places;  ///< per drawn vertex: paint coordinates
+  std::vector<PaintedRange> ranges;
+};
+
+/// Splits drawn vertices whose corners have different paint coordinates, as at seams, and sorts the triangles by part.
+PaintedMesh make_painted_mesh(const frame::Surface& surface, ShadedMesh& mesh);
+
+/// The holes of a painted mesh.
+class Holes {
+ public:
+  /// `opacity`: per range, that of its picture; null if the range has no holes.
+  Holes(const PaintedMesh& mesh, std::vector<const Opacity*> opacity);
+
+  bool any() const;
+  /// Opacity of the triangles of a range; null if they have no holes.
+  const Opacity* opacity(std::size_t range) const { return opacity_[range]; }
+  std::span<const PaintedRange> ranges() const { return mesh_->ranges; }
+  /// Picture coordinates of a drawn vertex for a range.
+  Eigen::Vector2f place(std::size_t range, Index vertex) const;
+
+ private:
+  const PaintedMesh* mesh_;
+  std::vector<const Opacity*> opacity_;
+};
+
+}  // namespace weft::render

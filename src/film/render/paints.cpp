@@ -1,0 +1,87 @@
+#include "film/render/paints.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "film/image/color.hpp"
+
+namespace weft::render {
+namespace {
+
+using Wrap = frame::Paint::Wrap;
+using Alpha = frame::Paint::Alpha;
+
+// GL_TEXTURE_MAX_ANISOTROPY of OpenGL 4.6, which llvmpipe has as an extension. The value 8 keeps prints sharp on cloth
+// that is seen at an angle of 7 degrees.
+constexpr GLenum kMaxAnisotropy = 0x84FE;
+constexpr float kAnisotropy = 8;
+
+GLint gl_wrap(Wrap wrap) {
+  switch (wrap) {
+    case Wrap::repeat:
+      return GL_REPEAT;
+    case Wrap::clamp:
+      return GL_CLAMP_TO_EDGE;
+    case Wrap::mirror:
+      return GL_MIRRORED_REPEAT;
+    case Wrap::once:
+      return GL_CLAMP_TO_BORDER;  // the border is transparent
+  }
+  return GL_REPEAT;
+}
+
+/// Converts linear light to the bytes of an sRGB texture, with an error below half a byte.
+std::uint8_t srgb_byte(float linear) {
+  constexpr int kSteps = 8192;  // bytes are at least 2.5 steps apart, near black
+  static const auto kTable = [] {
+    std::vector<std::uint8_t> table;
+    for (int i = 0; i <= kSteps; ++i)
+      table.push_back(static_cast<std::uint8_t>(std::lround(255 * image::srgb_from_linear(double(i) / kSteps))));
+    return table;
+  }();
+  return kTable[static_cast<std::size_t>(std::lround(kSteps * std::clamp(linear, 0.0f, 1.0f)))];
+}
+
+std::vector<std::uint8_t> bytes_of(const MipLevel& level) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(4 * level.texels.size());
+  for (const Eigen::Vector4f& texel : level.texels) {
+    for (int channel = 0; channel < 3; ++channel) bytes.push_back(srgb_byte(texel[channel]));
+    bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(texel.w(), 0.0f, 1.0f))));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+const PaintTexture& Paints::of(const frame::Paint& paint) {
+  const Key key{paint.texture.get(), paint.wrap_u, paint.wrap_v, paint.alpha};
+  const auto found = known_.find(key);
+  if (found != known_.end()) return found->second;
+  std::vector<MipLevel> levels{base_mip_level(*paint.texture, paint.alpha == Alpha::ignored)};
+  while (levels.back().width > 1 || levels.back().height > 1) levels.push_back(next_mip_level(levels.back()));
+
+  PaintTexture made;
+  made.source = paint.texture;
+  made.texture = Texture(*gl_, GLenum{GL_TEXTURE_2D});
+  const GLuint name = made.texture.name();
+  gl_->TextureStorage2D(name, static_cast<GLsizei>(levels.size()), GL_SRGB8_ALPHA8, levels[0].width, levels[0].height);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const std::vector<std::uint8_t> bytes = bytes_of(levels[i]);
+    gl_->TextureSubImage2D(name, static_cast<GLint>(i), 0, 0, levels[i].width, levels[i].height, GL_RGBA,
+                           GL_UNSIGNED_BYTE, bytes.data());
+  }
+  gl_->TextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  gl_->TextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl_->TextureParameteri(name, GL_TEXTURE_WRAP_S, gl_wrap(paint.wrap_u));
+  gl_->TextureParameteri(name, GL_TEXTURE_WRAP_T, gl_wrap(paint.wrap_v));
+  gl_->TextureParameterf(name, kMaxAnisotropy, kAnisotropy);
+  gl_->GetError();  // clears the error of an OpenGL without anisotropy, which is then not used
+  if (paint.alpha == Alpha::cutout) made.opacity.emplace(std::move(levels), paint.wrap_u, paint.wrap_v);
+  return known_.emplace(key, std::move(made)).first->second;
+}
+
+}  // namespace weft::render

@@ -1,0 +1,18 @@
+#include "film/render/quality.hpp"
+
+namespace weft::render {
+
+// Costs of each stage: tests/bench/history.md, render.
+QualitySettings quality_settings(Quality quality) {
+  switch (quality) {
+    case Quality::draft:
+      return {false, 2, 4, 4, 4, 4, false, false, false, true};
+    case Quality::preview:
+      return {true, 2, 4, 4, 4, 8, false, false, false, true};
+    case Quality::final:
+      break;
+  }
+  return {true, 1, 2, 8, 4, 16, true, true, true, false};
+}
+
+}  // namespace weft::render

@@ -1,0 +1,48 @@
+// Draws cloth as a smooth surface: splits each triangle in four, with new vertices on cubic patches.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "film/render/shaded_mesh.hpp"
+
+namespace weft::render {
+
+/// Midpoint subdivision of a mesh. Triangle t becomes 4 t to 4 t + 3.
+class Refinement {
+ public:
+  struct Edge {
+    Index a, b;
+  };
+
+  /// Recomputes the subdivision if the triangles have changed.
+  void update(std::span<const Triangle> coarse, std::size_t vertices);
+
+  /// The midpoint of edge i is vertex `vertices` + i.
+  std::span<const Edge> edges() const { return edges_; }
+  std::span<const Triangle> triangles() const { return triangles_; }
+
+ private:
+  std::vector<Triangle> coarse_, triangles_;
+  std::vector<Edge> edges_;
+};
+
+/// Midpoint of an edge on the cubic curve given by the normals of its ends (Vlachos et al., "Curved PN Triangles",
+/// 2001). Its normal is the mean of both normals, because the paper's quadratic normals oscillate along sharp folds.
+/// The midpoint is at most `max_offset` [m] from the edge, so that layers in contact stay apart and bad normals make no
+/// spikes.
+struct Middle {
+  Vec3 position, normal;
+};
+Middle middle(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b, double max_offset);
+
+/// Maximum distance of midpoints from their edges [m]: the thickness of the cloth, which is below half of the gap that
+/// contacts keep between layers. (Measured: with 0.5 mm, the inner side of a fold of silk, 0.18 mm thick, showed
+/// through its outer one.)
+inline double max_midpoint_offset(double thickness) {
+  return std::max(thickness, 2e-4);
+}
+
+}  // namespace weft::render

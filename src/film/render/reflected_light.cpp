@@ -1,0 +1,141 @@
+#include "film/render/reflected_light.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "film/image/color.hpp"
+
+namespace weft::render {
+namespace {
+
+using Eigen::Vector3f;
+
+// Assumed open fraction of the surroundings at the point that a ray meets; no second ray measures it.
+constexpr float kOpenAtHits = 0.6f;
+constexpr float kMinSlope = 0.02f;  // rays that descend less steeply do not meet the floor [m/m]
+
+Lanes evaluate(const std::array<Vector3f, 9>& c, int k, const Lanes3& n) {
+  return (c[0][k] + n.x * c[1][k] + n.y * c[2][k] + n.z * c[3][k] + n.x * n.y * c[4][k] + n.y * n.z * c[5][k] +
+          n.z * n.x * c[6][k] + n.z * n.z * c[7][k] + (n.x * n.x - n.y * n.y) * c[8][k])
+      .max(0.0f);
+}
+
+}  // namespace
+
+Vector3f MeanColors::of(const frame::Appearance& look, bool back) {
+  const Vec3 own = image::linear_from_srgb(back ? look.back_color : look.color);
+  const frame::Paint& paint = look.paint;
+  if (!paint.texture || (back && !look.back_painted) || paint.alpha == frame::Paint::Alpha::over_color)
+    return own.cast<float>();
+  const auto [known, added] = means_.try_emplace(paint.texture, Vector3f::Zero());
+  if (added) {
+    // The mean of about 500 pixels is accurate enough.
+    const std::size_t pixels = paint.texture->rgba.size() / 4, step = std::max<std::size_t>(1, pixels / 499);
+    Vec3 sum = Vec3::Zero();
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < pixels; i += step, ++count) {
+      const std::uint8_t* rgba = paint.texture->rgba.data() + 4 * i;
+      sum += image::linear_from_srgb(Vec3(rgba[0], rgba[1], rgba[2]) / 255);
+    }
+    known->second = (sum / static_cast<double>(std::max<std::size_t>(count, 1))).cast<float>();
+  }
+  return known->second.cwiseProduct(image::linear_from_srgb(look.color).cast<float>());
+}
+
+ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame::Appearance& look, bool plain,
+                                     bool dark, MeanColors& colors) {
+  const bool cloth = surface.surface().kind == frame::ObjectKind::cloth;
+  const auto range = [&](const frame::Appearance& of, std::size_t end) {
+    if (dark) return ReflectingSurface::Range{end, Vector3f::Zero(), Vector3f::Zero()};
+    return ReflectingSurface::Range{end, colors.of(of, false), colors.of(of, cloth)};
+  };
+  if (plain || surface.painted() == nullptr) return {{range(look, 0)}};
+  ReflectingSurface result;
+  const std::size_t pieces = surface.refined() ? 4 : 1;  // Refinement
+  for (const PaintedRange& each : surface.painted()->ranges)
+    result.ranges.push_back(range(*each.look, pieces * (each.first + each.count)));
+  return result;
+}
+
+ReflectedLight::ReflectedLight(const RayScene& rays, std::vector<ReflectingSurface> surfaces, std::vector<Lamp> lamps,
+                               const Irradiance& around, const std::optional<Floor>& floor, const Vector3f& floor_color)
+    : rays_(&rays),
+      surfaces_(std::move(surfaces)),
+      lamps_(std::move(lamps)),
+      has_floor_(floor.has_value()),
+      floor_color_(floor_color) {
+  for (std::size_t k = 0; k < around.size(); ++k) around_[k] = around[k].cast<float>();
+  if (floor) {
+    floor_normal_ = floor->normal.cast<float>();
+    floor_height_ = floor_normal_.dot(floor->point.cast<float>());
+  }
+}
+
+Lanes3 ReflectedLight::surroundings(const Lanes3& normal) const {
+  return {evaluate(around_, 0, normal), evaluate(around_, 1, normal), evaluate(around_, 2, normal)};
+}
+
+ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
+  const Hits hits = rays_->nearest(rays);
+  Arriving result;
+  // Where rays end: on surfaces, or on the floor.
+  enum class End : std::uint8_t { nowhere, surface, floor };
+  std::array<End, kLanes> ends{};
+  Lanes3 normal, albedo, point;
+  bool any = false;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    normal.set(lane, Vector3f::UnitZ());
+    if (rays.wanted[lane] == 0) continue;
+    const Vector3f start = rays.origin.at(lane), way = rays.direction.at(lane);
+    if (hits.mesh[lane] != Hits::kNone) {
+      const auto& ranges = surfaces_[static_cast<std::size_t>(hits.mesh[lane])].ranges;
+      auto range = std::ranges::find_if(ranges, [&](const auto& each) { return hits.triangle[lane] < each.end; });
+      if (range == ranges.end()) --range;
+      const bool back = hits.normal.at(lane).dot(way) > 0;
+      const Vector3f facing = back ? Vector3f(-hits.normal.at(lane)) : hits.normal.at(lane);
+      ends[lane] = End::surface;
+      normal.set(lane, facing);
+      albedo.set(lane, back ? range->back : range->front);
+      point.set(lane, start + hits.distance[lane] * way + kRayStart * facing);
+    } else {
+      result.open[lane] = 1;
+      const float down = -floor_normal_.dot(way), height = floor_normal_.dot(start) - floor_height_;
+      if (!has_floor_ || down < kMinSlope * way.norm() || height < 2 * kRayStart) continue;
+      ends[lane] = End::floor;
+      normal.set(lane, floor_normal_);
+      albedo.set(lane, floor_color_);
+      point.set(lane, start + height / down * way + kRayStart * floor_normal_);
+    }
+    any = true;
+  }
+  if (!any) return result;
+
+  Lanes on_surface, on_floor;  // 1 or 0
+  for (int lane = 0; lane < kLanes; ++lane) {
+    on_surface[lane] = ends[lane] == End::surface ? 1.0f : 0.0f;
+    on_floor[lane] = ends[lane] == End::floor ? 1.0f : 0.0f;
+  }
+  for (const Lamp& lamp : lamps_) {
+    const Toward to = toward(lamp, point);
+    const Lanes strength = to.intensity * dot(normal, to.direction);
+    Rays shadow;
+    shadow.origin = point, shadow.direction = to.direction, shadow.end = to.distance, shadow.seed = rays.seed;
+    shadow.wanted = mask(on_surface + on_floor > 0 && strength > 0);
+    if ((shadow.wanted == 0).all()) continue;
+    const Lanes dark = rays_->blocked(shadow);
+    // The surroundings already contain the floor in full light, so that a shadow on the floor subtracts.
+    const Lanes added =
+        (shadow.wanted != 0).select(strength * (on_surface - dark * (on_surface + on_floor)), Lanes::Zero());
+    result.light.x += added * lamp.packed.color.x();
+    result.light.y += added * lamp.packed.color.y();
+    result.light.z += added * lamp.packed.color.z();
+  }
+  const Lanes open = kOpenAtHits * on_surface;
+  const Lanes3 around = surroundings(normal);
+  result.light.x = albedo.x * (result.light.x + open * around.x);
+  result.light.y = albedo.y * (result.light.y + open * around.y);
+  result.light.z = albedo.z * (result.light.z + open * around.z);
+  return result;
+}
+
+}  // namespace weft::render

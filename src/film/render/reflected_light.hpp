@@ -1,0 +1,69 @@
+// The light that arrives along a ray: light of lamps and surroundings, reflected by the surface that the ray meets.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "film/render/lamps.hpp"
+#include "film/render/ray_scene.hpp"
+#include "film/render/surface_buffers.hpp"
+#include "film/render/surroundings.hpp"
+#include "film/render/view.hpp"
+
+namespace weft::render {
+
+/// Mean linear colours of appearances. Each picture on a surface is averaged only once.
+class MeanColors {
+ public:
+  Eigen::Vector3f of(const frame::Appearance& look, bool back);
+
+ private:
+  std::map<std::shared_ptr<const frame::Texture>, Eigen::Vector3f> means_;
+};
+
+/// Albedo of both sides of a surface, by ranges of its drawn triangles.
+struct ReflectingSurface {
+  struct Range {
+    std::size_t end;  ///< triangle after the last one
+    Eigen::Vector3f front, back;
+  };
+  std::vector<Range> ranges;  ///< the last range also covers all further triangles
+};
+
+/// `look`: of the surface as a whole. `plain`: ignores the colours of parts. `dark`: reflects nothing.
+ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame::Appearance& look, bool plain,
+                                     bool dark, MeanColors& colors);
+
+class ReflectedLight {
+ public:
+  /// `surfaces`: one per mesh of `rays`, in the same order. `floor_color`: linear.
+  ReflectedLight(const RayScene& rays, std::vector<ReflectingSurface> surfaces, std::vector<Lamp> lamps,
+                 const Irradiance& around, const std::optional<Floor>& floor, const Eigen::Vector3f& floor_color);
+
+  const RayScene& rays() const { return *rays_; }
+  std::span<const Lamp> lamps() const { return lamps_; }
+
+  struct Arriving {
+    Lanes open = Lanes::Zero();  ///< 1 if the ray meets no surface; the floor counts as part of the surroundings
+    Lanes3 light;                ///< radiance to add to that of the surroundings, which include floor in full light;
+                                 ///< negative if the ray meets shaded floor
+  };
+  Arriving arriving(const Rays& rays) const;
+
+ private:
+  Lanes3 surroundings(const Lanes3& normal) const;
+
+  const RayScene* rays_;
+  std::vector<ReflectingSurface> surfaces_;
+  std::vector<Lamp> lamps_;
+  std::array<Eigen::Vector3f, 9> around_;
+  bool has_floor_;
+  Eigen::Vector3f floor_normal_ = Eigen::Vector3f::UnitZ(), floor_color_;
+  float floor_height_ = 0;  // position of the floor's plane along its normal [m]
+};
+
+}  // namespace weft::render

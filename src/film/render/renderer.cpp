@@ -1,0 +1,500 @@
+#include "film/render/renderer.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "core/error.hpp"
+#include "film/frame/cords.hpp"
+#include "film/image/color.hpp"
+#include "film/render/data_passes.hpp"
+#include "film/render/drawing_time.hpp"
+#include "film/render/edges.hpp"
+#include "film/render/framing.hpp"
+#include "film/render/instants.hpp"
+#include "film/render/mirror.hpp"
+#include "film/render/outlines.hpp"
+#include "film/render/pixels.hpp"
+#include "film/render/reflected_light.hpp"
+#include "film/render/shading.hpp"
+#include "film/render/shadow_catcher.hpp"
+#include "film/render/smear.hpp"
+#include "film/render/traced_light.hpp"
+#include "film/render/view.hpp"
+
+namespace weft::render {
+namespace {
+
+// Cloth with at most this number of triangles is refined; the triangles of finer meshes are small enough.
+constexpr std::size_t kMaxRefinedTriangles = 20000;
+constexpr std::size_t kMaxPeeledLayers = 4;  // overlapping layers of translucent cloth
+constexpr double kMaxMotionPerPicture =
+    5;  // motion blur averages so many sharp pictures that the motion during each is at most this [pixels]
+constexpr double kFloorSizeRatio = 60;  // half side of the drawn floor, relative to subject radius plus eye distance
+
+Vec3 up_of(const frame::FrameSnapshot& snapshot) {
+  const Vec3 up = snapshot.stage ? snapshot.stage->up : Vec3(0, 0, 1);
+  return up.squaredNorm() > 0 ? Vec3(up.normalized()) : Vec3(0, 0, 1);
+}
+
+void check_states(const frame::FrameSnapshot& snapshot) {
+  if (snapshot.surfaces.size() != snapshot.states.size()) {
+    throw Error(ExitCode::internal, "frame {}: {} surfaces, but states of {}", snapshot.frame, snapshot.surfaces.size(),
+                snapshot.states.size());
+  }
+}
+
+std::vector<TracedLight::Surface> traced_surfaces(std::span<const Shading::Material> materials) {
+  std::vector<TracedLight::Surface> list;
+  for (const auto& each : materials) list.push_back(TracedLight::Surface::of(each.appearance, each.cloth));
+  return list;
+}
+
+/// One snapshot prepared for the passes.
+struct Plan {
+  frame::Stage stage;
+  Vec3 up;
+  Box3 subjects, surroundings;
+  std::optional<Floor> floor;
+  View view;
+  std::vector<frame::Light> lights;
+  Lighting lighting;
+};
+
+Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Stage& stage, const frame::Camera& camera,
+               double aspect) {
+  Plan plan;
+  plan.stage = stage;
+  plan.stage.heat = heat_shown(snapshot, stage);
+  plan.up = up_of(snapshot);
+  plan.subjects = subject_bounds(snapshot);
+  plan.surroundings = surroundings_bounds(snapshot);
+  plan.floor = find_floor(snapshot, plan.up);
+  plan.view = make_view(camera, plan.up, aspect, plan.subjects, plan.floor);
+  plan.lights = effective_lights(snapshot, plan.stage.look, plan.view.axes, plan.up);
+  plan.lighting = make_lighting(plan.stage, plan.up, plan.floor, plan.lights);
+  return plan;
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  Settings settings;
+  QualitySettings quality;
+  std::unique_ptr<Context> context;
+  const Gl& gl;
+  std::optional<CameraPath> path;
+  frame::Cords cords;
+  DrawTimes times;
+
+  // GL objects; the context must be current when they are created and deleted.
+  struct Passes {
+    RayScene rays;
+    TracedLight traced;
+    GeometryBuffer geometry;
+    Shading shading;
+    FloorBuffers floor;
+    Buffer frame_block, light_block;
+    std::vector<SurfaceBuffers> surfaces;
+
+    Passes(const Gl& gl, const QualitySettings& quality, const Settings& settings)
+        : traced(gl, quality, settings.width, settings.height),
+          geometry(gl, settings.width, settings.height),
+          shading(gl, quality, settings.width, settings.height, geometry),
+          floor(gl),
+          frame_block(gl),
+          light_block(gl) {}
+  };
+  std::optional<Passes> passes;
+  MeanColors colors;
+  std::optional<Mirror> mirror;  // made once a floor is glossy
+  std::optional<Outlines> outlines;
+  std::optional<DataPasses> data;
+  image::Layers layers;
+
+  // The picture and what it shows, lowest row first; members, so that their memory is reused. open_floor: the picture
+  // with its floor unshadowed, only if layers are requested.
+  std::vector<std::uint64_t> rgba, unsmoothed, open_floor;
+  std::vector<Seen> seen;
+
+  explicit Impl(const Settings& wanted);
+  ~Impl();
+
+  frame::Camera choose_camera(const frame::FrameSnapshot& snapshot);
+  void update_surfaces(const frame::FrameSnapshot& snapshot, const View& view);
+  void update_floor(const Plan& plan);
+  void upload_frame(const Plan& plan);
+  Shading::Features features(const Plan& plan) const;
+  std::vector<Shading::Material> materials(const Plan& plan) const;
+  bool reflects(const Plan& plan) const {
+    return quality.mirrors && floor_roughness(plan.lighting.style, plan.floor) < kMirrorsSubjects;
+  }
+  ReflectedLight reflected_light(const Plan& plan, double heat);
+  void shade(const Plan& plan, const PixelArea& subjects, double heat);
+  void blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
+                               std::span<const DrawnMesh> opaque, const PixelArea& area);
+  Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const;
+  void draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan);
+  void draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before);
+  void draw_layers(const Plan& plan, const frame::FrameSnapshot* before);
+};
+
+Renderer::Impl::Impl(const Settings& wanted)
+    : settings(wanted),
+      quality(quality_settings(wanted.quality)),
+      context(make_context(wanted.backend, wanted.threads)),
+      gl(context->gl()) {
+  const CurrentContext current(*context);
+  GLint largest = 0;
+  gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  if (settings.width < 1 || settings.height < 1 || settings.width > largest || settings.height > largest) {
+    throw Error(ExitCode::usage, "--size: expected 1x1 to {}x{} pixels, got {}x{}", largest, largest, settings.width,
+                settings.height);
+  }
+  passes.emplace(gl, quality, settings);
+  if (quality.smooth_outlines || settings.layers) outlines.emplace(settings.width, settings.height);
+  if (settings.layers) data.emplace(settings.width, settings.height);
+  check_errors(gl, "preparing to draw");
+}
+
+Renderer::Impl::~Impl() {
+  context->make_current();
+  mirror.reset();
+  passes.reset();
+  context->release();
+}
+
+/// Updates the buffers to match the snapshot's surfaces: keeps those of known surfaces, creates those of new ones.
+void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const View& view) {
+  std::size_t cloth_triangles = 0;
+  for (const auto& surface : snapshot.surfaces)
+    if (surface->kind == frame::ObjectKind::cloth) cloth_triangles += surface->triangles.size();
+  std::vector<SurfaceBuffers> next;
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    const auto& surface = snapshot.surfaces[i];
+    if (!is_subject(*surface)) continue;
+    auto known = std::find_if(passes->surfaces.begin(), passes->surfaces.end(),
+                              [&](const SurfaceBuffers& buffers) { return &buffers.surface() == surface.get(); });
+    if (known != passes->surfaces.end()) {
+      next.push_back(std::move(*known));
+      passes->surfaces.erase(known);
+    } else {
+      // With layers for compositors, cloth is drawn without refinement: the layers show the simulated faces.
+      const bool cloth = surface->kind == frame::ObjectKind::cloth;
+      const bool free = cloth && !settings.layers;
+      next.emplace_back(gl, surface,
+                        Detail{.refines = quality.refines && free && cloth_triangles <= kMaxRefinedTriangles,
+                               .rims = quality.trims && free && surface->appearance.thickness > 0,
+                               .trims = quality.trims && cloth && surface->appearance.thickness > 0});
+    }
+    next.back().update(snapshot.states[i],
+                       rim_width(surface->appearance, snapshot.states[i].positions, view, settings.height));
+  }
+  passes->surfaces = std::move(next);
+}
+
+frame::Camera Renderer::Impl::choose_camera(const frame::FrameSnapshot& snapshot) {
+  if (const frame::Camera* camera = find_camera(snapshot, settings.camera);
+      camera && camera->kind == frame::Camera::Kind::placed)
+    return *camera;
+  if (!path) {
+    path.emplace(settings.camera, settings.aspect());
+    path->see(snapshot);
+    path->find();
+  }
+  return path->at(snapshot);
+}
+
+void Renderer::Impl::update_floor(const Plan& plan) {
+  if (!plan.floor) return;
+  passes->shading.set_floor(plan.floor, plan.lighting.style.floor_tint);
+  const Vec3 center = plan.subjects.center();
+  const Vec3 under = center - plan.floor->normal.dot(center - plan.floor->point) * plan.floor->normal;
+  const double radius = 0.5 * plan.subjects.diagonal().norm();
+  passes->floor.update(under, plan.floor->normal, kFloorSizeRatio * (radius + (plan.view.eye - under).norm()));
+}
+
+void Renderer::Impl::upload_frame(const Plan& plan) {
+  const FrameUniform block =
+      pack_frame(plan.view, plan.lighting, plan.surroundings, plan.floor, settings.width, settings.height);
+  gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
+  gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
+}
+
+Shading::Features Renderer::Impl::features(const Plan& plan) const {
+  return {.lights = light_set(plan.lights),
+          .checker = plan.floor && plan.floor->look.checker,
+          .tiled = plan.floor && plan.floor->look.paint.texture && !plan.lighting.style.plain,
+          .painted = passes->geometry.painted() && !plan.lighting.style.plain,
+          .trimmed = passes->geometry.trimmed(),
+          .shiny = floor_roughness(plan.lighting.style, plan.floor) < kMirrorsLamps,
+          .reflecting = reflects(plan)};
+}
+
+std::vector<Shading::Material> Renderer::Impl::materials(const Plan& plan) const {
+  std::vector<Shading::Material> list;
+  for (const SurfaceBuffers& surface : passes->surfaces)
+    list.push_back(material_of(surface.surface(), plan.lighting.style.plain));
+  return list;
+}
+
+/// Uploads the lights, and collects the properties of lights and surfaces that rays need.
+ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
+  std::vector<Lamp> lamps;
+  LightsUniform block{};
+  for (const frame::Light& light : plan.lights) {
+    lamps.push_back(make_lamp(light, plan.lighting.exposure.direct));
+    block.lights[lamps.size() - 1] = lamps.back().packed;
+  }
+  gl.NamedBufferData(passes->light_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
+  gl.BindBufferBase(GL_UNIFORM_BUFFER, 1, passes->light_block.name());
+
+  std::vector<ReflectingSurface> surfaces;
+  const std::vector<Shading::Material> looks = materials(plan);
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    surfaces.push_back(reflecting_surface(passes->surfaces[i], looks[i].appearance, plan.lighting.style.plain,
+                                          heat > 0 && looks[i].cloth, colors));  // heat colours reflect nothing
+  Eigen::Vector3f floor_color = Eigen::Vector3f::Zero();
+  if (plan.floor)
+    floor_color = (plan.lighting.style.floor_tint * image::linear_from_srgb(plan.floor->look.color)).cast<float>();
+  return {passes->rays, std::move(surfaces), std::move(lamps), irradiance_of(plan.lighting.around),
+          plan.floor,   floor_color};
+}
+
+void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
+  const std::vector<PixelArea> shaded_floor = passes->traced.shaded_floor();
+  passes->shading.draw(materials(plan), heat, features(plan), subjects, shaded_floor);
+}
+
+/// Draws the geometry buffer, traces light, then draws colours and smooth outlines.
+void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan) {
+  update_surfaces(snapshot, plan.view);
+  update_floor(plan);
+  gl.Disable(GL_DITHER);
+  std::vector<DrawnMesh> meshes;
+  std::deque<Holes> holes;
+  std::vector<char> sheer;  // flag for each surface that is translucent; empty if none is
+  for (const SurfaceBuffers& surface : passes->surfaces) {
+    meshes.push_back({surface.positions(), surface.triangles()});
+    const double opacity = quality.trims && !plan.lighting.style.plain ? opacity_of(surface.surface()) : 1;
+    if (opacity < 1) {
+      meshes.back().opacity = static_cast<float>(opacity);
+      sheer.resize(passes->surfaces.size(), 0);
+      sheer[meshes.size() - 1] = 1;
+    }
+    if (surface.painted() == nullptr) continue;
+    holes.emplace_back(*surface.painted(), passes->geometry.opacity_of(*surface.painted()));
+    if (holes.back().any()) meshes.back().holes = &holes.back();
+  }
+  std::vector<DrawnMesh> opaque = meshes;
+  for (std::size_t i = 0; i < sheer.size(); ++i)
+    if (sheer[i] != 0) opaque[i] = {};
+  const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
+
+  passes->rays.build(meshes);
+  const double heat = heat_scale(snapshot, plan.stage);
+  const ReflectedLight light = reflected_light(plan, heat);
+  const std::vector<TracedLight::Surface> traced = traced_surfaces(materials(plan));
+  if (reflects(plan)) {
+    if (!mirror) mirror.emplace(gl, quality, settings.width, settings.height);
+    const View view = mirrored(plan.view, *plan.floor);
+    const FrameUniform block =
+        pack_frame(view, plan.lighting, plan.surroundings, plan.floor, mirror->width(), mirror->height());
+    const std::vector<Shading::Material> looks = materials(plan);
+    mirror->draw(view, block, {passes->surfaces, looks, traced, light, heat, !plan.lighting.style.plain},
+                 light_set(plan.lights));
+  }
+  upload_frame(plan);
+  passes->geometry.draw(passes->surfaces, sheer, floor, plan.view.eye, plan.view.far);
+  passes->traced.draw(light, passes->geometry, traced, plan.view, plan.floor);
+  std::vector<Vec3> drawn;
+  for (const DrawnMesh& mesh : meshes) drawn.insert(drawn.end(), mesh.positions.begin(), mesh.positions.end());
+  const PixelArea area = visible_area(plan.view, drawn, settings.width, settings.height);
+  shade(plan, area, heat);
+  passes->shading.read(rgba);
+  if (!outlines && !plan.lighting.style.edges) return;
+  passes->geometry.read_seen(seen);
+  if (!sheer.empty()) blend_translucent_cloth(plan, sheer, light, opaque, area);
+  if (data) {
+    unsmoothed = rgba;
+    if (plan.floor && sheer.empty()) {
+      passes->shading.draw_open_floor(features(plan));
+      passes->shading.read(open_floor);
+    } else {
+      open_floor.clear();
+    }
+  }
+  if (outlines) outlines->smooth(seen, meshes, plan.floor, plan.view, area, rgba);
+  if (plan.lighting.style.edges) draw_edges(passes->surfaces, plan.view, settings.width, settings.height, seen, rgba);
+}
+
+/// Blends translucent cloth over the picture of everything else by depth peeling, nearest layer first (Everitt,
+/// "Interactive Order-Independent Transparency", 2001). Afterwards, `seen` also contains translucent cloth.
+void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
+                                             std::span<const DrawnMesh> opaque, const PixelArea& area) {
+  std::vector<std::uint64_t> behind = rgba;
+  outlines->smooth(seen, opaque, plan.floor, plan.view, area, behind);
+  const auto of_sheer = [&](const Seen& at) {
+    return at.surface >= kFirstSurface && sheer[static_cast<std::size_t>(at.surface) - kFirstSurface] != 0;
+  };
+  const std::vector<TracedLight::Surface> traced = traced_surfaces(materials(plan));
+  struct Layer {
+    std::vector<std::uint64_t> rgba;
+    std::vector<Seen> seen;
+  };
+  std::vector<Layer> peeled;
+  while (peeled.size() < kMaxPeeledLayers) {
+    passes->geometry.draw_layer(passes->surfaces, sheer, !peeled.empty());
+    Layer layer;
+    passes->geometry.read_seen(layer.seen);
+    if (std::ranges::none_of(layer.seen, of_sheer)) break;
+    passes->traced.draw(light, passes->geometry, traced, plan.view, plan.floor);
+    passes->shading.draw_layer(features(plan), area);
+    passes->shading.read(layer.rgba);
+    peeled.push_back(std::move(layer));
+  }
+  if (peeled.empty()) return;
+  for (std::size_t i = 0; i < rgba.size(); ++i) {
+    if (!of_sheer(peeled.front().seen[i])) continue;
+    Eigen::Vector3f blended = linear_of(behind[i]);
+    for (auto layer = peeled.rbegin(); layer != peeled.rend(); ++layer) {
+      if (!of_sheer(layer->seen[i])) continue;
+      const float opacity = static_cast<float>(layer->rgba[i] >> 48) / 65535.0f;
+      blended += opacity * (linear_of(layer->rgba[i]) - blended);
+    }
+    rgba[i] = encoded(blended);
+    seen[i] = peeled.front().seen[i];
+  }
+}
+
+Plan Renderer::Impl::plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const {
+  frame::Stage stage = snapshot.stage ? *snapshot.stage : frame::Stage{};
+  stage.look = settings.look.value_or(stage.look);
+  return make_plan(snapshot, stage, camera, settings.aspect());
+}
+
+void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
+  const frame::Camera camera = choose_camera(snapshot);
+  const double scene_blur = snapshot.stage ? snapshot.stage->motion_blur : 0;
+  const double shutter = before ? settings.motion_blur.value_or(scene_blur) : 0;
+  // With data layers, the picture stays sharp: compositors blur it by the motion and depth layers.
+  if (data || (shutter <= 0 && camera.aperture <= 0)) {
+    const Plan plan = plan_of(snapshot, camera);
+    draw_sharp(snapshot, plan);
+    if (data) draw_layers(plan, before);
+    return;
+  }
+  const frame::Camera camera_before = before ? choose_camera(*before) : camera;
+  const auto snapshot_at = [&](double back) { return shutter > 0 ? between(snapshot, *before, back) : snapshot; };
+  const auto view_at = [&](double back, const frame::FrameSnapshot& moved) {
+    return make_view(between(camera, camera_before, back), up_of(moved), settings.aspect(), subject_bounds(moved),
+                     find_floor(moved, up_of(moved)));
+  };
+  // Without depth of field: draws so many pictures that the motion in each is at most kMaxMotionPerPicture pixels, and
+  // smears each picture along its motion.
+  int count = quality.instants;
+  const bool smears = camera.aperture <= 0;
+  if (smears) {
+    const frame::FrameSnapshot opening = snapshot_at(shutter / 360);
+    const double motion = longest_motion(opening, view_at(shutter / 360, opening), snapshot, view_at(0, snapshot),
+                                         settings.width, settings.height);
+    count = std::clamp(static_cast<int>(std::ceil(motion / kMaxMotionPerPicture)), 1, quality.instants);
+  }
+  std::vector<Eigen::Vector3f> sums(static_cast<std::size_t>(settings.width) * settings.height,
+                                    Eigen::Vector3f::Zero()),
+      sharp(sums.size());
+  Smear smear(settings.width, settings.height);
+  for (const Instant& instant : instants(shutter, camera.aperture > 0, count)) {
+    const frame::FrameSnapshot moved = snapshot_at(instant.back);
+    const Plan plan =
+        plan_of(moved, through_lens(between(camera, camera_before, instant.back), up_of(moved), instant.lens));
+    draw_sharp(moved, plan);
+    for (std::size_t i = 0; i < sums.size(); ++i) sharp[i] = linear_of(rgba[i]);
+    if (!smears) {
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += sharp[i];
+      continue;
+    }
+    const double half = 0.5 * shutter / 360 / count;
+    const frame::FrameSnapshot from = snapshot_at(instant.back + half), to = snapshot_at(instant.back - half);
+    smear.add(passes->surfaces, plan.view, from, view_at(instant.back + half, from), to,
+              view_at(instant.back - half, to), sharp, sums);
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) rgba[i] = encoded(Eigen::Vector3f(sums[i] / static_cast<float>(count)));
+}
+
+void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* before) {
+  layers = {settings.width, settings.height, {}};
+  std::vector<Eigen::Vector4f> surfaces;
+  outlines->cut_out(seen, unsmoothed, surfaces);
+  for (const char* name : {"R", "G", "B", "A", "picture.R", "picture.G", "picture.B"})
+    layers.channels.push_back({name, std::vector<float>(surfaces.size()), true});
+  for (int y = 0; y < settings.height; ++y) {
+    for (int x = 0; x < settings.width; ++x) {
+      const std::size_t at = static_cast<std::size_t>(y) * settings.width + x;
+      const std::size_t from = static_cast<std::size_t>(settings.height - 1 - y) * settings.width + x;
+      const Eigen::Vector3f picture = linear_of(rgba[from]);
+      for (int k = 0; k < 4; ++k) layers.channels[k].values[at] = surfaces[from][k];
+      for (int k = 0; k < 3; ++k) layers.channels[4 + k].values[at] = picture[k];
+    }
+  }
+  if (!open_floor.empty()) {
+    const std::vector<float> shadows = floor_shadows(seen, unsmoothed, open_floor, settings.width, settings.height);
+    std::vector<float> alpha(surfaces.size());
+    for (int y = 0; y < settings.height; ++y) {
+      for (int x = 0; x < settings.width; ++x) {
+        const std::size_t from = static_cast<std::size_t>(settings.height - 1 - y) * settings.width + x;
+        const float covered = surfaces[from].w();
+        alpha[static_cast<std::size_t>(y) * settings.width + x] = covered + (1 - covered) * shadows[from];
+      }
+    }
+    layers.channels.push_back({"caught.A", std::move(alpha), true});
+  }
+  std::optional<Before> earlier;
+  if (before) earlier.emplace(Before{*before, plan_of(*before, choose_camera(*before)).view});
+  data->draw(passes->surfaces, plan.floor, plan.view, earlier, layers);
+}
+
+Renderer::Renderer(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+Renderer::~Renderer() = default;
+
+void Renderer::set_camera_path(CameraPath path) {
+  impl_->path = std::move(path);
+}
+
+image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
+  check_states(snapshot);
+  const WallTimer wall;
+  const DrawingTimer cpu;
+  const CurrentContext current(*impl_->context);
+  if (frame::Cords::has_chains(snapshot)) {
+    const frame::FrameSnapshot swept = impl_->cords.sweep(snapshot);
+    const std::optional<frame::FrameSnapshot> swept_before =
+        before ? std::optional(impl_->cords.sweep(*before)) : std::nullopt;
+    impl_->draw(swept, swept_before ? &*swept_before : nullptr);
+  } else {
+    impl_->draw(snapshot, before);
+  }
+  image::Image image = to_image(impl_->rgba, impl_->settings.width, impl_->settings.height);
+  check_errors(impl_->gl, "drawing");
+  impl_->times = {wall.seconds(), cpu.cpu_seconds()};
+  return image;
+}
+
+image::Layers Renderer::layers() {
+  return std::move(impl_->layers);
+}
+
+image::Image16 Renderer::deep() {
+  return to_image16(impl_->rgba, impl_->settings.width, impl_->settings.height);
+}
+
+DrawTimes Renderer::last_times() const {
+  return impl_->times;
+}
+
+std::string Renderer::description() const {
+  return impl_->context->description();
+}
+
+}  // namespace weft::render

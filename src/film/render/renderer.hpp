@@ -1,0 +1,68 @@
+// Draws snapshots into images with OpenGL 4.5 core on the CPU.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "film/image/exr.hpp"
+#include "film/image/image.hpp"
+#include "film/render/camera_path.hpp"
+
+namespace weft::render {
+
+enum class Quality { draft, preview, final };
+enum class Backend { automatic, osmesa, egl };
+
+struct Settings {
+  int width = 1280, height = 720;  ///< pixels
+  Quality quality = Quality::final;
+  Backend backend = Backend::automatic;
+  std::string camera;   ///< name; empty: the first or, if there is none, one that shows the whole run
+  int threads = 0;      ///< number of threads of the software rasteriser; 0: its default
+  bool layers = false;  ///< whether layers() will be called
+  bool deep = false;    ///< whether deep() will be called
+  std::optional<frame::Stage::Look> look;  ///< overrides that of the scene
+  std::optional<double> motion_blur;       ///< shutter angle [degrees]; overrides that of the scene
+
+  double aspect() const { return static_cast<double>(width) / height; }
+};
+
+/// Time that one picture took; other work of the process does not count.
+struct DrawTimes {
+  double wall_seconds = 0, cpu_seconds = 0;
+};
+
+/// Owns one OpenGL context and, inside it, copies of the data that do not change during a run. Use from a single
+/// thread.
+class Renderer {
+ public:
+  /// Throws as make_context() does, and Error(usage) for a bad size.
+  explicit Renderer(const Settings& settings);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Sets the camera of a run. If this is not called, a computed camera is derived from the first drawn frame alone.
+  void set_camera_path(CameraPath path);
+  /// `before`: the frame from which layers() computes motion.
+  image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
+  /// The last picture as linear layers for compositors. Channels R, G, B and A hold the surfaces alone, premultiplied.
+  /// Channels picture.R, picture.G and picture.B hold the picture with floor and backdrop. If there is a floor, channel
+  /// caught.A holds the alpha of the surfaces together with the shadow on the floor, as black. All layers of DataPasses
+  /// follow.
+  image::Layers layers();
+  /// The last picture with 16 bits per channel.
+  image::Image16 deep();
+  DrawTimes last_times() const;
+
+  /// Vendor, renderer and version of OpenGL, the backend loaded and the reason for it.
+  std::string description() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace weft::render

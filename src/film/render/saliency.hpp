@@ -1,0 +1,25 @@
+// Rates how much a frame shows, to choose the most informative frame of a run.
+#pragma once
+
+#include <string>
+
+#include "film/frame/frame_snapshot.hpp"
+
+namespace weft::render {
+
+/// What a picture of a frame would show of its cloth, computed without drawing it; each from 0 to 1.
+struct Saliency {
+  double coverage = 0;  ///< fraction of the picture that shows unoccluded cloth
+  double folding = 0;   ///< 0: all cloth is flat; 1: its front normals are evenly distributed
+  double motion = 0;    ///< rate of change of shape: 0: none; 1/2: half of the cloth's size per second
+
+  /// Cloth outside the picture scores 0. Folding and motion each weigh at most as much as coverage.
+  double score() const { return coverage * (1 + folding + motion); }
+};
+
+/// `previous`: the frame before, `seconds` earlier; null for the first frame. `camera`: as in Settings; a computed
+/// camera is derived from this frame alone.
+Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous, double seconds,
+                     const std::string& camera, double aspect);
+
+}  // namespace weft::render

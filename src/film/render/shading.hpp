@@ -1,0 +1,107 @@
+// Light and colour of every pixel of the geometry buffer.
+#pragma once
+
+#include <compare>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "film/render/geometry_buffer.hpp"
+#include "film/render/gl/program.hpp"
+#include "film/render/lighting.hpp"
+#include "film/render/paints.hpp"
+#include "film/render/quality.hpp"
+#include "film/render/view.hpp"
+
+namespace weft::render {
+
+class Shading {
+ public:
+  Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry);
+
+  struct Material {
+    frame::Appearance appearance;
+    bool cloth = false;
+    double opacity = 1;  ///< at normal incidence
+    bool skin = false;   ///< shaded as skin where no picture covers its colour
+  };
+  /// Features that select shader variants.
+  struct Features {
+    LightSet lights;
+    bool checker = false;     ///< checkered floor
+    bool tiled = false;       ///< the floor shows the picture of set_floor()
+    bool painted = false;     ///< the geometry buffer has colours
+    bool trimmed = false;     ///< the geometry buffer has hems
+    bool shiny = false;       ///< the floor mirrors lamps
+    bool reflecting = false;  ///< the whole floor shows the picture of a Mirror
+    bool sheer = false;       ///< cloth writes its opacity
+    bool glossy = false;      ///< some cloth has shiny threads; set by draw(), as are the next three
+    bool metal = false;       ///< something other than cloth is metal or has a clear coat
+    bool skin = false;        ///< something is skin
+    bool heat = false;        ///< heat replaces the colours of cloth
+    auto operator<=>(const Features&) const = default;
+  };
+  /// Sets the floor whose picture is drawn, and `tint`, a factor on the colour of that picture. Call before draw().
+  void set_floor(const std::optional<Floor>& floor, double tint);
+  /// `materials`: in the order of the surfaces. `heat_scale`: 1 / hottest value, or 0: cloth has its own colours.
+  /// `subjects`: area that contains all surfaces. Outside `shaded_floor`, floor is fully lit and open to the sky. Frame
+  /// and light blocks, traced light and geometry must be bound.
+  void draw(std::span<const Material> materials, double heat_scale, const Features& features, const PixelArea& subjects,
+            std::span<const PixelArea> shaded_floor);
+  /// Draws the whole floor without shadows or occlusion. Call after draw() of the same picture.
+  void draw_open_floor(const Features& features);
+  /// Draws cloth only and writes its opacity to alpha. Call after draw() of the same picture.
+  void draw_layer(Features features, const PixelArea& subjects);
+
+  const Texture& picture() const { return picture_; }
+  /// Reads the picture: RGBA of 16 bits each in sRGB, lowest row first.
+  void read(std::vector<std::uint64_t>& rgba) const;
+
+ private:
+  void upload_materials(std::span<const Material> materials, double heat_scale);
+  void use_floor(const Program& program, const Features& features) const;
+  void mark_shaded_floor(std::span<const PixelArea> areas);
+
+  struct Programs {
+    Program cloth, solid, open_floor, shaded_floor;
+    bool floor_on_grid;  // the program `open_floor` computes light only at the corners of the grid
+    Programs(const Gl& gl, const QualitySettings& quality, const Features& features);
+  };
+  const Programs& programs(Features features);
+  void bind();
+
+  const Gl* gl_;
+  int width_, height_;
+  QualitySettings quality_;
+  std::map<Features, Programs> programs_;  // made on first use
+  Program backdrop_, areas_;
+  Texture picture_, heat_colors_, materials_;
+  Framebuffer target_;
+  VertexArray no_vertices_, area_array_, grid_array_;
+  Buffer area_vertices_, grid_vertices_, grid_triangles_;
+  GLsizei grid_indices_ = 0;
+  int material_rows_ = 0;
+  bool glossy_ = false, metal_ = false, skin_ = false, heat_ = false;  // present among the materials
+  std::optional<Paints> floor_pictures_;                               // made once a floor has a picture
+  GLuint floor_picture_ = 0;
+  float floor_tint_ = 1;
+  Eigen::Matrix<float, 2, 4> floor_picture_from_world_ = Eigen::Matrix<float, 2, 4>::Zero();
+};
+
+/// Fraction of the light that cloth stops at normal incidence: 1 for dense weaves, which scatter light to the other
+/// side, but through which nothing is visible.
+double opacity_of(const frame::Surface& surface);
+
+/// Whether a body, such as the mannequin, shows skin where no picture covers its colour.
+bool is_skin(const frame::Surface& surface);
+
+/// `plain`: clay, in place of the surface's own colours.
+Shading::Material material_of(const frame::Surface& surface, bool plain);
+
+/// The heat that a stage shows for a frame: none for clay, strain for the look `strain`.
+frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
+
+/// 1 / value at the hot end of the scale; 0 if no heat is drawn.
+double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
+
+}  // namespace weft::render

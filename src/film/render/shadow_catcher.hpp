@@ -1,0 +1,18 @@
+// The shadow of the surfaces on the floor, which compositors lay over a photograph together with the surfaces.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "film/render/seen.hpp"
+
+namespace weft::render {
+
+/// Fraction of the floor's light that the subjects block, per pixel, from the picture `shaded` and `open`, its floor
+/// without shadows (both as read from OpenGL, lowest row first). A pixel that shows a surface takes the maximum of its
+/// neighbours that show floor, because part of it may be floor.
+std::vector<float> floor_shadows(std::span<const Seen> seen, std::span<const std::uint64_t> shaded,
+                                 std::span<const std::uint64_t> open, int width, int height);
+
+}  // namespace weft::render

@@ -1,0 +1,156 @@
+#include "film/render/smear.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/render/depth_raster.hpp"
+#include "film/render/drawing_time.hpp"
+#include "film/render/framing.hpp"
+
+namespace weft::render {
+namespace {
+
+constexpr int kTile =
+    8;  // [pixels]; a smear extends by half of the motion to each side, so that it stays within the next tile
+constexpr float kMaxMotion = 2 * kTile;
+constexpr float kMinMotion = 1.2f;  // [pixels]; shorter motions are no wider than an antialiased edge
+
+/// Position in the picture [pixels], lowest row first; z: 1 / distance, 0 behind the near plane.
+Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int height) {
+  const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
+  if (clip.w() < view.near) return Eigen::Vector3f::Zero();
+  return Vec3((0.5 + 0.5 * clip.x() / clip.w()) * width, (0.5 + 0.5 * clip.y() / clip.w()) * height, 1 / clip.w())
+      .cast<float>();
+}
+
+/// Positions of a surface in a snapshot; null if it lacks the surface, or if the number of vertices is not `count`.
+const std::vector<Vec3>* positions_of(const frame::FrameSnapshot& snapshot, const frame::Surface& surface,
+                                      std::size_t count) {
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i)
+    if (snapshot.surfaces[i]->name == surface.name && snapshot.states[i].positions.size() == count)
+      return &snapshot.states[i].positions;
+  return nullptr;
+}
+
+}  // namespace
+
+double longest_motion(const frame::FrameSnapshot& from, const View& from_view, const frame::FrameSnapshot& to,
+                      const View& to_view, int width, int height) {
+  float longest = 0;
+  for (std::size_t i = 0; i < to.surfaces.size(); ++i) {
+    if (!is_subject(*to.surfaces[i])) continue;
+    const auto& ends = to.states[i].positions;
+    const std::vector<Vec3>* starts = positions_of(from, *to.surfaces[i], ends.size());
+    if (starts == nullptr) continue;
+    for (std::size_t v = 0; v < ends.size(); ++v) {
+      const Eigen::Vector3f start = to_pixels(from_view, (*starts)[v], width, height),
+                            end = to_pixels(to_view, ends[v], width, height);
+      const bool seen = start.z() > 0 && end.z() > 0 && end.x() >= 0 && end.y() >= 0 &&
+                        end.x() <= static_cast<float>(width) && end.y() <= static_cast<float>(height);
+      if (seen) longest = std::max(longest, (end - start).head<2>().norm());
+    }
+  }
+  return longest;
+}
+
+void Smear::find_motions(std::span<const SurfaceBuffers> surfaces, const View& view, const frame::FrameSnapshot& from,
+                         const View& from_view, const frame::FrameSnapshot& to, const View& to_view) {
+  motions_.assign(static_cast<std::size_t>(width_) * height_, {});
+  std::vector<Eigen::Vector3f> places;
+  std::vector<Eigen::Vector2f> motions;
+  for (const SurfaceBuffers& drawn : surfaces) {
+    const std::size_t count = drawn.state().positions.size();
+    const std::vector<Vec3>*starts = positions_of(from, drawn.surface(), count),
+          *ends = positions_of(to, drawn.surface(), count);
+    const auto& mesh = drawn.mesh();
+    places.clear();
+    motions.clear();
+    for (std::size_t i = 0; i < mesh.source.size(); ++i) {
+      const Index vertex = mesh.source[i];
+      places.push_back(to_pixels(view, drawn.positions()[i], width_, height_));
+      motions.emplace_back(Eigen::Vector2f::Zero());
+      if (starts == nullptr || ends == nullptr) continue;
+      const Eigen::Vector3f start = to_pixels(from_view, (*starts)[vertex], width_, height_),
+                            end = to_pixels(to_view, (*ends)[vertex], width_, height_);
+      if (start.z() > 0 && end.z() > 0) motions.back() = (end - start).head<2>();
+      const float length = motions.back().norm();
+      if (length > kMaxMotion) motions.back() *= kMaxMotion / length;
+    }
+    for (const auto& [a, b, c] : mesh.triangles) {
+      if (places[a].z() <= 0 || places[b].z() <= 0 || places[c].z() <= 0) continue;
+      const Eigen::Vector2f &first = motions[a], along = motions[b] - first, across = motions[c] - first;
+      fill_triangle(places[a], places[b], places[c], width_, height_,
+                    [&](int at, bool covered, float nearness, float to_b, float to_c) {
+                      if (covered && nearness > motions_[at].nearness)
+                        motions_[at] = {first + to_b * along + to_c * across, nearness};
+                    });
+    }
+  }
+}
+
+/// Stores for each tile the longest motion in it and in its neighbours. Pixels far from moving surfaces stay sharp.
+void Smear::dilate_motions() {
+  const int columns = (width_ + kTile - 1) / kTile, rows = (height_ + kTile - 1) / kTile;
+  std::vector<Eigen::Vector2f> tiles(static_cast<std::size_t>(columns) * rows, Eigen::Vector2f::Zero());
+  const auto take = [](Eigen::Vector2f& longest, const Eigen::Vector2f& motion) {
+    if (motion.squaredNorm() > longest.squaredNorm()) longest = motion;
+  };
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x)
+      take(tiles[static_cast<std::size_t>(y / kTile) * columns + x / kTile],
+           motions_[static_cast<std::size_t>(y) * width_ + x].motion);
+  dilated_motions_ = tiles;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      for (int other = std::max(row - 1, 0); other <= std::min(row + 1, rows - 1); ++other)
+        for (int beside = std::max(column - 1, 0); beside <= std::min(column + 1, columns - 1); ++beside)
+          take(dilated_motions_[static_cast<std::size_t>(row) * columns + column],
+               tiles[static_cast<std::size_t>(other) * columns + beside]);
+}
+
+/// Averages samples along a motion through pixel (x, y), after McGuire et al., "A Reconstruction Filter for Plausible
+/// Motion Blur", 2012. A sample shows the picture at its own place if the surface there moves across (x, y), or if it
+/// is behind the surface at (x, y) and that surface moves away; else it shows the picture at (x, y).
+Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
+                                   std::span<const Eigen::Vector3f> sharp) const {
+  const std::size_t here = static_cast<std::size_t>(y) * width_ + x;
+  const float length = motion.norm(), own = 0.5f * motions_[here].motion.norm();
+  // Samples are at most one pixel apart; one of them is at (x, y).
+  const int taps = 2 * static_cast<int>(std::ceil(0.5f * length)) + 1;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (int k = 0; k < taps; ++k) {
+    const float t = (static_cast<float>(k) + 0.5f) / static_cast<float>(taps) - 0.5f;
+    const int to_x = std::clamp(static_cast<int>(std::lround(static_cast<float>(x) + t * motion.x())), 0, width_ - 1),
+              to_y = std::clamp(static_cast<int>(std::lround(static_cast<float>(y) + t * motion.y())), 0, height_ - 1);
+    const std::size_t there = static_cast<std::size_t>(to_y) * width_ + to_x;
+    // `extent`: distance that the nearer surface moves to either side; the weight falls off over one pixel around it.
+    constexpr float kSame = 1.01f;
+    const float distance = std::abs(t) * length, other = 0.5f * motions_[there].motion.norm();
+    const bool before = motions_[there].nearness > kSame * motions_[here].nearness,
+               behind = motions_[here].nearness > kSame * motions_[there].nearness;
+    const float extent = before ? other : behind ? own : std::max(own, other);
+    const float share = std::clamp(extent - distance + 0.5f, 0.0f, 1.0f);
+    sum += share * sharp[there] + (1 - share) * sharp[here];
+  }
+  return sum / static_cast<float>(taps);
+}
+
+void Smear::add(std::span<const SurfaceBuffers> surfaces, const View& view, const frame::FrameSnapshot& from,
+                const View& from_view, const frame::FrameSnapshot& to, const View& to_view,
+                std::span<const Eigen::Vector3f> sharp, std::vector<Eigen::Vector3f>& sum) {
+  find_motions(surfaces, view, from, from_view, to, to_view);
+  dilate_motions();
+  const int columns = (width_ + kTile - 1) / kTile;
+  drawing_for(static_cast<std::size_t>(height_), kTile, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      for (int x = 0; x < width_; ++x) {
+        const int y = static_cast<int>(row);
+        const std::size_t at = row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+        const Eigen::Vector2f& motion = dilated_motions_[static_cast<std::size_t>(y / kTile) * columns + x / kTile];
+        sum[at] += motion.norm() < kMinMotion ? sharp[at] : smear_pixel(x, y, motion, sharp);
+      }
+    }
+  });
+}
+
+}  // namespace weft::render

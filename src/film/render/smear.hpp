@@ -1,0 +1,45 @@
+// Motion blur is the mean of several sharp pictures. Each of these is smeared along the motion of what it shows, so
+// that few pictures suffice.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "film/render/surface_buffers.hpp"
+#include "film/render/view.hpp"
+
+namespace weft::render {
+
+/// Motion of what a pixel shows [pixels], and 1 / its distance [1/m]; both are 0 for floor and backdrop.
+struct PixelMotion {
+  Eigen::Vector2f motion = Eigen::Vector2f::Zero();
+  float nearness = 0;
+};
+
+/// Length of the longest path in the picture that a visible vertex of a subject moves between two frames [pixels].
+double longest_motion(const frame::FrameSnapshot& from, const View& from_view, const frame::FrameSnapshot& to,
+                      const View& to_view, int width, int height);
+
+class Smear {
+ public:
+  Smear(int width, int height) : width_(width), height_(height) {}
+
+  /// Adds to `sum` the picture `sharp` (linear, lowest row first) smeared along the motion from `from` to `to`. The
+  /// picture was taken from `view`, halfway between the two.
+  void add(std::span<const SurfaceBuffers> surfaces, const View& view, const frame::FrameSnapshot& from,
+           const View& from_view, const frame::FrameSnapshot& to, const View& to_view,
+           std::span<const Eigen::Vector3f> sharp, std::vector<Eigen::Vector3f>& sum);
+
+ private:
+  void find_motions(std::span<const SurfaceBuffers> surfaces, const View& view, const frame::FrameSnapshot& from,
+                    const View& from_view, const frame::FrameSnapshot& to, const View& to_view);
+  void dilate_motions();
+  Eigen::Vector3f smear_pixel(int x, int y, const Eigen::Vector2f& motion,
+                              std::span<const Eigen::Vector3f> sharp) const;
+
+  int width_, height_;
+  std::vector<PixelMotion> motions_;
+  std::vector<Eigen::Vector2f> dilated_motions_;  // longest motion in a tile and its neighbours
+};
+
+}  // namespace weft::render

@@ -1,0 +1,246 @@
+#include "film/render/surface_buffers.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/error.hpp"
+#include "film/render/seen.hpp"
+
+namespace weft::render {
+namespace {
+
+/// Whether pictures cut holes into the surface; through holes, back faces are visible.
+bool has_holes(const frame::Surface& surface) {
+  const auto cuts = [](const frame::Appearance& look) { return look.paint.alpha == frame::Paint::Alpha::cutout; };
+  return cuts(surface.appearance) ||
+         std::ranges::any_of(surface.parts, [&](const frame::SurfacePart& part) { return cuts(part.appearance); });
+}
+
+}  // namespace
+
+void SurfaceBuffers::describe(const Gl& gl, const VertexArray& array, const Buffer& vertices) {
+  struct Attribute {
+    GLint size;
+    std::size_t offset;
+  };
+  const Attribute attributes[] = {{3, offsetof(Vertex, position)},
+                                  {3, offsetof(Vertex, normal)},
+                                  {2, offsetof(Vertex, rest_uv)},
+                                  {1, offsetof(Vertex, heat)}};
+  gl.VertexArrayVertexBuffer(array.name(), 0, vertices.name(), 0, sizeof(Vertex));
+  for (GLuint place = 0; place < std::size(attributes); ++place) {
+    gl.EnableVertexArrayAttrib(array.name(), place);
+    gl.VertexArrayAttribFormat(array.name(), place, attributes[place].size, GL_FLOAT, GL_FALSE,
+                               static_cast<GLuint>(attributes[place].offset));
+    gl.VertexArrayAttribBinding(array.name(), place, 0);
+  }
+}
+
+SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, const Detail& detail)
+    : gl_(&gl),
+      surface_(std::move(surface)),
+      detail_(detail),
+      array_(gl),
+      vertices_(gl),
+      triangles_(gl),
+      places_(gl),
+      trim_distances_(gl),
+      trim_places_(gl) {
+  closed_ = surface_->kind != frame::ObjectKind::cloth && !has_holes(*surface_) && is_closed(surface_->triangles);
+  if (detail_.refines) refinement_.emplace();
+  if (detail_.trims || detail_.rims) trims_.emplace(*surface_);
+  describe(gl, array_, vertices_);
+  gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
+  // Adds an attribute of `size` floats with its own buffer.
+  const auto describe_more = [&](GLuint place, const Buffer& buffer, GLint size) {
+    gl.VertexArrayVertexBuffer(array_.name(), place, buffer.name(), 0, static_cast<GLsizei>(size * sizeof(float)));
+    gl.EnableVertexArrayAttrib(array_.name(), place);
+    gl.VertexArrayAttribFormat(array_.name(), place, size, GL_FLOAT, GL_FALSE, 0);
+    gl.VertexArrayAttribBinding(array_.name(), place, place);
+  };
+  if (detail_.trims) {
+    describe_more(5, trim_distances_, Trim::kKinds);
+    describe_more(6, trim_places_, Trim::kKinds);
+  }
+  if (!frame::is_painted(*surface_)) return;
+  painted_.emplace();
+  describe_more(4, places_, 2);
+}
+
+void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
+  // Unchanged surfaces are not uploaded again: most obstacles do not move.
+  if (!detail_.rims) rim = 0;
+  if (has_corner_map_ && state.positions == state_.positions && state.heat == state_.heat && rim == rim_width_) return;
+  rim_width_ = rim;
+  state_ = state;
+  if (!has_corner_map_ || vertex_count_ != state.positions.size()) {
+    corners_ = CornerMap(surface_->triangles, state.positions.size());
+    vertex_count_ = state.positions.size();
+    has_corner_map_ = true;
+  }
+  if (closed_) {
+    double volume = 0;  // six times the enclosed volume: negative if the front is inside
+    bounds_.setEmpty();
+    for (const Vec3& position : state.positions) bounds_.extend(position);
+    for (const auto& [a, b, c] : surface_->triangles) {
+      const Vec3 from_center = state.positions[a] - bounds_.center();
+      volume +=
+          from_center.dot((state.positions[b] - state.positions[a]).cross(state.positions[c] - state.positions[a]));
+    }
+    faces_outward_ = volume > 0;
+  }
+  mesh_ = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
+  if (painted_) painted_ = make_painted_mesh(*surface_, mesh_);
+  std::vector<Vertex> vertices(mesh_.source.size());
+  positions_.resize(vertices.size());
+  const bool has_uv = surface_->uv.size() == vertex_count_, has_heat = state.heat.size() == vertex_count_;
+  const float no_heat = surface_->kind == frame::ObjectKind::cloth ? 0.0f : kSolid;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Index v = mesh_.source[i];
+    positions_[i] = state.positions[v];
+    vertices[i] = {state.positions[v].cast<float>(), mesh_.normals[i].cast<float>(),
+                   has_uv ? surface_->uv[v].cast<float>().eval() : Eigen::Vector2f::Zero(),
+                   has_heat ? state.heat[v] : no_heat};
+  }
+  if (refinement_) add_midpoints(vertices);
+  with_rims_.clear();
+  if (rim > 0) add_rims(vertices, rim);
+  if (detail_.trims && uploaded_trim_count_ != positions_.size()) upload_trims();
+  upload<Vertex>(*gl_, vertices_, vertices);
+  upload<Triangle>(*gl_, triangles_, triangles());
+  if (painted_) upload<Eigen::Vector2f>(*gl_, places_, painted_->places);
+}
+
+void SurfaceBuffers::add_midpoints(std::vector<Vertex>& vertices) {
+  refinement_->update(mesh_.triangles, vertices.size());
+  const double max_offset = max_midpoint_offset(surface_->appearance.thickness);
+  for (const auto& [a, b] : refinement_->edges()) {
+    const Middle here = middle(positions_[a], positions_[b], mesh_.normals[a], mesh_.normals[b], max_offset);
+    positions_.push_back(here.position);
+    vertices.push_back({here.position.cast<float>(), here.normal.cast<float>(),
+                        0.5f * (vertices[a].rest_uv + vertices[b].rest_uv),
+                        0.5f * (vertices[a].heat + vertices[b].heat)});
+    if (painted_) painted_->places.push_back(0.5f * (painted_->places[a] + painted_->places[b]));
+  }
+  if (!painted_) return;
+  for (PaintedRange& range : painted_->ranges) {
+    range.first *= 4;
+    range.count *= 4;
+  }
+}
+
+/// Appends the strips along borders after all other vertices and triangles.
+void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
+  // One drawn vertex for each surface vertex, and the midpoints of curved rims.
+  std::vector<Index> drawn(vertex_count_);
+  for (std::size_t i = 0; i < mesh_.source.size(); ++i) drawn[mesh_.source[i]] = static_cast<Index>(i);
+  std::vector<Vec3> places = state_.positions, normals(vertex_count_);
+  for (std::size_t v = 0; v < vertex_count_; ++v) normals[v] = mesh_.normals[drawn[v]];
+  std::vector<std::pair<Index, Index>> ends;  // per place: the two drawn vertices whose mean it is
+  for (std::size_t v = 0; v < vertex_count_; ++v) ends.emplace_back(drawn[v], drawn[v]);
+  const double max_offset = max_midpoint_offset(surface_->appearance.thickness);
+  std::vector<Trims::Rim> rims;
+  for (const Trims::Rim& rim : trims_->rims()) {
+    if (!refinement_) {
+      rims.push_back(rim);
+      continue;
+    }
+    const Middle here = middle(places[rim.a], places[rim.b], normals[rim.a], normals[rim.b], max_offset);
+    const auto m = static_cast<Index>(places.size());
+    places.push_back(here.position);
+    normals.push_back(here.normal);
+    ends.emplace_back(drawn[rim.a], drawn[rim.b]);
+    rims.push_back({rim.a, m, rim.triangle});
+    rims.push_back({m, rim.b, rim.triangle});
+  }
+  const frame::Appearance& look = surface_->appearance;
+  const RimStrip strip = rim_strip(rims, places, normals, width);
+  const std::span<const Triangle> without =
+      refinement_ ? refinement_->triangles() : std::span<const Triangle>(mesh_.triangles);
+  const auto first = static_cast<Index>(vertices.size());
+  for (std::size_t i = 0; i < strip.positions.size(); ++i) {
+    const auto [a, b] = ends[strip.source[i]];
+    positions_.push_back(strip.positions[i]);
+    vertices.push_back({strip.positions[i].cast<float>(), strip.normals[i].cast<float>(),
+                        0.5f * (vertices[a].rest_uv + vertices[b].rest_uv),
+                        0.5f * (vertices[a].heat + vertices[b].heat)});
+    if (painted_) painted_->places.push_back(0.5f * (painted_->places[a] + painted_->places[b]));
+  }
+  with_rims_.assign(without.begin(), without.end());
+  const auto add = [&](std::size_t t) {
+    const auto& [a, b, c] = strip.triangles[t];
+    with_rims_.push_back({a + first, b + first, c + first});
+  };
+  if (!painted_) {
+    for (std::size_t t = 0; t < strip.triangles.size(); ++t) add(t);
+    return;
+  }
+  // For each painted range, a second range contains its strips.
+  const auto& parts = surface_->part_of_triangle;
+  const auto look_of = [&](std::int32_t triangle) {
+    return parts.empty() ? &look : &surface_->parts[static_cast<std::size_t>(parts[triangle])].appearance;
+  };
+  const std::vector<PaintedRange> ranges = painted_->ranges;
+  for (const PaintedRange& range : ranges) {
+    PaintedRange strips{with_rims_.size(), 0, range.look};
+    for (std::size_t t = 0; t < strip.triangles.size(); ++t)
+      if (look_of(strip.owner[t]) == range.look) add(t);
+    strips.count = with_rims_.size() - strips.first;
+    if (strips.count > 0) painted_->ranges.push_back(strips);
+  }
+}
+
+/// Trims depend on rest coordinates only, so one upload suffices.
+void SurfaceBuffers::upload_trims() {
+  std::vector<Trim> trims;
+  for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
+  if (refinement_)
+    for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
+  // Strips get a distance from the border between the hem's fold and its stitches, so that they show neither.
+  constexpr float kPlain = 0.3f;
+  Trim plain;
+  plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);
+  trims.resize(positions_.size(), plain);
+  std::vector<std::array<float, Trim::kKinds>> distances, places;
+  for (const Trim& trim : trims) {
+    distances.push_back(trim.distance);
+    places.push_back(trim.along);
+  }
+  upload<std::array<float, Trim::kKinds>>(*gl_, trim_distances_, distances);
+  upload<std::array<float, Trim::kKinds>>(*gl_, trim_places_, places);
+  uploaded_trim_count_ = trims.size();
+}
+
+void SurfaceBuffers::draw(const PaintedRange& range) const {
+  gl_->BindVertexArray(array_.name());
+  // OpenGL takes the offset in its buffer as a pointer. NOLINTNEXTLINE(performance-no-int-to-ptr)
+  const auto* first = reinterpret_cast<const void*>(range.first * sizeof(Triangle));
+  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT, first);
+}
+
+void SurfaceBuffers::draw() const {
+  if (triangles().empty()) return;
+  gl_->BindVertexArray(array_.name());
+  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles().size()), GL_UNSIGNED_INT, nullptr);
+}
+
+FloorBuffers::FloorBuffers(const Gl& gl) : gl_(&gl), array_(gl), vertices_(gl) {
+  SurfaceBuffers::describe(gl, array_, vertices_);
+}
+
+void FloorBuffers::update(const Vec3& center, const Vec3& normal, double half_side) {
+  const Vec3 x = half_side * normal.unitOrthogonal(), y = normal.cross(x);
+  std::array<SurfaceBuffers::Vertex, 4> vertices;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 position = center + (i & 1 ? x : -x) + (i & 2 ? y : -y);
+    vertices[i] = {position.cast<float>(), normal.cast<float>(), Eigen::Vector2f::Zero(), 0.0f};
+  }
+  upload<SurfaceBuffers::Vertex>(*gl_, vertices_, vertices);
+}
+
+void FloorBuffers::draw() const {
+  gl_->BindVertexArray(array_.name());
+  gl_->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+}  // namespace weft::render

@@ -1,0 +1,58 @@
+// Environment light and backdrop of each look.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "film/render/transforms.hpp"
+
+namespace weft::render {
+
+/// Settings of a look besides its lights. Colours are linear.
+struct Style {
+  Vec3 sky_color = Vec3::Ones();  ///< colour of the environment light on a horizontal surface
+  double sky_intensity = 0.45;    ///< fraction of all light that the environment provides
+  Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon, relative to fully lit floor
+  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above, relative to fully lit floor
+  double glow = 0;                ///< the backdrop is brighter by this fraction behind the subjects
+  double floor_tint = 1;          ///< factor on the colour of the floor
+  double floor_roughness = 1;     ///< upper limit of the floor's roughness
+  double toe = 0;                 ///< linear light below which tones are darkened, as film does; 0: unchanged
+  bool exposes = true;            ///< direct light is increased until floor shows its own colour
+  bool plain = false;             ///< all surfaces are clay, without own colours
+  bool edges = false;             ///< draws the edges of faces
+};
+Style style_of(const frame::Stage& stage);
+
+/// Environment light for each direction: a sky, a ground, and soft boxes as spherical Gaussians. Unit: under uniform
+/// light of value 1, a matte white surface has the linear colour 1.
+struct Surroundings {
+  struct Box {
+    Vec3 axis = Vec3::UnitZ();
+    double sharpness = 1;  ///< the light falls to 1/e at a cosine to the axis of 1 - 1/sharpness
+    Vec3 light = Vec3::Zero();
+  };
+  static constexpr int kBoxes = 3;
+  Vec3 up = Vec3::UnitZ(), sky = Vec3::Zero(), horizon = Vec3::Zero(), ground = Vec3::Zero();
+  std::array<Box, kBoxes> boxes;
+
+  /// Light from around `toward` (unit), blurred for a reflection with roughness² `alpha`. Same as surroundings() in
+  /// shaders/surroundings.glsl.
+  Vec3 light(const Vec3& toward, double alpha) const;
+};
+
+/// The surroundings of a style, scaled so that an unoccluded horizontal surface receives the style's fraction of all
+/// light. The boxes are placed relative to the first light, as a photographer places them. `ground`: light from below.
+Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3& up,
+                      std::span<const frame::Light> lights, const Vec3& ground);
+
+/// Irradiance on a surface with normal n, as the light that matte white shows: a quadric in n. Coefficients of 1, x, y,
+/// z, xy, yz, zx, z², x² - y²: the first nine spherical harmonics, convolved with the clamped cosine (Ramamoorthi and
+/// Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001).
+using Irradiance = std::array<Vec3, 9>;
+Irradiance irradiance_of(const Surroundings& surroundings);
+Vec3 at(const Irradiance& irradiance, const Vec3& n);
+
+}  // namespace weft::render

@@ -1,0 +1,427 @@
+#include "film/render/traced_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "film/render/drawing_time.hpp"
+#include "film/render/joint_filter.hpp"
+
+namespace weft::render {
+namespace {
+
+using Eigen::Vector2f, Eigen::Vector3f;
+using Kind = PixelPoints::Kind;
+
+constexpr float kGoldenAngle = 2.39996323f;
+constexpr std::size_t kRowsAtOnce = 8;
+constexpr int kTurns = 64;        // rotations of the points on a lamp
+constexpr int kFirstRays = 1;     // rays of each point, to find penumbrae
+constexpr int kFloorTile = 16;    // side of a tile of shaded floor [pixels]
+constexpr int kPenumbraTile = 8;  // side of a tile in which penumbrae are searched [points]
+constexpr int kMirrorRays = 4;
+// No rays start where the cosine between normal and light is below this value, except from cloth, which lets light
+// through. Skin shows light slightly beyond the terminator (surface.frag).
+constexpr float kLeastCosine = -0.2f;
+// Changes of the floor's light below this fraction are ignored: half a level of 255.
+constexpr float kUnseen = 0.002f;
+
+constexpr float kFloorKind = static_cast<float>(Kind::floor), kClothKind = static_cast<float>(Kind::cloth);
+
+/// A rotation for each pixel, from 0 to kTurns - 1. Any 4 x 4 pixels have 16 evenly spread rotations, in an order that
+/// shows no rows or columns (8 x 8 pixels of Bayer, "An optimum method for two-level rendition of continuous-tone
+/// pictures", 1973).
+int turn_of(int x, int y) {
+  static constexpr auto kOrder = [] {
+    std::array<int, kTurns> order{};
+    for (int i = 0; i < kTurns; ++i) {
+      const int u = i % 8, v = i / 8;
+      for (int bit = 0; bit < 3; ++bit) {
+        const int a = u >> bit & 1, b = v >> bit & 1;
+        order[i] |= ((a ^ b) << 1 | b) << (4 - 2 * bit);
+      }
+    }
+    return order;
+  }();
+  return kOrder[static_cast<std::size_t>((y & 7) * 8 + (x & 7))];
+}
+
+/// Point k of n points that cover a disc of radius 1 evenly (Vogel 1979). `turn`: rotation of all points [turns].
+/// `along` in [0, 1): radial position of each point within its ring.
+Vector2f on_disc(float k, int n, float turn, float along) {
+  const float radius = std::sqrt((k + along) / static_cast<float>(n));
+  const float angle = kGoldenAngle * k + 2 * std::numbers::pi_v<float> * turn;
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+/// Two unit vectors orthogonal to a unit vector (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+template <class Number, class Vector>
+void across(const Vector& n, Vector& first, Vector& second);
+template <>
+void across<float, Vector3f>(const Vector3f& n, Vector3f& first, Vector3f& second) {
+  const float sign = std::copysign(1.0f, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
+  first = {1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()};
+  second = {b, sign + n.y() * n.y() * a, -n.y()};
+}
+template <>
+void across<Lanes, Lanes3>(const Lanes3& n, Lanes3& first, Lanes3& second) {
+  const Lanes sign = (n.z < 0).select(Lanes::Constant(-1), Lanes::Constant(1));
+  const Lanes a = -1 / (sign + n.z), b = n.x * n.y * a;
+  first = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  second = {b, sign + n.y * n.y * a, -n.y};
+}
+
+/// A pair of numbers in [0, 1) for each point. The 25 pairs of a block of 5 x 5 points are evenly spread. 64 kinds of
+/// blocks have different shifts of these pairs, by the R2 sequence (Roberts, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences", 2018). Otherwise, the same few directions would cause the same error everywhere.
+constexpr int kSpreads = 25 * 64;
+int spread_number(int x, int y) {
+  const int block = (x / 5 + 19 * (y / 5)) % 64;  // 19 steps of the sequence change both numbers much
+  return block * 25 + (x + 2 * y) % 5 + 5 * ((y + 2 * x) % 5);
+}
+Vector2f spread(int number) {
+  const int a = number % 5, b = number / 5 % 5;
+  const int block = number / 25;
+  const auto shift = static_cast<float>(block);
+  const Vector2f at((static_cast<float>(5 * a + b) + 0.5f) / 25 + 0.7548777f * shift,
+                    (static_cast<float>(5 * b + a) + 0.5f) / 25 + 0.5698403f * shift);
+  return at - Vector2f(at.array().floor());
+}
+
+/// Directions of rays about +z, with a density proportional to their cosine: `rays` rays for each number of spread().
+std::vector<Vector3f> cosine_directions(int rays) {
+  std::vector<Vector3f> all;
+  for (int number = 0; number < kSpreads; ++number) {
+    for (int k = 0; k < rays; ++k) {
+      const Vector2f jitter = spread(number), at = on_disc(static_cast<float>(k), rays, jitter.x(), jitter.y());
+      all.emplace_back(at.x(), at.y(), std::sqrt(std::max(1 - at.squaredNorm(), 0.0f)));
+    }
+  }
+  return all;
+}
+
+/// Marks the tiles that may contain penumbrae: those in which two values differ or one lies between 0 and 1, and their
+/// neighbours. At the rim of a penumbra only few rays have another result, but likely one of a whole tile.
+void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted) {
+  const int width = points.width(), height = points.height();
+  const int columns = (width + kPenumbraTile - 1) / kPenumbraTile, rows = (height + kPenumbraTile - 1) / kPenumbraTile;
+  std::vector<char> mixed(static_cast<std::size_t>(columns) * rows);
+  const auto for_rows = [&](const auto& visit) {
+    drawing_for(static_cast<std::size_t>(rows), std::size_t{1}, [&](std::size_t begin, std::size_t end) {
+      for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row)
+        for (int column = 0; column < columns; ++column) visit(row, column);
+    });
+  };
+  for_rows([&](int row, int column) {
+    float least = 2, most = -1;
+    for (int y = row * kPenumbraTile; y < std::min((row + 1) * kPenumbraTile, height); ++y)
+      for (int x = column * kPenumbraTile; x < std::min((column + 1) * kPenumbraTile, width); ++x) {
+        if (!(known.row(y)[x] > 0)) continue;
+        least = std::min(least, lit.row(y)[x]);
+        most = std::max(most, lit.row(y)[x]);
+      }
+    mixed[static_cast<std::size_t>(row) * columns + column] = least < most || (most > 0 && most < 1);
+  });
+  for_rows([&](int row, int column) {
+    bool near = false;
+    for (int v = std::max(row - 1, 0); v <= std::min(row + 1, rows - 1); ++v)
+      for (int u = std::max(column - 1, 0); u <= std::min(column + 1, columns - 1); ++u)
+        near |= mixed[static_cast<std::size_t>(v) * columns + u] != 0;
+    for (int y = row * kPenumbraTile; y < std::min((row + 1) * kPenumbraTile, height); ++y)
+      for (int x = column * kPenumbraTile; x < std::min((column + 1) * kPenumbraTile, width); ++x)
+        wanted.row(y)[x] = near ? known.row(y)[x] : 0;
+  });
+}
+
+/// Of the wanted points, keeps those with a value between 0 and 1, and those within two points of a different value.
+/// `low`, `high`: scratch, overwritten.
+void keep_mixed(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted, Plane& low,
+                Plane& high) {
+  constexpr int kNeighbors = 2;
+  const int width = points.width(), height = points.height();
+  const auto for_rows = [&](const auto& visit) {
+    drawing_for(static_cast<std::size_t>(height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) visit(y);
+    });
+  };
+  for_rows([&](int y) {
+    float *least = low.row(y), *most = high.row(y);
+    std::fill_n(least, width, 2.0f);
+    std::fill_n(most, width, -1.0f);
+    for (int dx = -kNeighbors; dx <= kNeighbors; ++dx) {
+      const float *value = lit.row(y) + dx, *counts = known.row(y) + dx;
+      for (int x = 0; x < width; ++x) {
+        least[x] = std::min(least[x], counts[x] > 0 ? value[x] : 2.0f);
+        most[x] = std::max(most[x], counts[x] > 0 ? value[x] : -1.0f);
+      }
+    }
+  });
+  for_rows([&](int y) {
+    std::vector<float> least(low.row(y), low.row(y) + width), most(high.row(y), high.row(y) + width);
+    for (int v = std::max(y - kNeighbors, 0); v <= std::min(y + kNeighbors, height - 1); ++v) {
+      for (int x = 0; x < width; ++x) least[x] = std::min(least[x], low.row(v)[x]);
+      for (int x = 0; x < width; ++x) most[x] = std::max(most[x], high.row(v)[x]);
+    }
+    float* flags = wanted.row(y);
+    for (int x = 0; x < width; ++x) flags[x] = most[x] > least[x] || (most[x] > 0 && least[x] < 1) ? flags[x] : 0;
+  });
+}
+
+}  // namespace
+
+TracedLight::Surface TracedLight::Surface::of(const frame::Appearance& look, bool cloth) {
+  const bool mirrors = !cloth && (look.metal > 0 || look.coat > 0);
+  const double alpha = look.coat > 0 ? 0 : look.roughness * look.roughness;
+  return {cloth ? Kind::cloth : Kind::solid, mirrors ? static_cast<float>(alpha) : -1.0f};
+}
+
+TracedLight::TracedLight(const Gl& gl, const QualitySettings& quality, int width, int height)
+    : gl_(&gl),
+      quality_(quality),
+      width_(width),
+      height_(height),
+      pixels_(width, height, 1),
+      open_points_(width, height, quality.ambient_divisor),
+      open_(4, Plane(open_points_.width(), open_points_.height(), 0)),
+      open_scratch_(open_),
+      directions_(cosine_directions(quality.ambient_rays)),
+      lit_texture_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
+      open_texture_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)) {
+  if (quality.shadow_divisor > 1) lit_points_.emplace(width, height, quality.shadow_divisor);
+  const Plane plane(lit_points().width(), lit_points().height(), 1);
+  lit_.assign(kMaxLights, plane);
+  scratch_.fill(plane);
+}
+
+void TracedLight::draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Surface> surfaces,
+                       const View& view, const std::optional<Floor>& floor) {
+  geometry.read_seen(seen_);
+  geometry.read_normals(normals_);
+  std::vector<Kind> kinds;
+  for (const Surface& surface : surfaces) kinds.push_back(surface.kind);
+  pixels_.read(seen_, normals_, kinds, view, floor);
+  if (lit_points_) lit_points_->read(seen_, normals_, kinds, view, floor);
+  open_points_.read(seen_, normals_, kinds, view, floor);
+  shaded_.assign(
+      static_cast<std::size_t>((width_ + kFloorTile - 1) / kFloorTile) * ((height_ + kFloorTile - 1) / kFloorTile), 0);
+  trace_shadows(light);
+  trace_surroundings(light);
+  if (std::ranges::any_of(surfaces, [](const Surface& surface) { return surface.mirror_alpha >= 0; }))
+    trace_mirrors(light, surfaces, view.eye.cast<float>());
+}
+
+void TracedLight::trace_shadows(const ReflectedLight& light) {
+  const PixelPoints& points = lit_points();
+  for (std::size_t i = 0; i < lit_.size(); ++i) {
+    lit_[i].fill(1);
+    if (i < light.lamps().size()) trace_lamp(light, light.lamps()[i], lit_[i]);
+  }
+  upload(lit_, points, lit_texture_, 0, Eigen::Vector4f::Ones());
+}
+
+/// Traces one ray from each point to the lamp. Points that may lie in a penumbra get half of all rays, and those of
+/// them that do lie in one get all rays.
+void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plane& lit) {
+  const PixelPoints& points = lit_points();
+  const int width = points.width(), height = points.height(), rays = quality_.shadow_rays;
+  // Target of each ray, per rotation: directions to a sun, positions on a spot.
+  const Vector3f axis = lamp.packed.toward_light.head<3>();
+  const Vector3f center = lamp.is_spot() ? Vector3f(lamp.packed.position.head<3>()) : axis;
+  const float radius = lamp.source_tangent * (lamp.is_spot() ? lamp.reach() : 1);
+  Vector3f first, second;
+  across<float, Vector3f>(axis, first, second);
+  std::vector<Vector3f> places;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    for (int k = 0; k < rays; ++k) {
+      // In this order, the first half of the rays already covers the disc.
+      const auto order = static_cast<float>((k * 5 + rays / 2) % rays);
+      const Vector2f at = on_disc(order, rays, static_cast<float>(turn) / kTurns, 0.5f);
+      places.emplace_back(center + radius * (at.x() * first + at.y() * second));
+    }
+  }
+  Plane &known = scratch_[0], &wanted = scratch_[1], &smoothed = scratch_[2], &scratch = scratch_[3];
+  known.fill(0);
+  wanted.fill(1);
+  const auto trace = [&](int first_ray, int last_ray) {
+    drawing_for(static_cast<std::size_t>(height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+        for (int x = 0; x < width; x += kLanes) {
+          const Lanes kinds = points.kinds(x, y), asked = Eigen::Map<const Lanes>(wanted.row(y) + x);
+          if (!(kinds * asked > 0).any()) continue;
+          const Toward to = toward(lamp, points.positions(x, y));
+          const Lanes3 normal = points.normals(x, y);
+          const Lanes side = dot(normal, to.direction);
+          const Lanes least = (kinds == kFloorKind).select(Lanes::Zero(), Lanes::Constant(kLeastCosine));
+          Rays packet;
+          packet.wanted = mask(kinds * asked > 0 && to.intensity > 0 && (kinds == kClothKind || side > least));
+          if ((packet.wanted == 0).all()) continue;
+          // Rays start on the side that faces the lamp, at the smooth surface: from the flat triangles, neighbouring
+          // triangles would block them.
+          const Lanes facing = (side < 0).select(Lanes::Constant(-1), Lanes::Constant(1));
+          const Lanes lift = facing * (kRayStart + (facing * points.rises(x, y)).max(0.0f));
+          packet.origin = points.positions(x, y) + lift * normal;
+          if (lamp.is_spot()) packet.end.setOnes();
+          Lanes hits = Lanes::Zero();
+          for (int k = first_ray; k < last_ray; ++k) {
+            for (int lane = 0; lane < kLanes; ++lane)
+              packet.direction.set(lane, places[static_cast<std::size_t>(turn_of(x + lane, y) * rays + k)]);
+            if (lamp.is_spot()) packet.direction = packet.direction + Lanes::Constant(-1) * packet.origin;
+            packet.seed = static_cast<unsigned>((k * height + y) * width + x);
+            hits += light.rays().blocked(packet);
+          }
+          Eigen::Map<Lanes> fractions(lit.row(y) + x), knowns(known.row(y) + x);
+          const Lanes before = (1 - fractions) * static_cast<float>(first_ray);
+          const auto traced = packet.wanted != 0;
+          fractions = traced.select(1 - (before + hits) / static_cast<float>(last_ray), fractions);
+          knowns = traced.select(Lanes::Ones(), knowns);
+        }
+      }
+    });
+  };
+  trace(0, kFirstRays);
+  find_penumbrae(lit, known, points, wanted);
+  smoothed = wanted;
+  trace(kFirstRays, rays / 2);
+  keep_mixed(lit, known, points, wanted, scratch, scratch_[4]);
+  trace(rays / 2, rays);
+  smooth_where(lit, scratch, smoothed, known, points, 1);
+  smooth_where(lit, scratch, wanted, known, points, 2);
+}
+
+void TracedLight::trace_surroundings(const ReflectedLight& light) {
+  const PixelPoints& points = open_points_;
+  const int rays = quality_.ambient_rays;
+  const std::vector<Vector3f>& directions = directions_;
+  drawing_for(static_cast<std::size_t>(points.height()), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < points.width(); x += kLanes) {
+        Rays packet;
+        packet.wanted = mask(points.kinds(x, y) > 0);
+        Lanes open = Lanes::Zero();
+        Lanes3 sum;
+        if ((packet.wanted != 0).any()) {
+          const Lanes3 normal = points.normals(x, y);
+          Lanes3 first, second;
+          across<Lanes, Lanes3>(normal, first, second);
+          packet.origin = points.positions(x, y) + (kRayStart + points.rises(x, y).max(0.0f)) * normal;
+          for (int k = 0; k < rays; ++k) {
+            Lanes3 local;
+            for (int lane = 0; lane < kLanes; ++lane)
+              local.set(lane, directions[static_cast<std::size_t>(spread_number(x + lane, y) * rays + k)]);
+            packet.direction = local.x * first + local.y * second + local.z * normal;
+            packet.seed = static_cast<unsigned>((k * points.height() + y) * points.width() + x);
+            const ReflectedLight::Arriving arriving = light.arriving(packet);
+            open += arriving.open;
+            sum = sum + arriving.light;
+          }
+        } else {
+          open.setConstant(static_cast<float>(rays));
+        }
+        const float each = 1 / static_cast<float>(rays);
+        Eigen::Map<Lanes>(open_[0].row(y) + x) = each * sum.x;
+        Eigen::Map<Lanes>(open_[1].row(y) + x) = each * sum.y;
+        Eigen::Map<Lanes>(open_[2].row(y) + x) = each * sum.z;
+        Eigen::Map<Lanes>(open_[3].row(y) + x) = each * open;
+      }
+    }
+  });
+  for (const int step : {1, 2, 4}) smooth(open_, open_scratch_, points, step);
+  upload(open_, points, open_texture_, 1, {0, 0, 0, 1});
+}
+
+/// Traces rays about the mirrored direction of view; they spread more widely from rougher surfaces.
+void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Surface> surfaces, const Vector3f& eye) {
+  const PixelPoints& points = open_points_;
+  mirrored_.resize(4, Plane(points.width(), points.height(), 0));
+  for (Plane& plane : mirrored_) plane.fill(0);
+  drawing_for(static_cast<std::size_t>(points.height()), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < points.width(); x += kLanes) {
+        Rays packet;
+        std::array<float, kLanes> alpha{};
+        for (int lane = 0; lane < kLanes; ++lane) {
+          const int number = static_cast<int>(points.surfaces(y)[x + lane]) - kFirstSurface;
+          if (number < 0) continue;
+          alpha[lane] = surfaces[static_cast<std::size_t>(number)].mirror_alpha;
+          packet.wanted[lane] = alpha[lane] >= 0 ? -1 : 0;
+        }
+        if ((packet.wanted == 0).all()) continue;
+        packet.origin = points.positions(x, y) + (kRayStart + points.rises(x, y).max(0.0f)) * points.normals(x, y);
+        for (int k = 0; k < kMirrorRays; ++k) {
+          for (int lane = 0; lane < kLanes; ++lane) {
+            if (packet.wanted[lane] == 0) continue;
+            const Vector3f normal = points.normals(x, y).at(lane);
+            const Vector3f seen = (points.positions(x, y).at(lane) - eye).normalized();
+            const Vector3f mirrored = seen - 2 * normal.dot(seen) * normal;
+            Vector3f first, second;
+            across<float, Vector3f>(mirrored, first, second);
+            const Vector2f jitter = spread(spread_number(x + lane, y));
+            const Vector2f at = alpha[lane] * on_disc(static_cast<float>(k), kMirrorRays, jitter.x(), jitter.y());
+            packet.direction.set(lane, (mirrored + at.x() * first + at.y() * second).normalized());
+          }
+          packet.seed = static_cast<unsigned>((k * points.height() + y) * points.width() + x);
+          const ReflectedLight::Arriving arriving = light.arriving(packet);
+          for (int lane = 0; lane < kLanes; ++lane) {
+            if (packet.wanted[lane] == 0) continue;
+            const Vector3f each = arriving.light.at(lane) / kMirrorRays;
+            for (int c = 0; c < 3; ++c) mirrored_[c].row(y)[x + lane] += each[c];
+            mirrored_[3].row(y)[x + lane] += (1 - arriving.open[lane]) / kMirrorRays;
+          }
+        }
+      }
+    }
+  });
+  smooth(mirrored_, open_scratch_, points, 1);
+  if (!mirrored_texture_) mirrored_texture_ = make_texture(*gl_, GL_RGBA32F, width_, height_, GL_NEAREST);
+  upload(mirrored_, points, *mirrored_texture_, 2, Eigen::Vector4f::Zero());
+}
+
+/// Interpolates four planes at all pixels, and marks the tiles in which floor has other values than `on_open_floor`.
+void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& points, const Texture& texture, GLuint unit,
+                         const Eigen::Vector4f& on_open_floor) {
+  texels_.resize(seen_.size());
+  if (points.divisor() > 1) {
+    values_.resize(static_cast<std::size_t>(points.width()) * points.height());
+    for (int y = 0; y < points.height(); ++y)
+      for (int x = 0; x < points.width(); ++x)
+        for (std::size_t k = 0; k < 4; ++k)
+          values_[static_cast<std::size_t>(y) * points.width() + x][k] = planes[k].row(y)[x];
+  }
+  const int tiles = (width_ + kFloorTile - 1) / kFloorTile;
+  drawing_for(static_cast<std::size_t>(height_), std::size_t{kFloorTile}, [&](std::size_t begin, std::size_t end) {
+    if (points.divisor() > 1)
+      interpolate(values_, points, pixels_, static_cast<int>(begin), static_cast<int>(end), texels_);
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      const std::span<Eigen::Vector4f> row(texels_.data() + static_cast<std::size_t>(y) * width_,
+                                           static_cast<std::size_t>(width_));
+      for (int x = 0; x < width_ && points.divisor() == 1; ++x)
+        for (std::size_t k = 0; k < 4; ++k) row[x][k] = planes[k].row(y)[x];
+      for (int x = 0; x < width_; ++x) {
+        if (pixels_.kind(x, y) != Kind::floor) continue;
+        const bool shaded = (row[x] - on_open_floor).cwiseAbs().maxCoeff() > kUnseen;
+        if (shaded) shaded_[static_cast<std::size_t>(y / kFloorTile) * tiles + x / kFloorTile] = 1;
+      }
+    }
+  });
+  gl_->TextureSubImage2D(texture.name(), 0, 0, 0, width_, height_, GL_RGBA, GL_FLOAT, texels_.data());
+  gl_->BindTextureUnit(unit, texture.name());
+}
+
+std::vector<PixelArea> TracedLight::shaded_floor() const {
+  const int columns = (width_ + kFloorTile - 1) / kFloorTile, rows = (height_ + kFloorTile - 1) / kFloorTile;
+  std::vector<PixelArea> areas;
+  for (int row = 0; row < rows; ++row) {
+    const char* flags = shaded_.data() + static_cast<std::size_t>(row) * columns;
+    for (int begin = 0; begin < columns; ++begin) {
+      if (flags[begin] == 0) continue;
+      int end = begin;
+      while (end < columns && flags[end] != 0) ++end;
+      const int x = begin * kFloorTile, y = row * kFloorTile;
+      areas.push_back({x, y, std::min(end * kFloorTile, width_) - x, std::min(y + kFloorTile, height_) - y});
+      begin = end;
+    }
+  }
+  return areas;
+}
+
+}  // namespace weft::render

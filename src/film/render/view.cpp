@@ -1,0 +1,190 @@
+#include "film/render/view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "film/image/color.hpp"
+
+namespace weft::render {
+namespace {
+
+// Rec. 709 luminance weights.
+const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
+constexpr double kGroundLight =
+    0.8;  // light from below / light of open floor; less than 1, since far floor fades to a darker backdrop
+constexpr double kReflectedGround =
+    0.5;  // factor on the light from below in reflections: the floor near glossy surfaces is often shaded
+constexpr double kMaxGain = 1.8;           // maximum gain of direct light; darker scenes are meant to be dark
+constexpr double kMaxWhiteBalance = 0.08;  // maximum relative change of a channel by white balance
+
+/// Map from the world to picture coordinates, given the corners of a triangle in both.
+Eigen::Matrix<double, 2, 4> picture_from_world(const std::array<Vec3, 3>& x, const std::array<Vec2, 3>& places) {
+  const Vec3 p = x[1] - x[0], q = x[2] - x[0];
+  Mat3 axes;
+  axes << p, q, p.cross(q);
+  Eigen::Matrix<double, 2, 3> changes;
+  changes << places[1] - places[0], places[2] - places[0], Vec2::Zero();
+  Eigen::Matrix<double, 2, 4> map;
+  map.leftCols<3>() = changes * axes.inverse();
+  map.col(3) = places[0] - map.leftCols<3>() * x[0];
+  return map;
+}
+
+}  // namespace
+
+std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up) {
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    const frame::Surface& surface = *snapshot.surfaces[i];
+    const auto& positions = snapshot.states[i].positions;
+    if (!surface.visible || !surface.infinite_floor || positions.empty()) continue;
+    Floor floor{positions.front(), up, surface.appearance};
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const auto& [a, b, c] = surface.triangles[t];
+      const Vec3 normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+      if (normal.squaredNorm() > 0) {
+        floor.normal = normal.dot(up) < 0 ? -normal.normalized() : normal.normalized();
+        if (floor.look.paint.texture && t < surface.paint_uv.size())
+          floor.picture_from_world =
+              picture_from_world({positions[a], positions[b], positions[c]}, surface.paint_uv[t]);
+        break;
+      }
+    }
+    return floor;
+  }
+  return std::nullopt;
+}
+
+View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
+               const std::optional<Floor>& floor) {
+  View view;
+  view.eye = camera.position;
+  view.axes = view_axes(camera.target - camera.position, up);
+  view.tan_half_height = std::tan(std::clamp(camera.field_of_view, 1.0, 170.0) * std::numbers::pi / 360);
+  view.tan_half_width = view.tan_half_height * aspect;
+
+  const double radius = 0.5 * subjects.diagonal().norm();
+  const double reach = (subjects.center() - view.eye).norm() + radius;
+  double nearest = view.axes.forward.dot(subjects.center() - view.eye) - radius;
+  if (floor) {
+    // Visible floor is nearest at an edge of the picture, and never nearer than the eye's height / `widest`.
+    const double height = floor->normal.dot(view.eye - floor->point);
+    const double widest = std::hypot(1.0, view.tan_half_width, view.tan_half_height);
+    if (height > 0) nearest = std::min(nearest, height / widest);
+  }
+  // Depth resolution is distance² / (near · 2^24) [m]. If near is reach / 1000, this is about 1e-4 of `reach`.
+  view.near = std::max(0.8 * nearest, 1e-3 * reach);
+  view.far = 200 * reach;
+  view.view_from_world = look_along(view.eye, view.axes);
+  view.clip_from_world =
+      perspective(view.tan_half_width, view.tan_half_height, view.near, view.far) * view.view_from_world;
+  return view;
+}
+
+PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height) {
+  Eigen::AlignedBox2d seen;
+  for (const Vec3& point : points) {
+    const Eigen::Vector4d clip = view.clip_from_world * point.homogeneous();
+    if (clip.w() < view.near) return {0, 0, width, height};
+    seen.extend(Vec2(clip.head<2>() / clip.w()));
+  }
+  if (seen.isEmpty()) return {};
+  const auto pixel = [](double ndc, int size, double margin) {
+    return static_cast<int>(std::clamp((0.5 + 0.5 * ndc) * size + margin, 0.0, static_cast<double>(size)));
+  };
+  PixelArea area{pixel(seen.min().x(), width, -1), pixel(seen.min().y(), height, -1), 0, 0};
+  area.width = pixel(seen.max().x(), width, 2) - area.x;
+  area.height = pixel(seen.max().y(), height, 2) - area.y;
+  return area;
+}
+
+Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights) {
+  const double share = 1 - style.sky_intensity;
+  const Vec3 sky = style.sky_intensity * style.sky_color;
+  if (!floor) return {Vec3::Constant(share), 0.8 * style.sky_color};
+  Vec3 direct = Vec3::Zero();
+  for (const frame::Light& each : lights) {
+    // The distant floor receives no spot light.
+    if (each.kind != frame::Light::Kind::sun || each.direction.squaredNorm() == 0) continue;
+    const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
+    direct += share * each.intensity * facing * image::linear_from_srgb(each.color);
+  }
+  Vec3 gain = Vec3::Ones();
+  if (style.exposes) {
+    const Vec3 missing = (Vec3::Ones() - sky).cwiseQuotient(direct.cwiseMax(1e-6));
+    const double level = kLuminance.dot(Vec3::Ones() - sky) / std::max(kLuminance.dot(direct), 1e-6);
+    const Vec3 tint = (missing / std::max(level, 1e-6)).cwiseMax(1 - kMaxWhiteBalance).cwiseMin(1 + kMaxWhiteBalance);
+    gain = std::clamp(level, 1.0, kMaxGain) * tint;
+  }
+  return {share * gain, image::linear_from_srgb(floor->look.color).cwiseProduct(sky + gain.cwiseProduct(direct))};
+}
+
+Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
+                       std::span<const frame::Light> lights) {
+  Lighting lighting;
+  lighting.style = style_of(stage);
+  lighting.exposure = expose(lighting.style, floor, lights);
+  lighting.gain = std::exp2(stage.exposure);
+  // The light from below is that of open floor; rays to shaded floor subtract the difference (reflected_light.hpp).
+  const Vec3 ground =
+      floor && !stage.ground_color
+          ? Vec3(kGroundLight * lighting.style.floor_tint * lighting.exposure.floor)
+          : lighting.style.sky_intensity *
+                (stage.ground_color ? image::linear_from_srgb(*stage.ground_color) : Vec3(Vec3::Constant(0.55)));
+  lighting.around = surround(lighting.style, stage, up, lights, ground);
+  return lighting;
+}
+
+double floor_roughness(const Style& style, const std::optional<Floor>& floor) {
+  constexpr double kMatte = 1;
+  if (!floor || floor->look.roughness >= kMatte) return kMatte;
+  return std::min(floor->look.roughness, style.floor_roughness);
+}
+
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& surroundings,
+                        const std::optional<Floor>& floor, int width, int height) {
+  const auto four = [](const Vec3& v, double w) {
+    return Eigen::Vector4f(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
+                           static_cast<float>(w));
+  };
+  const Style& style = lighting.style;
+  const Surroundings& around = lighting.around;
+  const double radius = 0.5 * surroundings.diagonal().norm();
+  const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
+  const Vec3 shown = style.floor_tint * lighting.exposure.floor;
+  // A sky has its own colour, a backdrop the colour of the floor.
+  const auto behind = [&](const Vec3& color) -> Vec3 { return sky ? color : shown.cwiseProduct(color); };
+
+  FrameUniform frame;
+  frame.clip_from_world = view.clip_from_world.cast<float>();
+  frame.view_from_world = view.view_from_world.cast<float>();
+  frame.eye_world = four(view.eye, radius);
+  frame.center_world = four(surroundings.center(), floor_roughness(style, floor));
+  frame.up_world = four(around.up, 0);
+  frame.right_world = four(view.axes.right, 0);
+  frame.sky = four(around.sky, 0);
+  frame.horizon = four(around.horizon, style.toe);
+  frame.ground = four(kReflectedGround * around.ground, 0);
+  frame.backdrop = four(behind(style.horizon), style.glow);
+  frame.backdrop_top = four(behind(style.zenith), 0);
+  frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
+                    1.0f / static_cast<float>(height)};
+  frame.frustum = {static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height),
+                   static_cast<float>(view.near), static_cast<float>(view.far)};
+  if (floor) {
+    frame.floor_plane_world = four(floor->normal, floor->normal.dot(view.eye - floor->point));
+    frame.floor_look = four(style.floor_tint * image::linear_from_srgb(floor->look.color), lighting.gain);
+  } else {
+    frame.floor_plane_world = Eigen::Vector4f::Zero();
+    frame.floor_look = four(Vec3::Zero(), lighting.gain);
+  }
+  for (int i = 0; i < Surroundings::kBoxes; ++i) {
+    frame.box_axes[i] = four(around.boxes[i].axis, around.boxes[i].sharpness);
+    frame.box_lights[i] = four(around.boxes[i].light, 0);
+  }
+  const Irradiance irradiance = irradiance_of(around);
+  for (std::size_t i = 0; i < irradiance.size(); ++i) frame.irradiance[i] = four(irradiance[i], 0);
+  return frame;
+}
+
+}  // namespace weft::render

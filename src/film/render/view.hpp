@@ -1,0 +1,90 @@
+// Viewpoint of a picture, exposure, and the frame block of shaders/frame.glsl.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "film/render/lighting.hpp"
+#include "film/render/surroundings.hpp"
+#include "film/render/transforms.hpp"
+
+namespace weft::render {
+
+/// The ground: a point on it, its unit normal (upward) and its appearance.
+struct Floor {
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
+  frame::Appearance look;
+  /// Maps world (x, y, z, 1) to coordinates of the appearance's picture; unused without one.
+  Eigen::Matrix<double, 2, 4> picture_from_world = Eigen::Matrix<double, 2, 4>::Zero();
+};
+
+/// The first visible infinite floor, if there is one.
+std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up);
+
+/// A camera with its matrices.
+struct View {
+  ViewAxes axes;
+  Vec3 eye = Vec3::Zero();
+  double tan_half_width = 1, tan_half_height = 1;
+  double near = 0.1, far = 100;  ///< [m]
+  Mat4 view_from_world = Mat4::Identity(), clip_from_world = Mat4::Identity();
+};
+
+/// The near plane is as far away as the subjects and the visible floor allow.
+View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
+               const std::optional<Floor>& floor);
+
+/// A rectangle of pixels; x and y count from the lower left.
+struct PixelArea {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Smallest area that contains the points in view, with a margin of one pixel; the whole picture if a point is not in
+/// front of the viewer.
+PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height);
+
+/// Frame block, std140.
+struct FrameUniform {
+  // Matrices first: Eigen aligns them to 16 or 32 bytes, depending on the CPU level; std140 aligns to 16.
+  Eigen::Matrix4f clip_from_world, view_from_world;
+  Eigen::Vector4f eye_world, center_world, up_world, right_world;
+  Eigen::Vector4f sky, horizon, ground, backdrop, backdrop_top, viewport, frustum, floor_plane_world, floor_look;
+  std::array<Eigen::Vector4f, Surroundings::kBoxes> box_axes, box_lights;
+  std::array<Eigen::Vector4f, 9> irradiance;
+};
+static_assert(offsetof(FrameUniform, eye_world) == 2 * 64 && offsetof(FrameUniform, box_axes) == 2 * 64 + 13 * 16);
+
+/// Strength of the direct light, and the light that open floor shows.
+struct Exposure {
+  Vec3 direct = Vec3::Ones();  ///< factor on every light for each channel
+  Vec3 floor = Vec3::Zero();   ///< linear colour that open floor shows; without a floor, that of the environment light
+};
+
+/// Exposes for the floor, as product photographers do for a white ground. Direct light is increased, never decreased,
+/// until open floor shows its own colour. It also gets a slight tint (white balance), against a bluish sky. The gain
+/// and the tint are limited, so that dark or coloured scenes stay so. Without a floor, or if the style does not expose,
+/// nothing changes. `lights`: those of the picture.
+Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights);
+
+/// Style, environment and exposure of a picture.
+struct Lighting {
+  Style style;
+  Surroundings around;
+  Exposure exposure;
+  double gain = 1;  ///< factor on all light
+};
+Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
+                       std::span<const frame::Light> lights);
+
+/// Roughness of the floor, from its own appearance and from the style; 1 without a floor. Below kMirrorsLamps the floor
+/// mirrors lamps (the default roughness of scenes does not); below kMirrorsSubjects it also mirrors the subjects.
+double floor_roughness(const Style& style, const std::optional<Floor>& floor);
+inline constexpr double kMirrorsLamps = 0.6, kMirrorsSubjects = 0.5;
+
+/// `surroundings`: surroundings_bounds() of the run.
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& surroundings,
+                        const std::optional<Floor>& floor, int width, int height);
+
+}  // namespace weft::render

@@ -1,0 +1,59 @@
+// Cameras of a scene.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/motion/interpolation.hpp"
+
+namespace weft::scene {
+
+struct CameraKey {
+  double time = 0;
+  Vec3 position{0, 0, 0}, target{0, 0, 0};  ///< [m]
+  double field_of_view = 35;                ///< vertical [degrees]
+  double focal_length = 0;                  ///< [mm]; replaces the field of view; 0: none
+};
+
+/// Cameras placed by the scene or a file, or computed from all frames of a run.
+enum class CameraKind { placed, whole, follow, close, track, file };
+
+inline bool is_computed(CameraKind kind) {
+  return kind != CameraKind::placed && kind != CameraKind::file;
+}
+
+/// Vertical field of view of computed cameras [degrees]: that of a portrait lens, with little distortion.
+inline constexpr double kComputedFieldOfView = 30;
+
+struct Camera {
+  std::string name;
+  CameraKind kind = CameraKind::placed;
+  std::vector<CameraKey> keys;  ///< at least one; one: still. Computed cameras have one that gives the field of view
+  motion::Interpolation interpolation = motion::Interpolation::cubic;
+  std::vector<std::string> subjects =
+      {};                  ///< names; empty: `whole`: all but infinite floors; else the characters or, without, cloths
+  double azimuth = 33;     ///< of the camera position, from the front to the right [degrees]
+  double elevation = 17;   ///< of the camera position above the subject [degrees]
+  double orbit = 0;        ///< rate at which the azimuth grows [degrees/s]
+  double margin = 0.14;    ///< width of the free margin around the subject / half of the picture's size
+  double smoothing = 0.5;  ///< time over which the paths of subject and camera are smoothed [s]
+  double aperture = 0;     ///< f-number for 24 mm film; 0: everything is sharp
+  double focus = 0;        ///< focus distance [m]; 0: that of the target
+  std::filesystem::path file = {};  ///< file with its path and lens
+  std::string object = {};          ///< name of its node in the file; empty: the only camera in it
+  double start = 0;                 ///< scene time at which the time of the file begins [s]
+  double scale = 1;                 ///< factor on lengths of the file
+  int line = 0, column = 0;         ///< where the scene names it, for errors in its file
+  double sensor_width = 36;         ///< sensor size along the longer side of the picture [mm]; used with a focal length
+  std::string follow = {};      ///< placed cameras: obstacle or "<character>.<part>" that it moves with; empty: none
+  bool follow_rotation = true;  ///< false: the camera follows only the translation
+};
+
+/// Whether the scene gives the lens of the camera as a focal length.
+inline bool has_focal_length(const Camera& camera) {
+  return camera.keys.front().focal_length > 0;
+}
+
+}  // namespace weft::scene

@@ -1,0 +1,15 @@
+// Checks of a scene beyond the rules of single keys.
+#pragma once
+
+#include "film/scene/findings.hpp"
+#include "film/scene/scene.hpp"
+
+namespace weft::scene {
+
+/// Key path of a cloth, or of the rope that the cloth represents.
+const std::string& entry_of_cloth(const Scene& scene, std::size_t cloth, const Findings& findings);
+
+/// Reports references to names that do not exist, key times out of order, and combinations that cannot be simulated.
+void check(const Scene& scene, Findings& findings);
+
+}  // namespace weft::scene

@@ -1,0 +1,72 @@
+// Rules that several tables of the scene format share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "film/scene/rule.hpp"
+#include "film/scene/table_builder.hpp"
+
+namespace weft::scene {
+
+inline const Range kPlace = within(-1e5, 1e5);   // [m]
+inline const Range kExtent = above(0, 1e4);      // [m]
+inline const Range kMoment = within(-1e5, 1e5);  // [s]
+inline const std::vector<std::string> kXyz = {"x", "y", "z"};
+inline const std::vector<std::string> kWeftWarp = {"weft", "warp"};
+inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
+
+// Default colours [sRGB]: a floor that reflects 0.4 of the light, and objects that stand out from it.
+inline const Vec3 kClothColor(0.60, 0.27, 0.22), kObstacleColor(0.76, 0.72, 0.65), kFloorColor(0.66, 0.66, 0.65);
+inline Look look_of(const Vec3& color) {
+  Look look;
+  look.color = color;
+  return look;
+}
+
+inline Look rope_look() {
+  Look look = look_of(Vec3(0.80, 0.72, 0.56));
+  look.roughness = 0.85;
+  return look;
+}
+
+/// Rotations about the fixed x, then y, then z axis.
+Quat from_angles(const Vec3& degrees);
+
+/// Rows for the rotation of a pose.
+template <class S, class Member>
+void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherwise) {
+  const auto of = [pose](S& s) -> Pose& { return std::invoke(pose, s); };
+  rows.vector(
+          "quaternion", [of](S& s) -> Quat& { return of(s).rotation; }, {"w", "x", "y", "z"}, within(-1e3, 1e3), "",
+          "rotation as a quaternion of any length but 0")
+      .nonzero()
+      .by_default(otherwise)
+      .written_if([of](S& s) { return !of(s).angles; })
+      .when_given([of](S& s) { of(s).angles.reset(); });
+  rows.vector(
+          "rotation", [of](S& s) -> std::optional<Vec3>& { return of(s).angles; }, {"rx", "ry", "rz"},
+          within(-36000, 36000), "degrees",
+          "rotation about the fixed x, then y, then z axis; if one angle alone changes between two keys, it turns by "
+          "its whole change, full turns included; if several change, the object turns the shortest way")
+      .excludes("quaternion")
+      .when_given([of](S& s) { of(s).rotation = from_angles(*of(s).angles); });
+}
+
+/// Rows for position, and quaternion or rotation. `otherwise`: text about the default.
+template <class S, class Member>
+void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
+  rows.vector(
+          "position", [pose](S& s) -> Vec3& { return std::invoke(pose, s).position; }, kXyz, kPlace, "m", position_of)
+      .by_default(otherwise);
+  rotation_rows(rows, pose, otherwise);
+}
+
+/// Looks of objects other than cloth.
+const Table& obstacle_look_rules();
+const Table& character_look_rules();
+
+/// Documented default of a value that a key frame omits.
+inline const std::string kDefaultOfKey = "as in the key before; in the first key, the value given beside `keys`";
+
+}  // namespace weft::scene

@@ -1,0 +1,156 @@
+#include "film/scene/dependencies.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "core/input_file.hpp"
+#include "film/scene/sequence_files.hpp"
+
+namespace weft::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Larger files are skipped: no reader accepts them.
+constexpr std::uintmax_t kMaxDependencyBytes = std::uintmax_t{256} << 20;
+
+/// Longer texts are not taken for file names: 255 bytes for the name itself, and more for its folders.
+constexpr std::size_t kMaxFileNameBytes = 1024;
+
+bool is_alphanumeric(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Whether a text ends like a file name: a dot, then 2 to 12 letters and digits, not digits alone.
+bool has_extension(std::string_view text) {
+  const std::size_t dot = text.rfind('.');
+  if (dot == std::string_view::npos || dot == 0 || text.size() > kMaxFileNameBytes) return false;
+  const std::string_view ending = text.substr(dot + 1);
+  return ending.size() >= 2 && ending.size() <= 12 && std::ranges::all_of(ending, is_alphanumeric) &&
+         !std::ranges::all_of(ending, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Decodes %20 and similar escapes of addresses in glTF and Collada files.
+std::string decode_escapes(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned char byte = 0;
+    if (text[i] == '%' && i + 2 < text.size() &&
+        std::from_chars(&text[i + 1], &text[i + 3], byte, 16).ptr == &text[i + 3]) {
+      plain += static_cast<char>(byte);
+      i += 2;
+    } else {
+      plain += text[i] == '\\' ? '/' : text[i];
+    }
+  }
+  return plain;
+}
+
+/// Possible file names in text or binary content. Quotes, brackets, commas, equals signs and control characters
+/// separate texts; each text and its pieces between blanks count if they have an extension.
+std::set<std::string> find_possible_names(std::string_view content) {
+  std::set<std::string> names;
+  const auto add = [&](std::string_view text) {
+    if (has_extension(text)) names.insert(decode_escapes(text));
+  };
+  const auto split = [](std::string_view text, const auto& is_end, const auto& use) {
+    for (std::size_t begin = 0; begin < text.size();) {
+      std::size_t end = begin;
+      while (end < text.size() && !is_end(text[end])) ++end;
+      if (end > begin) use(text.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  };
+  const auto ends_text = [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20) ||
+           std::string_view("\"'<>(),=|\x7F").find(c) != std::string_view::npos;
+  };
+  split(content, ends_text, [&](std::string_view text) {
+    const std::size_t first = text.find_first_not_of(' ');
+    if (first == std::string_view::npos || text.find('.') == std::string_view::npos) return;
+    text = text.substr(first, text.find_last_not_of(' ') + 1 - first);
+    add(text);
+    if (text.find(' ') != std::string_view::npos)
+      split(
+          text, [](char c) { return c == ' '; }, add);
+  });
+  return names;
+}
+
+class DependencyWalk {
+ public:
+  explicit DependencyWalk(const DependencyVisitor& each) : each_(each) {}
+
+  /// Visits a file, and those that it names.
+  void visit(const fs::path& file, FileUse use = FileUse::simulation) {
+    const std::optional<std::string> content = visit_alone(file, use);
+    if (!content) return;
+    for (const std::string& name : find_possible_names(*content)) visit(file.parent_path() / name, use);
+    // assimp finds the motion file of this format by the name of the mesh file.
+    if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"), use);
+  }
+
+  /// Visits a file that names no others, such as a picture. Returns its content if it has not been visited before.
+  std::optional<std::string> visit_alone(const fs::path& file, FileUse use) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return {};
+    if (fs::file_size(file, error) > kMaxDependencyBytes) return {};
+    std::string content;
+    try {
+      content = read_bytes(file, kMaxDependencyBytes);
+    } catch (const std::runtime_error&) {
+      return {};  // the reader of the file's format reports the reason
+    }
+    each_(file, content, use);
+    return content;
+  }
+
+ private:
+  const DependencyVisitor& each_;
+  std::set<fs::path> visited_;
+};
+
+}  // namespace
+
+void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
+  DependencyWalk walk(each);
+  for (const Obstacle& obstacle : scene.obstacles)
+    if (const auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) walk.visit(mesh->path);
+  for (const Cloth& cloth : scene.cloths) {
+    if (!cloth.file.empty()) walk.visit(cloth.file);
+    for (const Pin& pin : cloth.pins)
+      if (pin.mask) walk.visit_alone(*pin.mask, FileUse::simulation);
+    for (const Weight& weight : cloth.weights)
+      if (weight.mask) walk.visit_alone(*weight.mask, FileUse::simulation);
+  }
+  for (const Character& character : scene.characters) {
+    if (const auto* file = std::get_if<CharacterFile>(&character.source)) walk.visit(file->path);
+    if (const Acting* acting = acting_of(character); acting != nullptr && acting->motion) walk.visit(*acting->motion);
+    if (const auto* sequence = std::get_if<MeshSequence>(&character.source))
+      for (const fs::path& file : sequence_files(sequence->files)) walk.visit(file);
+  }
+  const auto visit_picture = [&](const Paint& paint) {
+    if (paint.image) walk.visit_alone(*paint.image, FileUse::pictures);
+  };
+  const auto visit_pictures = [&](const auto& objects) {
+    for (const auto& object : objects) {
+      visit_picture(object.look);
+      for (const PanelPaint& panel : object.look.panels) visit_picture(panel);
+    }
+  };
+  visit_pictures(scene.cloths);
+  visit_pictures(scene.obstacles);
+  visit_pictures(scene.characters);
+  for (const Camera& camera : scene.cameras)
+    if (!camera.file.empty()) walk.visit(camera.file, FileUse::pictures);
+}
+
+}  // namespace weft::scene

@@ -1,0 +1,368 @@
+#include "film/scene/fabrics.hpp"
+
+#include <array>
+#include <cmath>
+
+// Units. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
+//   bending     B: 1 gf·cm²/cm = 98.07 µN·m; 2HB: 1 gf·cm/cm = 9.807 mN
+//   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; Material's mu is twice the shear modulus
+//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; linearity LT is 2 / (n + 1) if force ~ strainⁿ
+// FAST (Minazio, "FAST – Fabric Assurance by Simple Testing", Int. J. Clothing Sci. Tech. 7(2/3), 1995):
+//   shear       G = 123 / EB5 N/m, EB5 the bias extension in percent
+//   extension   E5, E20 and E100 are the strains at 4.9, 19.6 and 98.07 N/m
+//
+// Conversion of measurements to a Material, for all fabrics:
+//   stretch      secant up to 19.6 N/m, the load of worn and hanging cloth. With threads, force ~ strain²: LT is 2/3
+//                (measured: 0.50 to 0.60 for suitings, 0.66 to 0.78 for denims), and the secant 98.0 N/m / EMT. Without
+//                threads, force ~ strain, and the secant is 490.3 N/m / EMT.
+//   max_stretch  such that the force at the mean EMT of weft and warp is the measured 490 N/m, by `stretch` and the law
+//                of forces/stretch_limit.hpp, whose threads carry 4 kN/m at the limit.
+//   shear        2 G
+//   bend         √(weft · warp): bending is isotropic here
+//   bend_friction   HB
+//   All values are rounded to two digits, since none is known more precisely.
+//
+// Quantities without a measurement are estimated from fibre, weave and weight:
+//   bend         130 µN·m (density / 1 kg/m²)^1.35: within 13 % of the medians of 251 fabrics in nine classes of
+//                weight from 30 to 490 g/m², by cantilever (data set of Feng et al., "Learning-Based Bending Stiffness
+//                Parameter Estimation by a Drape Tester", 2022). Softer or firmer fabrics take another quantile of
+//                their class (Hand). The median ratio of warp to weft is 1.4 there.
+//   hysteresis   cotton 50, wool 25, filaments 18 1/m; measured: 53 and 43 of broadcloth and denim, 25 of a tropical,
+//                19 and 18 of polyesters
+//   shear        cotton 65, wool 26, filaments and knits 30 N/m; measured for plain weaves: 65, 24 to 26, 30.
+//                Fabrics without threads: an isotropic sheet with Poisson's ratio 0.3. If weight, bending and drape are
+//                published but shear is not, it is fitted to the drape: faille, 7.5 N/m (30 would drape by 33 %)
+//   extension    weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, others 12 %
+//                and linear, since they have no crimp
+//   thickness    2.2 mm for 1 kg/m²; measured: 1.7 to 4
+//
+// Chosen, not measured: friction (published for cloth on cloth: usually 0.2 to 0.6), contact thickness (several times
+// that of the fabric, which contact cannot resolve), drag, and viscosity of bending. Stretch and shear have
+// no viscosity: implicit Euler already damps them like a viscosity of half a time step times the stiffness.
+
+namespace weft::scene {
+
+namespace {
+
+// Bending viscosity / bending stiffness [s]: friction between yarns damps a fold within about this time.
+constexpr double kBendingDampingTime = 0.1;
+
+enum class Fibre { cotton, wool, filament };
+enum class Weave { woven, knitted, none };
+/// Bending stiffness relative to fabrics of the same weight: the 10, 25, 50, 75 or 90 % quantile of measured fabrics.
+enum class Hand { limp, soft, usual, firm, stiff };
+
+using Measured = std::optional<double>;
+using Pair = std::optional<std::pair<double, double>>;
+
+/// A fabric as published; missing values are estimated.
+struct Row {
+  const char* name;
+  const char* what;
+  const char* source;
+  Figure density;  // [g/m²]
+  Fibre fibre = Fibre::cotton;
+  Hand hand = Hand::usual;
+  Weave weave = Weave::woven;
+  Measured thickness = {};     // [mm]
+  Pair extension = {};         // EMT of weft and warp [%]
+  Measured shear = {};         // G [N/m]
+  Pair bend = {};              // B of weft and warp [µN·m]; both equal if only their mean is published
+  Measured fitted_shear = {};  // G fitted to the published drape, if not measured [N/m]
+  Measured hysteresis = {};    // HB / B [1/m]
+  Pair drape = {};             // minimum and maximum of Cusick's coefficient [%]
+  double contact = 2;          // contact thickness [mm]
+  double friction = 0.3;
+  std::optional<Finish> finish = {};  // absent: that of the fibre
+};
+
+constexpr const char* kMatsudaira =
+    "Matsudaira et al., J. Textile Eng. 61(6), 2015, tables 1 and 2, as transcribed in 3fold-motion-engine";
+constexpr const char* kNone = "none found: all estimated";
+
+// In the order of the documentation: cotton and similar fibres, wool, filaments, others.
+constexpr Row kRows[] = {
+    {.name = "cotton",
+     .what = "light plain weave",
+     .source =
+         "Penava et al., 2014, tables 1 and 3, as transcribed in Codim-IPC; drape: one plain weave with 18.5 to 32 "
+         "picks/cm, VaT 2018(1), and Gan et al., 1991",
+     .density = {150},
+     .thickness = 0.318,
+     .extension = {{12.3, 4.7}},
+     .shear = 65,
+     .drape = {{48, 72}}},
+    {.name = "poplin",
+     .what = "cotton broadcloth",
+     .source = kMatsudaira,
+     .density = {124},
+     .thickness = 0.497,
+     .bend = {{11.6, 11.6}},
+     .hysteresis = 53,
+     .drape = {{82.9, 82.9}}},
+    {.name = "denim",
+     .what = "12 oz cotton twill",
+     .source = "KES of six denims, J. Textiles 2016, 4614168, table 5, without weights: EMT 4.7 to 5.7 %, G 1.5 to 3.4 "
+               "gf/(cm·deg); their B, 14 to 22 µN·m, is that of light ones",
+     .density = {400, true},
+     .hand = Hand::firm,
+     .thickness = 1.0,
+     .extension = {{5.2, 5.2}},
+     .shear = 129,
+     .hysteresis = 43,
+     .drape = {{70, 90}},
+     .contact = 2.5,
+     .friction = 0.45,
+     .finish = Finish{0.06, 0.7, 0.35, 0.04, Threads::denim}},
+    {.name = "canvas",
+     .what = "cotton duck",
+     .source = "weight and thickness in Codim-IPC, which names no source",
+     .density = {294},
+     .hand = Hand::stiff,
+     .thickness = 0.53,
+     .contact = 2.5,
+     .friction = 0.4,
+     .finish = Finish{0.05, 0.5, 0.35, 0.06}},
+    {.name = "linen",
+     .what = "shirt weight plain weave",
+     .source = kNone,
+     .density = {170, true},
+     .hand = Hand::firm,
+     .finish = Finish{0.2, 0.5, 0.3, 0.2}},
+    {.name = "jersey",
+     .what = "single jersey knit",
+     .source = "drape: jerseys of 25 cm, VaT 2018(1), which 30 cm would lower",
+     .density = {180, true},
+     .hand = Hand::limp,
+     .weave = Weave::knitted,
+     .drape = {{18, 31}},
+     .friction = 0.35,
+     .finish = Finish{0.08, 0.5, 0.55, 0.22, Threads::knit}},
+    {.name = "wool",
+     .what = "tropical, a light plain worsted",
+     .source = "Matsudaira et al., as poplin; extension and shear of another, 168 g/m², from a student's FAST report "
+               "(bartleby.com, 2014): E100 5.9 and 4.6 %, B 5.0 and 5.6 µN·m",
+     .density = {163},
+     .fibre = Fibre::wool,
+     .thickness = 0.407,
+     .extension = {{13.1, 10.3}},
+     .shear = 26,
+     .bend = {{6.6, 6.6}},
+     .hysteresis = 25,
+     .drape = {{49.8, 49.8}},
+     .friction = 0.35},
+    {.name = "suiting",
+     .what = "worsted wool for suits",
+     .source = "Penava et al., as cotton; inside of the band of Fan, Yu & Hunter, 2004, table 1.12",
+     .density = {235},
+     .fibre = Fibre::wool,
+     .thickness = 0.568,
+     .extension = {{10.7, 4.0}},
+     .shear = 24,
+     .drape = {{40, 70}},
+     .friction = 0.35,
+     .finish = Finish{0.12, 0.6, 0.7, 0.06, Threads::twill}},
+    {.name = "felt",
+     .what = "pressed wool, 1 mm",
+     .source = kNone,
+     .density = {250, true},
+     .fibre = Fibre::wool,
+     .hand = Hand::stiff,
+     .weave = Weave::none,
+     .contact = 3,
+     .friction = 0.5,
+     .finish = Finish{0, 0.5, 1, 0.03, Threads::none}},
+    {.name = "silk",
+     .what = "light dress silk",
+     .source = "weight and thickness in Codim-IPC, which names no source; drape: target of ZOZO's ppf-contact-solver",
+     .density = {83},
+     .fibre = Fibre::filament,
+     .hand = Hand::limp,
+     .thickness = 0.18,
+     .drape = {{20, 40}},
+     .contact = 1,
+     .friction = 0.2,
+     .finish = Finish{0.7, 0.6, 0.1, 0.3}},
+    {.name = "satin",
+     .what = "five-thread satin",
+     .source = "weight and drape of those of 186 to 304 g/m², VaT 2018(1)",
+     .density = {186},
+     .fibre = Fibre::filament,
+     .hand = Hand::soft,
+     .drape = {{43, 70}},
+     .friction = 0.2,
+     .finish = Finish{1, 0.85, 0.05, 0.15}},
+    {.name = "chiffon",
+     .what = "sheer plain weave, 8 momme",
+     .source = kNone,
+     .density = {35, true},
+     .fibre = Fibre::filament,
+     .hand = Hand::soft,
+     .contact = 1,
+     .friction = 0.25,
+     .finish = Finish{0.3, 0.5, 0.2, 0.9}},
+    {.name = "polyester",
+     .what = "tropical, plain weave",
+     .source = kMatsudaira,
+     .density = {117},
+     .fibre = Fibre::filament,
+     .thickness = 0.340,
+     .bend = {{7.6, 7.6}},
+     .hysteresis = 19,
+     .drape = {{50.7, 50.7}},
+     .friction = 0.25},
+    {.name = "faille",
+     .what = "fluid ribbed polyester",
+     .source = kMatsudaira,
+     .density = {104},
+     .fibre = Fibre::filament,
+     .thickness = 0.226,
+     .bend = {{1.9, 1.9}},
+     .fitted_shear = 7.5,
+     .hysteresis = 18,
+     .drape = {{28.3, 28.3}},
+     .contact = 1,
+     .friction = 0.25},
+    {.name = "ripstop",
+     .what = "nylon of flags and parachutes",
+     .source = "weight and thickness: specification of nylon 7020 II",
+     .density = {54},
+     .fibre = Fibre::filament,
+     .hand = Hand::firm,
+     .thickness = 0.10,
+     .contact = 1,
+     .friction = 0.2,
+     .finish = Finish{0.5, 0.5, 0.05, 0.5}},
+    {.name = "leather",
+     .what = "sheep garment leather",
+     .source = "thickness and drape: Memon et al., Materials 14(16) 4553, 2021",
+     .density = {500, true},
+     .fibre = Fibre::filament,
+     .hand = Hand::soft,
+     .weave = Weave::none,
+     .thickness = 0.80,
+     .drape = {{47.4, 69.9}},
+     .contact = 3,
+     .friction = 0.5,
+     .finish = Finish{0.35, 0.5, 0.1, 0, Threads::none}},
+};
+
+// Cotton scatters light, wool is fuzzy, filaments shine; transparency depends on weight and openness.
+Finish finish_of(const Row& row) {
+  if (row.finish) return *row.finish;
+  return row.fibre == Fibre::cotton ? Finish{0.1, 0.5, 0.4, 0.2}
+         : row.fibre == Fibre::wool ? Finish{0.06, 0.5, 0.85, 0.1}
+                                    : Finish{0.4, 0.5, 0.12, 0.2};
+}
+
+double two_digits(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  // A quotient of two integers is correctly rounded, so that the result is the same double that a scene with the text
+  // "0.015" gives.
+  return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
+}
+
+template <class Value>
+constexpr Figure known_or(const std::optional<Value>& measured, double unit, double estimate) {
+  return measured ? Figure{*measured * unit, false} : Figure{estimate, true};
+}
+constexpr std::pair<Measured, Measured> both(const Pair& pair) {
+  if (!pair) return {};
+  return {pair->first, pair->second};
+}
+
+double estimated_bend(const Row& row) {
+  // 10, 25, 50, 75 and 90 % quantiles of a weight class / its median; means over the nine classes.
+  constexpr std::array kQuantiles{0.3, 0.55, 1.0, 1.5, 2.3};
+  return kQuantiles[static_cast<std::size_t>(row.hand)] * 130e-6 * std::pow(1e-3 * row.density.value, 1.35);
+}
+
+double estimated_hysteresis(const Row& row) {
+  return row.fibre == Fibre::cotton ? 50 : row.fibre == Fibre::wool ? 25 : 18;
+}
+
+std::pair<double, double> estimated_extension(const Row& row) {
+  if (row.weave == Weave::none) return {0.12, 0.12};
+  return row.weave == Weave::woven ? std::pair{0.08, 0.05} : std::pair{0.60, 0.25};
+}
+
+// Secant stiffness up to kWornLoad [N/m]. Crimped threads stiffen as they are stretched; fabrics without threads are
+// linear.
+double secant_stiffness(Weave weave, double extension) {
+  return (weave == Weave::none ? kExtensionLoad : std::sqrt(kExtensionLoad * kWornLoad)) / extension;
+}
+
+double estimated_shear(const Row& row) {
+  if (row.weave == Weave::none) return secant_stiffness(row.weave, estimated_extension(row).first) / (2 * (1 + 0.3));
+  if (row.weave == Weave::knitted) return 30;
+  return row.fibre == Fibre::cotton ? 65 : row.fibre == Fibre::wool ? 26 : 30;
+}
+
+Measurements measurements(const Row& row) {
+  const auto [extension_weft, extension_warp] = estimated_extension(row);
+  const double bend = estimated_bend(row), skew = row.weave == Weave::woven ? std::sqrt(1.4) : 1;
+  Measurements m;
+  m.density = {row.density.value / 1000, row.density.estimated};
+  m.thickness = known_or(row.thickness, 1e-3, 2.2e-3 * m.density.value);
+  m.extension_weft = known_or(both(row.extension).first, 0.01, extension_weft);
+  m.extension_warp = known_or(both(row.extension).second, 0.01, extension_warp);
+  m.shear = known_or(row.shear, 1, row.fitted_shear.value_or(estimated_shear(row)));
+  m.bend_weft = known_or(both(row.bend).first, 1e-6, bend / skew);
+  m.bend_warp = known_or(both(row.bend).second, 1e-6, bend * skew);
+  m.hysteresis = known_or(row.hysteresis, 1, estimated_hysteresis(row));
+  if (row.drape) m.drape = {0.01 * row.drape->first, 0.01 * row.drape->second};
+  return m;
+}
+
+// Value of max_stretch for which the force at strain `extension` is kExtensionLoad: locking threads carry the
+// difference to the force of the secant stiffness.
+double max_stretch_for(Weave weave, double extension) {
+  constexpr double kOnset = 0.7, kTension = 4e3;  // constants of forces::Lock
+  const double rest = kExtensionLoad - secant_stiffness(weave, extension) * extension;
+  return extension / (kOnset + (1 - kOnset) * std::cbrt(rest / kTension));
+}
+
+Fabric fabric(const Row& row) {
+  const Measurements m = measurements(row);
+  const double bend = std::sqrt(m.bend_weft.value * m.bend_warp.value);
+  Material material;
+  material.fabric = row.name;
+  material.density = m.density.value;
+  material.stretch_weft = two_digits(secant_stiffness(row.weave, m.extension_weft.value));
+  material.stretch_warp = two_digits(secant_stiffness(row.weave, m.extension_warp.value));
+  material.max_stretch =
+      two_digits(max_stretch_for(row.weave, 0.5 * (m.extension_weft.value + m.extension_warp.value)));
+  material.shear = two_digits(2 * m.shear.value);
+  material.bend = two_digits(bend);
+  material.bend_viscosity = two_digits(kBendingDampingTime * bend);
+  material.bend_friction = two_digits(m.hysteresis.value * bend);
+  material.thickness = 1e-3 * row.contact;
+  material.friction = row.friction;
+  return {material, m, finish_of(row), row.weave != Weave::none, row.what, row.source};
+}
+
+}  // namespace
+
+std::span<const Fabric> fabrics() {
+  static const std::vector<Fabric> kFabrics = [] {
+    std::vector<Fabric> made;
+    for (const Row& row : kRows) made.push_back(fabric(row));
+    return made;
+  }();
+  return kFabrics;
+}
+
+const Fabric* find_fabric(std::string_view name) {
+  for (const Fabric& fabric : fabrics()) {
+    if (fabric.material.fabric == name) return &fabric;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> fabric_names() {
+  std::vector<std::string> names;
+  for (const Fabric& fabric : fabrics()) names.push_back(fabric.material.fabric);
+  return names;
+}
+
+}  // namespace weft::scene

@@ -1,0 +1,58 @@
+#include "film/scene/layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace weft::scene {
+namespace {
+
+// Adds the names of all cloths that are worn below the cloth `name`.
+void add_below(const Scene& scene, const std::string& name, std::set<std::string>& below) {
+  for (const Cloth& cloth : scene.cloths)
+    if (cloth.name == name)
+      for (const std::string& next : cloth.over)
+        if (below.insert(next).second) add_below(scene, next, below);
+}
+
+int dressing_frames(const Scene& scene) {
+  int frames = scene.preroll_frames();
+  for (const Character& character : scene.characters)
+    if (character.dressing > 0) frames = std::min(frames, static_cast<int>(character.dressing * scene.time.fps + 1e-9));
+  return frames;
+}
+
+}  // namespace
+
+bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner) {
+  std::set<std::string> below;
+  add_below(scene, outer, below);
+  return below.contains(inner);
+}
+
+std::vector<std::size_t> layer_depths(const Scene& scene) {
+  std::vector<std::size_t> layers(scene.cloths.size(), 0);
+  // One pass per cloth is enough, since a chain without cycle has at most all cloths. check_layers() reports cycles.
+  for (std::size_t pass = 0; pass < scene.cloths.size(); ++pass)
+    for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+      for (std::size_t below = 0; below < scene.cloths.size(); ++below)
+        if (std::ranges::find(scene.cloths[c].over, scene.cloths[below].name) != scene.cloths[c].over.end())
+          layers[c] = std::max(layers[c], layers[below] + 1);
+  return layers;
+}
+
+std::vector<Layer> list_layers(const Scene& scene) {
+  const std::vector<std::size_t> layer_of = layer_depths(scene);
+  std::vector<Layer> layers(layer_of.empty() ? 1 : 1 + *std::ranges::max_element(layer_of));
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    layers[k].first_frame =
+        -scene.preroll_frames() + dressing_frames(scene) * static_cast<int>(k) / static_cast<int>(layers.size());
+    for (std::size_t c = 0; c < layer_of.size(); ++c) {
+      if (layer_of[c] == k) layers[k].cloths.push_back(c);
+      if (layer_of[c] <= k) layers[k].dressed.push_back(c);
+    }
+  }
+  return layers;
+}
+
+}  // namespace weft::scene

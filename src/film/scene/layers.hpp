@@ -1,0 +1,24 @@
+// Cloth worn over cloth: the order in which garments are put on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "film/scene/scene.hpp"
+#include "physics/model/model.hpp"
+
+namespace weft::scene {
+
+/// Whether `outer` is worn over `inner`, directly or through other cloths. False if `outer` is not the name of a cloth.
+bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner);
+
+/// For each cloth, the number of layers below it (longest chain of cloths, one over the other); 0: next to the skin.
+std::vector<std::size_t> layer_depths(const Scene& scene);
+
+using model::Layer;
+
+/// All layers from the skin outward, at least one. They are put on one after the other, each in an equal number of
+/// frames, from the start of the preroll until the first character with `dressing` moves.
+std::vector<Layer> list_layers(const Scene& scene);
+
+}  // namespace weft::scene

@@ -1,0 +1,100 @@
+#include "film/scene/loader.hpp"
+
+#include <fmt/format.h>
+
+#include "core/names.hpp"
+#include "film/scene/checks.hpp"
+#include "film/scene/document.hpp"
+#include "film/scene/effective.hpp"
+#include "film/scene/findings.hpp"
+#include "film/scene/reader.hpp"
+#include "film/scene/ropes.hpp"
+#include "film/scene/rule.hpp"
+
+namespace weft::scene {
+
+namespace {
+
+void read_document(toml::table document, const std::vector<std::string>& overrides, Scene& scene, Findings& findings) {
+  for (const std::string& text : overrides) apply_override(text, document, findings);
+  Reader reader(findings, scene.file.parent_path());
+  reader.read(document, scene_rules(), &scene, "");
+  for (Character& character : scene.characters)
+    if (auto* sequence = std::get_if<MeshSequence>(&character.source); sequence && !sequence->files.empty())
+      sequence->files =
+          std::filesystem::absolute(scene.file.parent_path() / sequence->files).lexically_normal().string();
+  add_rope_cloths(scene);
+  check(scene, findings);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const Place place = findings.place(findings.entry("obstacle", i) + ".file");
+    scene.obstacles[i].line = place.line;
+    scene.obstacles[i].column = place.column;
+  }
+  for (std::size_t i = 0; i < scene.characters.size(); ++i) {
+    const Place& place = findings.place(findings.entry("character", i));
+    scene.characters[i].line = place.line;
+    scene.characters[i].column = place.column;
+  }
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    const Place& place = findings.place(findings.entry("camera", i));
+    scene.cameras[i].line = place.line;
+    scene.cameras[i].column = place.column;
+  }
+  for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
+    const Place& place = findings.place(entry_of_cloth(scene, i, findings));
+    scene.cloths[i].line = place.line;
+    scene.cloths[i].column = place.column;
+  }
+}
+
+/// `text`: nullopt if the file could not be read; `findings` then contains the mistake.
+LoadResult load_from(const std::optional<std::string_view>& text, const std::filesystem::path& file,
+                     const std::vector<std::string>& overrides, Findings& findings) {
+  LoadResult result;
+  result.file = file;
+  result.text = text.value_or("");
+  result.scene.file = std::filesystem::absolute(file);
+  result.scene.name = file.stem().string();
+  if (!is_plain_name(result.scene.name))
+    findings.report("", {},
+                    fmt::format("expected a file whose name without its ending can name outputs, got {}; rename it",
+                                in_quotes(result.scene.name)));
+  if (text) {
+    if (auto document = parse(*text, findings)) {
+      read_document(std::move(*document), overrides, result.scene, findings);
+    }
+  }
+  result.mistakes = findings.take_mistakes();
+  if (result.ok()) identify(result.scene);
+  return result;
+}
+
+}  // namespace
+
+std::string LoadResult::describe() const {
+  std::string lines;
+  for (const Mistake& mistake : mistakes) {
+    std::string where = file.string();
+    if (!mistake.override_text.empty()) {
+      where = mistake.override_text;
+    } else if (mistake.line > 0) {
+      where += fmt::format(":{}:{}", mistake.line, mistake.column);
+    }
+    lines += where + ": " + (mistake.key.empty() ? "" : mistake.key + ": ") + mistake.text + "\n";
+  }
+  return lines;
+}
+
+LoadResult load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Findings findings;
+  const std::optional<std::string> text = read_file(file, findings);
+  return load_from(text ? std::optional<std::string_view>(*text) : std::nullopt, file, overrides, findings);
+}
+
+LoadResult load_text(std::string_view text, const std::filesystem::path& name,
+                     const std::vector<std::string>& overrides) {
+  Findings findings;
+  return load_from(text, name, overrides, findings);
+}
+
+}  // namespace weft::scene

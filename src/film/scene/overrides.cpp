@@ -1,0 +1,121 @@
+// Applies "--set path.to.key=value" to the parsed document.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstring>
+
+#include "core/toml.hpp"
+#include "film/scene/document.hpp"
+#include "film/scene/reader.hpp"
+
+namespace weft::scene {
+
+namespace {
+
+std::vector<std::string> split(std::string_view path) {
+  std::vector<std::string> parts(1);
+  for (const char c : path) {
+    if (c == '.') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+/// Whether a text that is not a TOML value may be used without quotes.
+bool is_plain_word(std::string_view text) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c >= 0x80 || std::strchr("_-./# ", c); };
+  return !text.empty() && std::all_of(text.begin(), text.end(), plain);
+}
+
+/// A table { value = ... } whose nodes carry `source` as their source path; nothing if the text is not a value.
+std::optional<toml::table> parse_value(std::string_view text, const std::string& source) {
+  const auto parse = [&](const std::string& value) -> std::optional<toml::table> {
+    try {
+      toml::table table = parse_toml("value = " + value, source);
+      // A line break in the text could add further keys.
+      if (table.size() != 1) return std::nullopt;
+      return table;
+    } catch (const toml::parse_error&) {
+      return std::nullopt;
+    }
+  };
+  if (auto table = parse(std::string(text))) return table;
+  return is_plain_word(text) ? parse(fmt::format("\"{}\"", text)) : std::nullopt;
+}
+
+/// The entry of a list with this name or index; null if there is none. Appends the names of the other entries to
+/// `names`.
+toml::node* find_entry(toml::array& list, const std::string& part, std::vector<std::string>& names) {
+  for (toml::node& entry : list) {
+    const auto* table = entry.as_table();
+    const auto name = table != nullptr ? (*table)["name"].value<std::string>() : std::nullopt;
+    if (name && *name == part) return &entry;
+    if (name) names.push_back(*name);
+  }
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+  const bool is_index = error == std::errc{} && end == part.data() + part.size();
+  return is_index ? list.get(index) : nullptr;
+}
+
+/// Suggests the nearest name, or all names if none is near.
+std::string suggest_names(const std::string& part, const std::vector<std::string>& names) {
+  const std::string nearest = suggestion(part, names);
+  return !nearest.empty() || names.empty() ? nearest : fmt::format("; there is {}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+void apply_override(const std::string& override_text, toml::table& document, Findings& findings) {
+  // Messages show this text as the source; it also marks nodes that come from overrides.
+  std::string source = "--set " + override_text;
+  std::replace_if(
+      source.begin(), source.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+  if (source.size() > 80) source = source.substr(0, 77) + "...";
+  const auto refuse = [&](const std::string& key, const std::string& text) {
+    findings.report(key, {0, 0, source}, text);
+  };
+
+  const auto equals = override_text.find('=');
+  if (equals == std::string::npos || equals == 0) return refuse("", "expected path.to.key=value");
+  const std::string path = override_text.substr(0, equals);
+  auto parsed = parse_value(std::string_view(override_text).substr(equals + 1), source);
+  if (!parsed) return refuse(path, "expected a TOML value after =");
+
+  const std::vector<std::string> parts = split(path);
+  if (parts.size() > 16) return refuse(path, "unknown key");
+  toml::node* node = &document;
+  std::string walked;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const bool last = i + 1 == parts.size();
+    walked += (i > 0 ? "." : "") + parts[i];
+    if (parts[i].empty()) return refuse(path, "expected a key between the dots");
+    if (toml::table* table = node->as_table()) {
+      if (last) {
+        (*parsed)["value"].node()->visit([&](auto& value) { table->insert_or_assign(parts[i], std::move(value)); });
+        return;
+      }
+      node = table->get(parts[i]);
+      if (node == nullptr) {
+        toml::table fresh = *parse_value("{}", source);
+        node = &table->insert_or_assign(parts[i], std::move(*fresh["value"].as_table())).first->second;
+      }
+    } else if (toml::array* list = node->as_array(); list != nullptr && !last) {
+      std::vector<std::string> names;
+      node = find_entry(*list, parts[i], names);
+      if (node == nullptr) {
+        return refuse(walked, fmt::format("expected the name or index of an entry, got {}{}", parts[i],
+                                          suggest_names(parts[i], names)));
+      }
+    } else {
+      return refuse(walked, "expected a key of a table");
+    }
+  }
+}
+
+}  // namespace weft::scene

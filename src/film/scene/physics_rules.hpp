@@ -1,0 +1,11 @@
+// The rows of the rule table for gravity and air.
+#pragma once
+
+#include "film/scene/rule.hpp"
+
+namespace weft::scene {
+
+const Table& physics_rules();
+const Table& fan_rules();
+
+}  // namespace weft::scene

@@ -1,0 +1,201 @@
+#include "film/scene/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/nearest.hpp"
+
+namespace weft::scene {
+
+namespace {
+
+constexpr std::size_t kMaxShownCharacters = 40;
+
+std::string join_path(const std::string& path, std::string_view key) {
+  return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+}
+
+/// Place of a key. toml++ stores it for keys of files; for a key of an override, the place of its value is used.
+Place place_of_key(const toml::key& key, const toml::node& node) {
+  return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
+}
+
+/// Whether a value comes from the command line.
+bool is_override(const toml::node& node) {
+  return !place_of(node.source()).override_text.empty();
+}
+
+}  // namespace
+
+bool is_name(std::string_view text) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto allowed = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-'; };
+  return !text.empty() && text.size() <= 64 && letter(text[0]) && std::all_of(text.begin(), text.end(), allowed);
+}
+
+std::string in_quotes(std::string_view text) {
+  std::string shown = "\"";
+  const bool cut = text.size() > kMaxShownCharacters;
+  if (cut) {
+    // Moves the end back over continuation bytes, so that no UTF-8 character is cut.
+    std::size_t end = kMaxShownCharacters;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    text = text.substr(0, end);
+  }
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    shown += byte < 0x20 || byte == 0x7F ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
+  }
+  return shown + (cut ? "...\"" : "\"");
+}
+
+std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
+  // A longer name is hardly a misspelt key, and the search would take long.
+  if (name.size() > 64) return {};
+  const std::string nearest = nearest_name(name, known);
+  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
+}
+
+std::string describe_node(const toml::node& node) {
+  if (const auto* text = node.as_string()) return "the text " + in_quotes(text->get());
+  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* flag = node.as_boolean()) return fmt::format("{}", flag->get());
+  if (const auto* array = node.as_array()) {
+    return fmt::format("an array of {} value{}", array->size(), array->size() == 1 ? "" : "s");
+  }
+  return node.is_table() ? "a table" : "a date or time";
+}
+
+Value Reader::refuse(const toml::node& node, const std::string& path, const std::string& text) {
+  findings_.report(path, place_of(node.source()), text);
+  return {};
+}
+
+void Reader::read(const toml::table& table, const Table& rules, void* target, const std::string& path) {
+  for (const Rule& rule : rules.rules) read_rule(table, rule, target, path);
+
+  const Variant* variant = rules.variant_of(target);
+  // If the selector has a mistake, keys of all variants are accepted, so that only the selector is reported.
+  const bool undecided = !rules.selector.empty() && findings_.has_mistake(join_path(path, rules.selector));
+  if (variant != nullptr && !undecided) {
+    for (const Rule& rule : variant->rules) read_rule(table, rule, target, path);
+  }
+  report_unknown(table, rules, undecided ? nullptr : variant, path);
+}
+
+void Reader::read_rule(const toml::table& table, const Rule& rule, void* target, const std::string& path) {
+  const std::string key = join_path(path, rule.key);
+  const toml::node* node = table.get(rule.key);
+  if (node == nullptr) {
+    const bool in_first_key = rule.need == Need::here_or_in_first_key && table["keys"][0][rule.key];
+    if (rule.need != Need::optional && !in_first_key) {
+      const std::string where = rule.need == Need::required ? "" : ", here or in the first of its keys";
+      findings_.report(key, findings_.place(path), fmt::format("expected {}{}, got none", expectation(rule), where));
+    }
+    return;
+  }
+  findings_.set_place(key, place_of(node->source()));
+
+  if (!rule.excludes.empty() && table.contains(rule.excludes)) {
+    // If only one of two exclusive keys comes from --set, it replaces the other one, which is in the file.
+    const bool set_here = is_override(*node), set_there = is_override(*table.get(rule.excludes));
+    if (set_here == set_there) {
+      findings_.report(key, place_of(node->source()),
+                       fmt::format("expected either {} or {}, got both", rule.key, rule.excludes));
+    }
+    if (set_here <= set_there) return;
+  }
+  if (rule.type == Type::table) {
+    if (const auto* inner = node->as_table()) {
+      read(*inner, *rule.table, rule.inner(target), key);
+    } else {
+      refuse(*node, key, fmt::format("expected {}, got {}", expectation(rule), describe_node(*node)));
+    }
+  } else if (rule.type == Type::list || rule.type == Type::keys) {
+    read_entries(*node, rule, target, key);
+  } else if (const Value value = read_value(*node, rule, key); !std::holds_alternative<std::monostate>(value)) {
+    rule.set(target, value);
+  }
+}
+
+void Reader::read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path) {
+  const toml::array* entries = node.as_array();
+  if (entries == nullptr) {
+    refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+    return;
+  }
+  if (static_cast<double>(entries->size()) > rule.range.high) {
+    refuse(node, path, fmt::format("expected at most {} entries, got {}", rule.range.high, entries->size()));
+    return;
+  }
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < entries->size(); ++i) {
+    const toml::node& element = *entries->get(i);
+    const toml::table* table = element.as_table();
+    const std::string by_index = join_path(path, std::to_string(i));
+    if (table == nullptr) {
+      refuse(element, by_index, "expected a table, got " + describe_node(element));
+      // A default entry takes its place, so that indices match the list.
+      findings_.add_entry(path, by_index);
+      rule.append(target, i);
+      continue;
+    }
+    const std::string entry = entry_path(*table, rule, path, by_index, names);
+    findings_.set_place(entry, place_of(element.source()));
+    findings_.add_entry(path, entry);
+    read(*table, *rule.table, rule.append(target, i), entry);
+  }
+}
+
+std::string Reader::entry_path(const toml::table& table, const Rule& rule, const std::string& path,
+                               const std::string& by_index, std::set<std::string>& names) {
+  const auto name = table["name"].value<std::string>();
+  if (rule.table->find("name") == nullptr || !name || !is_name(*name)) return by_index;
+  if (names.insert(*name).second) return join_path(path, *name);
+  findings_.report(join_path(by_index, "name"), place_of(table["name"].node()->source()),
+                   fmt::format("expected a name used once, got {} again", in_quotes(*name)));
+  return by_index;
+}
+
+void Reader::report_unknown(const toml::table& table, const Table& rules, const Variant* variant,
+                            const std::string& path) {
+  std::vector<std::string> known;
+  for (const Rule& rule : rules.rules) known.push_back(rule.key);
+  for (const Variant& each : rules.variants) {
+    if (variant != nullptr && &each != variant) continue;
+    for (const Rule& rule : each.rules) known.push_back(rule.key);
+  }
+  for (auto&& [key, node] : table) {
+    const std::string name(key.str());
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+
+    // Suggests the likeliest cause: a key of another variant, else a key of an inner table, else a misspelling.
+    std::string text = "unknown key";
+    std::vector<std::string> owners;
+    for (const Variant& each : rules.variants) {
+      for (const Rule& rule : each.rules) {
+        if (rule.key == name) owners.push_back(each.name);
+      }
+    }
+    std::string inner;
+    for (const Rule& rule : rules.rules) {
+      if (rule.type == Type::table && rule.table->find(name) != nullptr) inner = join_path(rule.key, name);
+    }
+    if (!owners.empty() && variant != nullptr) {
+      text = fmt::format("unknown key of a {}; it belongs to {}", variant->name, join_or(owners));
+    } else if (!inner.empty()) {
+      text += fmt::format("; did you mean {}?", inner);
+    } else if (const std::string near = suggestion(name, known); !near.empty()) {
+      text += near;
+    } else {
+      text += "; known here: " + fmt::format("{}", fmt::join(known, ", "));
+    }
+    const std::string shown = name.size() > kMaxShownCharacters || !is_name(name) ? in_quotes(name) : name;
+    findings_.report(join_path(path, shown), place_of_key(key, node), text);
+  }
+}
+
+}  // namespace weft::scene

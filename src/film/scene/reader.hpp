@@ -1,0 +1,57 @@
+// Reads TOML into structs, by the rule table.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "film/scene/findings.hpp"
+#include "film/scene/rule.hpp"
+
+namespace weft::scene {
+
+/// Text for a node in messages: "-0.001", "the text \"heavy\"", "an array of 4 values".
+std::string describe_node(const toml::node& node);
+/// The text in quotes for messages, shortened to about 40 bytes, with control characters escaped.
+std::string in_quotes(std::string_view text);
+/// Whether the text is valid as the name of a list entry.
+bool is_name(std::string_view text);
+/// "; did you mean a?" with the nearest of `known`; empty if none is near.
+std::string suggestion(std::string_view name, const std::vector<std::string>& known);
+
+class Reader {
+ public:
+  /// `folder`: base of relative file names.
+  Reader(Findings& findings, std::filesystem::path folder) : findings_(findings), folder_(std::move(folder)) {}
+
+  /// Fills `target`, a struct that `rules` describes, from the table at `path` (empty: the whole scene). A key with a
+  /// mistake keeps its default.
+  void read(const toml::table& table, const Table& rules, void* target, const std::string& path);
+
+ private:
+  void read_rule(const toml::table& table, const Rule& rule, void* target, const std::string& path);
+  void read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path);
+  /// The key path of a list entry: with its name if that is valid and not in `names` (then adds it), else with its
+  /// index.
+  std::string entry_path(const toml::table& table, const Rule& rule, const std::string& path,
+                         const std::string& by_index, std::set<std::string>& names);
+  void report_unknown(const toml::table& table, const Table& rules, const Variant* variant, const std::string& path);
+
+  Value read_value(const toml::node& node, const Rule& rule, const std::string& path);
+  Value read_text(const toml::node& node, const Rule& rule, const std::string& path);
+  Value read_texts(const toml::node& node, const Rule& rule, const std::string& path);
+  Value read_numbers(const toml::node& node, const Rule& rule, const std::string& path);
+  Value read_points(const toml::node& node, const Rule& rule, const std::string& path);
+  Value read_color(const toml::node& node, const Rule& rule, const std::string& path);
+  bool read_number(const toml::node& node, const Rule& rule, const std::string& path, double& number);
+  Value check_file(const toml::node& node, const std::string& text, const std::string& path);
+
+  Value refuse(const toml::node& node, const std::string& path, const std::string& text);
+
+  Findings& findings_;
+  std::filesystem::path folder_;
+};
+
+}  // namespace weft::scene

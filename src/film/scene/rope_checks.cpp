@@ -1,0 +1,86 @@
+#include "film/scene/rope_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "film/scene/reader.hpp"
+#include "film/scene/ropes.hpp"
+
+namespace weft::scene {
+namespace {
+
+constexpr long kMaxRopeParticles = 1'000'000;  // total of all ropes
+
+// Checks that the start path of a rope is defined, and returns whether it is.
+bool check_course(const Scene& scene, const Rope& rope, const std::string& path, Findings& findings) {
+  if (rope.points.empty()) {
+    for (const auto& [key, end] : {std::pair("from", rope.from), std::pair("to", rope.to)})
+      if (!end && !findings.has_mistake(fmt::format("{}.{}", path, key)) && !findings.has_mistake(path + ".points"))
+        findings.report(fmt::format("{}.{}", path, key), "expected points, or from and to, got none");
+    if (!rope.from || !rope.to) return false;
+    if ((*rope.to - *rope.from).norm() < kRoundoff) {
+      findings.report(path + ".to", "expected another place than from, got the same");
+      return false;
+    }
+    if (rope.closed) findings.report(path + ".closed", "expected points for a closed rope, got from and to");
+    const Vec3 up = scene.up == UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+    const Vec3 way = *rope.to - *rope.from;
+    const double span = (way - up.dot(way) * up).norm(), least = kMinRopeSpan * rope.diameter;
+    if (hangs_slack(rope) && span < least) {
+      findings.report(path + ".to",
+                      fmt::format("expected ends at least {:.4g} m apart across the up axis, {:g} diameters, as it is "
+                                  "longer than their distance; got {:.4g} m; move the ends apart, or give points",
+                                  least, kMinRopeSpan, span));
+      return false;
+    }
+    return true;
+  }
+  const std::size_t least = rope.closed ? 3 : 2;
+  if (rope.points.size() < least) {
+    findings.report(path + ".points", fmt::format("expected at least {} points, got {}", least, rope.points.size()));
+    return false;
+  }
+  const std::size_t count = rope.points.size();
+  for (std::size_t i = 0; i < (rope.closed ? count : count - 1); ++i)
+    if ((rope.points[(i + 1) % count] - rope.points[i]).norm() < kRoundoff) {
+      findings.report(path + ".points",
+                      fmt::format("expected points that differ from the one before, got point {} again", i));
+      return false;
+    }
+  return true;
+}
+
+void check_pieces(const Scene& scene, const Rope& rope, const std::string& path, long& particles, Findings& findings) {
+  const RopeShape shape = start_shape(rope, scene.up);
+  particles += static_cast<long>(shape.places.size());
+  if (particles > kMaxRopeParticles)
+    findings.report(path + ".segments", fmt::format("expected at most {} particles in all ropes together, got {}",
+                                                    kMaxRopeParticles, particles));
+  const double piece = *std::ranges::min_element(shape.lengths), least = kMinRopePiece * rope.diameter;
+  if (piece < (1 - kRoundoff) * least) {
+    const bool chosen = rope.segments.has_value();
+    findings.report(
+        path + (chosen ? ".segments" : ".diameter"),
+        fmt::format("expected pieces between particles of at least {:.4g} m, {:g} diameters, got {} of which "
+                    "the shortest has {:.4g} m",
+                    least, kMinRopePiece, shape.lengths.size(), piece));
+  }
+}
+
+}  // namespace
+
+void check_ropes(const Scene& scene, Findings& findings) {
+  long particles = 0;
+  for (std::size_t i = 0; i < scene.ropes.size(); ++i) {
+    const Rope& rope = scene.ropes[i];
+    const std::string& path = findings.entry("rope", i);
+    const auto is_sheet = [&](const Cloth& cloth) { return !cloth.rope && cloth.name == rope.name; };
+    if (!rope.name.empty() && std::ranges::any_of(scene.cloths, is_sheet))
+      findings.report(path + ".name",
+                      fmt::format("expected a name used once, got {}, which a cloth has", in_quotes(rope.name)));
+    if (check_course(scene, rope, path, findings)) check_pieces(scene, rope, path, particles, findings);
+  }
+}
+
+}  // namespace weft::scene

@@ -1,0 +1,57 @@
+// Conversion of ropes for the rest of the program: material constants, start shape, and the cloth that represents a
+// rope.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/scene/scene.hpp"
+
+namespace weft::scene {
+
+/// Constants of a kind of rope. Mass and stretch stiffness are divided by the square of the nominal diameter [m²].
+struct RopeMaterial {
+  std::string name;
+  double mass;            ///< [kg/m per m²]
+  double stretch;         ///< stiffness: force per strain [N per m²]
+  double bending_length;  ///< cube root of (bending stiffness / weight per length) [diameters]
+};
+const std::vector<RopeMaterial>& rope_materials();
+
+/// Mass and stiffness of one rope. What the scene does not give is derived from the material.
+struct RopeNumbers {
+  double mass;     ///< [kg/m]
+  double stretch;  ///< stiffness EA: force per strain [N]
+  double bend;     ///< bending stiffness EI [N·m²]
+};
+RopeNumbers numbers_of(const Rope& rope);
+
+/// Start positions of the particles of a rope [m], and rest lengths of its pieces between particles [m]. A closed rope
+/// has as many pieces as particles, an open one has one piece less.
+struct RopeShape {
+  std::vector<Vec3> places;
+  std::vector<double> lengths;
+};
+/// Start shape of a rope. A slack rope without points hangs as a catenary. `up`: of the scene.
+RopeShape start_shape(const Rope& rope, UpAxis up);
+
+/// Default length of a piece [diameters].
+inline constexpr double kRopePiece = 3;
+using model::kMinRopePiece;
+/// Minimum horizontal distance between the ends of a slack rope without points [diameters].
+inline constexpr double kMinRopeSpan = 4;
+/// Whether a rope has no points and is longer than the distance of its ends.
+bool hangs_slack(const Rope& rope);
+
+/// Rest length at the start [m]; empty: length of the path through its points or between its ends.
+std::optional<double> start_length(const Rope& rope);
+
+/// The one-dimensional cloth that is simulated for a rope.
+Cloth as_cloth(const Rope& rope);
+/// Appends the cloths of all ropes to those of the scene.
+void add_rope_cloths(Scene& scene);
+/// Removes the cloths of ropes.
+void remove_rope_cloths(Scene& scene);
+
+}  // namespace weft::scene

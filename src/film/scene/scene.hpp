@@ -1,0 +1,421 @@
+// A checked scene: plain values in SI units, with every default filled in and every name resolved.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/threads.hpp"
+#include "core/types.hpp"
+#include "film/scene/camera.hpp"
+#include "film/scene/shapes.hpp"
+#include "physics/integrator/method.hpp"
+#include "physics/model/air.hpp"
+#include "physics/model/contact.hpp"
+#include "physics/model/material.hpp"
+#include "physics/model/pressure.hpp"
+#include "physics/model/rope.hpp"
+#include "physics/model/settings.hpp"
+#include "physics/motion/pose.hpp"
+
+namespace weft::scene {
+
+// Values that the physics takes as a scene gives them.
+using Integrator = integrator::Method;
+using model::Bounds;
+using model::Contact;
+using model::Fan;
+using model::FanKey;
+using model::FrictionPair;
+using model::Gusts;
+using model::Material;
+using model::Physics;
+using model::PhysicsKey;
+using model::Pressure;
+using model::PressureControl;
+using model::PressureKey;
+using model::Response;
+using model::RopeKey;
+using model::Search;
+using model::Solver;
+using model::TreeKind;
+using motion::change_of_angles;
+using motion::Interpolation;
+using motion::Pose;
+using motion::PoseKey;
+using motion::PoseTrack;
+
+enum class UpAxis { y, z };
+
+enum class HeatQuantity { none, strain, speed };
+
+struct Time {
+  double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
+  double fps = 25;      ///< frames per second
+  double preroll = 0;   ///< time simulated before frame 0 and not shown [s]
+  double step = 0.01;   ///< maximum time step [s]; each frame is divided into equal steps no longer than this
+  std::optional<double> tolerance =
+      std::nullopt;  ///< replaces `step`: allowed local error of a cloth's positions in one step [m]
+  Integrator integrator = Integrator::implicit_euler;
+};
+
+/// Colours of a cloth or of one of its panels, and a picture on it, aligned with the grain.
+struct Paint {
+  Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
+  std::optional<Vec3> back_color;              ///< sRGB, other side of cloth; absent: paler than the front
+  std::optional<std::filesystem::path> image;  ///< PNG, JPEG or TGA; absolute after checking
+  double image_width = 0.2;                    ///< width of one tile along weft [m]; the picture determines its height
+  Vec2 image_offset{0, 0};                     ///< position of the lower left corner of a tile along weft and warp [m]
+  double image_rotation = 0;                   ///< about that corner, counter-clockwise [degrees]
+  bool image_repeat = true;                    ///< false: one tile, with `color` around it
+  bool cutout = false;                         ///< transparent parts are holes; else `color` shows there
+};
+
+/// A panel of a pattern with its own colours.
+struct PanelPaint : Paint {
+  std::string name;
+};
+
+/// Reflection properties of cloth besides colour, each from 0 to 1; see frame::Finish.
+struct Finish {
+  double gloss, warp_fraction, fuzz, sheer;
+  Threads threads = Threads::plain;
+};
+
+struct Look : Paint {
+  std::vector<PanelPaint> panels;  ///< colours of the panels of a pattern
+  bool as_file = true;             ///< characters: use colours and pictures of the file, if any
+  double roughness = 0.6;
+  std::optional<double> gloss;        ///< cloth: gloss of threads, absent: that of the fabric; obstacles: clear coat
+  std::optional<double> fuzz, sheer;  ///< cloth only; absent: those of the fabric
+  double metal = 0;                   ///< obstacles only: 1: reflects all light, in the object's colour
+  std::optional<double> tile_width;   ///< obstacles only: width of the picture [m]; absent: once over the shape
+  double warp_fraction = 0.5;         ///< fraction of warp among the threads on top; from the fabric
+  Threads threads = Threads::plain;   ///< of the fabric
+  double cloth_thickness = 0;         ///< thickness of the fabric itself, or of a rope [m]
+  double thread_spacing = 0.0006;     ///< cloth only: spacing of the drawn threads [m]; 0: draws no threads
+  std::optional<double> hem;          ///< width of hems [m]; cloth only; 0: cut edges
+  bool checker = false;               ///< floors only
+  bool strands = true;                ///< ropes only: drawn with twisted strands
+  bool visible = true;
+};
+
+/// Pose in which a pin holds its particles at one time. They rotate about their centroid.
+struct PinKey {
+  double time = 0;  ///< [s], strictly increasing
+  Pose pose;        ///< position: of the centroid, relative to its start or in the world
+  bool in_world = false;
+};
+
+struct PinTrack {
+  Interpolation interpolation = Interpolation::cubic;
+  std::vector<PinKey> keys;  ///< empty: the particles keep their start positions
+};
+
+enum class VertexColor { none, red, green, blue, brightness };
+
+/// Particles of a cloth inside [low, high], in fractions of its rest size along weft and warp. `mask`, `vertex_color`
+/// and `vertex_group` give each particle a weight; several weights are multiplied.
+struct ClothPart {
+  std::string panel;  ///< of a pattern: only this panel, with fractions of its size; empty: all
+  Vec2 low{0, 0}, high{1, 1};
+  std::optional<Vec2> at = {};                ///< of a rope: first and last fraction of its length, replace low, high
+  std::string edge;                           ///< of a pattern, as "panel.edge": only this edge; empty: all
+  std::optional<std::filesystem::path> mask;  ///< picture whose grey values are weights; absolute after checking
+  VertexColor vertex_color = VertexColor::none;  ///< of a mesh file: colour channel that gives weights
+  std::string vertex_group;  ///< of a mesh file: vertex group or bone that gives weights; empty: all
+
+  /// Whether the particle at fractions (u, v) of the rest size is inside. The tolerance kSlack admits a particle at a
+  /// bound that the scene gives with nine digits, such as 0.333333333.
+  bool holds(double u, double v) const {
+    constexpr double kSlack = 1e-9;
+    return u >= low.x() - kSlack && u <= high.x() + kSlack && v >= low.y() - kSlack && v <= high.y() + kSlack;
+  }
+};
+
+/// Particles that are held in place, or moved.
+struct Pin : ClothPart {
+  std::string follow;              ///< body or "<character>.<part>" whose motion the particles share; empty: none
+  PinTrack motion;                 ///< motion of the particles, if they follow nothing
+  double release = -1;             ///< time of release [s]; negative: never
+  std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
+  double fade = 0;  ///< distance along the cloth over which the pull on other particles fades [m]; needs a strength
+};
+
+/// The body that a `follow` names and, for a character, the part (else empty).
+struct Followed {
+  std::string body, part;
+};
+inline Followed followed(const std::string& follow) {
+  const std::size_t dot = follow.find('.');
+  return {follow.substr(0, dot), dot == std::string::npos ? "" : follow.substr(dot + 1)};
+}
+
+/// Additional mass, distributed over particles in proportion to their weights (see ClothPart).
+struct Weight : ClothPart {
+  double mass = 0.1;  ///< [kg]
+};
+
+/// Springs from particles of a cloth to the nearest points of another cloth or body: buttons, pegs, tacks.
+struct Attachment : ClothPart {
+  std::string name, cloth, to;
+  double stiffness = 10000;             ///< stiffness of the spring of a particle with weight 1 [N/m]
+  std::optional<double> length;         ///< rest length of the springs [m]; absent: the distance at `begin`
+  double begin = -1e5, release = -1;    ///< times between which it acts [s]; negative release: for ever
+  std::optional<double> breaking_load;  ///< total force of its springs above which it breaks [N]; absent: never
+};
+
+enum class ClothStart { as_given, untangle };
+enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern, rope };
+enum class ClothRest { automatic, mesh, uv };
+
+struct Rope;
+
+struct Cloth {
+  std::string name;
+  ClothShape shape = ClothShape::quads;
+  Vec2 size{1, 1};                               ///< weft, warp [m]; for rectangles
+  int particles_weft = 41, particles_warp = 41;  ///< for rectangles; crossed triangles have another one in each cell
+  Vec2 grading{1, 1};                            ///< for rectangles: last spacing of particles / first spacing
+  std::filesystem::path file;                    ///< mesh or sewing pattern; absolute after checking
+  double scale = 1;                              ///< mesh: metres per unit of the file; pattern: factor on its lengths
+  FileUp up = FileUp::as_file;                   ///< mesh: up axis of the file
+  std::string object;                            ///< mesh: name of the object in the file; empty: all objects
+  ClothRest rest = ClothRest::automatic;         ///< mesh: source of the rest shape
+  std::optional<Vec2> uv_scale;                  ///< metres per unit of the UVs; absent: so that they fit the mesh
+  double edge_length = 0.02;                     ///< edge length of the mesh of a pattern [m]
+  std::string wearer;                            ///< character that wears a pattern; empty: the only one
+  bool fit = false;                              ///< scale a pattern to the wearer's measures
+  double sewing = 1;         ///< time in which the rest shape changes from the sewn start to flat panels [s]
+  int line = 0, column = 0;  ///< where the scene names it, for errors in its file
+  Pose pose;                 ///< pose of the middle of a sheet (weft along x, warp along y), or of a file's origin
+  Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
+  Vec3 spin{0, 0, 0};        ///< at the start, about the centre of mass: vector along the axis [degrees/s]
+  Vec2 start_scale{1, 1};    ///< start lengths along weft and warp / rest lengths
+  ClothStart start = ClothStart::as_given;  ///< what happens if the cloth touches or crosses something at the start
+  std::vector<std::string> over;            ///< cloths that are put on before it and stay inside it
+  double start_noise = 0;                   ///< maximum random offset of a particle at the start, along each axis [m]
+  Material material;
+  Pressure pressure;
+  Look look;
+  std::vector<Pin> pins;
+  std::vector<Weight> weights;
+  std::shared_ptr<const Rope> rope;  ///< the rope that this cloth represents; null: a sheet
+};
+
+/// Number of particles of a rectangle of cloth; 0 for other shapes.
+inline long rectangle_particles(const Cloth& cloth) {
+  const long u = cloth.particles_weft, v = cloth.particles_warp;
+  if (cloth.shape > ClothShape::crossed_triangles) return 0;
+  return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
+}
+
+/// A thin chain of particles. It is simulated as a one-dimensional cloth; see as_cloth().
+struct Rope {
+  std::string name;
+  std::vector<Vec3> points;                            ///< points that it passes through at the start [m]
+  std::optional<Vec3> from, to;                        ///< its ends, if it has no points [m]
+  bool smooth = false;                                 ///< curved through its points; else straight between them
+  bool closed = false;                                 ///< its end joins its beginning
+  std::optional<double> length;                        ///< rest length [m]; absent: length at the start
+  Interpolation interpolation = Interpolation::cubic;  ///< between its keys
+  std::vector<RopeKey> keys;                           ///< keys of its length; empty: constant length
+  std::optional<int> segments;                         ///< number of pieces between particles; absent: by diameter
+  double diameter = 0.008;                             ///< contact diameter [m]
+  int material = 0;                                    ///< index into rope_materials()
+  std::optional<double> mass, stretch, bend;  ///< mass per length [kg/m], EA [N], EI [N·m²]; absent: by material
+  double damping = 0.01;                      ///< viscosity of stretch and bending / their stiffness [s]
+  double friction = 0.3;   ///< Coulomb coefficient; a contact uses the geometric mean of both objects
+  double drag = 1.1;       ///< air resistance coefficient of a cylinder, for motion across the rope
+  Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
+  Look look;
+  std::vector<Pin> pins;
+  std::vector<Weight> weights;
+};
+
+struct Obstacle {
+  std::string name;
+  Shape shape;
+  int segments = 48;  ///< round shapes: number of faces around the axis
+  Pose pose;
+  PoseTrack motion;        ///< absolute poses; empty: rests at `pose`
+  double mass = 0;         ///< [kg]; 0: from the density
+  double density = 0;      ///< [kg/m³]; if mass and density are 0, forces do not move the obstacle
+  Vec3 velocity{0, 0, 0};  ///< at the start, if forces but no keys move it [m/s]
+  Vec3 spin{0, 0, 0};      ///< at the start, as `velocity`; about its centre of mass [degrees/s]
+  double release = 0;      ///< time from which forces move it [s]; until then, its keys do
+  /// Obstacle, or "<character>.<part>", whose rigid motion since the start of the run is added to its own; empty: none.
+  std::string follow = {};
+  double friction = 0.3;
+  bool collide = true;
+  Look look;
+  int line = 0, column = 0;  ///< where the scene names it, for errors in its file
+};
+
+/// Whether forces move the obstacle.
+inline bool is_dynamic(const Obstacle& obstacle) {
+  return obstacle.mass > 0 || obstacle.density > 0;
+}
+
+enum class Stance { first, rest };
+
+/// Names of one joint in two files, for files that do not use the common names.
+struct JointNames {
+  std::string name;                   ///< one of character::joint_names()
+  std::optional<std::string> body;    ///< in the character's file
+  std::optional<std::string> motion;  ///< in the file of the motion
+};
+
+/// Horizontal travel of a clip: as in its file, in place, or at a speed.
+struct Travel {
+  enum class Kind { file, none, speed };
+  Kind kind = Kind::file;
+  double speed = 0;  ///< for Kind::speed: horizontal speed in the scene [m/s]
+};
+
+/// How a skinned body moves.
+struct Acting {
+  std::optional<std::string> clip;  ///< name of a clip in `motion` or, without, in the body; absent: the first
+  std::optional<std::filesystem::path> motion;  ///< file with the motion to transfer; absolute after checking
+  FileUp motion_up = FileUp::as_file;           ///< up axis of `motion`
+  std::vector<JointNames> joints;
+  Travel travel;
+  Stance stance = Stance::first;      ///< pose while dressing
+  std::optional<double> stance_arms;  ///< angle between straight arms and the vertical [degrees]; absent: unchanged
+  bool loop = false;                  ///< repeats the clip; each round starts where the previous one ended
+  double crossfade = 0;               ///< the end of a round, for this clip time, is blended into the next round [s]
+};
+
+/// A skinned and animated character from a file.
+struct CharacterFile : Acting {
+  std::filesystem::path path;        ///< absolute after checking
+  std::vector<std::string> meshes;   ///< meshes to use, by names of meshes or their nodes; empty: all
+  std::vector<std::string> without;  ///< meshes to leave out, by the same names
+};
+
+/// The built-in mannequin; see character::MannequinBuild. In scenes with z up it faces and walks along −y.
+struct Mannequin : Acting {
+  double height = 1.75;       ///< [m]
+  double girth = 1;           ///< factor on the widths of the slender default
+  double masculinity = 0;     ///< shape from 0, a woman, to 1, a man
+  double edge_length = 0.02;  ///< edge length of its triangles [m]
+  double walk = 0;            ///< walked distance [m]; 0: it stands
+  double pace = 1.2;          ///< steady walking speed [m/s]
+  bool turn_back = false;     ///< at the end of the walk it turns and walks back
+  double arms_out = 13;       ///< angle of the upper arms from the vertical while walking [degrees]
+};
+
+/// Key frames of a body, given by a sequence of mesh files.
+struct MeshSequence {
+  std::string files;  ///< a folder, or a file name with one *; relative paths start at the scene's folder
+  double fps = 25;    ///< files per second
+};
+
+using CharacterSource = std::variant<CharacterFile, Mannequin, MeshSequence>;
+
+/// A part of a character with its own contact settings: a bone, a material, or a part by its name.
+struct BodyPart {
+  std::string name;
+  std::optional<std::string> bone;      ///< node of the character's file, with all nodes below it
+  std::optional<std::string> material;  ///< of the character's file
+  bool collide = true;
+  std::optional<double> friction;  ///< absent: that of the character
+  double thickness = 0;            ///< thickness of padding [m]; half of it is added to the contact distance
+};
+
+/// A body with prescribed motion, stored as key frames of its vertices.
+struct Character {
+  std::string name;
+  CharacterSource source;
+  std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, else 1
+  FileUp up = FileUp::as_file;
+  Pose pose;                   ///< pose of the file's origin, or of the point on the floor below the mannequin
+  double dressing = 0;         ///< time from the start of the preroll during which it stands still [s]
+  double blend = 0;            ///< time after `dressing` in which its motion starts smoothly [s]
+  double grow = 0;             ///< first part of `dressing`: it grows from its bones to its size [s]
+  double start = 0;            ///< time of the clip at which the motion begins [s]
+  double speed = 1;            ///< factor on the speed of the clip
+  std::optional<double> room;  ///< clearance between limbs for cloth [m]; absent: from cloth thickness
+  std::optional<double> keys_per_second;  ///< absent: that of the clip
+  Interpolation interpolation = Interpolation::cubic;
+  double friction = 0.3;
+  bool collide = true;
+  std::vector<BodyPart> parts;
+  Look look;
+  int line = 0, column = 0;  ///< where the scene names it, for errors in its file
+};
+
+/// The acting of a character that has joints; nullptr for others.
+inline const Acting* acting_of(const Character& character) {
+  if (const auto* file = std::get_if<CharacterFile>(&character.source)) return file;
+  return std::get_if<Mannequin>(&character.source);
+}
+inline Acting* acting_of(Character& character) {
+  return const_cast<Acting*>(acting_of(std::as_const(character)));
+}
+
+struct LightKey {
+  double time = 0;
+  Vec3 direction{-0.4, -0.5, -1}, position{0, 0, 5}, target{0, 0, 0};
+  double intensity = 1;
+};
+
+struct Light {
+  std::string name;
+  bool spot = false;
+  double cone_angle = 45;
+  Vec3 color{1, 1, 1};
+  double softness = 2;
+  std::vector<LightKey> keys;  ///< at least one; one: still
+  Interpolation interpolation = Interpolation::cubic;
+};
+
+enum class StageLook { studio, stage, daylight, clay, wire, strain };
+
+struct Render {
+  int width = 1280, height = 720;
+  std::string camera;  ///< name; empty: the first, or automatic framing if there is none
+  StageLook look = StageLook::studio;
+  std::optional<Vec3> sky_color, ground_color;  ///< sRGB; absent: those of the look
+  std::optional<double> sky_intensity;
+  double exposure = 0;     ///< stops
+  double motion_blur = 0;  ///< shutter angle [degrees]
+  HeatQuantity heat = HeatQuantity::none;
+  double heat_max = 0;
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::string name;  ///< file name without extension; names the output
+  std::string title;
+  std::uint64_t hash = 0;                    ///< hash of the checked values, independent of comments and order
+  std::uint64_t simulation_hash = 0;         ///< hash of only the values that affect the simulation
+  std::vector<std::filesystem::path> files;  ///< files that for_each_dependency() visits
+  UpAxis up = UpAxis::z;
+  Time time;
+  Physics physics;
+  std::vector<Fan> fans;
+  Solver solver;
+  Contact contact;
+  std::vector<Cloth> cloths;  ///< those of ropes come last
+  std::vector<Rope> ropes;    ///< as the scene gives them
+  std::vector<Attachment> attachments;
+  std::vector<Obstacle> obstacles;
+  std::vector<Character> characters;
+  std::vector<Camera> cameras;
+  std::vector<Light> lights;
+  Render render;
+
+  int frame_count() const { return static_cast<int>(std::lround(time.duration * time.fps)) + 1; }
+  /// Number of frames in the preroll; frame 0 follows them.
+  int preroll_frames() const { return static_cast<int>(std::ceil(time.preroll * time.fps - 1e-9)); }
+  double start_time() const { return -preroll_frames() / time.fps; }  ///< start of the run, including the preroll [s]
+};
+
+}  // namespace weft::scene

@@ -1,0 +1,67 @@
+// Writes video files through libav.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "film/image/image.hpp"
+
+namespace weft::video {
+
+/// h264: 8 bits, 4:2:0, in .mp4, .mov or .mkv, for players. The others are for editing: h264_lossless (.mkv, .mp4,
+/// .mov) and ffv1 (.mkv) keep the bytes of the pictures; prores is ProRes 422 HQ with 10 bits (.mov, .mkv). automatic:
+/// h264, ffv1 or prores, chosen by the extension.
+enum class Codec { automatic, h264, h264_lossless, ffv1, prores };
+
+struct Settings {
+  int width = 1280, height = 720;  ///< [pixels]; odd sizes are padded by one column or row unless the codec keeps RGB
+  double fps = 25;                 ///< frames per second; frame k is shown at exactly k / fps (23.976: 24000/1001)
+  Codec codec = Codec::automatic;
+  int crf = 18;                     ///< for h264: x264 constant quality, 1 to 51; smaller is better
+  std::string preset = "veryfast";  ///< x264 preset
+  int threads = 1;  ///< of the encoder; the same on all machines, as the output of x264 depends on this number
+  std::map<std::string, std::string> metadata;
+};
+
+/// Writes one video: by default MP4 with H.264, yuv420p, BT.709, fast start. The file gets its final name only in
+/// finish(). Until then, a hidden temporary file beside it holds the frames in fragments, which can be played even if
+/// the process is killed.
+class Encoder {
+ public:
+  /// Opens the temporary file. Throws Error(output_failed) if settings are out of range or the file cannot be written.
+  Encoder(const std::filesystem::path& file, const Settings& wanted);
+  ~Encoder();  ///< without finish(): removes the temporary file
+  Encoder(const Encoder&) = delete;
+  Encoder& operator=(const Encoder&) = delete;
+
+  /// Appends the next frame. Throws Error(internal) if its size differs from the settings, Error(output_failed) with
+  /// libav's message, for example if the disk is full.
+  void add(const image::Image& image);
+
+  /// Flushes the encoder, moves the index to the front, verifies by reading that each frame has its time, and renames
+  /// the file to its final name. At least one frame must have been added. Throws Error(output_failed); if all frames
+  /// are encoded but the finished file cannot be made, they are kept as partial_name(file), which the error names.
+  void finish();
+
+  int frames() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Whether videos with this extension, such as ".mp4", can be written.
+bool is_written(const std::string& ending);
+
+/// The codec for a file of this name. Throws Error(usage) if such files cannot contain `codec`.
+Codec codec_of(const std::filesystem::path& file, Codec codec);
+
+/// `<name>.partial` with the extension of `file`: the file of all frames if the finished file cannot be made.
+std::filesystem::path partial_name(const std::filesystem::path& file);
+
+/// Name and version of the encoder that would be used, for `weft doctor`.
+std::string encoder_description();
+
+}  // namespace weft::video

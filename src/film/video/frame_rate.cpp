@@ -1,0 +1,30 @@
+#include "film/video/frame_rate.hpp"
+
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace weft::video {
+namespace {
+
+// Relative tolerance for broadcast rates. With two or three decimals, they are within 1.1e-6 of n * 1000/1001; the
+// nearest other decimals, such as 23.98, are 1e-4 away.
+constexpr double kBroadcastTolerance = 5e-6;
+
+// Maximum numerator and denominator. The time unit of MP4, a power of two times the numerator, then fits into 32 bits.
+constexpr int kMaxTerm = 100000;
+
+}  // namespace
+
+AVRational frame_rate(double fps) {
+  if (!(fps >= 0.01 && fps <= 1000)) {
+    throw Error(ExitCode::output_failed, "fps: expected 0.01 to 1000 frames a second, got {}", fps);
+  }
+  for (const int n : {24, 30, 48, 60, 120}) {
+    const double broadcast = n * 1000.0 / 1001.0;
+    if (std::abs(fps - broadcast) <= kBroadcastTolerance * broadcast) return {n * 1000, 1001};
+  }
+  return av_d2q(fps, kMaxTerm);
+}
+
+}  // namespace weft::video

@@ -1,0 +1,177 @@
+#include "film/video/mp4_file.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace weft::video {
+namespace {
+
+// Without use_metadata_tags, libav writes only the keys of iTunes.
+constexpr const char* kFragmentedFlags = "+frag_every_frame+empty_moov+default_base_moof+use_metadata_tags";
+constexpr const char* kFastStartFlags = "+faststart+use_metadata_tags";
+
+/// The container for the extension of the user's file name.
+const char* container_of(const std::filesystem::path& file) {
+  const std::filesystem::path ending = file.extension();
+  return ending == ".mkv" ? "matroska" : ending == ".mov" ? "mov" : "mp4";
+}
+bool is_matroska(const std::filesystem::path& file) {
+  return file.extension() == ".mkv";
+}
+
+// A dictionary that libav may replace while reading it.
+struct Dictionary {
+  AVDictionary* entries = nullptr;
+  Dictionary() = default;
+  ~Dictionary() { av_dict_free(&entries); }
+  Dictionary(const Dictionary&) = delete;
+  Dictionary& operator=(const Dictionary&) = delete;
+};
+
+InputPtr open_video(const std::filesystem::path& file, const std::filesystem::path& reported_file) {
+  AVFormatContext* opened = nullptr;
+  check(avformat_open_input(&opened, file.c_str(),
+                            av_find_input_format(is_matroska(reported_file) ? "matroska" : "mp4"), nullptr),
+        reported_file, "read the frames back");
+  InputPtr input(opened);
+  if (input->nb_streams != 1) fail(reported_file, "read the frames back", "expected one stream");
+  return input;
+}
+
+// Returns false at the end of the file.
+bool read_packet(AVFormatContext& input, AVPacket& packet, const std::filesystem::path& reported_file) {
+  const int code = av_read_frame(&input, &packet);
+  if (code == AVERROR_EOF) return false;
+  check(code, reported_file, "read the frames back");
+  return true;
+}
+
+// The header of an MP4 file describes all packets, so they must share one codec configuration.
+bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
+  const auto bytes = [](const AVCodecParameters& codec) {
+    return std::basic_string_view<std::uint8_t>(codec.extradata, static_cast<std::size_t>(codec.extradata_size));
+  };
+  return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
+}
+
+// Delay between decoding and showing the first frame, in frames; 0 if the file has only one of these times.
+std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
+  const InputPtr input = open_video(file, reported_file);
+  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
+  if (!read_packet(*input, *packet, reported_file)) return 0;
+  if (packet->pts == AV_NOPTS_VALUE || packet->dts == AV_NOPTS_VALUE) return 0;
+  return av_rescale_q(packet->pts - packet->dts, input->streams[0]->time_base, av_inv_q(rate));
+}
+
+}  // namespace
+
+Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
+                     const AVCodecParameters& codec, AVRational rate,
+                     const std::map<std::string, std::string>& metadata)
+    : reported_file_(std::move(reported_file)), frame_duration_(av_inv_q(rate)) {
+  AVFormatContext* allocated = nullptr;
+  check(avformat_alloc_output_context2(&allocated, nullptr, container_of(reported_file_), file.c_str()), reported_file_,
+        "start a file");
+  output_.reset(allocated);
+
+  AVStream* stream = check_allocated(avformat_new_stream(output_.get(), nullptr), reported_file_);
+  check(avcodec_parameters_copy(stream->codecpar, &codec), reported_file_, "describe the video");
+  stream->codecpar->codec_tag = 0;  // the tag of the source container may not suit this one
+  stream->time_base = frame_duration_;
+  stream->avg_frame_rate = rate;
+  for (const auto& [key, value] : metadata) {
+    check(av_dict_set(&output_->metadata, key.c_str(), value.c_str(), 0), reported_file_, "set metadata");
+  }
+
+  // Writes each packet to the system at once. If the process is killed, only the frames inside the encoder are lost.
+  output_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
+  // Without this flag, Matroska files contain random numbers, and equal runs would not give equal bytes.
+  if (is_matroska(reported_file_)) output_->flags |= AVFMT_FLAG_BITEXACT;
+  check(avio_open(&output_->pb, output_->url, AVIO_FLAG_WRITE), reported_file_, "create the file");
+  Dictionary options;
+  const char* flags = layout == Mp4Layout::fragmented ? kFragmentedFlags : kFastStartFlags;
+  // Matroska needs no flags: incomplete files are playable.
+  if (!is_matroska(reported_file_))
+    check(av_dict_set(&options.entries, "movflags", flags, 0), reported_file_, "choose the layout of the file");
+  check(avformat_write_header(output_.get(), &options.entries), reported_file_, "write the header");
+  if (av_dict_count(options.entries) != 0) fail(reported_file_, "write the header", "libav ignores movflags");
+}
+
+void Mp4Writer::write(AVPacket& packet) {
+  packet.stream_index = 0;
+  packet.pos = -1;
+  packet.duration = 1;
+  av_packet_rescale_ts(&packet, frame_duration_, output_->streams[0]->time_base);
+  check(av_write_frame(output_.get(), &packet), reported_file_, "write a frame");
+}
+
+void Mp4Writer::close() {
+  check(av_write_trailer(output_.get()), reported_file_, "write the index");
+  check(avio_closep(&output_->pb), reported_file_, "close the file");
+  output_.reset();
+}
+
+void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::filesystem::path& to,
+                        const std::filesystem::path& reported_file, AVRational rate,
+                        const std::map<std::string, std::string>& metadata) {
+  const InputPtr first = open_video(from.front(), reported_file);
+  const AVCodecParameters& codec = *first->streams[0]->codecpar;
+  Mp4Writer writer(to, reported_file, Mp4Layout::fast_start, codec, rate, metadata);
+  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
+
+  // Packet k is decoded `delay` frames before time k, since B-frames need later frames. Files may differ in this delay
+  // (with one frame it is 0), so the largest one is used.
+  std::int64_t delay = 0;
+  for (const std::filesystem::path& file : from) delay = std::max(delay, delay_of(file, reported_file, rate));
+
+  std::int64_t written = 0;
+  for (const std::filesystem::path& file : from) {
+    const InputPtr input = open_video(file, reported_file);
+    const AVStream& stream = *input->streams[0];
+    if (!same_codec(codec, *stream.codecpar))
+      fail(reported_file, fmt::format("join {}", file.string()), "it is not encoded as the first one is");
+    // A fragmented file cannot contain negative times, so libav has shifted all times by the delay. The first packet is
+    // frame 0, as the stream starts with a key frame.
+    const std::int64_t before = written;
+    std::optional<std::int64_t> first_time;
+    for (; read_packet(*input, *packet, reported_file); ++written) {
+      av_packet_rescale_ts(packet.get(), stream.time_base, av_inv_q(rate));
+      if (!first_time) first_time = packet->pts;
+      packet->pts += before - *first_time;
+      packet->dts = written - delay;
+      writer.write(*packet);
+      av_packet_unref(packet.get());
+    }
+  }
+  writer.close();
+}
+
+void verify_frames(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate,
+                   int frames) {
+  const InputPtr input = open_video(file, reported_file);
+  const AVRational unit = input->streams[0]->time_base;
+  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
+
+  std::vector<bool> seen(static_cast<std::size_t>(frames));
+  int count = 0;
+  while (read_packet(*input, *packet, reported_file)) {
+    const std::int64_t frame = av_rescale_q(packet->pts, unit, av_inv_q(rate));
+    // Matroska rounds times to milliseconds.
+    const bool on_time = is_matroska(reported_file) || av_compare_ts(packet->pts, unit, frame, av_inv_q(rate)) == 0;
+    const bool new_frame = frame >= 0 && frame < frames && !seen[frame];
+    if (!on_time || !new_frame) {
+      fail(reported_file, "verify the frames", fmt::format("packet {} is not one of {} frames", count, frames));
+    }
+    seen[frame] = true;
+    ++count;
+    av_packet_unref(packet.get());
+  }
+  if (count != frames) fail(reported_file, "verify the frames", fmt::format("{} of {} are there", count, frames));
+}
+
+}  // namespace weft::video

@@ -1,0 +1,51 @@
+// MP4, MOV and Matroska files with one video stream. While frames arrive, a file is written in fragments; it is then
+// copied to a file that can be played while it loads. Matroska has the same layout in both cases.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+
+#include "film/video/libav.hpp"
+
+namespace weft::video {
+
+enum class Mp4Layout {
+  fragmented,  ///< every frame is a fragment: the file can be played even if the process is killed
+  fast_start,  ///< the index precedes the frames: browsers can start and seek before the whole file is loaded
+};
+
+/// A video file that is being written.
+class Mp4Writer {
+ public:
+  /// Opens `file` and writes its header. The path must be absolute, since libav reads the text before a colon as a
+  /// protocol. Packet times are in units of one frame, 1 / `rate` seconds. Errors name `reported_file`, the name that
+  /// the user has given. Throws Error(output_failed).
+  Mp4Writer(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
+            const AVCodecParameters& codec, AVRational rate, const std::map<std::string, std::string>& metadata);
+
+  /// Appends a packet, in decoding order; rescales its times to the unit of the file. Throws Error(output_failed).
+  void write(AVPacket& packet);
+
+  /// Writes the index and closes the file. Throws Error(output_failed).
+  void close();
+
+ private:
+  std::filesystem::path reported_file_;
+  AVRational frame_duration_;
+  OutputPtr output_;
+};
+
+/// Copies the packets of the files `from`, one after the other, into a new fast-start file `to`, with the first frame
+/// at time zero. Throws Error(output_failed), also if the files are not encoded alike.
+void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::filesystem::path& to,
+                        const std::filesystem::path& reported_file, AVRational rate,
+                        const std::map<std::string, std::string>& metadata);
+
+/// Reads `file`. Throws Error(output_failed) unless it has each of `frames` frames once, frame k at k / `rate`. In
+/// Matroska, times are rounded to milliseconds.
+void verify_frames(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate,
+                   int frames);
+
+}  // namespace weft::video

@@ -1,0 +1,22 @@
+// The user's choices for a measurement of error against run time.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "film/scene/scene.hpp"
+
+namespace weft::bench {
+
+/// If a list is absent, the program chooses it; an empty list omits its axis.
+struct AccuracyPlan {
+  std::optional<std::vector<scene::Integrator>> integrators;
+  std::optional<std::vector<double>> steps;       ///< relative to the scene's time.step
+  std::optional<std::vector<double>> tolerances;  ///< time.tolerance [m]
+  std::optional<std::vector<double>> meshes;      ///< number of cells along each side, relative to the scene
+  std::optional<int> starts;  ///< number of starts, each displaced by one micrometre more; default 1, or 3 with contact
+};
+/// Smallest number of starts for which a median is more reliable than a single run.
+inline constexpr int kMinStartsWithContact = 3;
+
+}  // namespace weft::bench

@@ -1,0 +1,275 @@
+// Conclusions from the runs of bench/accuracy, as sentences.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "lab/bench/accuracy_report.hpp"
+
+namespace weft::bench {
+namespace {
+
+using scene::Integrator;
+
+// Target error of the recommended setting, relative to the cloth's size.
+constexpr double kTargetErrorRatio = 0.01;
+// CPU times or errors within this ratio count as equal.
+constexpr double kEqualRatio = 1.1;
+// Target errors in the conclusion [m].
+constexpr double kTargets[] = {1e-2, 1e-3, 1e-4};
+// The reference's uncertainty must not exceed this fraction of a target.
+constexpr double kMaxUncertaintyRatio = 0.3;
+// Errors below this count as no motion [m].
+constexpr double kNegligibleMotion = 1e-12;
+// The factor of CPU time for a tenfold smaller error (cost_of_a_digit()) is fitted to this many of the finest runs of a
+// series.
+constexpr std::size_t kMaxFittedRuns = 4;
+
+bool is_candidate(const Run& run) {
+  return !run.failed() && (run.axis == Axis::grid || run.axis == Axis::tolerance);
+}
+
+// Whether `a` is solved more exactly than `b` along the same axis.
+bool is_finer(const Run& a, const Run& b) {
+  if (a.axis != b.axis || a.setting.integrator != b.setting.integrator) return false;
+  if (a.axis == Axis::tolerance) return a.setting.tolerance < b.setting.tolerance;
+  return a.setting.step <= b.setting.step && a.setting.newton_tolerance <= b.setting.newton_tolerance &&
+         (a.setting.step < b.setting.step || a.setting.newton_tolerance < b.setting.newton_tolerance);
+}
+
+// Error plus uncertainty.
+double bound_of(const Accuracy& accuracy, const Run& run, Quantity quantity) {
+  return error_of(run, quantity) + accuracy.doubt(run, quantity);
+}
+
+// Whether the run certainly reaches the target, and all runs that are solved more exactly along the same axis do too.
+bool certainly_reaches(const Accuracy& accuracy, const Run& run, Quantity quantity, double target) {
+  const auto reaches = [&](const Run& r) { return bound_of(accuracy, r, quantity) <= target; };
+  return is_candidate(run) && reaches(run) && std::ranges::all_of(accuracy.runs, [&](const Run& other) {
+           return other.failed() || !is_finer(other, run) || reaches(other);
+         });
+}
+
+// The step [s], rounded up to four digits: if it were rounded down, a frame would need one more step.
+double shown_step(double step) {
+  const double scale = std::pow(10, 3 - std::floor(std::log10(step)));
+  return std::ceil(step * scale - 1e-6) / scale;
+}
+
+// The setting in the syntax of scene files.
+std::string keys_text(const Setting& s) {
+  return fmt::format("`time.integrator = \"{}\"`, `{}`, `solver.newton_tolerance = {:.3g}`", name_of(s.integrator),
+                     s.tolerance ? fmt::format("time.tolerance = {:.3g}", *s.tolerance)
+                                 : fmt::format("time.step = {:.4g}", shown_step(s.step)),
+                     s.newton_tolerance);
+}
+
+std::string off_text(const Accuracy& accuracy, const Run& run, Quantity quantity) {
+  return fmt::format("{:.2g} CPU s, the {} off by at most {:.2g} mm{}", run.work.cpu_s, name_of(quantity),
+                     1e3 * bound_of(accuracy, run, quantity), quantity == Quantity::centre ? " in the last frame" : "");
+}
+
+std::string stands_text(const Accuracy& accuracy, const Run* stands, Quantity quantity) {
+  if (stands == nullptr) return "the settings of the scene were not measured, or do not reach its end";
+  return fmt::format("the settings of the scene take {}", off_text(accuracy, *stands, quantity));
+}
+
+std::string cheapest_text(const Accuracy& accuracy, Quantity quantity, double target) {
+  const Run* best = cheapest(accuracy, quantity, target);
+  if (best == nullptr) return "no run is known to be as exact";
+  const Setting& s = best->setting;
+  const std::string steps =
+      s.tolerance ? fmt::format("tolerance {:.3g} m", *s.tolerance)
+                  : fmt::format("step {:.4g} ms, newton_tolerance {:.1g}", 1e3 * s.step, s.newton_tolerance);
+  return fmt::format("{}, {} ({:.2g} CPU s, error {:.1e} m)", name_of(s.integrator), steps, best->work.cpu_s,
+                     error_of(*best, quantity));
+}
+
+std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
+  const double uncertainty = at(accuracy.uncertainty, quantity);
+  std::string text;
+  for (double target : kTargets) {
+    const std::string choice = uncertainty > kMaxUncertaintyRatio * target ? "the reference is not known so exactly"
+                                                                           : cheapest_text(accuracy, quantity, target);
+    text += fmt::format("{}{} m: {}", text.empty() ? "" : "; ", target, choice);
+  }
+  // Add the smallest target that the reference can verify.
+  if (uncertainty > kMaxUncertaintyRatio * kTargets[2]) {
+    const double known = uncertainty / kMaxUncertaintyRatio;
+    text += fmt::format("; {:.1e} m, as exact as this report can show: {}", known,
+                        cheapest_text(accuracy, quantity, known));
+  }
+  return fmt::format("Cheapest for an error of the {} of {}.", name_of(quantity), text);
+}
+
+/// Least-squares line through log10(CPU time) over log10(error).
+class Line {
+ public:
+  void add(const Run& run, Quantity quantity) {
+    const double x = std::log10(error_of(run, quantity)), y = std::log10(run.work.cpu_s);
+    if (!std::isfinite(x) || !std::isfinite(y)) return;
+    ++n_, x_ += x, y_ += y, xx_ += x * x, xy_ += x * y;
+  }
+  // Factor of CPU time for a tenth of the error as text, such as "3.6 times"; "unknown" if the fit is not conclusive.
+  std::string cost_of_a_digit() const {
+    const double spread = n_ * xx_ - x_ * x_, slope = (n_ * xy_ - x_ * y_) / spread;
+    if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "unknown";
+    return slope < -1.5 ? std::string("more than 30 times") : fmt::format("{:.1f} times", std::pow(10, -slope));
+  }
+
+ private:
+  double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
+};
+
+// Factor of CPU time for a tenth of the error, as text, fitted to the finest resolved runs of a series.
+std::string digit_of_series(const Accuracy& accuracy, const std::vector<const Run*>& series, Quantity quantity) {
+  Line line;
+  std::size_t used = 0;
+  for (auto run = series.rbegin(); run != series.rend() && used < kMaxFittedRuns; ++run) {
+    if ((*run)->failed() || !accuracy.resolved(**run, quantity)) continue;
+    line.add(**run, quantity);
+    ++used;
+  }
+  return line.cost_of_a_digit();
+}
+
+std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
+  Line line;
+  for (const Run* run : front(accuracy, quantity))
+    if (accuracy.resolved(*run, quantity)) line.add(*run, quantity);
+  std::string each;
+  for (Integrator integrator : kIntegrators) {
+    if (accuracy.series(Axis::grid, integrator).empty() && accuracy.series(Axis::tolerance, integrator).empty())
+      continue;
+    each += fmt::format("{}{} {} and {}", each.empty() ? "" : ", ", name_of(integrator),
+                        digit_of_series(accuracy, accuracy.decided(integrator), quantity),
+                        digit_of_series(accuracy, accuracy.series(Axis::tolerance, integrator), quantity));
+  }
+  return fmt::format(
+      "The CPU time for one more digit, along the cheapest settings: {} (by integrator, steps that decide and "
+      "tolerances: "
+      "{}).",
+      line.cost_of_a_digit(), each);
+}
+
+// Errors due to step and solver, at the scene's step and integrator, and due to the mesh of the scene.
+std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
+  std::map<std::string, double> left;
+  for (const Run& run : accuracy.runs) {
+    if (run.failed()) continue;
+    if (run.axis == Axis::mesh && run.setting.refinement == 1) left["the mesh"] = error_of(run, quantity);
+    if (accuracy.of_scene.tolerance) {
+      if (&run == accuracy.scene_setting_run())
+        left["the step"] = error_of(run, quantity);  // includes the solver's error
+      continue;
+    }
+    if (run.axis != Axis::grid || run.setting.integrator != accuracy.of_scene.integrator ||
+        run.setting.step != accuracy.of_scene.step)
+      continue;
+    if (run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance) left["the solver"] = run.left;
+    if (run.step_decides) left["the step"] = error_of(run, quantity);
+  }
+  const auto text = [&](const char* source) {
+    const auto found = left.find(source);
+    return found == left.end() ? fmt::format("{} is not known", source)
+                               : fmt::format("{} {:.1e} m", source, found->second);
+  };
+  const auto largest =
+      std::max_element(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return fmt::format(
+      "As the scene stands ({}, {}, newton_tolerance {:g}) {}, {}, {} (difference to twice the cells): {}.",
+      name_of(accuracy.of_scene.integrator),
+      accuracy.of_scene.tolerance ? fmt::format("tolerance {:.3g} m", *accuracy.of_scene.tolerance)
+                                  : fmt::format("{:.4g} ms", 1e3 * accuracy.of_scene.step),
+      accuracy.of_scene.newton_tolerance, "are left by " + text("the step"), text("the solver"), text("the mesh"),
+      largest == left.end() ? std::string("none is known") : fmt::format("the largest is due to {}", largest->first));
+}
+
+bool is_still(const Accuracy& accuracy) {
+  const Quantity quantity = deciding_quantity(accuracy);
+  return std::ranges::all_of(accuracy.runs, [&](const Run& run) {
+    return run.failed() || bound_of(accuracy, run, quantity) < kNegligibleMotion;
+  });
+}
+
+}  // namespace
+
+const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target) {
+  const Run* best = nullptr;
+  for (const Run& run : accuracy.runs)
+    if ((best == nullptr || run.work.cpu_s < best->work.cpu_s) && certainly_reaches(accuracy, run, quantity, target))
+      best = &run;
+  return best;
+}
+
+std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
+  std::vector<const Run*> by_time, front;
+  for (const Run& run : accuracy.runs)
+    if (is_candidate(run)) by_time.push_back(&run);
+  std::stable_sort(by_time.begin(), by_time.end(),
+                   [](const Run* a, const Run* b) { return a->work.cpu_s < b->work.cpu_s; });
+  double least = std::numeric_limits<double>::infinity();
+  for (const Run* run : by_time) {
+    if (bound_of(accuracy, *run, quantity) >= least) continue;
+    least = bound_of(accuracy, *run, quantity);
+    front.push_back(run);
+  }
+  return front;
+}
+
+namespace {
+
+// The most exact setting that reaches the target at a cost of at most kEqualRatio times `cpu_s`. A setting with the
+// scene's own newton_tolerance is preferred if its error is at most kEqualRatio times that of others.
+const Run* most_exact_at_cost(const Accuracy& accuracy, Quantity quantity, double target, double cpu_s) {
+  const Run* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Run& run : accuracy.runs) {
+    if (run.work.cpu_s > kEqualRatio * cpu_s || !certainly_reaches(accuracy, run, quantity, target)) continue;
+    const bool is_same_solver = run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance;
+    const double error = bound_of(accuracy, run, quantity) * (is_same_solver ? 1 : kEqualRatio);
+    if (error < least) best = &run, least = error;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string recommendation(const Accuracy& accuracy) {
+  const Quantity quantity = deciding_quantity(accuracy);
+  if (is_still(accuracy)) return "Nothing moves: there is no error to measure.";
+  const double target = kTargetErrorRatio * accuracy.cloth_size;
+  const std::string wanted = fmt::format("{:.2g} mm (1 % of the cloth's size)", 1e3 * target);
+  const Run* best = cheapest(accuracy, quantity, target);
+  const Run* stands = accuracy.scene_setting_run();
+  if (best == nullptr) {
+    const auto exact = front(accuracy, quantity);
+    if (exact.empty()) return "No setting that was tried reaches the end of the scene.";
+    const bool reaches = bound_of(accuracy, *exact.back(), quantity) <= target;
+    return fmt::format(
+        "No setting that was tried is known to keep the {} within {}. The most exact one is {}: {}{}; {}.",
+        name_of(quantity), wanted, keys_text(exact.back()->setting), off_text(accuracy, *exact.back(), quantity),
+        reaches ? ", which may be chance, as runs that are solved more exactly are farther off" : "",
+        stands_text(accuracy, stands, quantity));
+  }
+  best = most_exact_at_cost(accuracy, quantity, target, best->work.cpu_s);
+  if (stands != nullptr && stands->work.cpu_s <= kEqualRatio * best->work.cpu_s &&
+      certainly_reaches(accuracy, *stands, quantity, target))
+    return fmt::format(
+        "Keep the settings of the scene, {}: {}, for an accuracy of {}. No other takes less than {:.2g} CPU s.",
+        keys_text(stands->setting), off_text(accuracy, *stands, quantity), wanted,
+        std::min(stands->work.cpu_s, best->work.cpu_s));
+  return fmt::format("Use {}: {}, for an accuracy of {}; {}.", keys_text(best->setting),
+                     off_text(accuracy, *best, quantity), wanted, stands_text(accuracy, stands, quantity));
+}
+
+std::string conclusion(const Accuracy& accuracy) {
+  const Quantity quantity = deciding_quantity(accuracy);
+  if (is_still(accuracy)) return "";
+  return which_setting(accuracy, quantity) + " " + cost_of_a_digit(accuracy, quantity) + " " +
+         what_is_left(accuracy, quantity) + "\n";
+}
+
+}  // namespace weft::bench

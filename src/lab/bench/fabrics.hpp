@@ -1,0 +1,43 @@
+// Simulated laboratory tests of all named fabrics, compared with published measurements.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "film/scene/fabrics.hpp"
+#include "lab/bench/fabric_tests.hpp"
+#include "lab/bench/report.hpp"
+
+namespace weft::bench {
+
+/// Loads at which extension is measured [N/m]: the three of the FAST system and that of the KES system.
+inline constexpr std::array kLoads{4.9, 19.6, 98.07, scene::kExtensionLoad};
+
+struct FabricRun {
+  scene::Fabric fabric;
+  std::array<double, 2> drape{}, drape_in_scenes{};  ///< of two specimens, exact and with default tolerance [1]
+  Cantilever elastic = {}, as_it_is = {};            ///< without and with bending friction
+  std::array<double, kLoads.size()> weft{}, warp{};  ///< extension at each load [1]
+  double cpu_s = 0;
+
+  double mean_drape() const { return 0.5 * (drape[0] + drape[1]); }
+  double mean_drape_in_scenes() const { return 0.5 * (drape_in_scenes[0] + drape_in_scenes[1]); }
+};
+
+/// `folder`: where specimen files are written temporarily. Throws Error(simulation_failed).
+FabricRun test_fabric(const scene::Fabric& fabric, const std::filesystem::path& folder);
+
+/// Relative deviation of the drape coefficient from the nearest published value [1]; nullopt if none is published.
+std::optional<double> drape_error(const FabricRun& run);
+
+/// All values, for other programs.
+Table fabrics_table(const std::vector<FabricRun>& runs);
+/// Plots of drape, bending rigidity, and force against extension.
+std::string fabrics_svg(const std::vector<FabricRun>& runs);
+/// The report. It refers to the plot by this name, as a file beside it.
+std::string fabrics_markdown(const std::vector<FabricRun>& runs, const std::string& plot);
+/// One sentence computed from the runs: how many fabrics drape within 10 % of the published value.
+std::string conclusion(const std::vector<FabricRun>& runs);
+
+}  // namespace weft::bench

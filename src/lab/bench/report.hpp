@@ -1,0 +1,37 @@
+// Tables and plots of measurements, as text.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lab/bench/stability.hpp"
+
+namespace weft::bench {
+
+/// Rows of equal length; the first one is the header.
+using Table = std::vector<std::vector<std::string>>;
+
+/// Comma separated values; fields with a comma, quote or line feed are quoted (RFC 4180).
+std::string csv(const Table& table);
+std::string markdown(const Table& table);
+
+/// Counts how often each verdict occurred.
+class Tally {
+ public:
+  void add(Verdict verdict) { ++of_[static_cast<std::size_t>(verdict)]; }
+  /// Number of outcomes that are `unbounded` (more energy than allowed, but no warning) or `not_finite`.
+  int wrong() const;
+  std::string text() const;
+
+ private:
+  std::array<int, kVerdicts> of_{};
+};
+
+Table map_table(const std::vector<MapCell>& cells);
+/// The stability map as SVG: one panel per integrator; stiffness increases upward, the time step increases
+/// to the right. Cells are coloured by verdict.
+std::string map_svg(const std::vector<MapCell>& cells);
+
+}  // namespace weft::bench

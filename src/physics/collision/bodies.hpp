@@ -1,0 +1,93 @@
+// All colliding surfaces, in one numbering of vertices and triangles.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/collision/hierarchy/surface.hpp"
+
+namespace weft::collision {
+
+/// How a surface collides.
+struct BodyTraits {
+  bool deformable = false;  ///< its vertices are particles, which the solve moves
+  double thickness = 0;     ///< of cloth, and of bodies that forces move [m]; 0 for obstacles
+  double friction = 0;      ///< Coulomb coefficient; a pair uses the geometric mean
+  bool moving = true;       ///< false: its vertices never leave their start positions
+  bool rigid = false;       ///< its vertices keep their distances from each other
+  Index frame = -1;  ///< if deformable and rigid: first of the four particles that carry its vertices; −1: none
+};
+
+/// Some vertices of a body, with a thickness and friction of their own.
+struct Patch {
+  std::span<const std::uint8_t> vertices;  ///< one flag per vertex of the body; 1: belongs to the patch
+  double thickness = 0;                    ///< [m]
+  double friction = 0;                     ///< Coulomb coefficient; a pair uses the geometric mean
+};
+
+/// Contact material of a vertex. Each body has one, followed by one for each of its patches.
+struct ContactMaterial {
+  std::size_t body = 0;
+  double thickness = 0, friction = 0;
+};
+
+/// Owns the triangles that the other parts of the engine view. The vertices of all bodies share the numbering of the
+/// position arrays. Particles come first, so deformable bodies are added before obstacles, cloth before rigid ones.
+class Bodies {
+ public:
+  Bodies() = default;
+  Bodies(Bodies&&) = default;  // not copyable: a copy would view the triangles of the original
+  Bodies& operator=(Bodies&&) = default;
+
+  /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`: number of positions
+  /// before these vertices that belong to the body but to no triangle; patches and `limbs` count them too. If patches
+  /// share a vertex, the last one counts. `limbs`: limb number of each vertex, from 0; empty: the body is one limb.
+  void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
+           std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
+
+  std::size_t size() const { return traits_.size(); }
+  const BodyTraits& operator[](std::size_t body) const { return traits_[body]; }
+
+  /// Valid until the next add(). Stays valid if the Bodies is moved.
+  std::span<const Triangle> triangles() const { return triangles_; }
+  std::span<const Surface> surfaces() const { return surfaces_; }
+  /// Surfaces that can collide with themselves: deformable and not rigid. They come first.
+  std::span<const Surface> deformable() const { return std::span(surfaces_).first(deformable_); }
+
+  Index vertex_count() const { return static_cast<Index>(body_of_.size()); }
+  const std::vector<std::size_t>& body_of_vertices() const { return body_of_; }
+  std::size_t body_of(Index vertex) const { return body_of_[vertex]; }
+
+  /// Limb of each vertex, numbered within its body. Limbs of one body may touch or overlap.
+  const std::vector<Index>& limb_of_vertices() const { return limb_of_; }
+
+  /// All contact materials. Without patches: one for each body, in the order of the bodies.
+  const std::vector<ContactMaterial>& materials() const { return materials_; }
+  std::size_t material_of(Index vertex) const { return material_of_[vertex]; }
+
+  /// Number, within its body, of the first triangle that has these corners in any order. For an edge, repeat its second
+  /// end: the result is the first triangle at that edge.
+  Index triangle_of(const Triangle& corners) const;
+
+  /// The section of a global array that belongs to this body.
+  template <class T>
+  std::span<T> part(std::size_t body, std::span<T> values) const {
+    return values.subspan(surfaces_[body].first_vertex, surfaces_[body].vertex_count);
+  }
+
+ private:
+  std::vector<BodyTraits> traits_;
+  std::vector<Triangle> triangles_;
+  std::vector<Surface> surfaces_;
+  std::vector<std::size_t> body_of_;  // per vertex
+  std::vector<Index> limb_of_;
+  std::vector<ContactMaterial> materials_;
+  std::vector<std::size_t> material_of_;  // per vertex
+  std::size_t deformable_ = 0;
+};
+
+}  // namespace weft::collision

@@ -1,0 +1,346 @@
+#include "physics/collision/engine.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+#include "core/archive.hpp"
+#include "core/numerics.hpp"
+#include "core/parallel_append.hpp"
+
+namespace weft::collision {
+namespace {
+
+// Distance below which features get contacts [m].
+double detection_distance_of(const Bodies& bodies) {
+  double max_thickness = 0;
+  for (const ContactMaterial& material : bodies.materials())
+    max_thickness = std::max(max_thickness, material.thickness);
+  return numerics.contact.detection * max_thickness;
+}
+
+// The rigid bodies that are carried by frame particles.
+std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const double> masses) {
+  constexpr Index kFrame = 4;
+  std::vector<RigidGroup> groups;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Index frame = bodies[b].frame;
+    if (frame < 0) continue;
+    const Surface& surface = bodies.surfaces()[b];
+    const auto of_frame = masses.subspan(static_cast<std::size_t>(frame), kFrame);
+    // The frame particles of such a body precede its triangle vertices.
+    Index first = bodies.vertex_count(), last = 0;
+    for (const Triangle& corners : surface.triangles)
+      for (const Index v : corners) first = std::min(first, v), last = std::max(last, v);
+    groups.push_back({first, last + 1 - first, frame, kFrame, std::accumulate(of_frame.begin(), of_frame.end(), 0.0)});
+  }
+  return groups;
+}
+
+}  // namespace
+
+Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<const Vec3> x,
+               std::span<const double> masses)
+    : bodies_(std::move(bodies)),
+      candidates_(bodies_, parameters.search, x, detection_distance_of(bodies_)),
+      has_self_collision_(parameters.search.self),
+      separation_(bodies_.triangles(), has_self_collision_ ? bodies_.deformable() : std::span<const Surface>(), masses),
+      finder_(bodies_.triangles(), bodies_.vertex_count()),
+      builder_(bodies_, parameters.contact, masses),
+      response_(parameters.response, {masses.begin(), masses.end()}, parameters.stick_speed),
+      pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices(), bodies_.limb_of_vertices()),
+      carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
+  separation_.set_rigid(rigid_groups(bodies_, masses), bodies_.vertex_count());
+  const double detection_distance = candidates_.detection_distance();
+  if (parameters.search.coherence)
+    coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,
+                       CoherenceParameters{detection_distance, 0.5 * numerics.contact.margin * detection_distance,
+                                           numerics.contact.flat_fold()});
+}
+
+void Engine::forget() {
+  candidates_.forget();
+  if (!coherence_) return;
+  coherence_->forget();
+  candidates_.drop();
+}
+
+// Collects pairs that can meet on the trajectory from x_t0 to x_t1.
+void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  if (coherence_) return update_coherence(x_t0, x_t1);
+  collect_by(x_t0, [&] { candidates_.collect(x_t0, x_t1); });
+}
+
+void Engine::update_coherence(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  coherence_->update(candidates_.hierarchies(), finder_, x_t0, x_t1);
+  candidates_.cover(x_t0, x_t1, 0.5 * candidates_.detection_distance());
+  separation_.watch(coherence_->candidates().apart.view(), x_t0);
+  gathered_at_.clear();
+}
+
+template <class Collect>
+void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
+  // Swap the list of pairs with Separation, so that only one copy exists.
+  CandidatePairs& pairs = candidates_.pairs();
+  separation_.exchange(pairs.apart);
+  list_pairs();
+  separation_.exchange(pairs.apart);
+  separation_.watch(x_t0);
+  pairs.apart.clear();
+  gathered_at_.clear();
+}
+
+// Gathers features that may come within the detection distance near x, skipping pairs that a plane keeps far apart.
+void Engine::gather(std::span<const Vec3> x) {
+  const double verlet_margin = numerics.contact.margin * candidates_.detection_distance();
+  const auto is_near = [&] {
+    return parallel_all_of(x.size(), [&](std::size_t v) {
+      return (x[v] - gathered_at_[v]).squaredNorm() <= verlet_margin * verlet_margin ||
+             candidates_.is_kept_clear(v, x[v]);
+    });
+  };
+  if (!gathered_at_.empty() && is_near()) return;
+  const double radius = candidates_.detection_distance() + 2 * verlet_margin;
+  near_candidates_.clear();
+  separation_.append_closer(radius, x, near_candidates_);
+  if (has_self_collision_)
+    finder_.gather(near_candidates_, bodies_.deformable(), x, radius, numerics.contact.flat_fold(),
+                   separation_.find_clear_triangles(radius, x));
+  else
+    finder_.gather(near_candidates_, {}, x, radius, numerics.contact.flat_fold(), {});
+  gathered_at_.assign(x.begin(), x.end());
+}
+
+bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
+                        double h, std::span<const RigidMotion> motions) {
+  step_ = h;
+  x_t0_ = x_t0;
+  gathered_at_.clear();  // near pairs must not depend on earlier steps
+  pinched_pushes_.clear();
+  carried_.begin_step(x_t0, x_t1, motions);
+  begin_contacts(x_t0, x_t1);
+  if (!pinched_.empty()) {
+    pinched_.renew(bodies_.triangles(), candidates_.hierarchies(), x_t0);
+    pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.detection_distance());
+  }
+  const bool is_moved = separate_guess(x_t0, x_t1, movable);
+  pushed_pairs_.clear();
+  // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here,
+  // because pairs that need others come near each other.
+  const StepMotion motion{x_t0, x_t0, x_t1, h};
+  find_failing(x_t0, x_t1, PlaneKinds::constant);
+  if (response_.form() == ResponseForm::springs)
+    find_near_at_expected_end(x_t0, x_t1);
+  else
+    find_near(x_t0, proximities_);
+  add_contacts(proximities_, motion);
+  add_failing(failing_, motion);
+  if (response_.predict_wall_contacts(x_t1, 0.5 * candidates_.detection_distance(), predicted_walls_x_t1_) &&
+      find_failing(x_t0, predicted_walls_x_t1_, PlaneKinds::constant))
+    add_failing(failing_, {x_t0, x_t0, predicted_walls_x_t1_, h});
+  response_.prepare(x_t0, x_t1);
+  return is_moved;
+}
+
+// Pushes an estimate with intersections apart. Contacts found at intersecting positions would have meaningless
+// directions, and of several layers that push each other, only one would be found per iteration. An estimate exempts
+// nothing. For pairs of cloth, it seeks no planes for parts of the step (measured in falling_band: two thirds of the
+// searches were for parts, mostly in vain).
+bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
+  if (movable.empty() || response_.form() != ResponseForm::springs || !find_failing(x_t0, x_t1, PlaneKinds::turning))
+    return false;
+  const std::vector<Vec3> expected(x_t1.begin(), x_t1.end());
+  PinchedPairs pinched = pinched_;
+  const bool is_apart = push_apart(x_t0, x_t1, movable, false, false, PlaneKinds::turning).separated;
+  pinched_ = std::move(pinched);
+  if (!is_apart) std::ranges::copy(expected, x_t1.begin());
+  return is_apart;
+}
+
+// Finds near pairs at the expected end of the step. On a curved surface, contact directions found at the start would
+// oppose sliding and take energy. A pair that no plane separates on the trajectory is searched at the start, where its
+// features are still on their own sides.
+void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  std::vector<FeatureKey> failing;
+  for (const auto& [a, b] : failing_)
+    for (std::size_t k = 0; k < 3; ++k) {
+      failing.push_back(feature_key(ProximityKind::vertex_face, {a[k], b[0], b[1], b[2]}));
+      failing.push_back(feature_key(ProximityKind::vertex_face, {b[k], a[0], a[1], a[2]}));
+      for (std::size_t l = 0; l < 3; ++l)
+        failing.push_back(feature_key(ProximityKind::edge_edge, {a[k], a[(k + 1) % 3], b[l], b[(l + 1) % 3]}));
+    }
+  std::ranges::sort(failing);
+  const auto fails = [&](const Proximity& proximity) {
+    return std::ranges::binary_search(failing, feature_key(proximity.kind, proximity.vertices));
+  };
+  std::vector<Proximity> at_start;
+  if (!failing.empty()) find_near(x_t0, at_start);
+  gather(x_t1);
+  finder_.find(x_t1, candidates_.detection_distance(), proximities_);
+  std::erase_if(proximities_, fails);
+  std::ranges::copy_if(at_start, std::back_inserter(proximities_), fails);
+}
+
+// Adds contacts of these pairs; returns how many are new.
+int Engine::add_failing(std::span<const CornerPair> pairs, const StepMotion& motion) {
+  std::vector<ClosestFeatures> closest(pairs.size());
+  parallel_for(pairs.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) closest[p] = closest_features(pairs[p], motion.x_from);
+  });
+  int fresh = 0;
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    fresh += builder_.add_failing(pairs[p], closest[p], motion, response_) ? 1 : 0;
+  return fresh;
+}
+
+void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& motion) {
+  const StepMotion from_start{x_t0_, x_t0_, motion.x_t1, motion.h};
+  for (const PinchedPairs::Push& push : pinched_pushes_) builder_.add_pinched(push, from_start, response_);
+  builder_.add(near, pinched_, motion, response_);
+}
+
+void Engine::continue_from(std::span<const Vec3> x) {
+  const StepMotion motion{x_t0_, x, x, step_};
+  carried_.begin_step(x, x, {});
+  if (coherence_) candidates_.drop();  // kept closest points belong to the start of the step
+  begin_contacts(x, x);
+  find_near(x, near_continuation_);
+  add_contacts(near_continuation_, motion);
+  add_failing(pushed_pairs_, motion);
+}
+
+// Provides the candidate pairs from x_from to x_t1 and clears the contacts.
+void Engine::begin_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1) {
+  if (!candidates_.covers_start(x_from) || !candidates_.lists_near(x_t1)) collect(x_from, x_t1);
+  response_.begin_step(step_);
+  builder_.begin_step();
+}
+
+// Finds near features at x, the start of the candidate pairs' trajectory.
+void Engine::find_near(std::span<const Vec3> x, std::vector<Proximity>& near) {
+  if (coherence_) {
+    near.clear();
+    std::ranges::copy_if(coherence_->proximities(), std::back_inserter(near), [&](const Proximity& proximity) {
+      return proximity.distance < candidates_.detection_distance();
+    });
+  } else {
+    gather(x);
+    finder_.find(x, candidates_.detection_distance(), near);
+  }
+}
+
+bool Engine::is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  return !find_failing(x_t0, x_t1, PlaneKinds::all);
+}
+
+// Whether any pair has no separating plane of the allowed kinds.
+bool Engine::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, PlaneKinds which) {
+  if (!candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
+  failing_ = separation_.find_failing(x_t0, x_t1, &pinched_, &carried_, which);
+  return !failing_.empty();
+}
+
+int Engine::add_failing_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  return add_failing(failing_, {x_t0, x_t0, x_t1, step_});
+}
+
+std::span<const CornerPair> Engine::find_intersections(std::span<const Vec3> x) {
+  collect(x, x);
+  is_separated(x, x);
+  return failing_;
+}
+
+SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
+                                    std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_move_pins,
+                                    PlaneKinds which) {
+  // Corrections can move vertices out of the bounds of the candidate pairs. Then the pairs are collected again; after
+  // kTightCollections times, for every trajectory between start and end.
+  constexpr int kCollections = 8, kTightCollections = 3;
+  SeparationReport report;
+  pushed_pairs_.insert(pushed_pairs_.end(), failing_.begin(), failing_.end());
+  PinchedPairs pinched = pinched_;
+  std::vector<std::uint8_t> movable(movable_in_step.begin(), movable_in_step.end());
+  for (int c = 0; c < kCollections; ++c) {
+    const SeparationReport pass = separation_.enforce(x_t0, x_t1, movable, &pinched, &carried_, c > 0, which);
+    report.obstructed_pins.insert(report.obstructed_pins.end(), pass.obstructed_pins.begin(),
+                                  pass.obstructed_pins.end());
+    for (const ObstructedPin& given : pass.obstructed_pins) movable[given.particle] = kFree;
+    report.corrected_pairs += pass.corrected_pairs;
+    report.largest_push = std::max(report.largest_push, pass.largest_push);
+    report.separated = pass.separated;
+    report.stuck = pass.stuck;
+    if (!report.obstructed_pins.empty() && !may_move_pins) {
+      report.separated = false;
+      report.stuck = report.obstructed_pins.front().pair;
+    }
+    if (!report.separated) return report;
+    if (!candidates_.covers_end(x_t1)) {
+      if (coherence_)
+        update_coherence(x_t0, x_t1);
+      else
+        collect_by(x_t0, [&] { candidates_.collect_more(x_t0, x_t1, c >= kTightCollections); });
+      continue;
+    }
+    if (const auto fresh = find_new_pinch(pinched, pinched_, candidates_.hierarchies()); fresh && !may_pinch) {
+      report.separated = false;
+      report.stuck = *fresh;
+      return report;
+    }
+    pinched.note_origins(candidates_.hierarchies(), x_t0);
+    pinched_ = std::move(pinched);
+    return report;
+  }
+  report.separated = false;
+  return report;
+}
+
+double Engine::min_distance() const {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Proximity& proximity : proximities_) smallest = std::min(smallest, proximity.distance);
+  return smallest;
+}
+
+template <class Archive>
+void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
+  pinched_.serialize(archive);
+  response_.serialize(archive);
+  bool kept = candidates_.covers_start(x);
+  archive.value(kept);
+  if (kept)
+    serialize_candidates(archive);
+  else if constexpr (Archive::kReads)
+    candidates_.drop();
+}
+
+// Saves the positions, from which candidate pairs and features follow, and the planes that do not follow from them.
+template <class Archive>
+void Engine::serialize_candidates(Archive& archive) {
+  const auto copy = [](std::span<const Vec3> x) { return std::vector<Vec3>(x.begin(), x.end()); };
+  std::vector<Vec3> from = copy(candidates_.from()), low = copy(candidates_.low_end()),
+                    high = copy(candidates_.high_end());
+  bool to_one_place = low == high;
+  archive.value(to_one_place);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (!bodies_[b].moving) continue;
+    for (std::vector<Vec3>* x : {&from, &low, &high}) {
+      if (x == &high && to_one_place) continue;
+      const std::span<Vec3> part = bodies_.part(b, std::span(*x));
+      archive.raw(part.data(), part.size_bytes());
+    }
+  }
+  if constexpr (Archive::kReads) {
+    const auto finite = [](const Vec3& x) { return x.allFinite(); };
+    for (const std::vector<Vec3>* x : {&from, &low, &high}) require(std::ranges::all_of(*x, finite), "finite points");
+    if (coherence_)
+      update_coherence(from, low);
+    else
+      collect_by(from, [&] { candidates_.collect(from, low, to_one_place ? low : high); });
+  }
+  separation_.serialize(archive);
+}
+
+template void Engine::serialize(ByteWriter&, std::span<const Vec3>);
+template void Engine::serialize(ByteReader&, std::span<const Vec3>);
+
+}  // namespace weft::collision

@@ -1,0 +1,154 @@
+// Collision of all cloths and obstacles over one time step.
+//
+//   CandidateCache     broad phase: candidate pairs of triangles, kept while valid
+//   Separation         a separating plane for each pair, which also bounds its distance from below
+//   ProximityFinder    narrow phase: near pairs of features at the expected end of the step
+//   ContactBuilder     near pairs -> contacts with stiffness, activation distance, friction
+//   ContactResponse    contacts in the solve, as springs or as velocity constraints
+//   Separation         checks the solved step; pairs that would meet get contacts or are pushed apart
+//   PinchedPairs       cloth squeezed between obstacles, exempt from the check
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/collision/bodies.hpp"
+#include "physics/collision/candidate_cache.hpp"
+#include "physics/collision/contact_builder.hpp"
+#include "physics/collision/proximity/proximities.hpp"
+#include "physics/collision/response/carried_starts.hpp"
+#include "physics/collision/response/contact_response.hpp"
+#include "physics/collision/response/pinch_report.hpp"
+#include "physics/collision/response/separation.hpp"
+#include "physics/collision/variants/coherence.hpp"
+
+namespace weft::collision {
+
+struct EngineParameters {
+  SearchParameters search;
+  ContactParameters contact;
+  ResponseForm response = ResponseForm::springs;
+  double stick_speed = numerics.contact.stick_velocity;  ///< of the springs: friction sticks below it [m/s]
+};
+
+class Engine {
+ public:
+  /// `x`: all vertices at the start [m]. `masses`: of the particles [kg]; must outlive the engine.
+  Engine(Bodies bodies, const EngineParameters& parameters, std::span<const Vec3> x, std::span<const double> masses);
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  /// Finds the contacts of a step over h [s] from x_t0. x_t1: expected end; exact for obstacles, an estimate for
+  /// particles. `motions`: per body, its rigid motion, or the identity if it deforms; empty: no body moves rigidly.
+  /// x_t0 and x_t1 must outlive the step. With springs, pairs without a separating plane on the way to x_t1 are pushed
+  /// apart there, which changes x_t1. `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns
+  /// whether x_t1 has changed.
+  bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
+                  std::span<const RigidMotion> motions = {});
+
+  /// Continues the step from x [m], which was reached without an intersection and has the obstacles at their end. Finds
+  /// contacts anew around x, and adds contacts for all pairs that were pushed apart in this step. Friction still
+  /// measures slip from the start of the step. x replaces x_t0 in the calls that follow and must outlive the step.
+  void continue_from(std::span<const Vec3> x);
+  /// Pairs for which is_separated() found no separating plane. Valid until the next call that tests or pushes apart.
+  std::span<const CornerPair> failing() const { return failing_; }
+
+  /// Call between two steps. Drops the state that only speeds up the search and does not follow from positions.
+  void forget();
+
+  /// Saves or restores the state besides x [m] that the next step depends on. Throws std::runtime_error if it does not
+  /// fit these bodies.
+  template <class Archive>
+  void serialize(Archive& archive, std::span<const Vec3> x);
+
+  /// The contacts of the present step.
+  ContactResponse& response() { return response_; }
+  const ContactResponse& response() const { return response_; }
+
+  /// Whether every pair of triangles that is not exempted has a separating plane on the trajectory to x_t1.
+  bool is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+  /// Adds contacts for the failing pairs of the last call of is_separated(); returns how many are new.
+  int add_failing_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+  /// Call when the step is accepted; see ContactResponse::accept().
+  void accept() { response_.accept(); }
+
+  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a pair is forced together,
+  /// pinched cloth may be exempted from the obstacle. Unless `may_pinch`, this applies only to cloth that this obstacle
+  /// pinches already. If `may_move_pins` is false and a pinned particle had to move, the result is not separated and
+  /// nothing is exempted. Only planes of the kinds `which` count.
+  SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
+                              bool may_pinch = false, bool may_move_pins = true, PlaneKinds which = PlaneKinds::all);
+
+  /// Number of exempted cloth triangles, each counted once per obstacle limb.
+  int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
+  /// The pinched cloths and their obstacles, with places at x [m], the start of the last step.
+  std::vector<Pinch> pinches(std::span<const Vec3> x) const {
+    return list_pinches(pinched_, bodies_, candidates_.hierarchies(), x);
+  }
+
+  /// The exempted triangles. exempt() adds one between two steps, for an engine that replaces another.
+  const PinchedPairs& exempted() const { return pinched_; }
+  void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
+
+  /// Number of near pairs within the detection distance at the expected end of the last step. Some pairs are searched
+  /// at the start of the step instead: with springs, those without a separating plane; with velocity constraints, all.
+  int proximities() const { return static_cast<int>(proximities_.size()); }
+  /// Smallest distance of these pairs [m]; infinite if there are none.
+  double min_distance() const;
+
+  /// All pairs of triangles that touch or cross at x [m], or are closer than Numerics::Separation::least_gap. Valid as
+  /// long as failing().
+  std::span<const CornerPair> find_intersections(std::span<const Vec3> x);
+
+  const Bodies& bodies() const { return bodies_; }
+  /// Detection distance: features closer than this are near [m].
+  double detection_distance() const { return candidates_.detection_distance(); }
+  /// Whether cloth cannot meet a body in the current step. If so, the motion of the body has no effect.
+  bool is_clear(std::size_t body) const { return candidates_.is_clear(body); }
+
+ private:
+  void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  void update_coherence(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  template <class Collect>
+  void collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs);
+  void gather(std::span<const Vec3> x);
+  bool separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
+  bool find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, PlaneKinds which);
+  void find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  int add_failing(std::span<const CornerPair> pairs, const StepMotion& motion);
+  void add_contacts(std::span<const Proximity> near, const StepMotion& motion);
+  void begin_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1);
+  void find_near(std::span<const Vec3> x, std::vector<Proximity>& near);
+  template <class Archive>
+  void serialize_candidates(Archive& archive);
+
+  Bodies bodies_;
+  CandidateCache candidates_;
+  bool has_self_collision_;  // cloth against itself and other cloth
+  Separation separation_;
+  ProximityFinder finder_;
+  std::vector<Vec3> gathered_at_;               // where the near features were gathered [m]; empty: not gathered
+  PairList near_candidates_;                    // scratch: candidate pairs that are near at gathered_at_
+  std::optional<CoherentDetection> coherence_;  // if enabled, keeps pairs and closest points instead of the cache
+  ContactBuilder builder_;
+  ContactResponse response_;
+  std::vector<Vec3> predicted_walls_x_t1_;
+  PinchedPairs pinched_;
+  CarriedStarts carried_;
+
+  double step_ = 0;                                 // h [s]
+  std::span<const Vec3> x_t0_;                      // start of the step
+  std::vector<PinchedPairs::Push> pinched_pushes_;  // contacts that push pinched cloth out, in this step
+  std::vector<CornerPair> pushed_pairs_;            // pairs that were pushed apart in this step
+  std::vector<Proximity> proximities_;              // near pairs at the expected end of the step, or at its start
+  std::vector<Proximity> near_continuation_;        // near pairs at the positions of continue_from()
+  std::span<const CornerPair> failing_;             // of the last call of is_separated()
+};
+
+}  // namespace weft::collision

@@ -1,0 +1,18 @@
+// Splits a set of triangles in two while a hierarchy is built.
+#pragma once
+
+#include <span>
+
+#include "core/types.hpp"
+#include "physics/collision/hierarchy/kdop.hpp"
+
+namespace weft::collision {
+
+/// Splits `items` (indices into `bounds`) along the longest side (seed, "Bounding Volume Hierarchy"): the plane through
+/// the centre of their k-DOP, parallel to its two opposite faces that are furthest apart. A triangle that the plane
+/// cuts goes to the part with fewer uncut triangles. Reorders items, keeping the order within a part, and returns the
+/// size of the first part. Both parts are non-empty. Needs at least two items.
+template <int K>
+std::size_t split_longest_side(std::span<Index> items, std::span<const KDop<K>> bounds);
+
+}  // namespace weft::collision

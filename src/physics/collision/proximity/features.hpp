@@ -1,0 +1,68 @@
+// Assigns each vertex and edge to one triangle, and lists their neighbours.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/collision/hierarchy/surface.hpp"
+
+namespace weft::collision {
+
+/// Every vertex and edge is owned by the lowest-numbered triangle that contains it, so that iterating over triangle
+/// pairs visits each pair of features once (representative triangles: Curtis, Tamstorf & Manocha, "Fast Collision
+/// Detection for Deformable Models using Representative-Triangles", 2008).
+class Features {
+ public:
+  Features() = default;
+
+  /// `triangles`: of all surfaces, in their global numbering; must outlive this object. Surfaces share no vertices.
+  Features(std::span<const Triangle> triangles, Index vertex_count);
+
+  std::span<const Triangle> triangles() const { return triangles_; }
+  const Triangle& triangle(Index t) const { return triangles_[t]; }
+
+  /// Bits 0 to 2: the triangle owns corner c. Bits 3 to 5: it owns the edge from corner c to corner c + 1.
+  std::uint8_t owned(Index t) const { return owned_[t]; }
+
+  /// Vertices opposite to the edge from corner c to c + 1 that triangle t owns, one for each triangle at that edge.
+  std::span<const Index> apexes(Index t, std::size_t c) const {
+    const auto edge = static_cast<std::size_t>(edge_[t][c]);
+    return std::span(apexes_).subspan(apexes_begin_[edge], apexes_begin_[edge + 1] - apexes_begin_[edge]);
+  }
+
+  /// The other triangle at the edge from corner c to corner c + 1 that triangle t owns; −1 unless exactly two triangles
+  /// share it.
+  Index across(Index t, std::size_t c) const { return across_[t][c]; }
+
+  /// Triangles at a vertex, lowest number first.
+  std::span<const Index> triangles_at(Index vertex) const {
+    const auto v = static_cast<std::size_t>(vertex);
+    return std::span(around_).subspan(around_begin_[v], around_begin_[v + 1] - around_begin_[v]);
+  }
+
+  /// Pairs of triangles a < b with a common edge and a in [first, first + count), sorted.
+  std::span<const TrianglePair> hinges(Index first, Index count) const;
+
+ private:
+  void collect_triangles_at_vertices(Index vertex_count);
+  void own_edges();
+
+  std::span<const Triangle> triangles_;
+  std::vector<std::uint8_t> owned_;
+  std::vector<std::array<Index, 3>> edge_;  // number of the edge, if owned
+  std::vector<std::array<Index, 3>> across_;
+  std::vector<std::size_t> apexes_begin_;  // by edge
+  std::vector<Index> apexes_;
+  std::vector<std::size_t> around_begin_;
+  std::vector<Index> around_;
+  std::vector<TrianglePair> hinges_;
+};
+
+inline bool has_vertex(const Triangle& triangle, Index vertex) {
+  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+}
+
+}  // namespace weft::collision

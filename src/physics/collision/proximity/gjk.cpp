@@ -1,0 +1,146 @@
+#include "physics/collision/proximity/gjk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/collision/proximity/closest_points.hpp"
+
+namespace weft::collision {
+
+namespace {
+
+/// The search ends if the distance is known to this fraction of the size of the two sets. This is a few rounding
+/// errors.
+constexpr double kTolerance = 1e-14;
+/// Polygons of a few corners need 3 to 8 rounds. For needles, rounding can prevent the search from ending by itself.
+constexpr int kMaxRounds = 40;
+
+/// A corner of the difference set a - b.
+struct Support {
+  std::size_t a = 0, b = 0;
+  Vec3 w = Vec3::Zero();
+};
+
+/// Up to four corners of the difference set, and the point of their hull nearest to the origin.
+struct Simplex {
+  std::array<Support, 4> corner{};
+  std::array<double, 4> weight{1, 0, 0, 0};
+  std::size_t count = 0;
+  Vec3 nearest = Vec3::Zero();
+
+  bool has(const Support& s) const {
+    return std::any_of(corner.begin(), corner.begin() + static_cast<std::ptrdiff_t>(count),
+                       [&](const Support& c) { return c.a == s.a && c.b == s.b; });
+  }
+
+  /// Keeps only the corners with a non-zero weight.
+  void shrink() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      if (weight[i] != 0) {
+        corner[kept] = corner[i];
+        weight[kept++] = weight[i];
+      }
+    count = kept;
+  }
+};
+
+/// The point that is furthest along d, by its index.
+std::size_t furthest(std::span<const Vec3> points, const Vec3& d) {
+  std::size_t best = 0;
+  double max_along = points[0].dot(d);
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (const double along = points[i].dot(d); along > max_along) {
+      max_along = along;
+      best = i;
+    }
+  return best;
+}
+
+/// Finds the point of triangle i, j, k that is nearest to the origin. If it is nearer than the best point so far, it
+/// becomes simplex.nearest. The closed form of closest_vertex_face also handles needles, segments and points.
+void try_face(Simplex& simplex, double& least_sq, std::size_t i, std::size_t j, std::size_t k) {
+  const auto& c = simplex.corner;
+  const ClosestPoints points = closest_vertex_face(Vec3::Zero(), c[i].w, c[j].w, c[k].w);
+  if (!(points.distance_sq < least_sq)) return;
+  least_sq = points.distance_sq;
+  simplex.nearest = -points.difference;
+  simplex.weight = {};
+  simplex.weight[i] -= points.weights[1];
+  simplex.weight[j] -= points.weights[2];
+  simplex.weight[k] -= points.weights[3];
+}
+
+/// Whether the origin is inside the tetrahedron; if so, sets its weights.
+bool try_inside(Simplex& simplex) {
+  const auto w = [&](std::size_t i) -> const Vec3& { return simplex.corner[i].w; };
+  std::array<double, 4> volume{w(1).dot(w(2).cross(w(3))), -w(0).dot(w(2).cross(w(3))), w(0).dot(w(1).cross(w(3))),
+                               -w(0).dot(w(1).cross(w(2)))};
+  const auto [low, high] = std::minmax_element(volume.begin(), volume.end());
+  if (!(*low > 0 || *high < 0)) return false;
+  const double sum = volume[0] + volume[1] + volume[2] + volume[3];
+  for (std::size_t i = 0; i < 4; ++i) simplex.weight[i] = volume[i] / sum;
+  simplex.nearest = Vec3::Zero();
+  return true;
+}
+
+void find_nearest(Simplex& simplex) {
+  double least_sq = INFINITY;
+  switch (simplex.count) {
+    case 1:
+      return try_face(simplex, least_sq, 0, 0, 0);
+    case 2:
+      return try_face(simplex, least_sq, 0, 1, 1);
+    case 3:
+      return try_face(simplex, least_sq, 0, 1, 2);
+    default:
+      if (try_inside(simplex)) return;
+      try_face(simplex, least_sq, 0, 1, 2);
+      try_face(simplex, least_sq, 0, 1, 3);
+      try_face(simplex, least_sq, 0, 2, 3);
+      try_face(simplex, least_sq, 1, 2, 3);
+  }
+}
+
+}  // namespace
+
+ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b) {
+  double size = 0;
+  for (const Vec3& p : a) size = std::max(size, (p - b[0]).cwiseAbs().maxCoeff());
+  for (const Vec3& p : b) size = std::max(size, (p - b[0]).cwiseAbs().maxCoeff());
+
+  Simplex simplex;
+  simplex.corner[0].w = a[0] - b[0];
+  simplex.count = 1;
+  simplex.nearest = simplex.corner[0].w;
+  Simplex best = simplex;
+  double distance = best.nearest.norm(), lower_bound = 0;
+  int rounds = 0;
+  while (rounds < kMaxRounds && distance > kTolerance * size) {
+    ++rounds;
+    // The corner of a - b that is lowest along the direction to the nearest point gives a lower bound of the distance.
+    const Vec3 towards = simplex.nearest;
+    const std::size_t i = furthest(a, -towards), j = furthest(b, towards);
+    const Support next{i, j, a[i] - b[j]};
+    lower_bound = std::max(lower_bound, next.w.dot(towards) / towards.norm());
+    if (distance - lower_bound <= kTolerance * size || simplex.has(next)) break;
+    simplex.corner[simplex.count++] = next;
+    find_nearest(simplex);
+    simplex.shrink();
+    // In exact arithmetic the distance always decreases; with rounding it may stall.
+    const double reached = simplex.nearest.norm();
+    if (!(reached < distance)) break;
+    distance = reached;
+    best = simplex;
+    if (simplex.count == 4) break;  // the origin is inside
+  }
+
+  ConvexClosest result{{}, {}, best.nearest, distance, std::min(lower_bound, distance), rounds};
+  for (std::size_t c = 0; c < best.count; ++c) {
+    result.weights_a[best.corner[c].a] += best.weight[c];
+    result.weights_b[best.corner[c].b] += best.weight[c];
+  }
+  return result;
+}
+
+}  // namespace weft::collision

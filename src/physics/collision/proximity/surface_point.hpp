@@ -1,0 +1,55 @@
+// Nearest point of a surface, inside tests, and crossings of triangles.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/collision/hierarchy/broad_phase.hpp"
+#include "physics/collision/hierarchy/surface.hpp"
+
+namespace weft::collision {
+
+/// The point of a surface nearest to p.
+struct SurfacePoint {
+  Triangle face{};
+  std::array<double, 3> weights{};  ///< of the corners of the face
+  Vec3 normal = Vec3::UnitZ();      ///< unit, outward: along the line to p, away from the inside
+  double height = 0;                ///< signed distance of p [m], negative inside; infinite if there are no triangles
+};
+
+/// Nearest point of these triangles, which are counter-clockwise seen from outside. The angle-weighted normal of all
+/// faces that meet at the nearest point decides between inside and outside, or back and front (Bærentzen & Aanæs,
+/// "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005).
+SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, std::span<const Vec3> x);
+
+/// Nearest point of a surface of the broad phase, at x [m] inside the bounds of its last refit. Gives the same bits as
+/// the search over all its triangles (unless a thousand nearly equidistant faces, each within rounding of the next,
+/// span kNearestTolerance). `counts`: if given, excludes faces for which it is false. `towards`: unit or zero; if not
+/// zero and some of these faces have a normal within 60 degrees of it, excludes the others.
+using CountsFace = std::function<bool(const Triangle& face)>;
+SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
+                           const Vec3& towards = Vec3::Zero(), const CountsFace& counts = nullptr);
+
+/// Whether a point is inside a surface of the broad phase, which may cross itself; for an open surface: behind it.
+/// Casts a ray along the axis nearest to `towards`: the point is inside if the ray leaves through more faces than it
+/// enters. x [m] must be inside the bounds of the last refit.
+bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase, std::size_t surface,
+               std::span<const Vec3> x);
+
+/// Triangles of a surface of the broad phase, in their order, whose boxes are closer than `distance` [m] to that of
+/// `triangle`. x [m] must be inside the bounds of the last refit.
+std::vector<Triangle> triangles_near(const Triangle& triangle, const BroadPhase& broad_phase, std::size_t surface,
+                                     std::span<const Vec3> x, double distance);
+
+/// Where two triangles cross: weights of the corners of `a`, averaged over the points where an edge of one goes through
+/// the other. Empty if they do not cross.
+std::optional<std::array<double, 3>> find_crossing(const Triangle& a, const Triangle& b, std::span<const Vec3> x);
+
+/// Unit normal of the front; zero if the triangle has no area.
+Vec3 face_normal(const Triangle& t, std::span<const Vec3> x);
+
+}  // namespace weft::collision

@@ -1,0 +1,66 @@
+// Start positions of a step in the frame of a moving obstacle: as if the obstacle had carried all particles along.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/collision/response/certificate.hpp"
+
+namespace weft::collision {
+
+/// Motion of a body that keeps its shape over one step: x at the start is turn · x + shift at the end.
+struct RigidMotion {
+  Mat3 turn = Mat3::Identity();
+  Vec3 shift = Vec3::Zero();  ///< [m]
+  bool turns() const { return turn != Mat3::Identity(); }
+  bool moves() const { return turns() || shift != Vec3::Zero(); }
+};
+
+/// An obstacle that turns moves on arcs, but separating planes are found for straight trajectories (see `separates`).
+/// In the obstacle's own frame it stands still. So the starts of cloth are carried along to the obstacle's place at the
+/// end of the step: relative trajectories are then straight, and a plane fixed to the obstacle can separate them for
+/// the whole step. Cloth that is carried along keeps its exact distance to the obstacle, so a single obstacle never
+/// meets it.
+class CarriedStarts {
+ public:
+  CarriedStarts() = default;
+  /// Vertices from `first_obstacle` on belong to obstacles. `body_of`: body of each vertex.
+  CarriedStarts(Index first_obstacle, std::vector<std::size_t> body_of)
+      : first_obstacle_(first_obstacle), body_of_(std::move(body_of)) {}
+
+  /// A step from x_t0, with obstacles at their end in x_t1 [m]; both must outlive the step. `motions`: one for each
+  /// body; empty: nothing is carried.
+  void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const RigidMotion> motions);
+
+  /// Whether a body moves rigidly in this step.
+  bool carries(std::size_t body) const { return body < motions_.size() && motions_[body].moves(); }
+  /// Starts of particles, carried along by such a body [m]. The own vertices of the body are at their end, those of
+  /// other obstacles at their start.
+  std::span<const Vec3> by(std::size_t body) const;
+  /// Computes all starts that of() can return, so that threads can call of() at the same time.
+  void make() const;
+
+  /// Start positions for testing a pair: carried by its obstacle if that turns, else `x_t0`.
+  std::span<const Vec3> of(const CornerPair& pair, std::span<const Vec3> x_t0) const {
+    if (!any_turns_ || !has_obstacle(pair)) return x_t0;
+    const std::size_t body = obstacle_of(pair);
+    return motions_[body].turns() ? by(body) : x_t0;
+  }
+
+  bool has_obstacle(const CornerPair& pair) const {
+    return pair.b[0] >= first_obstacle_ && pair.a[0] < first_obstacle_;
+  }
+  std::size_t obstacle_of(const CornerPair& pair) const { return body_of_[pair.b[0]]; }
+
+ private:
+  Index first_obstacle_ = 0;
+  std::vector<std::size_t> body_of_;
+  std::vector<RigidMotion> motions_;
+  bool any_turns_ = false;
+  std::span<const Vec3> x_t0_, x_t1_;
+  mutable std::vector<std::vector<Vec3>> starts_;  // by body, computed on first use
+};
+
+}  // namespace weft::collision

@@ -1,0 +1,59 @@
+// Separating planes that move and turn: prove that two sets of vertices stay apart for a whole step.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "core/numerics.hpp"
+#include "core/types.hpp"
+#include "physics/collision/hierarchy/surface.hpp"
+#include "physics/collision/proximity/closest_points.hpp"
+#include "physics/collision/proximity/feature_pair.hpp"
+
+namespace weft::collision {
+
+/// Two triangles, or an edge and a triangle, without a common vertex. An edge repeats its second end.
+struct CornerPair {
+  Triangle a, b;
+  friend auto operator<=>(const CornerPair&, const CornerPair&) = default;
+};
+
+/// min_a n·x − max_b n·x [m]: how far side a lies above side b along the unit direction n.
+double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x);
+
+/// Whether a plane with the constant normal n, which translates with the pair, separates both sides during the linear
+/// motion from x_t0 to x_t1. The gap along n must be at least kRoundoff at the start, so that touching vertices never
+/// count as separated, and Numerics::Separation::least_gap at the end. Every n·x is linear in time, so the gap is a
+/// minimum of linear functions, hence concave, hence positive in between.
+bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+/// Which planes are tried. `constant`: those of constant direction. `turning`: also those that turn during the step.
+/// `all`: also several planes one after the other, each for a part of the step.
+enum class PlaneKinds { constant, turning, all };
+
+/// Searches for a separating plane, cheap ones first:
+///   1. constant directions: face normals (for layers) and the line between the centres (for neighbours in one plane);
+///   2. the same directions, turning with the pair;
+///   3. the line between the closest points, constant, then turning;
+///   4. all again in each half of the trajectory, which is halved at most Numerics::Separation::halvings times.
+///
+/// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, t from 0 to 1. For two linearly moving corners with the
+/// difference δ(t), n·δ is quadratic in time, with Bernstein coefficients n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and n₁·δ₁; it is
+/// positive if these are. For two layers of any width at a distance g that turn together by an angle θ, the
+/// coefficients are g, g cos θ and g. A plane of constant direction would cut a layer if the width times sin(θ/2)
+/// exceeds g.
+///
+/// Returns the direction at the end of the step, rounded to single precision for storage; nullopt if none is found.
+std::optional<Vec3> find_separating_plane(const CornerPair& pair, std::span<const Vec3> x_t0,
+                                          std::span<const Vec3> x_t1, PlaneKinds which = PlaneKinds::all);
+
+/// The closest pair of features of two sides.
+struct ClosestFeatures {
+  std::array<Index, 4> vertices{};  ///< global numbers
+  ClosestPoints points{};           ///< weights of the vertices; difference points from b to a
+  ProximityKind kind = ProximityKind::vertex_face;
+};
+ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x);
+
+}  // namespace weft::collision

@@ -1,0 +1,80 @@
+// Contacts as springs inside the implicit solve or, for single particles against obstacles, velocity constraints.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/archive.hpp"
+#include "core/types.hpp"
+#include "physics/collision/response/contact_set.hpp"
+#include "physics/collision/response/velocity_constraints.hpp"
+#include "physics/solver/linear_system.hpp"
+
+namespace weft::collision {
+
+enum class ResponseForm { springs, velocity_constraints };
+
+/// The contacts of one step as the solver sees them. With velocity constraints, a contact of a single particle with an
+/// obstacle is a wall (see VelocityConstraints), which is set and released between the solves of a step. All other
+/// contacts are springs.
+class ContactResponse {
+ public:
+  /// `masses`: of the particles [kg]. `stick_speed`: of the springs [m/s].
+  ContactResponse(ResponseForm form, std::vector<double> masses, double stick_speed = numerics.contact.stick_velocity);
+
+  ResponseForm form() const { return walls_ ? ResponseForm::velocity_constraints : ResponseForm::springs; }
+
+  /// Call before adding the contacts of a step over h [s].
+  void begin_step(double h);
+  void add(const Contact& contact, std::span<const Vec3> x_t0);
+  /// Adds a wall for a corner of a cloth triangle that would meet an obstacle. Only with velocity constraints.
+  void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
+  /// As VelocityConstraints::predict_wall_contacts; false with springs.
+  bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
+    return walls_ && walls_->predict_wall_contacts(x_t1, by, predicted);
+  }
+  /// Call when all contacts known before the first solve are added.
+  void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+  /// Particles that the walls constrain in the next solve.
+  std::span<const PrescribedParticle> prescribed() const;
+  /// After a solve that led to x_end: sets and releases walls. Returns how many particles need another solve.
+  int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const VelocityConstraints::ForceOn& force_on);
+  /// Keeps the state of the walls for the next step.
+  void accept();
+
+  /// As the functions of ContactSet.
+  void update(std::span<const Vec3> x_end, ContactLag& lag) const { springs_.update(x_end, lag); }
+  void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
+  bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
+                   std::span<Vec3> right_side, solver::LinearSystem& system) const {
+    return springs_.add_impacts(x_end, lag, start, right_side, system);
+  }
+  void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
+                                      std::span<Vec3> friction, std::span<double> limit) const;
+  void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
+  void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
+                 solver::LinearSystem& system) const;
+  int active(std::span<const Vec3> x_end) const { return springs_.active(x_end); }
+
+  std::span<const Contact> springs() const { return springs_.contacts(); }
+  /// Whether there is no contact of either form.
+  bool empty() const { return springs_.contacts().empty() && (!walls_ || walls_->empty()); }
+
+  /// Saves what accept() has kept. Reading throws std::runtime_error if the data do not fit these particles.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    if (walls_) return walls_->serialize(archive);
+    std::size_t none = 0;
+    archive.value(none);
+    if constexpr (Archive::kReads) require(none == 0, "no walls");
+  }
+
+ private:
+  ContactSet springs_;
+  double stick_speed_;
+  std::optional<VelocityConstraints> walls_;
+};
+
+}  // namespace weft::collision

@@ -1,0 +1,335 @@
+#include "physics/collision/response/contact_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numerics.hpp"
+#include "core/parallel_append.hpp"
+
+namespace weft::collision {
+namespace {
+
+Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
+  Vec3 sum = contact.weights[0] * x[contact.particles[0]];
+  for (int k = 1; k < 4; ++k) sum += contact.weights[k] * x[contact.particles[k]];
+  return sum;
+}
+
+// Limits of depth_for_force(): iterations, and relative tolerance of the force. The force of the tangent contains the
+// square of the error of the depth, which is below rounding (measured: with 1e-3 the solver misses newton_tolerance
+// 1e-6).
+constexpr int kDepthIterations = 30;
+constexpr double kDepthTolerance = 1e-8;
+
+struct NormalForce {
+  double force, slope;  // [N], [N/m]
+};
+
+// Normal force at this depth [m]; zero at depths below zero.
+NormalForce normal_force_at(const Contact& contact, double depth) {
+  if (depth <= 0) return {0, contact.stiffness};
+  const double full = std::max(contact.full_range, contact.range);
+  const double inner = std::min(depth, full), ratio_sq = (inner / full) * (inner / full);
+  const double stiffening = numerics.contact.stiffening * ratio_sq * ratio_sq;
+  const double slope = contact.stiffness * (1 + 5 * stiffening);
+  return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
+}
+
+// Force at `depth` by the tangent `at` depth `depth_at`, never negative [N].
+double tangent_force(const NormalForce& at, double depth_at, double depth) {
+  return std::max(0.0, at.force + at.slope * (depth - depth_at));
+}
+
+// Inverse of the law: the depth with this force, starting from a depth that is not smaller. The law is convex, so
+// Newton's method converges monotonically from above.
+double depth_for_force(const Contact& contact, double force, double depth) {
+  if (force <= 0) return 0;
+  depth = std::min(depth, force / contact.stiffness);
+  for (int k = 0; k < kDepthIterations; ++k) {
+    const NormalForce normal_force = normal_force_at(contact, depth);
+    if (normal_force.force - force <= kDepthTolerance * force) break;
+    depth -= (normal_force.force - force) / normal_force.slope;
+  }
+  return depth;
+}
+
+// Point a minus point b at the end of the step [m].
+Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
+  return weighted_sum(contact, x_end) + contact.obstacle_end;
+}
+
+// Friction / (normal force · slip), for a slip in units of the stick slip: μ (2 − slip) below 1, μ / slip above, where
+// the coefficient μ falls from static to sliding beyond 1. If both coefficients are equal, it is continuously
+// differentiable.
+double friction_over_slip(const Contact& contact, double slip) {
+  if (slip < 1) return contact.static_friction * (2 - slip);
+  const double sliding = std::min(1.0, (slip - 1) / (numerics.contact.slide_velocity - 1));
+  return (contact.static_friction + sliding * (contact.friction - contact.static_friction)) / slip;
+}
+
+// ψ' of friction_tangent(): derivative of 1 / friction_over_slip() by the slip. Ignores the drop from static to sliding
+// friction.
+double slope_of_slip_over_friction(const Contact& contact, double slip) {
+  if (slip < 1) return 1 / (contact.static_friction * (2 - slip) * (2 - slip));
+  return 1 / (slip * friction_over_slip(contact, slip));
+}
+
+// w for a slip in units of the stick slip.
+Vec3 friction_over_normal_force(const Contact& contact, const Vec3& slip) {
+  if (contact.static_friction == 0) return Vec3::Zero();
+  return friction_over_slip(contact, slip.norm()) * slip;
+}
+
+// Inverse of friction_over_normal_force: the slip for a w that does not exceed static friction.
+Vec3 sticking_slip(const Contact& contact, const Vec3& w) {
+  const double slip = 1 - std::sqrt(std::max(0.0, 1 - w.norm() / contact.static_friction));
+  return w / friction_over_slip(contact, slip);
+}
+
+// ∂w/∂u for a slip in units of the stick slip. Exact if w belongs to the slip, else a definite approximation.
+Mat3 friction_slope(const Contact& contact, const Vec3& slip, const Vec3& w) {
+  const double size = slip.norm();
+  return friction_over_slip(contact, size) *
+         friction_tangent(Mat3::Identity() - contact.normal * contact.normal.transpose(), slip,
+                          slope_of_slip_over_friction(contact, size) * w);
+}
+
+// Slip during the step, in the tangent plane [m].
+Vec3 slip_of(const Contact& contact, const Vec3& relative) {
+  const Vec3 slip = relative - contact.relative_start;
+  return slip - contact.normal.dot(slip) * contact.normal;
+}
+
+// Fraction of a contact that is an impact, 0 to 1, by its motion without contact forces; see add_impacts().
+double impact_fraction(const Contact& contact, const StepStart& start) {
+  const auto along_normal = [&](std::span<const Vec3> of) { return contact.normal.dot(weighted_sum(contact, of)); };
+  const double velocity = along_normal(start.v);
+  double opening = start.h * velocity;
+  if (start.h_before > 0) {
+    const double ratio = start.h / start.h_before;
+    opening = std::max({opening, start.h * (velocity + ratio * (velocity - along_normal(start.v_before))),
+                        ratio * (along_normal(start.x) - along_normal(start.x_before))});
+  }
+  opening += contact.normal.dot(contact.obstacle_end - contact.obstacle_start);
+  return opening < 0 ? std::min(1.0, -opening / (start.h * numerics.contact.impact_velocity)) : 0;
+}
+
+// Tangential velocity jump [m/s] in a step that ends at x_end, limited to what friction can cause.
+Vec3 tangential_jump(const Contact& contact, std::span<const Vec3> x_end, const StepStart& start) {
+  const Vec3 jump =
+      (weighted_sum(contact, x_end) - weighted_sum(contact, start.x)) / start.h - weighted_sum(contact, start.v);
+  const double along = contact.normal.dot(jump), max_friction = contact.static_friction * std::max(0.0, along);
+  const Vec3 across = jump - along * contact.normal;
+  const double size = across.norm();
+  return size > max_friction ? Vec3(max_friction / size * across) : across;
+}
+
+// Adds a force on the points of a contact, and the stiffness of that force.
+void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, std::span<Vec3> force,
+              solver::LinearSystem& system) {
+  int involved = 0, last = 0;
+  for (int k = 0; k < 4; ++k) {
+    force[contact.particles[k]] += contact.weights[k] * push;
+    if (contact.weights[k] != 0) ++involved, last = k;
+  }
+  if (involved == 1) {
+    // A single particle against an obstacle has no coupling.
+    const double w = contact.weights[last];
+    system.diagonal_terms.push_back({contact.particles[last], w * w * stiffness});
+  } else {
+    system.terms.push_back({contact.particles, contact.weights, stiffness});
+  }
+}
+
+// Updates the friction of a contact to a slip in units of the stick slip.
+void update_friction(const Contact& contact, const Vec3& slip, FrictionLag& lag) {
+  const bool turned = slip.dot(lag.slip) < 0;
+  lag.slip = slip;
+  if (lag.sticks) {
+    const Vec3 held_at = sticking_slip(contact, lag.relative_friction);
+    lag.relative_friction += friction_slope(contact, held_at, lag.relative_friction) * (slip - held_at);
+    const double ratio = lag.relative_friction.norm() / contact.static_friction;
+    if (ratio < 1) return;
+    lag.relative_friction /= ratio;
+    lag.sticks = false;
+    ++lag.slide_starts;
+  } else if (slip.squaredNorm() < 1) {
+    lag.relative_friction = friction_over_normal_force(contact, slip);
+    lag.sticks = true;
+  } else if (turned && lag.slide_starts < numerics.contact.returns) {
+    lag.relative_friction = Vec3::Zero();
+    lag.sticks = true;
+  }
+}
+
+}  // namespace
+
+Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w) {
+  const double size = slip.norm();
+  if (size == 0) return across;
+  const Vec3 u = slip / size;
+  if (w.squaredNorm() > 1) w.normalize();
+  return across - 0.5 * (w * u.transpose() + u * w.transpose());
+}
+
+void ContactSet::add(const Contact& contact) {
+  contacts_.push_back(contact);
+  contacts_.back().static_friction = std::max(contact.friction, contact.static_friction);
+}
+
+void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
+  const auto update_contact = [&](std::size_t c) {
+    const Contact& contact = contacts_[c];
+    const Vec3 relative = relative_end(contact, x_end);
+    const double depth = contact.range - contact.normal.dot(relative);
+    const double force = tangent_force(normal_force_at(contact, lag.depths[c]), lag.depths[c], depth);
+    lag.depths[c] = depth_for_force(contact, force, std::max(depth, lag.depths[c]));
+    if (lag.updates < numerics.newton.patience) lag.normal_forces[c] = force;
+    if (!contact.against_obstacle || contact.static_friction == 0) return;
+    if (lag.updates < numerics.newton.patience)
+      update_friction(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
+    else
+      lag.frictions[c].sticks = false;
+  };
+  parallel_for(lag.updates > 0 ? lag.depths.size() : 0, kFineGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) update_contact(c);
+  });
+  for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
+    lag.depths.push_back(std::max(0.0, contacts_[c].depth));
+    lag.normal_forces.push_back(normal_force_at(contacts_[c], lag.depths.back()).force);
+    lag.frictions.emplace_back();
+    if (lag.updates > 0) continue;  // contacts found later have no meaningful first iterate
+    FrictionLag& friction = lag.frictions.back();
+    friction.slip = slip_of(contacts_[c], relative_end(contacts_[c], x_end)) / stick_slip_;
+    friction.relative_friction = friction_over_normal_force(contacts_[c], friction.slip);
+  }
+  ++lag.updates;
+}
+
+ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<const Vec3> x_end,
+                                         const ContactLag& lag) const {
+  const Contact& contact = contacts_[index];
+  const Vec3 relative = relative_end(contact, x_end);
+  const double depth = contact.range - contact.normal.dot(relative);
+  Response response;
+  if (depth <= 0) return response;
+
+  response.active = true;
+  NormalForce normal_force = normal_force_at(contact, law == Law::exact ? depth : lag.depths[index]);
+  if (law == Law::tangent) {
+    normal_force.force = tangent_force(normal_force, lag.depths[index], depth);
+    if (normal_force.force == 0) normal_force.slope = 0;
+  }
+  response.slope = normal_force.slope;
+  response.force = normal_force.force * contact.normal;
+  const bool follows = law == Law::exact && lag.updates < numerics.newton.patience;
+  const double friction_normal_force = follows ? normal_force.force : lag.normal_forces[index];
+  if (contact.static_friction == 0 || friction_normal_force == 0) return response;
+
+  const FrictionLag& friction = lag.frictions[index];
+  const Vec3 slip = slip_of(contact, relative) / stick_slip_;
+  const bool sticks = law == Law::tangent && friction.sticks;
+  response.slip = sticks ? sticking_slip(contact, friction.relative_friction) : slip;
+  response.friction_per_slip = friction_normal_force / stick_slip_;
+  Vec3 w = friction_over_normal_force(contact, response.slip);
+  if (sticks) w += friction_slope(contact, response.slip, friction.relative_friction) * (slip - response.slip);
+  response.force -= friction_normal_force * w;
+  return response;
+}
+
+void ContactSet::add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
+  add_forces(Law::exact, x_end, lag, force);
+}
+
+void ContactSet::add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
+  add_forces(Law::tangent, x_end, lag, force);
+}
+
+void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
+  struct Push {
+    const Contact* contact;
+    Vec3 force;
+  };
+  std::vector<Push> pushes;
+  parallel_append(contacts_.size(), kFineGrainSize, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
+    for (std::size_t c = begin; c < end; ++c)
+      if (const Response response = respond(c, law, x_end, lag); response.active)
+        list.push_back({&contacts_[c], response.force});
+  });
+  for (const auto& [contact, push] : pushes)
+    for (int k = 0; k < 4; ++k) force[contact->particles[k]] += contact->weights[k] * push;
+}
+
+void ContactSet::add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag,
+                                                std::span<Vec3> push, std::span<Vec3> friction,
+                                                std::span<double> limit) const {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    const Response response = respond(c, Law::exact, x_end, lag);
+    if (!response.active) continue;
+    const Vec3 normal_part = contact.normal.dot(response.force) * contact.normal;
+    const double max_friction = contact.static_friction * stick_slip_ * response.friction_per_slip;
+    for (int k = 0; k < 4; ++k) {
+      const Index i = contact.particles[k];
+      push[i] += contact.weights[k] * normal_part;
+      friction[i] += contact.weights[k] * (response.force - normal_part);
+      limit[i] += std::abs(contact.weights[k]) * max_friction;
+    }
+  }
+}
+
+void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
+                           solver::LinearSystem& system) const {
+  struct Push {
+    const Contact* contact;
+    Vec3 force;
+    Mat3 stiffness;
+  };
+  std::vector<Push> pushes;
+  parallel_append(contacts_.size(), kFineGrainSize, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Contact& contact = contacts_[c];
+      const Response response = respond(c, Law::tangent, x_end, lag);
+      if (!response.active) continue;
+      Mat3 stiffness = response.slope * contact.normal * contact.normal.transpose();
+      if (response.friction_per_slip > 0)
+        stiffness +=
+            response.friction_per_slip * friction_slope(contact, response.slip, lag.frictions[c].relative_friction);
+      list.push_back({&contact, response.force, end_rate * stiffness});
+    }
+  });
+  for (const auto& [contact, push, stiffness] : pushes) add_term(*contact, push, stiffness, force, system);
+}
+
+bool ContactSet::add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
+                             std::span<Vec3> right_side, solver::LinearSystem& system) const {
+  struct Active {
+    const Contact* contact;
+    double fraction, force, slope;  // force along the normal [N]
+  };
+  std::vector<Active> active;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    const Response response = respond(c, Law::tangent, x_end, lag);
+    if (response.active && response.slope > 0)
+      active.push_back({&contact, impact_fraction(contact, start), contact.normal.dot(response.force), response.slope});
+  }
+  if (std::ranges::all_of(active, [](const Active& one) { return one.fraction == 0; })) return false;
+  for (const auto& [contact, fraction, force, slope] : active) {
+    const Mat3 along = contact->normal * contact->normal.transpose();
+    Mat3 friction = Mat3::Zero();
+    if (contact->static_friction > 0) friction = fraction * slope * (Mat3::Identity() - along);
+    add_term(*contact,
+             fraction / start.h * force * contact->normal + friction * tangential_jump(*contact, x_end, start),
+             friction + (1 - fraction) * slope * along, right_side, system);
+  }
+  return true;
+}
+
+int ContactSet::active(std::span<const Vec3> x_end) const {
+  return static_cast<int>(std::ranges::count_if(contacts_, [&](const Contact& contact) {
+    return contact.normal.dot(relative_end(contact, x_end)) < contact.range;
+  }));
+}
+
+}  // namespace weft::collision

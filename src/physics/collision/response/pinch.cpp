@@ -1,0 +1,166 @@
+#include "physics/collision/response/pinch.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "core/archive.hpp"
+#include "core/numerics.hpp"
+
+namespace weft::collision {
+namespace {
+
+// Present normal of the face nearest to p, of those that reached the cloth.
+Vec3 outward(const Vec3& p, std::span<const Triangle> faces, std::span<const Vec3> x) {
+  return face_normal(nearest_point(p, faces, x).face, x);
+}
+
+}  // namespace
+
+// Faces of the limb that need a separating plane. Bounding boxes separate the others.
+std::vector<Triangle> PinchedPairs::faces_near(const Key& key, const BroadPhase& surfaces,
+                                               std::span<const Vec3> x) const {
+  std::vector<Triangle> faces = triangles_near(key.cloth, surfaces, key.body, x, numerics.separation.least_gap);
+  std::erase_if(faces, std::not_fn(belongs_to_limb(key.limb)));
+  return faces;
+}
+
+bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const {
+  return std::ranges::all_of(faces_near(key, surfaces, x), [&](const Triangle& face) {
+    return find_separating_plane({key.cloth, face}, x, x).has_value();
+  });
+}
+
+// Whether no obstacle contains the exit. For example, a hand inside a hip has its exit blocked by the hip.
+bool PinchedPairs::is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces,
+                                 std::span<const Vec3> x) const {
+  for (std::size_t surface = 0; surface < surfaces.size(); ++surface)
+    if (is_obstacle(surfaces.surface(surface)) && is_inside(place, outward, surfaces, surface, x)) return false;
+  return true;
+}
+
+bool PinchedPairs::are_pinched(const std::array<Index, 4>& vertices) const {
+  if (origins_.empty()) return false;
+  for (Index particle : vertices)
+    for (Index other : vertices)
+      if (particles_.contains({particle, body_of_[other], limb_of_[other]})) return true;
+  return false;
+}
+
+void PinchedPairs::add(const CornerPair& pair) {
+  const Key of_pair = key(pair);
+  origins_[of_pair].faces.push_back(pair.b);
+  for (Index particle : pair.a) particles_.try_emplace({particle, of_pair.body, of_pair.limb});
+}
+
+void PinchedPairs::list_particles() {
+  particles_.clear();
+  for (const auto& [key, origin] : origins_) {
+    for (Index particle : key.cloth) {
+      Origin& of_particle = particles_[{particle, key.body, key.limb}];
+      of_particle.side = origin.side;
+      for (const Triangle& face : origin.faces)
+        if (std::ranges::find(of_particle.faces, face) == of_particle.faces.end()) of_particle.faces.push_back(face);
+    }
+  }
+}
+
+void PinchedPairs::note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0) {
+  for (auto& [key, origin] : origins_) {
+    if (origin.side != 0) continue;
+    const Vec3& corner = x_t0[key.cloth[0]];
+    origin.side =
+        nearest_point(corner, surfaces, key.body, x_t0, Vec3::Zero(), belongs_to_limb(key.limb)).height < 0 ? -1 : 1;
+  }
+  list_particles();
+}
+
+void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x) {
+  std::map<Key, Origin> around = origins_;
+  for (const Triangle& cloth : triangles) {
+    if (cloth[0] >= first_obstacle_) break;
+    for (Index particle : cloth)
+      for (auto it = particles_.lower_bound({particle, 0, 0}); it != particles_.end(); ++it) {
+        if (it->first.particle != particle) break;
+        around.try_emplace({cloth, it->first.body, it->first.limb}, it->second);
+      }
+  }
+  std::erase_if(around, [&](const auto& pinched) {
+    const auto& [key, origin] = pinched;
+    return is_apart(key, surfaces, x) &&
+           origin.side * nearest_point(x[key.cloth[0]], surfaces, key.body, x, Vec3::Zero(), belongs_to_limb(key.limb))
+                             .height >
+               0;
+  });
+  origins_ = std::move(around);
+  list_particles();
+}
+
+std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x,
+                                                          double max_height) const {
+  std::vector<Push> pushes;
+  std::map<Corner, bool> is_back;
+  for (const auto& [corner, origin] : particles_) {
+    const auto& [particle, body, limb] = corner;
+    const Vec3& p = x[particle];
+    SurfacePoint nearest = nearest_point(p, surfaces, body, x, Vec3::Zero(), belongs_to_limb(limb));
+    is_back[corner] = origin.side * nearest.height > 0;
+    // The nearest exit may be through another face and lead to the wrong side of the limb.
+    if (!is_back[corner])
+      nearest = nearest_point(p, surfaces, body, x, outward(p, origin.faces, x), belongs_to_limb(limb));
+    const double height = origin.side * nearest.height;
+    if (height >= max_height) continue;
+    const Vec3 exit_direction = origin.side * nearest.normal;
+    pushes.push_back({{{particle, nearest.face[0], nearest.face[1], nearest.face[2]},
+                       {1, -nearest.weights[0], -nearest.weights[1], -nearest.weights[2]},
+                       exit_direction,
+                       height},
+                      is_exit_clear(p + (max_height - height) * exit_direction, exit_direction, surfaces, x)});
+  }
+  for (const auto& [key, origin] : origins_) {
+    const auto back = [&, &key = key](Index v) { return is_back.at({v, key.body, key.limb}); };
+    if (!std::all_of(key.cloth.begin(), key.cloth.end(), back)) continue;
+    for (const Triangle& face : faces_near(key, surfaces, x)) {
+      const auto weights = find_crossing(key.cloth, face, x);
+      if (!weights) continue;
+      Vec3 place = Vec3::Zero();
+      for (std::size_t k = 0; k < 3; ++k) place += (*weights)[k] * x[key.cloth[k]];
+      const Vec3 exit_direction = origin.side * face_normal(face, x);
+      pushes.push_back({{{key.cloth[0], key.cloth[1], key.cloth[2], face[0]},
+                         {(*weights)[0], (*weights)[1], (*weights)[2], -1},
+                         exit_direction,
+                         0},
+                        is_exit_clear(place + max_height * exit_direction, exit_direction, surfaces, x)});
+    }
+  }
+  return pushes;
+}
+
+template <class Archive>
+void PinchedPairs::serialize(Archive& archive) {
+  std::vector<std::pair<Key, Origin>> pinched(origins_.begin(), origins_.end());
+  serialize_each(archive, pinched, [&](auto& pair) {
+    auto& [key, origin] = pair;
+    serialize_values(archive, key.cloth, key.body, key.limb, origin.side);
+    serialize_plain(archive, origin.faces);
+    if constexpr (Archive::kReads) {
+      const auto is_of_body = [&, body = key.body](const Triangle& face) {
+        return std::ranges::all_of(face, [&](Index v) {
+          return v >= first_obstacle_ && v < static_cast<Index>(body_of_.size()) && body_of_[v] == body;
+        });
+      };
+      const auto is_particle = [&](Index v) { return v >= 0 && v < first_obstacle_; };
+      require(std::ranges::all_of(key.cloth, is_particle) && key.body > body_of_[first_obstacle_ - 1] &&
+                  key.body <= body_of_.back() && !origin.faces.empty() && std::ranges::all_of(origin.faces, is_of_body),
+              "pinched triangles of a cloth and an obstacle");
+    }
+  });
+  if constexpr (Archive::kReads) {
+    origins_ = {pinched.begin(), pinched.end()};
+    list_particles();
+  }
+}
+
+template void PinchedPairs::serialize(ByteWriter&);
+template void PinchedPairs::serialize(ByteReader&);
+
+}  // namespace weft::collision

@@ -1,0 +1,194 @@
+#include "physics/collision/response/planes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/archive.hpp"
+#include "core/numerics.hpp"
+#include "core/parallel_append.hpp"
+
+namespace weft::collision {
+namespace {
+
+Lanes8 dot(const Points8& a, const Points8& b) {
+  return a.axis[0] * b.axis[0] + a.axis[1] * b.axis[1] + a.axis[2] * b.axis[2];
+}
+
+Points8 minus(const Points8& a, const Points8& b) {
+  return {{a.axis[0] - b.axis[0], a.axis[1] - b.axis[1], a.axis[2] - b.axis[2]}};
+}
+
+Points8 cross(const Points8& a, const Points8& b) {
+  return {{a.axis[1] * b.axis[2] - a.axis[2] * b.axis[1], a.axis[2] * b.axis[0] - a.axis[0] * b.axis[2],
+           a.axis[0] * b.axis[1] - a.axis[1] * b.axis[0]}};
+}
+
+/// One triangle in each lane.
+struct Triangles8 {
+  Points8 corner[3];
+};
+
+}  // namespace
+
+// Tests face normals and the direction between the centres for eight pairs at once, in float: 5 ns per pair, where the
+// branching search in double takes 60. If nothing is found, find_failing() searches later.
+void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
+  const auto gather = [&](bool side_b) {
+    Triangles8 result;
+    for (int c = 0; c < 3; ++c) {
+      const Lanes4* row[8];
+      for (std::size_t l = 0; l < 8; ++l) {
+        const TrianglePair& pair = pairs_.view()[first + std::min(l, count - 1)];
+        const Triangle& t = triangles_[side_b ? pair.b : pair.a];
+        row[l] = &rounded_[t[c]];
+      }
+      result.corner[c] = transpose(row);
+    }
+    return result;
+  };
+  Triangles8 a = gather(false), b = gather(true);
+  // Coordinates are rounded twice by 2^-24 of themselves, and dot products by a few times as much if the triangles are
+  // no farther apart than the coordinates are large. Half of the minimum gap allows for the length of n. Only the
+  // coordinates of the pair count, so that no other body has an influence.
+  Lanes8 rounding = a.corner[0].axis[0];
+  for (const Triangles8* side : {&a, &b})
+    for (const Points8& corner : side->corner)
+      for (const Lanes8& coordinate : corner.axis) {
+        raise_to(rounding, coordinate);
+        raise_to(rounding, -coordinate);
+      }
+  rounding = rounding * 0x1p-19F + static_cast<float>(1.5 * numerics.separation.least_gap);
+  // Use coordinates relative to a corner, so that the rounding of dot products scales with the size of the triangles.
+  const Points8 origin = a.corner[0];
+  for (int c = 0; c < 3; ++c) a.corner[c] = minus(a.corner[c], origin), b.corner[c] = minus(b.corner[c], origin);
+
+  float best_gap[8];
+  Points8 best_n;
+  const auto consider = [&](const Points8& direction, bool initial) {
+    const Lanes8 length_sq = dot(direction, direction);
+    Lanes8 scale;
+    for (int l = 0; l < 8; ++l) scale[l] = length_sq[l] > 0 ? 1 / std::sqrt(length_sq[l]) : 0.0F;
+    const Points8 n{{direction.axis[0] * scale, direction.axis[1] * scale, direction.axis[2] * scale}};
+    Lanes8 a_low = dot(n, a.corner[0]), a_high = a_low, b_low = dot(n, b.corner[0]), b_high = b_low;
+    for (int c = 1; c < 3; ++c) {
+      const Lanes8 along_a = dot(n, a.corner[c]), along_b = dot(n, b.corner[c]);
+      lower_to(a_low, along_a), raise_to(a_high, along_a), lower_to(b_low, along_b), raise_to(b_high, along_b);
+    }
+    const Lanes8 above = a_low - b_high, below = b_low - a_high;
+    for (int l = 0; l < 8; ++l) {
+      const float gap = std::max(above[l], below[l]), sign = above[l] >= below[l] ? 1.0F : -1.0F;
+      if (!initial && !(gap > best_gap[l])) continue;
+      best_gap[l] = gap;
+      for (int axis = 0; axis < 3; ++axis) best_n.axis[axis][l] = sign * n.axis[axis][l];
+    }
+  };
+  Points8 centres = b.corner[0];
+  for (int axis = 0; axis < 3; ++axis)
+    centres.axis[axis] = a.corner[1].axis[axis] + a.corner[2].axis[axis] - b.corner[0].axis[axis] -
+                         b.corner[1].axis[axis] - b.corner[2].axis[axis];
+  consider(centres, true);
+  consider(cross(a.corner[1], a.corner[2]), false);
+  consider(cross(minus(b.corner[1], b.corner[0]), minus(b.corner[2], b.corner[0])), false);
+  for (std::size_t l = 0; l < count; ++l)
+    planes_[first + l] = {{best_n.axis[0][l], best_n.axis[1][l], best_n.axis[2][l]}, best_gap[l] - rounding[l]};
+}
+
+void Planes::watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x) {
+  pairs_.clear();
+  pairs_.append(pairs);
+  watch(x);
+}
+
+void Planes::watch(std::span<const Vec3> x) {
+  planes_.resize(pairs_.size());
+  is_separated_.assign(pairs_.size(), 0);
+  rounded_.resize(x.size());
+  parallel_for(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      rounded_[v] = Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
+  });
+  parallel_for(pairs_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; p += 8) find_planes_for_eight(p, std::min<std::size_t>(8, end - p));
+  });
+}
+
+void Planes::append_closer(double radius, std::span<const float> moved, PairList& out) const {
+  std::vector<float> triangle_moved(triangles_.size());
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    triangle_moved[t] = std::max({moved[triangles_[t][0]], moved[triangles_[t][1]], moved[triangles_[t][2]]});
+  TrianglePair* end = out.reserve_more(pairs_.size());
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    const TrianglePair& pair = pairs_.view()[p];
+    *end = pair;
+    end += planes_[p].gap < static_cast<float>(radius) + triangle_moved[pair.a] + triangle_moved[pair.b] ? 1 : 0;
+  }
+  out.grow(end);
+}
+
+void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                          std::span<const float> moved, std::span<const std::uint8_t> changed,
+                          std::vector<CornerPair>& failing, const CarriedStarts* carried, PlaneKinds which) {
+  moved_.resize(triangles_.size());
+  changed_.resize(triangles_.size());
+  parallel_for(triangles_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const Triangle& corners = triangles_[t];
+      moved_[t] = std::max({moved[corners[0]], moved[corners[1]], moved[corners[2]]});
+      changed_[t] = changed[corners[0]] | changed[corners[1]] | changed[corners[2]];
+    }
+  });
+  if (carried != nullptr) carried->make();
+  parallel_append(pairs_.size(), kGrainSize, failing, [&](std::size_t begin, std::size_t end, auto& list) {
+    find_failing(begin, end, {reference, x_t0, x_t1, carried, which}, list);
+  });
+}
+
+void Planes::find_failing(std::size_t begin, std::size_t end, const Trajectory& trajectory,
+                          std::vector<CornerPair>& failing) {
+  const auto& [reference, x_t0, x_t1, carried, which] = trajectory;
+  for (std::size_t p = begin; p < end; ++p) {
+    const TrianglePair& numbers = pairs_.view()[p];
+    const auto a = static_cast<std::size_t>(numbers.a), b = static_cast<std::size_t>(numbers.b);
+    Plane& plane = planes_[p];
+    const CornerPair pair{triangles_[a], triangles_[b]};
+    const std::span<const Vec3> start = carried != nullptr ? carried->of(pair, x_t0) : x_t0;
+    const bool starts_at_x_t0 = start.data() == x_t0.data();
+    // A plane for the straight trajectory does not prove separation from an obstacle that turns between the same ends.
+    if (starts_at_x_t0 && is_separated_[p] && !changed_[a] && !changed_[b]) continue;
+    is_separated_[p] = starts_at_x_t0;
+    if (starts_at_x_t0 && plane.gap > moved_[a] + moved_[b]) continue;
+
+    const Vec3 n(plane.n[0], plane.n[1], plane.n[2]);
+    if (plane.is_known() && separates(n, pair, start, x_t1)) continue;
+    const std::optional<Vec3> found = find_separating_plane(pair, start, x_t1, kinds_of(pair, which));
+    if (!found) {
+      is_separated_[p] = 0;
+      failing.push_back(pair);
+      continue;
+    }
+    const double gap = gap_along(*found, pair, reference) - 1.5 * numerics.separation.least_gap;
+    plane = {{static_cast<float>(found->x()), static_cast<float>(found->y()), static_cast<float>(found->z())},
+             static_cast<float>(gap > 0 ? (1 - 1e-6) * gap : gap)};
+  }
+}
+
+template <class Archive>
+void Planes::serialize(Archive& archive, std::span<const Vec3> reference) {
+  std::vector<std::uint32_t> changed;
+  if constexpr (!Archive::kReads) {
+    Planes fresh(triangles_, obstacles_from_);
+    fresh.watch(pairs_.view(), reference);
+    for (std::size_t p = 0; p < planes_.size(); ++p)
+      if (planes_[p] != fresh.planes_[p]) changed.push_back(static_cast<std::uint32_t>(p));
+  }
+  serialize_plain(archive, changed);
+  for (std::uint32_t p : changed) {
+    if constexpr (Archive::kReads) require(p < planes_.size(), "planes of the pairs near each other");
+    serialize_values(archive, planes_[p].n, planes_[p].gap);
+  }
+}
+
+template void Planes::serialize(ByteWriter&, std::span<const Vec3>);
+template void Planes::serialize(ByteReader&, std::span<const Vec3>);
+
+}  // namespace weft::collision

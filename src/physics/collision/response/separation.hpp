@@ -1,0 +1,150 @@
+// The guarantee: no two triangles meet during a step.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/collision/hierarchy/surface.hpp"
+#include "physics/collision/response/carried_starts.hpp"
+#include "physics/collision/response/certificate.hpp"
+#include "physics/collision/response/pinch.hpp"
+#include "physics/collision/response/planes.hpp"
+#include "physics/collision/response/vertex_stars.hpp"
+
+namespace weft::collision {
+
+/// Mobility of a vertex: obstacles are fixed, particles are free, and pinned particles move only if nothing else can.
+enum Movable : std::uint8_t { kFixed = 0, kFree = 1, kPinned = 2 };
+
+/// A pinned particle that had to move, and the pair that would have met otherwise.
+struct ObstructedPin {
+  Index particle;
+  CornerPair pair;
+};
+
+struct SeparationReport {
+  bool separated = false;                      ///< every pair has a separating plane
+  int corrected_pairs = 0;                     ///< pairs that needed a correction
+  double largest_push = 0;                     ///< [m]
+  std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that could not be held in place
+  CornerPair stuck{};                          ///< if not `separated`: a pair that could not be separated
+};
+
+/// Vertices that only move together: those of a rigid body and its frame particles.
+struct RigidGroup {
+  Index first, count;        ///< of its vertices
+  Index frame, frame_count;  ///< of the particles that carry them
+  double mass;               ///< [kg]
+};
+
+/// Keeps triangles apart over the linear motion from x_t0 to x_t1 by moving separating planes (see `separates`). Pairs
+/// without a common vertex are tested one by one; pairs of a surface that share one vertex are tested by vertex stars.
+/// Triangles that share an edge are not tested: they meet only if folded exactly onto each other.
+///
+/// If a pair has no separating plane, enforce() pushes its end positions apart along n, the closest direction at the
+/// start, until a gap remains; obstacles and held particles do not move. It then tests the moved vertices again, until
+/// no pair fails. Particles that keep failing are backtracked, finally all the way to their start or, if they fail with
+/// an obstacle that moves rigidly, to where the obstacle would have carried them. No pair met at the start. So two
+/// triangles whose vertices all end at their start, or where one obstacle carries them, are as far apart as they were.
+/// The set of backtracked particles grows until no pair fails. A pair that still fails is forced together by obstacles
+/// that move differently, or by held particles. Its cloth can then be exempted from the obstacle.
+///
+/// Between cloth and a rigid body, the cloth is pushed as by an obstacle. Rigid bodies are translated away from
+/// obstacles and from each other, the lighter one farther.
+class Separation {
+ public:
+  Separation() = default;
+  /// `triangles`: of all surfaces, by global number. `deformable`: surfaces that can collide with themselves. `masses`:
+  /// of the particles [kg], all equal if empty. `triangles` and `masses` must outlive it.
+  Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,
+             std::span<const double> masses = {});
+
+  /// Sets the groups. `vertices`: number of all vertices. Call before the first watch().
+  void set_rigid(std::vector<RigidGroup> groups, Index vertices);
+
+  /// Watches these pairs without a common vertex, and all vertex stars, with x [m] as the reference for motion. The
+  /// pairs must include all that can meet. If a vertex moves out of the bounds for which the pairs were collected,
+  /// collect and watch again.
+  void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
+  /// Watches the pairs received by exchange().
+  void watch(std::span<const Vec3> x);
+  /// As Planes::exchange().
+  void exchange(PairList& pairs) { planes_.exchange(pairs); }
+
+  /// Appends the watched pairs that may be closer than `radius` at x [m].
+  void append_closer(double radius, std::span<const Vec3> x, PairList& out) const;
+
+  /// Per triangle, 1 if at x [m] no feature of it is within `distance` [m] of a feature of a triangle that shares a
+  /// vertex with it, except features with a common vertex.
+  std::vector<std::uint8_t> find_clear_triangles(double distance, std::span<const Vec3> x) const;
+
+  /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1; changes no positions. x_t0 must
+  /// be free of intersections except those of `pinched`, which are skipped. Pairs with an obstacle that turns are
+  /// tested in its frame (`carried`). `which` restricts the planes of pairs that must be tested. For pairs whose
+  /// vertices have not moved since the last call, the result of that call is reused.
+  std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                                           const PinchedPairs* pinched = nullptr,
+                                           const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
+
+  /// Changes x_t1 of movable vertices until every pair has a separating plane. If that fails, adds pairs of cloth and
+  /// obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last call. It is
+  /// then kept which obstacle carries which vertex.
+  SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
+                           PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
+                           bool is_continued = false, PlaneKinds which = PlaneKinds::all);
+
+  /// Saves the planes found since watch(), for an object that watches the same pairs from the same positions.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    planes_.serialize(archive, reference_);
+  }
+
+ private:
+  /// State of enforce().
+  struct Step {
+    std::span<const Vec3> x_t0;
+    std::span<Vec3> x_t1;
+    std::vector<std::uint8_t> movable;
+    PinchedPairs* pinched;
+    const CarriedStarts* carried;
+    PlaneKinds which;
+    SeparationReport report = {};
+    std::span<const Vec3> start_of(const CornerPair& pair) const { return carried ? carried->of(pair, x_t0) : x_t0; }
+  };
+  double balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const;
+  bool push_apart(const CornerPair& pair, Step& step) const;
+  bool translate_groups(const CornerPair& pair, const Vec3& n, double target, Step& step) const;
+  const RigidGroup* group_of(Index v) const {
+    return group_of_.empty() || group_of_[v] < 0 ? nullptr : &groups_[group_of_[v]];
+  }
+  template <class Visit>
+  static void for_each_member(const RigidGroup& group, const Visit& visit);
+  bool release_pins(const CornerPair& pair, Step& step);
+  bool choose_backtrack_targets(const CornerPair& pair, const Step& step);
+  const Vec3& backtrack_target(Index v, const Step& step) const;
+  bool has_carried_vertex(const CornerPair& pair) const;
+  bool backtrack(const CornerPair& pair, bool all_the_way, Step& step);
+  bool backtrack_all(Step& step) const;
+  bool is_backtracked(const CornerPair& pair, const Step& step) const;
+  void test_again(const Step& step);
+
+  std::span<const Triangle> triangles_;
+  std::span<const double> masses_;  // of the particles
+  std::vector<Vec3> reference_;
+  Planes planes_;
+  VertexStars stars_;
+  std::vector<float> moved_;                 // per vertex: bound of its distance from the reference at both ends [m]
+  std::vector<Vec3> tested_t0_, tested_t1_;  // per vertex: position at the last test [m]
+  std::vector<std::uint8_t> changed_;        // per vertex: has moved since the last test
+  std::vector<int> backtracked_in_;          // per vertex: round in which it was last backtracked; 0: never
+  std::vector<RigidGroup> groups_;
+  std::vector<int> group_of_;  // per vertex; −1: none; empty if there are no groups
+  std::vector<int> carriers_;  // per vertex: obstacle that carries it when backtracked, or a value below
+  static constexpr int kAtStart = -1, kAlwaysAtStart = -2;
+  int round_ = 0;
+  std::vector<CornerPair> failing_;
+};
+
+}  // namespace weft::collision

@@ -1,0 +1,102 @@
+// Keeps detection results while nothing moves much relative to its neighbours (seed, "Detection Process").
+//
+//   CoherentDetection detection(surfaces, {{0, 0}, {0, 1}}, x, {.detection_distance = …, .budget = …});
+//   each step:  if (detection.update(broad_phase, finder, x_t0, x_t1) > 0) … detection.candidates() have changed
+//               detection.proximities()
+//
+// Each surface is divided into groups of triangles. Each group has a velocity cone: its motion since a common
+// reference. For two groups, let R be how far a point of one can have moved relative to a point of the other since
+// their pair of surfaces was searched, by these cones. Distances, and gaps of bounds along any direction, have then
+// changed by at most R. Let D be the detection distance. A result is valid while for each two groups R ≤ budget, or
+// their boxes were more than D + R apart at that search. While a result is valid:
+//   - every two triangles whose bounds with margin D / 2 overlap now are among the candidates;
+//   - the kept closest points of two features, with unchanged weights, are at most 2 R farther apart than the features,
+//     and never closer;
+//   - for every two features within D of each other, some listed pair is at most 2 R farther apart. (They were within
+//     D + R at that search, and the listed pair that represented them was no farther; see ProximityFinder.)
+// A pair of surfaces is searched as a whole, because a near pair may represent others in neighbouring groups.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "physics/collision/hierarchy/broad_phase.hpp"
+#include "physics/collision/hierarchy/surface.hpp"
+#include "physics/collision/proximity/proximities.hpp"
+#include "physics/collision/variants/velocity_cone.hpp"
+
+namespace weft::collision {
+
+/// Two surfaces that can meet, by number: a < b, or a = b for a surface with itself.
+struct SurfacePair {
+  std::size_t a = 0, b = 0;
+};
+
+struct CoherenceParameters {
+  double detection_distance = 0;  ///< [m]
+  double budget = 0;              ///< relative motion up to which a result stays valid [m]
+  double min_fold = 0;            ///< of edges, as for ProximityFinder::gather
+};
+
+class CoherentDetection {
+ public:
+  CoherentDetection() = default;
+  /// `surfaces`: numbered as in the broad phase and the finder. `wanted`: the pairs of surfaces to search.
+  CoherentDetection(std::span<const Surface> surfaces, std::vector<SurfacePair> wanted, std::span<const Vec3> x,
+                    const CoherenceParameters& parameters);
+
+  /// Updates to the step from x_t0 to x_t1 [m]. Fits all bounds, searches the pairs of surfaces whose result is no
+  /// longer valid, and returns their number. If none, the candidates are unchanged. Call again if the motion changes.
+  int update(BroadPhase& broad_phase, ProximityFinder& finder, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+  /// Candidate pairs of all wanted pairs of surfaces.
+  const CandidatePairs& candidates() const { return candidates_; }
+  /// Near pairs, with the distances and normals that their weights give at x_t0. Pairs of an earlier search are listed
+  /// up to a distance of D + 2 R.
+  std::span<const Proximity> proximities() const { return proximities_; }
+  /// Largest R of all pairs of groups that are not far apart; at most the budget [m].
+  double largest_motion() const { return largest_motion_; }
+
+  /// Makes the next update search everything, so that nothing depends on earlier steps.
+  void forget() { updates_ = 0; }
+
+ private:
+  struct Group {
+    std::vector<Index> vertices;
+    Vec3 low, high;  // box of the trajectories from x_t0 to x_t1
+    VelocityCone cone;
+  };
+  struct GroupSnapshot {
+    Vec3 low, high;
+    VelocityCone cone;
+  };
+  /// Result of one wanted pair of surfaces, and the state of their groups when it was found.
+  struct KeptResult {
+    bool valid = false;
+    CandidatePairs candidates;
+    std::vector<Proximity> proximities;
+    std::vector<GroupSnapshot> groups_a, groups_b;
+    double motion = 0;  ///< largest R of groups that are not far apart [m]
+  };
+
+  void add_groups(const Surface& surface, std::span<const Vec3> x);
+  void update_cones(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  bool is_still_valid(const SurfacePair& pair, KeptResult& kept) const;
+  void search_again(const std::vector<std::size_t>& pairs, BroadPhase& broad_phase, ProximityFinder& finder,
+                    std::span<const Vec3> x_t0);
+  void append_proximities(const KeptResult& kept, std::span<const Vec3> x);
+
+  std::vector<Surface> surfaces_;
+  std::vector<SurfacePair> wanted_;
+  CoherenceParameters parameters_;
+  std::vector<KeptResult> kept_;            // by wanted pair
+  std::vector<std::vector<Group>> groups_;  // by surface
+  int updates_ = 0;
+  std::vector<Vec3> reference_t0_, reference_t1_;
+  CandidatePairs candidates_;
+  std::vector<Proximity> proximities_;
+  double largest_motion_ = 0;
+};
+
+}  // namespace weft::collision

@@ -1,0 +1,86 @@
+// Finds regions of a surface so flat that no two features inside can be near each other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/collision/hierarchy/traversal.hpp"
+#include "physics/collision/hierarchy/tree.hpp"
+
+namespace weft::collision {
+
+/// Computes the normal cones of a tree's nodes and leaves bottom-up, and the flat regions that follow from them.
+///
+/// Let P be the triangles below a node and P⁺ all triangles with at least one corner in P. Features of P without a
+/// common vertex are not near each other if an axis a exists such that, during the linear motion from x_t0 to x_t1,
+///   1. no corner of P is on the border of the surface, so all triangles around it are in P⁺;
+///   2. the normals of P⁺ lie in a cone around a of less than 90°, so that, seen against a, all of P⁺ faces the viewer;
+///   3. the contour of P⁺, seen against a, runs counter-clockwise around its centre once (star-shaped: Schvartzman,
+///      Pérez & Otaduy, "Star-Contours for Efficient Hierarchical Self-Collision Detection", 2010);
+///   4. the altitudes of the triangles of P⁺, projected along a, exceed the detection distance.
+/// Proof: the degree of the projection is the winding number of the contour, and every triangle counts +1. By 2 and 3
+/// each point inside the contour is therefore covered once, so P⁺ projects to a planar triangulation. In that plane,
+/// the closest points of two features of P without a common vertex include a vertex v of one of them. The segment from
+/// v to the other feature leaves the triangles around v, which surround it by 1, through an edge opposite to v, so it
+/// is at least an altitude long. Distances in space are no smaller than their projections.
+///
+/// The normal of a triangle is quadratic in time. Over a step, the cone test and the contour test therefore use
+/// Bernstein coefficients (Tang, Curtis, Yoon & Manocha, "ICCD", 2009). A degenerate triangle does not meet condition
+/// 2.
+///
+/// Provot (1997; the seed's choice) requires only condition 2, for P instead of P⁺. That would also skip near pairs of
+/// parts that overlap in projection (a spiral stair) or meet across a border or slit (measured: 0.6 to 25 % of the
+/// skipped pairs were near).
+template <int K>
+class NormalCones {
+ public:
+  NormalCones() = default;
+  /// Reads the tree, but keeps no reference to it.
+  explicit NormalCones(const Tree<K>& tree);
+
+  /// Finds the flat regions for the motion from x_t0 to x_t1 (global arrays, [m]). Features closer than
+  /// `detection_distance` [m] are near.
+  void update(const Tree<K>& tree, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double detection_distance);
+
+  const Regions& regions() const { return regions_; }
+
+ private:
+  using Ref = typename Tree<K>::Ref;
+  class Builder;
+
+  /// All directions within an angle < 90° of a unit axis; cosine ≤ 0 if there is no such cone.
+  struct Cone {
+    Vec3 axis = Vec3::Zero();
+    double cosine = -1, sine = 0;
+    double altitude = 0;  ///< times `cosine`: lower bound of the projected altitudes in the step [m]
+  };
+
+  /// Connectivity of a subtree, which does not change.
+  struct Subtree {
+    bool closed = false;                        ///< condition 1
+    std::vector<Ref> ring;                      ///< leaves outside the subtree that have a triangle of P⁺
+    std::vector<std::array<Index, 2>> contour;  ///< directed edges of P⁺ without an opposite edge
+  };
+
+  static std::size_t slot(const Tree<K>& tree, Ref ref);
+  static Cone join(std::span<const Cone* const> cones);
+  void fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                Cone& cone) const;
+  bool has_nothing_near(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                        double detection_distance) const;
+  void mark_flat_regions(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                         double detection_distance);
+
+  std::vector<Subtree> subtrees_;  // nodes, then leaves
+  std::vector<Cone> cones_;        // of P alone; nodes, then leaves
+  Regions regions_;
+};
+
+/// Whether a closed chain of directed edges, seen against the unit axis, runs around its centre exactly once and
+/// counter-clockwise throughout the linear motion.
+bool is_star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis, std::span<const Vec3> x_t0,
+                    std::span<const Vec3> x_t1);
+
+}  // namespace weft::collision

@@ -1,0 +1,56 @@
+// Air drag on cloth.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "physics/forces/force.hpp"
+#include "physics/forces/lanes.hpp"
+#include "physics/forces/ranges.hpp"
+
+namespace weft::forces {
+
+struct AirParameters {
+  double density = 1.2;      ///< of the air [kg/m³]
+  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s], unless an evaluation provides its own
+  double drag = 1.0;         ///< coefficient of drag along the normal
+};
+
+/// Quadratic drag along the normal of each cell or triangle, divided equally among its corners: f = −½ ρ c A ‖v_n‖ v_n,
+/// with the density ρ, the drag coefficient c, the area A and the velocity v_n along the normal, relative to the air.
+///
+/// The drag is implicit although it is not stiff. If it were evaluated once per step at the initial velocity (seed,
+/// "Time integration"), terminal velocities and folds in steady wind would depend on the step size. The matrix contains
+/// the derivative with respect to velocities, lumped on the diagonal: an upper bound of the full derivative, exact if
+/// the corners of a face change velocity together. The derivatives of normals and areas are neglected.
+class Air final : public Force {
+ public:
+  Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);
+  Air(const mesh::Sheet& sheet, Index first, const AirParameters& parameters);
+
+  void couple(std::vector<std::pair<Index, Index>>& /*pairs*/) const override {}
+  void attach(const solver::Assembly& /*assembly*/) override {}
+  void cut(std::span<const Index> bounds) override;
+  void add(const Evaluation& at) const override;
+  double energy(std::span<const Vec3> /*x*/) const override { return 0; }
+
+ private:
+  /// Four cells or triangles; unused lanes have `is_used` = 0.
+  template <std::size_t Corners>
+  struct Faces {
+    std::array<Four, Corners> corners{};
+    Lanes is_used{};
+  };
+  template <std::size_t Corners>
+  static std::vector<Faces<Corners>> pack(const std::vector<std::array<Index, Corners>>& faces);
+  template <std::size_t Corners>
+  void add_drag(const Faces<Corners>& faces, const Evaluation& at) const;
+
+  Vec3 wind_;
+  double coefficient_;           // ½ ρ c [kg/m³]
+  std::vector<Faces<4>> cells_;  // corners in the order (0,0), (1,0), (1,1), (0,1)
+  std::vector<Faces<3>> triangles_;
+  Ranges ranges_of_cells_, ranges_of_triangles_;
+};
+
+}  // namespace weft::forces

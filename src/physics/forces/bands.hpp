@@ -1,0 +1,55 @@
+// Elastic bands, hems, and seam allowances along edges of cloth.
+#pragma once
+
+#include <array>
+
+#include "physics/forces/force.hpp"
+#include "physics/mesh/sheet.hpp"
+
+namespace weft::forces {
+
+/// The bands of a sheet. A piece of an elastic band between two particles, of length l, rest length r and stiffness k
+/// [N], has the energy ½ k r (l / r − 1)². A hem of bending stiffness E [N·m²] has the energy ½ E L ‖s''‖² at each
+/// particle between two pieces, where s'' is the second difference of the positions and L the mean length of both
+/// pieces in the pattern. A hem is straight at rest: if its edge is curved in the pattern with radius R, the hem pulls
+/// with E / R² [N], which is negligible beside the stiffness of cloth. A seam allowance is an elastic band as stiff as
+/// a strip of cloth of its width.
+class Bands final : public Force {
+ public:
+  /// `stretch`: stiffness of the cloth [N/m].
+  Bands(const mesh::Sheet& sheet, Index first, double stretch);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> /*bounds*/) override {}  // few elements
+  void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
+  double energy(std::span<const Vec3> x) const override;
+  void add_constant_stiffness(solver::Assembly& assembly) const override;
+
+  /// For sewn sheets: interpolates the rest lengths of all pieces between those of the start (progress 0) and those of
+  /// the pattern (progress 1).
+  void interpolate_rest_shape(double progress);
+
+ private:
+  struct Piece {
+    std::array<Index, 2> particles;
+    double stiffness;            // [N]
+    double start, pattern_rest;  // rest lengths [m]
+    double rest;                 // r, current rest length [m]
+    Index block = 0;
+  };
+  struct Bend {
+    std::array<Index, 3> particles;
+    Vec3 weights;                    // of s'' [1/m²]
+    double stiffness;                // E L [N·m³]
+    std::array<Index, 3> scalars{};  // of the pairs 01, 12, 20
+  };
+  static Mat3 stiffness(const Piece& piece, const Vec3& along, double lateral);
+
+  std::vector<Piece> pieces_;
+  std::vector<Bend> bends_;
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,226 @@
+#include "physics/forces/cord.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::forces {
+namespace {
+
+// Smallest length of a piece, relative to its rest length. Coinciding particles have no direction; the tiny length
+// keeps the matrix finite.
+constexpr double kMinPieceStretch = 1e-12;
+
+std::size_t slot(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+template <class Points>
+Vec3 vec_at(const Points& x, Index i) {
+  return solver::vec3_of(x[slot(i)]);
+}
+
+double piece_length(std::span<const Vec3> x, const std::array<Index, 2>& ends) {
+  return (x[slot(ends[1])] - x[slot(ends[0])]).norm();
+}
+
+template <class Turn, class Points>
+Vec3 second_difference(const Turn& turn, const Points& x) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k) sum += turn.weights[k] * vec_at(x, turn.particles[k]);
+  return sum;
+}
+
+solver::PackedBlock packed_block(const Mat3& m) {
+  return {Lanes{m(0, 0), m(1, 0), m(2, 0), m(0, 1)}, Lanes{m(1, 1), m(2, 1), m(0, 2), m(1, 2)},
+          Lanes{m(2, 2), 0, 0, 0}};
+}
+
+}  // namespace
+
+Cord::Cord(std::span<const double> lengths, bool closed, Index first, const CordParameters& parameters)
+    : first_(first), parameters_(parameters), damping_({parameters.bend, parameters.bend_viscosity, 0}) {
+  const auto pieces = static_cast<Index>(lengths.size()), particles = closed ? pieces : pieces + 1;
+  const auto particle = [&](Index i) { return first + i % particles; };
+  for (Index p = 0; p < pieces; ++p) pieces_.push_back({{particle(p), particle(p + 1)}, lengths[slot(p)], 0, 0, 0});
+  set_length_ratio(1);
+  if (parameters.bend == 0 && parameters.bend_viscosity == 0) return;
+  for (Index p = 0; p < (closed ? pieces : pieces - 1); ++p) {
+    turns_.push_back(
+        {{particle(p), particle(p + 1), particle(p + 2)}, lengths[slot(p)], lengths[slot((p + 1) % pieces)], {}, 0});
+    compute_weights(turns_.back(), {});
+  }
+}
+
+// If the middle and one end are held, the free half piece contains the whole turn; see Bend.
+void Cord::compute_weights(Turn& turn, std::span<const char> held) const {
+  const auto is_held = [&](std::size_t k) { return !held.empty() && held[slot(turn.particles[k])] != 0; };
+  turn.length = 0.5 * (turn.before + turn.after);
+  if (is_held(1) && is_held(0) != is_held(2)) turn.length = 0.5 * (is_held(0) ? turn.after : turn.before);
+  const double one = 1 / (turn.before * turn.length), other = 1 / (turn.after * turn.length);
+  turn.weights = {one, -(one + other), other};
+}
+
+void Cord::hold(std::span<const char> held) {
+  for (Turn& turn : turns_) compute_weights(turn, held);
+}
+
+void Cord::set_length_ratio(double ratio) {
+  for (Piece& piece : pieces_) {
+    piece.rest = ratio * piece.initial_length;
+    piece.elasticity = parameters_.stretch / piece.rest;
+    piece.viscosity = parameters_.stretch_viscosity / piece.rest;
+  }
+}
+
+void Cord::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+  for (const Piece& piece : pieces_) pairs.emplace_back(piece.particles[0], piece.particles[1]);
+  for (const Turn& turn : turns_)
+    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(turn.particles[k], turn.particles[(k + 1) % 3]);
+}
+
+void Cord::attach(const solver::Assembly& assembly) {
+  const auto block = [&](Index a, Index b) { return assembly.block(std::min(a, b), std::max(a, b)); };
+  for (Piece& piece : pieces_) piece.block = block(piece.particles[0], piece.particles[1]);
+  for (Turn& turn : turns_)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = turn.particles[k], b = turn.particles[(k + 1) % 3];
+      turn.scalars[k] = assembly.scalar(a, b);
+      turn.blocks[k] = block(a, b);
+    }
+}
+
+void Cord::add(const Evaluation& at) const {
+  const bool has_air = parameters_.air_density > 0 && parameters_.drag > 0;
+  for (const Piece& piece : pieces_) {
+    add_stretch(piece, at);
+    if (has_air) add_air(piece, at);
+  }
+  for (const Turn& turn : turns_) add_turn(turn, at);
+}
+
+void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
+  const Index a = piece.particles[0], b = piece.particles[1];
+  const Vec3 d = vec_at(at.x, b) - vec_at(at.x, a);
+  const double length = std::max(d.norm(), kMinPieceStretch * piece.rest);
+  const Vec3 n = d / length;
+  double tension = piece.elasticity * (length - piece.rest);
+  if (piece.viscosity > 0)
+    tension += piece.viscosity * at.rate_of(
+                                     length, [&](std::span<const Vec3> x) { return piece_length(x, piece.particles); },
+                                     [&] { return n.dot(vec_at(at.v, b) - vec_at(at.v, a)); });
+  const auto pull = solver::padded<double>(tension * n);
+  at.force.add(a, pull);
+  at.force.subtract(b, pull);
+  if (!at.assembly) return;
+  // See Stretch.
+  const double lateral = piece.elasticity * std::max(1 - piece.rest / length, 0.0);
+  const double along = piece.elasticity + at.rate * piece.viscosity;
+  at.assembly.add(piece.block, Mat3((lateral - along) * n * n.transpose() - lateral * Mat3::Identity()));
+}
+
+void Cord::add_air(const Piece& piece, const Evaluation& at) const {
+  const auto [a, b] = piece.particles;
+  const Vec3 d = vec_at(at.x, b) - vec_at(at.x, a);
+  const double length = d.norm();
+  if (!(length > 0)) return;
+  Vec3 v = 0.5 * (vec_at(at.v, a) + vec_at(at.v, b));
+  v -= at.air.empty() ? parameters_.wind : Vec3(0.5 * (vec_at(at.air, a) + vec_at(at.air, b)));
+  const Vec3 n = d / length, across = v - n.dot(v) * n;
+  const double speed = across.norm();
+  if (!(speed > 0)) return;
+  // per end [kg/m]
+  const double coefficient = 0.25 * parameters_.air_density * parameters_.drag * parameters_.diameter * length;
+  const auto drag = solver::padded<double>(coefficient * speed * across);
+  at.force.subtract(a, drag);
+  at.force.subtract(b, drag);
+  if (!at.assembly) return;
+  // Derivative with respect to velocities, lumped on the diagonal; see Air.
+  const auto damping = packed_block(
+      at.rate * coefficient * (speed * (Mat3::Identity() - n * n.transpose()) + across * across.transpose() / speed));
+  at.assembly.add_to_own_block(a, damping);
+  at.assembly.add_to_own_block(b, damping);
+}
+
+void Cord::add_turn(const Turn& turn, const Evaluation& at) const {
+  const Vec3 curvature = second_difference(turn, at.x);
+  Vec3 moment = parameters_.bend * curvature;
+  if (damping_.any()) {
+    const Vec3 velocity = second_difference(turn, at.v);
+    const Vec3 c = at.rate > 0 ? Vec3(curvature - velocity / at.rate) : curvature;
+    const double rate = c.dot(velocity), secant = damping_.secant(c.squaredNorm(), rate);
+    moment += secant * rate * c;
+    if (at.assembly)
+      for (std::size_t k = 0; k < 3; ++k)
+        at.assembly.add(turn.blocks[k], Mat3(at.rate * turn.length * secant * turn.weights[k] *
+                                             turn.weights[(k + 1) % 3] * c * c.transpose()));
+  }
+  for (std::size_t k = 0; k < 3; ++k)
+    at.force.subtract(turn.particles[k], solver::padded<double>(turn.length * turn.weights[k] * moment));
+}
+
+void Cord::add_constant_stiffness(solver::Assembly& assembly) const {
+  for (const Turn& turn : turns_)
+    for (std::size_t k = 0; k < 3; ++k)
+      assembly.add_scalar(turn.scalars[k],
+                          parameters_.bend * turn.length * turn.weights[k] * turn.weights[(k + 1) % 3]);
+}
+
+void Cord::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                        solver::BlockMatrix& jacobian) const {
+  const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
+  for (const Piece& piece : pieces_) {
+    const auto [a, b] = piece.particles;
+    const Vec3 d = x[slot(b)] - x[slot(a)], w = v[slot(b)] - v[slot(a)];
+    const double length = std::max(d.norm(), kMinPieceStretch * piece.rest);
+    const Vec3 n = d / length;
+    const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
+    const Mat3 k = (piece.elasticity + rate * piece.viscosity) * along +
+                   piece.elasticity * (1 - piece.rest / length) * across +
+                   piece.viscosity / length * (n * (across * w).transpose() + n.dot(w) * across);
+    add(a, a, k), add(a, b, -k), add(b, a, -k), add(b, b, k);
+  }
+  for (const Turn& turn : turns_) {
+    const Vec3 velocity = second_difference(turn, v);
+    Vec3 c = second_difference(turn, x);
+    if (rate > 0) c -= velocity / rate;
+    const double tangent = damping_.tangent(c.squaredNorm(), c.dot(velocity));
+    const Mat3 stiffness = turn.length * (parameters_.bend * Mat3::Identity() + rate * tangent * c * c.transpose());
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b)
+        add(turn.particles[a], turn.particles[b], turn.weights[a] * turn.weights[b] * stiffness);
+  }
+}
+
+double Cord::energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  for (const Piece& piece : pieces_) {
+    const double extension = piece_length(x, piece.particles) - piece.rest;
+    sum += 0.5 * piece.elasticity * extension * extension;
+  }
+  for (const Turn& turn : turns_)
+    sum += 0.5 * parameters_.bend * turn.length * second_difference(turn, x).squaredNorm();
+  return sum;
+}
+
+double Cord::max_strain(std::span<const Vec3> x) const {
+  double largest = 0;
+  for (const Piece& piece : pieces_)
+    largest = std::max(largest, std::abs(piece_length(x, piece.particles) / piece.rest - 1));
+  return largest;
+}
+
+void Cord::strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const {
+  for (const Piece& piece : pieces_) {
+    const auto strain = static_cast<float>(std::abs(piece_length(x, piece.particles) / piece.rest - 1));
+    for (const Index p : piece.particles) heat[slot(p - first_)] = std::max(heat[slot(p - first_)], strain);
+  }
+}
+
+std::vector<double> lumped_masses(std::span<const double> lengths, bool closed, double mass) {
+  std::vector<double> masses(lengths.size() + (closed ? 0 : 1));
+  for (std::size_t p = 0; p < lengths.size(); ++p)
+    for (const std::size_t end : {p, (p + 1) % masses.size()}) masses[end] += 0.5 * mass * lengths[p];
+  return masses;
+}
+
+}  // namespace weft::forces

@@ -1,0 +1,81 @@
+// Ropes and cords: chains of particles with stretch and bending stiffness and air drag.
+#pragma once
+
+#include <array>
+
+#include "physics/forces/bend_damping.hpp"
+#include "physics/forces/force.hpp"
+
+namespace weft::forces {
+
+struct CordParameters {
+  double stretch = 0;            ///< force per strain, EA [N]
+  double stretch_viscosity = 0;  ///< η, force per rate of strain [N·s]
+  double bend = 0;               ///< bending stiffness, EI [N·m²]
+  double bend_viscosity = 0;     ///< moment per rate of curvature [N·m²·s]
+  double air_density = 0;        ///< ρ [kg/m³]; 0: no air
+  Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], unless an evaluation provides its own
+  double drag = 0;               ///< c, drag coefficient across the cord
+  double diameter = 0;           ///< d, for drag [m]
+};
+
+/// The forces within one chain.
+///
+/// Stretch: a piece of length l and rest length r has the energy ½ EA r (l / r − 1)² and the viscous tension η d/dt (l
+/// / r). Bending: energy ½ EI L ‖s''‖² at each particle between two pieces, where s'' is the second difference of the
+/// positions by initial rest lengths and L the mean of both (as Bend on the lines of a sheet, clamps included);
+/// straight at rest. For viscosity of bending see BendDamping. Air: −½ ρ c d l ‖v_n‖ v_n on a piece, half at either
+/// end, where v_n is the part across the piece of its velocity relative to the air.
+class Cord final : public Membrane {
+ public:
+  /// `lengths`: rest lengths of the pieces [m]; `closed`: the last piece connects the last particle to the first.
+  Cord(std::span<const double> lengths, bool closed, Index first, const CordParameters& parameters);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> /*bounds*/) override {}  // few elements
+  void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
+  double energy(std::span<const Vec3> x) const override;
+  void add_constant_stiffness(solver::Assembly& assembly) const override;
+  void hold(std::span<const char> held) override;
+
+  /// Sets the rest lengths of stretch to this ratio of the initial ones.
+  void set_length_ratio(double ratio);
+
+  double max_strain(std::span<const Vec3> x) const override;
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
+
+ private:
+  struct Piece {
+    std::array<Index, 2> particles;
+    double initial_length;  // rest length at construction [m]
+    double rest;            // r, current rest length [m]
+    double elasticity;      // EA / r [N/m]
+    double viscosity;       // η / r [N·s/m]
+    Index block = 0;
+  };
+  struct Turn {
+    std::array<Index, 3> particles;
+    double before, after;                      // initial rest lengths of its pieces [m]
+    std::array<double, 3> weights;             // of s'' [1/m²]
+    double length;                             // L [m]
+    std::array<Index, 3> scalars{}, blocks{};  // of the pairs 01, 12, 20
+  };
+  void add_stretch(const Piece& piece, const Evaluation& at) const;
+  void add_air(const Piece& piece, const Evaluation& at) const;
+  void add_turn(const Turn& turn, const Evaluation& at) const;
+  void compute_weights(Turn& turn, std::span<const char> held) const;
+
+  Index first_;
+  CordParameters parameters_;
+  BendDamping damping_;
+  std::vector<Piece> pieces_;
+  std::vector<Turn> turns_;
+};
+
+/// Lumped masses [kg]: half of each piece at either end. `mass`: [kg/m].
+std::vector<double> lumped_masses(std::span<const double> lengths, bool closed, double mass);
+
+}  // namespace weft::forces

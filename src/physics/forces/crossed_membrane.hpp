@@ -1,0 +1,83 @@
+// Stretch and shear of cloth whose cells consist of four triangles around a middle vertex.
+#pragma once
+
+#include "physics/forces/triangle_membrane.hpp"
+
+namespace weft::forces {
+
+/// TriangleMembrane without membrane locking (spurious bending stiffness). If four triangles keep their lengths, the
+/// middle m of their cell stays in the plane of its corners a, b, c, d: cells stay flat, and kinks between cells
+/// replace bending. Here the height w of the middle above the mean of the corners, along the normal n of the diagonals,
+/// lengthens all four triangles equally, instead of each by its own inclination. With m' = m − w n instead of m,
+///
+///     ‖s_u‖² + θ w² ⟨g_u²⟩ + ‖n‖² ‖t‖² g_u² / 16   replaces ‖s_u‖²,   likewise along v,
+///
+/// where g is the gradient of the middle's weight, ⟨⟩ the average over the cell, and θ a tenth, so that tension still
+/// flattens cells. t = a − b + c − d is the twist of the cell. If the threads at two opposite sides are skew, both keep
+/// their lengths, but the thread halfway between them is the mean of both vectors: its square is exactly ‖t‖² / 4 less
+/// than the mean of theirs. Plane parallelograms have w = 0 and t = 0: nothing changes. n = D₁ × D₂ / S with the
+/// diagonals D₁ = c − a, D₂ = d − b and S = ‖D₁ × D₂‖; for folded cells with ‖D₁ × D₂‖ < S₀, S = (S₀ + ‖D₁ × D₂‖² / S₀)
+/// / 2, so that w and t count less, the more a cell is folded. (Chen et al., "Locking-free Simulation of Isometric Thin
+/// Plates", 2019, average strains around vertices against locking.)
+class CrossedMembrane final : public TriangleMembrane {
+ public:
+  /// The sheet's triangles must be cells of four: (a, b, m), (b, c, m), (c, d, m), (d, a, m).
+  CrossedMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
+                  const ShearParameters& shear);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
+  /// The matrix and add_jacobian() contain the Gauss-Newton part and the stiffness of elastic stresses, but neither the
+  /// force that stresses exert by a change of n nor the stiffness of viscous stresses.
+  void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
+  double energy(std::span<const Vec3> x) const override;
+
+ private:
+  struct Cell {
+    std::array<Index, 5> particles;
+    Vec2 height_weight = Vec2::Zero();  // θ ⟨g_u²⟩, θ ⟨g_v²⟩ [1/m²]
+    double min_size = 0;                // S₀ [m²]
+  };
+  using Five = std::array<Vec3, 5>;
+  /// Factors of w² and of the skew in one triangle: θ ⟨g²⟩ and g² / 16, along weft and warp [1/m²].
+  struct CellWeights {
+    Vec2 of_height, of_skew;
+  };
+  /// Geometry of a cell.
+  struct State {
+    Five flat;                   // corners and m'
+    double height = 0;           // w
+    Vec3 normal, middle_offset;  // n; the middle minus the mean of the corners
+    Vec3 twist;                  // t
+    double skew = 0;             // ‖n‖² ‖t‖² [m²]
+    std::array<Vec3, 2> diagonals;
+    double size = 0;                // S [m²]
+    Vec3 direction = Vec3::Zero();  // e, unit vector of the cross product of the diagonals
+    double kept_change = 0;         // κ, fraction of a change of that product along e that changes n
+  };
+  double strain(std::size_t triangle, std::span<const Vec3> x) const override;
+  static State state_of(const Cell& cell, const Five& positions);
+  static Vec3 normal_change(const State& state, const Vec3& product);
+  static Five vectors_of(const Cell& cell, std::span<const Vec3> of);
+  static Five vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of);
+  /// Stiffness across a thread by tension, relative to its stretch stiffness, as a function of its relative length.
+  using Lateral = double (*)(double length);
+  using Blocks = std::array<solver::PackedBlock, 25>;  // row-major over pairs of particles
+  static Gradient gradient_of(const Element& element, const Five& flat, std::size_t k);
+  static CellWeights cell_weights_of(const Cell& cell, const Element& element);
+  static Vec2 lengths_of(const Gradient& s, const CellWeights& cell_weights, const State& state);
+  /// Relative lengths along weft and warp of triangle k of a cell, and its shear.
+  Vec3 strains_of(std::size_t cell, std::size_t k, const State& state) const;
+  static void pull_back(const State& state, Five& force, double along_height, double along_skew);
+  static void push_forward(const State& state, Five& flat, double& height, double& skew);
+  Blocks blocks_of(std::size_t cell, const State& state, double rate, Lateral lateral_of, bool definite) const;
+
+  std::vector<Cell> cells_;
+  std::vector<std::array<Index, 25>> cell_blocks_;  // of pair (a, b) at 5 a + b, if a's particle is before b's
+  Ranges ranges_;                                   // of cells
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,101 @@
+#include "physics/forces/enclosed_volume.hpp"
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "core/parallel.hpp"
+#include "physics/mesh/geometry.hpp"
+
+namespace weft::forces {
+namespace {
+
+// Volume up to which a surface counts as flat, relative to its area to the power 3/2 (sphere: 0.09, rounding: 1e-16).
+constexpr double kFlatVolume = 1e-9;
+
+std::size_t index_of(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Loops of border edges, each in the reverse of its direction in its triangle.
+std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> triangles) {
+  // A border edge is one whose reverse is in no triangle.
+  std::map<std::array<Index, 2>, int> runs;
+  for (const mesh::Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++runs[{t[k], t[(k + 1) % 3]}];
+  std::multimap<Index, Index> next;
+  for (const auto& [edge, count] : runs)
+    if (!runs.contains({edge[1], edge[0]})) next.emplace(edge[1], edge[0]);
+  std::vector<std::vector<Index>> loops;
+  while (!next.empty()) {
+    std::vector<Index>& loop = loops.emplace_back();
+    for (auto edge = next.begin(); edge != next.end(); edge = next.find(loop.back())) {
+      if (loop.empty()) loop.push_back(edge->first);
+      loop.push_back(edge->second);
+      next.erase(edge);
+    }
+    loop.pop_back();  // repeats the first
+  }
+  return loops;
+}
+
+}  // namespace
+
+EnclosedVolume::EnclosedVolume(std::span<const mesh::Triangle> triangles, std::span<const Vec3> start)
+    : borders_(border_loops(triangles)) {
+  std::vector<mesh::Triangle> closed(triangles.begin(), triangles.end());
+  auto middle = static_cast<Index>(start.size());
+  for (const std::vector<Index>& border : borders_) {
+    for (std::size_t k = 0; k < border.size(); ++k)
+      closed.push_back({border[k], border[(k + 1) % border.size()], middle});
+    ++middle;
+  }
+  star_begin_.assign(index_of(middle) + 1, 0);
+  for (const mesh::Triangle& t : closed)
+    for (Index corner : t) ++star_begin_[index_of(corner) + 1];
+  for (std::size_t i = 0; i < index_of(middle); ++i) star_begin_[i + 1] += star_begin_[i];
+  star_.resize(3 * closed.size());
+  std::vector<Index> filled(star_begin_.begin(), star_begin_.end() - 1);
+  for (const mesh::Triangle& t : closed)
+    for (std::size_t k = 0; k < 3; ++k) star_[index_of(filled[index_of(t[k])]++)] = {t[(k + 1) % 3], t[(k + 2) % 3]};
+
+  flat_ = kFlatVolume * std::pow(mesh::surface_area(triangles, start), 1.5);
+  std::vector<Vec3> gradient(start.size());
+  if (evaluate(start, gradient) < -flat_) sign_ = -1;
+}
+
+double EnclosedVolume::evaluate(std::span<const Vec3> x, std::span<Vec3> gradient) const {
+  std::vector<Vec3> middles(borders_.size(), Vec3::Zero());
+  for (std::size_t b = 0; b < borders_.size(); ++b) {
+    for (Index i : borders_[b]) middles[b] += x[index_of(i)];
+    middles[b] /= static_cast<double>(borders_[b].size());
+  }
+  const auto place = [&](Index i) -> const Vec3& {
+    return index_of(i) < x.size() ? x[index_of(i)] : middles[index_of(i) - x.size()];
+  };
+  // Positions relative to the vertex itself keep the products accurate far from the origin.
+  const auto derivative = [&](std::size_t i) {
+    const Vec3& own = place(static_cast<Index>(i));
+    Vec3 sum = Vec3::Zero();
+    for (Index s = star_begin_[i]; s < star_begin_[i + 1]; ++s) {
+      const auto& [j, k] = star_[index_of(s)];
+      sum += (place(j) - own).cross(place(k) - own);
+    }
+    return Vec3(sign_ / 6 * sum);
+  };
+  parallel_for(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) gradient[i] = derivative(i);
+  });
+  for (std::size_t b = 0; b < borders_.size(); ++b) {
+    const Vec3 of_each = derivative(x.size() + b) / static_cast<double>(borders_[b].size());
+    for (Index i : borders_[b]) gradient[index_of(i)] += of_each;
+  }
+  const Vec3 origin = x.empty() ? Vec3(Vec3::Zero()) : x.front();
+  return parallel_sum(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += gradient[i].dot(x[i] - origin);
+    return sum / 3;
+  });
+}
+
+}  // namespace weft::forces

@@ -1,0 +1,42 @@
+// The volume that a surface encloses, and its derivative with respect to the positions of the particles.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/mesh/topology.hpp"
+
+namespace weft::forces {
+
+/// The volume inside a triangle surface. Triangles from the edges of each border to the mean of the border's particles
+/// close its opening, so that the volume does not depend on the origin. Volumes of separate surfaces are added.
+///
+/// V = 1/3 Σ x_i · ∂V/∂x_i and ∂V/∂x_i = 1/6 Σ x_j × x_k over the triangles (i, j, k) of the vertex star of i: a third
+/// of their area vectors. The derivative with respect to a border's mean is divided equally among the border's
+/// particles.
+class EnclosedVolume {
+ public:
+  /// `triangles`: manifold, consistently oriented, over particles 0 to start.size() − 1. The sign is chosen so that the
+  /// volume at `start` [m] is positive; if it is flat there, the front of the triangles is outside.
+  EnclosedVolume(std::span<const mesh::Triangle> triangles, std::span<const Vec3> start);
+
+  /// Returns the volume [m³] at x [m], one position per particle. Writes ∂V/∂x [m²] into `gradient`, which has the same
+  /// size; its entries sum to zero.
+  double evaluate(std::span<const Vec3> x, std::span<Vec3> gradient) const;
+
+  /// Whether this volume [m³] is zero up to rounding.
+  bool is_flat(double volume) const { return volume <= flat_; }
+
+  std::size_t openings() const { return borders_.size(); }
+
+ private:
+  std::vector<Index> star_begin_;            // per vertex, and the end
+  std::vector<std::array<Index, 2>> star_;   // the two other corners of each triangle of the vertex star
+  std::vector<std::vector<Index>> borders_;  // particles of each border; their mean is a further vertex
+  double sign_ = 1;
+  double flat_ = 0;  // [m³]
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,25 @@
+#include "physics/forces/force.hpp"
+
+namespace weft::forces {
+
+std::vector<double> lumped_masses(const mesh::Grid& grid, double density) {
+  std::vector<double> masses(static_cast<std::size_t>(grid.size()));
+  for (int j = 0; j < grid.nv; ++j)
+    for (int i = 0; i < grid.nu; ++i) masses[grid.index(i, j)] = density * grid.width_u(i) * grid.width_v(j);
+  return masses;
+}
+
+std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density) {
+  std::vector<double> masses(sheet.rest.size());
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
+    const double own = sheet.reinforcements.empty() ? density : density * sheet.reinforcements[t].density;
+    for (Index i : sheet.triangles[t]) masses[i] += own * mesh::rest_area(sheet, t) / 3;
+  }
+  for (const mesh::Band& band : sheet.bands)
+    for (std::size_t k = 0; k < band.lengths.size(); ++k)
+      for (Index i : {band.vertices[k], band.vertices[k + 1]})
+        masses[i] += 0.5 * (band.mass + density * band.allowance) * band.lengths[k];
+  return masses;
+}
+
+}  // namespace weft::forces

@@ -1,0 +1,119 @@
+// Interface and data of all forces of the cloth.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/past.hpp"
+#include "core/types.hpp"
+#include "physics/mesh/mesh.hpp"
+#include "physics/mesh/sheet.hpp"
+#include "physics/solver/assembly.hpp"
+#include "physics/solver/block_matrix.hpp"
+
+namespace weft::forces {
+
+/// The forces on particles [begin, end). Ignores forces that are added to other particles.
+class ForceRows {
+ public:
+  ForceRows(std::span<solver::PaddedVec3<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
+  ForceRows(std::vector<solver::PaddedVec3<double>>& all) : ForceRows(std::span(all)) {}
+  /// `all`: forces of all particles.
+  ForceRows(std::span<solver::PaddedVec3<double>> all, Index begin, Index end) : all_(all), begin_(begin), end_(end) {}
+
+  void add(Index particle, const solver::PaddedVec3<double>& force) const {
+    if (particle >= begin_ && particle < end_) all_[static_cast<std::size_t>(particle)] += force;
+  }
+  void subtract(Index particle, const solver::PaddedVec3<double>& force) const {
+    if (particle >= begin_ && particle < end_) all_[static_cast<std::size_t>(particle)] -= force;
+  }
+
+ private:
+  std::span<solver::PaddedVec3<double>> all_;
+  Index begin_, end_;
+};
+
+struct LockLinearisation;
+
+/// One evaluation of the forces at (x, v). A PaddedVec3 holds three numbers and a zero.
+struct Evaluation {
+  std::span<const solver::PaddedVec3<double>> x;  ///< positions [m]
+  std::span<const solver::PaddedVec3<double>> v;  ///< velocities [m/s]
+  ForceRows force;                                ///< the forces f are added to it [N]
+  /// −(∂f/∂x + rate ∂f/∂v) is added to it [N/m], made symmetric and positive semidefinite term by term, as conjugate
+  /// gradients and line search require. Empty: forces only.
+  solver::AssemblyRows assembly = {};
+  double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂), x̂ fixed in a step [1/s]; 0: none
+  /// Earlier positions from which v is computed. Empty: rates of strain follow from v at x.
+  std::span<const Past> past = {};
+  /// Range of Force::cut() to evaluate; kAll: everything.
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  std::size_t range = kAll;
+  /// Velocity of the air at each particle [m/s]; empty: the same everywhere.
+  std::span<const solver::PaddedVec3<double>> air = {};
+  /// Linearisation points of the locks of the threads; null: linearise at x.
+  const LockLinearisation* locks = nullptr;
+
+  /// Rate of a quantity q of the positions. `now`: q(x); of_places(earlier positions): q there; by_velocity(): ∂q/∂x v,
+  /// used without past. With ∂q/∂x v and implicit Euler, an edge that turns by θ in a step would seem to lengthen by
+  /// the fraction 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step, and create
+  /// energy.
+  template <class Quantity, class OfPlaces, class ByVelocity>
+  Quantity rate_of(const Quantity& now, const OfPlaces& of_places, const ByVelocity& by_velocity) const {
+    if (past.empty()) return by_velocity();
+    Quantity change = now;
+    for (const Past& before : past) change = change - before.weight * of_places(before.x);
+    return rate * change;
+  }
+};
+
+/// A force on the particles of one cloth. `first`: the cloth's first particle in the global numbering.
+class Force {
+ public:
+  virtual ~Force() = default;
+
+  /// Appends the pairs of particles that the Jacobian couples, in either order; pairs may repeat.
+  virtual void couple(std::vector<std::pair<Index, Index>>& pairs) const = 0;
+  /// Whether everything added to an Assembly is a multiple of the identity.
+  virtual bool isotropic() const { return false; }
+  /// Looks up the blocks of the pairs. Call once, when the pattern is known.
+  virtual void attach(const solver::Assembly& assembly) = 0;
+
+  /// Divides the particles at these bounds, ends included, into ranges that threads may evaluate at the same time. Call
+  /// after attach().
+  virtual void cut(std::span<const Index> bounds) = 0;
+
+  virtual void add(const Evaluation& at) const = 0;
+  /// Elastic energy [J].
+  virtual double energy(std::span<const Vec3> x) const = 0;
+
+  /// Adds the part of −∂f/∂x that only hold() can change, if there is one; `add` omits it.
+  virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
+
+  /// Adds the exact −(∂f/∂x + rate ∂f/∂v) without past, element by element: indefinite under compression, unsymmetric
+  /// with viscosity. For vibrations and tests. Exceptions: CrossedMembrane omits parts; air and Rigidity add nothing.
+  virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
+                            solver::BlockMatrix& /*jacobian*/) const {}
+
+  /// Sets which particles of all cloths are held or moved from now on: a clamp changes the stiffness of the free
+  /// particles beside it. The pattern of the Jacobian stays.
+  virtual void hold(std::span<const char> /*held*/) {}
+};
+
+/// A force that resists deformation within the sheet or along a cord, and measures its strain.
+class Membrane : public Force {
+ public:
+  /// Largest relative change of length of a piece of weft, warp or cord.
+  virtual double max_strain(std::span<const Vec3> x) const = 0;
+  /// Raises heat[particle − first] to the largest strain of the pieces or triangles at the particle.
+  virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const = 0;
+};
+
+/// Lumped masses of a grid [kg]: ρ times the area of each particle. `density`: ρ [kg/m²].
+std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
+/// Lumped masses of triangles [kg], a third at each corner, and of bands and their allowances, half at each end.
+std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density);
+
+}  // namespace weft::forces

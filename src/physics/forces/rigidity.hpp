@@ -1,0 +1,42 @@
+// Elastic force that keeps a rigid body in shape.
+#pragma once
+
+#include <array>
+
+#include "core/types.hpp"
+#include "physics/forces/force.hpp"
+#include "physics/mesh/rigid_frame.hpp"
+
+namespace weft::forces {
+
+/// Keeps the distances of the four particles p_k of a rigid body (mesh::RigidFrame, with deviations s and corners t_k).
+/// B = ¼ Σ p_k t_kᵀ equals R diag(s) with a rotation R if the body is rigid. With the body's mass m and W = diag(s)^-½,
+/// the energy is κ m / 8 ‖W Bᵀ B W − W⁻²‖²: that of the strain AᵀA − I of an affine body, A = B diag(s)⁻¹ (Lan et al.,
+/// "Affine Body Dynamics", 2022), scaled so that all stretches have the same angular frequency √κ and thin bodies are
+/// as rigid as round ones.
+///
+/// The force uses the strain at the end of the step, and the derivatives of the strain at the stage. Thus, with the
+/// midpoint rule, nothing resists the turning of a body; and every method damps the strain.
+class Rigidity final : public Force {
+ public:
+  /// `first`: the body's first particle; `mass`: of the body [kg]; `stiffness`: κ [1/s²].
+  Rigidity(const mesh::RigidFrame& frame, Index first, double mass, double stiffness);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> /*bounds*/) override {}  // few elements
+  void add(const Evaluation& at) const override;
+  double energy(std::span<const Vec3> x) const override;
+
+ private:
+  template <class Position>
+  Mat3 shape_of(const Position& position) const;
+  Mat3 strain_of(const Mat3& shape) const;
+
+  Index first_;
+  Vec3 deviations_;  // s [m]
+  double modulus_;   // κ m [N/m]
+  std::array<Index, 6> blocks_{};
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,132 @@
+#include "physics/forces/stretch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::forces {
+
+Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters)
+    : first_(first), viscous_(parameters.viscosity > 0) {
+  const auto add_edge = [&](Index i, Index j, double l, double width, double k) {
+    const double per_length_sq = width * l / (l * l);  // A / l²
+    edges_.push_back({first + i, first + j, l, k * per_length_sq, parameters.viscosity * per_length_sq});
+  };
+  for (int j = 0; j < grid.nv; ++j) {
+    for (int i = 0; i < grid.nu; ++i) {
+      if (i + 1 < grid.nu)
+        add_edge(grid.index(i, j), grid.index(i + 1, j), grid.du(i), grid.width_v(j), parameters.weft);
+      if (j + 1 < grid.nv)
+        add_edge(grid.index(i, j), grid.index(i, j + 1), grid.dv(j), grid.width_u(i), parameters.warp);
+    }
+  }
+  packs_.resize(packs_of(edges_.size()));
+  for (std::size_t p = 0; p < packs_.size(); ++p)
+    for_each_lane(edges_.size(), p, [&](std::size_t e, std::size_t lane, bool counts) {
+      const Edge& edge = edges_[e];
+      packs_[p].i[lane] = edge.i;
+      packs_[p].j[lane] = edge.j;
+      packs_[p].rest_length[lane] = edge.rest_length;
+      packs_[p].elasticity[lane] = counts ? edge.elasticity : 0;
+      packs_[p].viscosity[lane] = counts ? edge.viscosity : 0;
+    });
+}
+
+void Stretch::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+  for (const Edge& edge : edges_) pairs.emplace_back(edge.i, edge.j);
+}
+
+void Stretch::attach(const solver::Assembly& assembly) {
+  for (std::size_t p = 0; p < packs_.size(); ++p)
+    for_each_lane(edges_.size(), p, [&](std::size_t e, std::size_t lane, bool) {
+      packs_[p].block[lane] = assembly.block(edges_[e].i, edges_[e].j);
+    });
+}
+
+void Stretch::cut(std::span<const Index> bounds) {
+  cut_packs(
+      bounds, packs_,
+      [](const Edges& edges) {
+        return std::array{edges.i, edges.j};
+      },
+      ranges_);
+}
+
+void Stretch::add(const Evaluation& at) const {
+  ranges_.for_each(at.range, packs_.size(), [&](std::size_t p) {
+    const Edges& edges = packs_[p];
+    const VecLanes d = gather(at.x, edges.j) - gather(at.x, edges.i);
+    // A collapsed edge has no direction; the lower bound of its length keeps the matrix finite.
+    const Lanes length = max(sqrt(dot(d, d)), 1e-12 * edges.rest_length);
+    const VecLanes n = 1 / length * d;
+    Lanes tension = edges.elasticity * (length - edges.rest_length);
+    if (viscous_)
+      tension += edges.viscosity * at.rate_of(
+                                       length,
+                                       [&](std::span<const Vec3> x) {
+                                         const VecLanes then = gather(x, edges.j) - gather(x, edges.i);
+                                         return sqrt(dot(then, then));
+                                       },
+                                       [&] { return dot(n, gather(at.v, edges.j) - gather(at.v, edges.i)); });
+    const VecLanes pull = tension * n;
+    forces::add(at.force, edges.i, pull);
+    subtract(at.force, edges.j, pull);
+    if (!at.assembly) return;
+
+    // Across the edge, tension adds stiffness. Compression would subtract stiffness; this is omitted, so that the
+    // matrix stays positive semidefinite.
+    const Lanes lateral = edges.elasticity * max(1 - edges.rest_length / length, lanes_of(0.0));
+    const Lanes along = edges.elasticity + at.rate * edges.viscosity;
+    forces::add(at.assembly, edges.block, outer((lateral - along) * n, n, -lateral));
+  });
+}
+
+// Includes d/dd of (n·w) n, where w is the relative velocity, because the direction n turns with the edge. This part is
+// unsymmetric and O(η‖w‖/l), so add() omits it from the matrix. The forces stay exact, but Newton's method then
+// converges only linearly.
+void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                           solver::BlockMatrix& jacobian) const {
+  for (const Edge& edge : edges_) {
+    const Vec3 d = x[edge.j] - x[edge.i], w = v[edge.j] - v[edge.i];
+    const double length = std::max(d.norm(), 1e-12 * edge.rest_length);
+    const Vec3 n = d / length;
+    const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
+    const Mat3 k = (edge.elasticity + rate * edge.viscosity) * along +
+                   (edge.elasticity * (1 - edge.rest_length / length)) * across +
+                   edge.viscosity / length * (n * (across * w).transpose() + n.dot(w) * across);
+    jacobian.add(jacobian.diagonal(edge.i), k);
+    jacobian.add(jacobian.diagonal(edge.j), k);
+    jacobian.subtract(jacobian.slot(edge.i, edge.j), k);
+    jacobian.subtract(jacobian.slot(edge.j, edge.i), k);
+  }
+}
+
+double Stretch::energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  for (const Edge& e : edges_) {
+    const double extension = (x[e.j] - x[e.i]).norm() - e.rest_length;
+    sum += 0.5 * e.elasticity * extension * extension;
+  }
+  return sum;
+}
+
+double Stretch::max_strain(std::span<const Vec3> x) const {
+  double largest = 0;
+  for (const Edge& e : edges_) {
+    const double length = (x[e.j] - x[e.i]).norm();
+    largest = std::max(largest, std::abs(length / e.rest_length - 1));
+  }
+  return largest;
+}
+
+void Stretch::strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const {
+  for (const Edge& e : edges_) {
+    const double length = (x[e.j] - x[e.i]).norm();
+    const auto strain = static_cast<float>(std::abs(length / e.rest_length - 1));
+    for (Index p : {e.i, e.j}) {
+      float& value = heat[p - first_];
+      value = std::max(value, strain);
+    }
+  }
+}
+
+}  // namespace weft::forces

@@ -1,0 +1,59 @@
+// Weft and warp stretch, elastic and viscous.
+#pragma once
+
+#include <array>
+
+#include "physics/forces/force.hpp"
+#include "physics/forces/lanes.hpp"
+#include "physics/forces/ranges.hpp"
+
+namespace weft::forces {
+
+struct StretchParameters {
+  double weft = 0, warp = 0;  ///< stiffness k1, k2 [N/m]
+  double viscosity = 0;       ///< η, stress per strain rate, both directions [N·s/m]
+};
+
+/// Tension along the grid lines: seed Eq. (1), entries 11 and 22, with the spring formula of "Elastic Model".
+///
+/// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)², k = k1 or k2. The
+/// seed's force density, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force here.
+/// Viscosity has the same form in the rate of strain: dissipation ½ η A (d/dt (‖d‖/l))².
+class Stretch final : public Membrane {
+ public:
+  Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
+  void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
+  double energy(std::span<const Vec3> x) const override;
+
+  /// Largest |‖d‖/l − 1| of all edges.
+  double max_strain(std::span<const Vec3> x) const override;
+  /// Raises heat[particle − first] to the largest strain of its edges.
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
+
+ private:
+  struct Edge {
+    Index i, j;
+    double rest_length;  // l [m]
+    double elasticity;   // k A / l² [N/m]
+    double viscosity;    // η A / l² [N·s/m]
+  };
+  /// Four edges.
+  struct Edges {
+    Four i{}, j{}, block{};
+    Lanes rest_length{}, elasticity{}, viscosity{};
+  };
+
+  Index first_;
+  bool viscous_;
+  std::vector<Edge> edges_;
+  std::vector<Edges> packs_;
+  Ranges ranges_;  // of packs
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,269 @@
+#include "physics/forces/stretch_limit.hpp"
+
+#include <cmath>
+
+#include "core/parallel_append.hpp"
+
+namespace weft::forces {
+namespace {
+
+// A piece needs some stiffness below the onset, so that its tension determines its extension. The solution does not
+// depend on the value.
+StretchParameters with_min_stiffness(StretchParameters below) {
+  constexpr double kMinStiffness = 1;  // [N/m]
+  below.weft = std::max(below.weft, kMinStiffness), below.warp = std::max(below.warp, kMinStiffness);
+  return below;
+}
+
+// Bounds of Newton's method in find_extension: iterations, and residual relative to the tension.
+constexpr int kMaxExtensionIterations = 20;
+constexpr double kExtensionTolerance = 1e-3;
+
+// Returns the extension with this tension [N/m], starting from an extension `e` with at least this tension. As the
+// tension is convex, Newton's method converges from above.
+double find_extension(const Lock& lock, double stiffness, double tension, double e) {
+  if (tension <= stiffness * lock.onset()) return tension / stiffness;
+  for (int k = 0; k < kMaxExtensionIterations; ++k) {
+    const double excess = stiffness * e + lock.stress(e) - tension;
+    if (excess <= kExtensionTolerance * tension) break;
+    e -= excess / (stiffness + lock.stiffness(e));
+  }
+  return e;
+}
+
+}  // namespace
+
+StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch,
+                           double shear)
+    : below_(with_min_stiffness(below)), stretch_(stretch), shear_(shear) {
+  const bool limited = !std::isinf(stretch);
+  const auto add_thread = [&](Index i, Index j, double length, double width, double stiffness) {
+    threads_.push_back({2, {first + i, first + j}, {-1 / length, 1 / length}, width * length, stiffness});
+  };
+  for (int j = 0; j < grid.nv; ++j)
+    for (int i = 0; i < grid.nu; ++i) {
+      const Index here = grid.index(i, j);
+      const bool weft = i + 1 < grid.nu, warp = j + 1 < grid.nv;
+      if (weft && limited) add_thread(here, grid.index(i + 1, j), grid.du(i), grid.width_v(j), below_.weft);
+      if (warp && limited) add_thread(here, grid.index(i, j + 1), grid.dv(j), grid.width_u(i), below_.warp);
+      if (!weft || !warp || std::isinf(shear)) continue;
+      const double u = 0.5 / grid.du(i), v = 0.5 / grid.dv(j);
+      const Corners corners{first + here, first + grid.index(i + 1, j), first + grid.index(i, j + 1),
+                            first + grid.index(i + 1, j + 1)};
+      crossings_.push_back({4, corners, {-u, u, -u, u}, {-v, -v, v, v}, grid.du(i) * grid.dv(j)});
+    }
+}
+
+StretchLimit::StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch,
+                           double shear)
+    : below_(with_min_stiffness(below)), stretch_(stretch), shear_(shear) {
+  follow(membrane);
+}
+
+void StretchLimit::follow(const TriangleMembrane& membrane) {
+  threads_.clear(), crossings_.clear();
+  for (const TriangleMembrane::Element& element : membrane.elements()) {
+    const auto& [a, b, c] = element.particles;
+    const auto& g = element.gradients;
+    const Corners corners{a, b, c};
+    const Weights weft{g[0].x(), g[1].x(), g[2].x()}, warp{g[0].y(), g[1].y(), g[2].y()};
+    if (!std::isinf(stretch_)) {
+      threads_.push_back({3, corners, weft, element.area, below_.weft});
+      threads_.push_back({3, corners, warp, element.area, below_.warp});
+    }
+    if (!std::isinf(shear_)) crossings_.push_back({3, corners, weft, warp, element.area});
+  }
+}
+
+void StretchLimit::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+  const auto couple_all = [&](const auto& pieces) {
+    for (const auto& piece : pieces)
+      for (std::size_t a = 0; a < piece.corners; ++a)
+        for (std::size_t b = a + 1; b < piece.corners; ++b) pairs.emplace_back(piece.particles[a], piece.particles[b]);
+  };
+  couple_all(threads_);
+  couple_all(crossings_);
+}
+
+template <class Piece>
+Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::span<const Vec3> x) {
+  Vec3 s = Vec3::Zero();
+  for (std::size_t k = 0; k < piece.corners; ++k) s += weights[k] * x[piece.particles[k]];
+  return s;
+}
+
+template <class Piece>
+Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights,
+                              std::span<const solver::PaddedVec3<double>> x) {
+  solver::PaddedVec3<double> s{};
+  for (std::size_t k = 0; k < piece.corners; ++k) s += weights[k] * x[piece.particles[k]];
+  return solver::vec3_of(s);
+}
+
+// Calls body(piece, corner_forces, block_of) for each piece beyond its onset; block_of(a, b): block of −∂f/∂x for
+// corners a and b.
+template <class Points, class Body>
+void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
+                                 const Body& body) const {
+  // For nearly all pieces the squared length suffices to see that they are below the onset.
+  const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
+  ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
+    const Vec3 s = derivative(threads_[t], threads_[t].along, x);
+    const double* at = lag != nullptr ? &lag->extensions[t] : nullptr;
+    if (s.squaredNorm() <= onset_sq && (at == nullptr || *at <= onset - 1)) return;
+    lock(threads_[t], s, at,
+         [&](const CornerForces& corner_forces, const auto& block_of) { body(threads_[t], corner_forces, block_of); });
+  });
+  const double shear_onset = Lock(shear_).onset();
+  ranges_of_crossings_.for_each(range, crossings_.size(), [&](std::size_t c) {
+    const Crossing& crossing = crossings_[c];
+    const Vec3 s_u = derivative(crossing, crossing.weft, x), s_v = derivative(crossing, crossing.warp, x);
+    if (!(std::abs(s_u.dot(s_v)) > shear_onset)) return;
+    lock(crossing, s_u, s_v, exact,
+         [&](const CornerForces& corner_forces, const auto& block_of) { body(crossing, corner_forces, block_of); });
+  });
+}
+
+void StretchLimit::cut(std::span<const Index> bounds) {
+  const auto cut_pieces = [&](const auto& pieces, Ranges& ranges) {
+    ranges.cut(bounds, pieces.size(), [&](std::size_t p, const auto& visit) {
+      for (std::size_t k = 0; k < pieces[p].corners; ++k) visit(pieces[p].particles[k]);
+    });
+  };
+  cut_pieces(threads_, ranges_of_threads_);
+  cut_pieces(crossings_, ranges_of_crossings_);
+}
+
+void StretchLimit::add(const Evaluation& at) const {
+  for_each_lock(at.x, at.range, false, at.assembly ? at.locks : nullptr,
+                [&](const auto& piece, const CornerForces& corner_forces, const auto& block_of) {
+                  for (std::size_t k = 0; k < piece.corners; ++k)
+                    at.force.subtract(piece.particles[k], solver::padded<double>(corner_forces[k]));
+                  if (!at.assembly) return;
+                  for (std::size_t a = 0; a < piece.corners; ++a)
+                    for (std::size_t b = 0; b < piece.corners; ++b)
+                      if (piece.particles[a] < piece.particles[b])
+                        at.assembly.add(at.assembly.block(piece.particles[a], piece.particles[b]), block_of(a, b));
+                });
+}
+
+void StretchLimit::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
+                                solver::BlockMatrix& jacobian) const {
+  for_each_lock(x, Evaluation::kAll, true, nullptr, [&](const auto& piece, const CornerForces&, const auto& block_of) {
+    for (std::size_t a = 0; a < piece.corners; ++a)
+      for (std::size_t b = 0; b < piece.corners; ++b)
+        jacobian.add(jacobian.slot(piece.particles[a], piece.particles[b]), block_of(a, b));
+  });
+}
+
+StretchLimit::Tangent StretchLimit::tangent(double lag, double e) const {
+  const Lock lock(stretch_);
+  const double stiffness = lock.stiffness(lag), stress = lock.stress(lag) + stiffness * (e - lag);
+  return stress > 0 ? Tangent{stress, stiffness} : Tangent{0, 0};
+}
+
+// The thread is in tension, so the derivative is positive semidefinite.
+template <class Body>
+void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const {
+  const double length = s.norm(), e = length - 1, stress = piece.area * Lock(stretch_).stress(e);
+  const Tangent linear = tangent(lag != nullptr ? *lag : e, e);
+  if (stress == 0 && linear.stress == 0) return;  // the length may be zero
+  const Vec3 n = s / length;
+  CornerForces corner_forces{};
+  for (std::size_t k = 0; k < piece.corners; ++k) corner_forces[k] = stress * piece.along[k] * n;
+  const double lateral = piece.area * linear.stress / length, axial = piece.area * linear.stiffness;
+  body(corner_forces, [&](std::size_t a, std::size_t b) -> Mat3 {
+    return piece.along[a] * piece.along[b] * ((axial - lateral) * n * n.transpose() + lateral * Mat3::Identity());
+  });
+}
+
+void StretchLimit::begin(std::span<const Vec3> x, LockLinearisation& lag) const {
+  lag.extensions.resize(threads_.size());
+  parallel_for(threads_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      lag.extensions[t] = derivative(threads_[t], threads_[t].along, x).norm() - 1;
+  });
+}
+
+void StretchLimit::update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const {
+  const Lock lock(stretch_);
+  const double onset = lock.onset(), onset_sq = (1 + onset) * (1 + onset);
+  lag.near.clear();
+  parallel_append(threads_.size(), kGrainSize, lag.near, [&](std::size_t begin, std::size_t end, auto& near) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const double length_sq = derivative(threads_[t], threads_[t].along, x).squaredNorm();
+      double& at = lag.extensions[t];
+      if (length_sq <= onset_sq && at <= onset) continue;
+      near.push_back(static_cast<std::uint32_t>(t));
+      if (first) continue;
+      const double e = std::sqrt(length_sq) - 1;
+      const double tension = threads_[t].stiffness * e + tangent(at, e).stress;
+      at = find_extension(lock, threads_[t].stiffness, tension, std::max(e, at));
+    }
+  });
+}
+
+void StretchLimit::add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const {
+  const Lock lock(stretch_);
+  for (const std::uint32_t t : lag.near) {
+    const Thread& thread = threads_[t];
+    const Vec3 s = derivative(thread, thread.along, x);
+    const double length = s.norm(), e = length - 1;
+    const double difference = thread.area * (tangent(lag.extensions[t], e).stress - lock.stress(e));
+    if (difference == 0) continue;
+    for (std::size_t k = 0; k < thread.corners; ++k)
+      force[thread.particles[k]] -= difference / length * thread.along[k] * s;
+  }
+}
+
+// The second derivative of |sine| is exact, or only its positive square is kept, as in Shear.
+template <class Body>
+void StretchLimit::lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const {
+  const Lock lock(shear_);
+  const double sine = s_u.dot(s_v), sign = sine < 0 ? -1 : 1;
+  const double stress = piece.area * lock.stress(std::abs(sine)),
+               stiffness = piece.area * lock.stiffness(std::abs(sine));
+  CornerForces gradient{}, corner_forces{};  // ∂|sine|/∂x_k; stress × that
+  for (std::size_t k = 0; k < piece.corners; ++k) {
+    gradient[k] = sign * (piece.weft[k] * s_v + piece.warp[k] * s_u);
+    corner_forces[k] = stress * gradient[k];
+  }
+  const auto second = [&](std::size_t a, std::size_t b) {
+    if (exact) return sign * (piece.weft[a] * piece.warp[b] + piece.warp[a] * piece.weft[b]);
+    return 0.5 * (piece.weft[a] + sign * piece.warp[a]) * (piece.weft[b] + sign * piece.warp[b]);
+  };
+  body(corner_forces, [&](std::size_t a, std::size_t b) -> Mat3 {
+    return stiffness * gradient[a] * gradient[b].transpose() + stress * second(a, b) * Mat3::Identity();
+  });
+}
+
+double StretchLimit::energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  const Lock stretch(stretch_), shear(shear_);
+  for (const Thread& thread : threads_)
+    sum += thread.area * stretch.energy(derivative(thread, thread.along, x).norm() - 1);
+  for (const Crossing& c : crossings_)
+    sum += c.area * shear.energy(std::abs(derivative(c, c.weft, x).dot(derivative(c, c.warp, x))));
+  return sum;
+}
+
+StretchLimit::Worst StretchLimit::worst(std::span<const Vec3> x) const {
+  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², and minus the index: the first of equal ones counts
+  const Longest none{1, 1},
+      longest = parallel_max(threads_.size(), kGrainSize, none, [&](std::size_t begin, std::size_t end) {
+        Longest longest_in_range = none;
+        for (std::size_t t = begin; t < end; ++t)
+          longest_in_range = std::max(longest_in_range, {derivative(threads_[t], threads_[t].along, x).squaredNorm(),
+                                                         -static_cast<std::ptrdiff_t>(t)});
+        return longest_in_range;
+      });
+  Worst worst;
+  if (longest == none) return worst;
+  const Thread& thread = threads_[static_cast<std::size_t>(-longest.second)];
+  worst.extension = std::sqrt(longest.first) - 1;
+  for (std::size_t k = 0; k < thread.corners; ++k)
+    worst.place += x[thread.particles[k]] / static_cast<double>(thread.corners);
+  return worst;
+}
+
+}  // namespace weft::forces

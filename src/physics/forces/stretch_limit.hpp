@@ -1,0 +1,145 @@
+// Limits of stretch and shear: locking of woven threads.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "physics/forces/force.hpp"
+#include "physics/forces/triangle_membrane.hpp"
+
+namespace weft::forces {
+
+/// Stress σ as a function of a strain e near its limit; energy() is its integral, stiffness() its derivative:
+///
+///     σ = 0                                e ≤ onset = kOnset limit
+///     σ = kTension u³,                     u = (e − onset) / (limit − onset)
+///     σ = kTension U² (U + 3 (u − U))      u ≥ U = kStraight
+///
+/// The energy is convex and twice differentiable. The stress is linear beyond kStraight, so that Newton's method
+/// returns from any strain in a few iterations.
+class Lock {
+ public:
+  /// Strain at which threads begin to lock, relative to the limit. Below it, the stress is exactly 0.
+  static constexpr double kOnset = 0.7;
+  /// Stress at the limit [N/m]; at 1.1 times the limit it is 9,500. A ball at 100 m/s pulls with ρ v² / (2 √e), 3,500
+  /// to 9,000 N/m in the fabrics of scene/fabrics.hpp (a transverse wave along a thread of strain e, with the density ρ
+  /// per area and the speed v of the ball; Smith, McCrackin & Schiefer, "Stress-Strain Relationships in Yarns Subjected
+  /// to Rapid Impact Loading", 1958). Measured with 2e4 and a stress linear from the limit on: Newton's method
+  /// oscillates at the kink, and takes 1.2 times the iterations.
+  static constexpr double kTension = 4e3;
+  static constexpr double kStraight = 1.5;
+
+  explicit Lock(double limit) : onset_(kOnset * limit), span_(limit - onset_) {}
+
+  double onset() const { return onset_; }
+  double stress(double e) const {
+    const double u = (e - onset_) / span_, c = std::clamp(u, 0.0, kStraight);
+    return kTension * c * c * (c + 3 * std::max(0.0, u - kStraight));
+  }
+  double stiffness(double e) const {
+    const double u = std::clamp((e - onset_) / span_, 0.0, kStraight);
+    return 3 * kTension / span_ * u * u;
+  }
+  double energy(double e) const {
+    const double u = (e - onset_) / span_, c = std::clamp(u, 0.0, kStraight), beyond = std::max(0.0, u - kStraight);
+    return kTension * span_ * c * c * (0.25 * c * c + beyond * (c + 1.5 * beyond));
+  }
+
+ private:
+  double onset_, span_;
+};
+
+/// Extensions at which Newton's method linearises the locks of a cloth's threads: those at which a piece has the
+/// tension that the last linearisation predicted (a dual unknown, as for contacts). If a piece were linearised at the
+/// iterate, it would lose only a third of its excess over the onset per iteration.
+struct LockLinearisation {
+  std::vector<double> extensions;   ///< per piece of a thread
+  std::vector<std::uint32_t> near;  ///< pieces beyond the onset by this extension or by that of the iterate
+};
+
+/// The energy A Lock::energy() of each piece of weft and warp at its extension ‖s‖ − 1, and of each cell or triangle of
+/// area A at its shear |⟨s_u, s_v⟩|: if both have unit length, the sine of the deviation of weft and warp from a right
+/// angle. Pieces, cells and their derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no
+/// limit: threads buckle.
+class StretchLimit final : public Force {
+ public:
+  /// `stretch`: limit of the extension; `shear`: limit of the sine. Infinite: no limit. `below`: stiffness below the
+  /// onset.
+  StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch, double shear);
+  StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  /// Does nothing: few pieces lock at a time; add() looks up their blocks.
+  void attach(const solver::Assembly& /*assembly*/) override {}
+  void cut(std::span<const Index> bounds) override;
+  void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
+  double energy(std::span<const Vec3> x) const override;
+
+  /// Initialises `lag` before the first iteration of a step, which starts at x.
+  void begin(std::span<const Vec3> x, LockLinearisation& lag) const;
+  /// Updates `lag` before the linearisation at x. `first`: first iteration of a step, without a predicted tension.
+  void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
+  /// Adds the force linearised at `lag` minus the exact force, at any x.
+  void add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
+
+  /// Copies the current rest shape of the membrane. It must be the one that the constructor was given.
+  void follow(const TriangleMembrane& membrane);
+
+  /// The piece with the largest extension; zero if none is extended.
+  struct Worst {
+    double extension = 0;       ///< ‖s‖ − 1
+    Vec3 place = Vec3::Zero();  ///< position of the piece [m]
+  };
+  Worst worst(std::span<const Vec3> x) const;
+  double limit() const { return stretch_; }
+
+ private:
+  static constexpr std::size_t kMaxCorners = 4;
+  using Corners = std::array<Index, kMaxCorners>;
+  using Weights = std::array<double, kMaxCorners>;  // of the corners, in a derivative [1/m]
+  /// A piece of a thread, s = Σ along[k] x_k over its corners.
+  struct Thread {
+    std::size_t corners;
+    Corners particles;
+    Weights along;
+    double area;       // covered area [m²]
+    double stiffness;  // below the onset [N/m]
+  };
+  /// A crossing of threads, s_u = Σ weft[k] x_k and s_v = Σ warp[k] x_k.
+  struct Crossing {
+    std::size_t corners;
+    Corners particles;
+    Weights weft, warp;
+    double area;  // [m²]
+  };
+  /// Derivative of a piece's energy with respect to its corners: minus its forces [N].
+  using CornerForces = std::array<Vec3, kMaxCorners>;
+
+  /// Stress at e and stiffness of the Lock's tangent at `lag` [N/m].
+  struct Tangent {
+    double stress, stiffness;
+  };
+
+  template <class Piece>
+  static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const Vec3> x);
+  template <class Piece>
+  static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const solver::PaddedVec3<double>> x);
+  template <class Points, class Body>
+  void for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag, const Body& body) const;
+  template <class Body>
+  void lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const;
+  Tangent tangent(double lag, double e) const;
+  template <class Body>
+  void lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const;
+
+  StretchParameters below_;
+  double stretch_, shear_;
+  std::vector<Thread> threads_;
+  std::vector<Crossing> crossings_;  // empty if `shear` is infinite
+  Ranges ranges_of_threads_, ranges_of_crossings_;
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,242 @@
+#include "physics/forces/triangle_membrane.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace weft::forces {
+
+namespace {
+
+// Lower bound of ‖s‖: a collapsed thread has no direction, but the matrix stays finite.
+constexpr double kMinStretch = 1e-12;
+
+// ‖s‖, at least kMinStretch
+Lanes length_of(const VecLanes& s) {
+  return max(sqrt(dot(s, s)), lanes_of(kMinStretch));
+}
+
+}  // namespace
+
+TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
+                                   const ShearParameters& shear)
+    : stretch_(stretch), shear_(shear), first_(first) {
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
+    Element element;
+    for (std::size_t k = 0; k < 3; ++k) element.particles[k] = first + sheet.triangles[t][k];
+    const auto& m = sheet.material[t];
+    Eigen::Matrix2d sides;
+    sides << m[1] - m[0], m[2] - m[0];
+    element.area = 0.5 * sides.determinant();
+    if (!sheet.reinforcements.empty()) element.area *= sheet.reinforcements[t].stretch;
+    const Eigen::Matrix2d inverse = sides.inverse();
+    set_rest_shape(inverse, element);
+    elements_.push_back(element);
+    if (!sheet.sewn) continue;
+    Gradient s{Vec3::Zero(), Vec3::Zero()};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& x = sheet.rest[sheet.triangles[t][k]];
+      s.u += element.gradients[k].x() * x;
+      s.v += element.gradients[k].y() * x;
+    }
+    starts_.push_back({inverse, stretch_of(s) - Eigen::Matrix2d::Identity()});
+  }
+  pack();
+}
+
+void TriangleMembrane::pack() {
+  packs_.resize(packs_of(elements_.size()));
+  for (std::size_t p = 0; p < packs_.size(); ++p)
+    for_each_lane(elements_.size(), p, [&](std::size_t e, std::size_t lane, bool is_used) {
+      const Element& element = elements_[e];
+      std::array<std::size_t, 3> order{0, 1, 2};
+      std::ranges::sort(order, {}, [&](std::size_t k) { return element.particles[k]; });
+      for (std::size_t k = 0; k < 3; ++k) {
+        packs_[p].corners[k][lane] = element.particles[order[k]];
+        packs_[p].along[k][lane] = element.gradients[order[k]].x();
+        packs_[p].across[k][lane] = element.gradients[order[k]].y();
+      }
+      packs_[p].area[lane] = is_used ? element.area : 0;
+    });
+}
+
+// U of the polar decomposition: the square root of the metric tensor, whose entries are s_u·s_u, s_u·s_v and s_v·s_v.
+Eigen::Matrix2d TriangleMembrane::stretch_of(const Gradient& s) {
+  Eigen::Matrix2d metric;
+  metric << s.u.dot(s.u), s.u.dot(s.v), s.u.dot(s.v), s.v.dot(s.v);
+  const double area = s.u.cross(s.v).norm();
+  return (metric + area * Eigen::Matrix2d::Identity()) / std::sqrt(metric.trace() + 2 * area);
+}
+
+// `inverse`: of the matrix whose columns are the sides from the first corner.
+void TriangleMembrane::set_rest_shape(const Eigen::Matrix2d& inverse, Element& element) {
+  element.gradients[1] = inverse.row(0);
+  element.gradients[2] = inverse.row(1);
+  element.gradients[0] = -(element.gradients[1] + element.gradients[2]);
+}
+
+void TriangleMembrane::interpolate_rest_shape(double progress) {
+  for (std::size_t e = 0; e < starts_.size(); ++e) {
+    const auto& [inverse, excess] = starts_[e];
+    const Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity() + (1 - progress) * excess;
+    set_rest_shape(progress == 1 ? inverse : Eigen::Matrix2d(inverse * stretch.inverse()), elements_[e]);
+  }
+  if (!starts_.empty()) pack();
+}
+
+void TriangleMembrane::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+  for (const Element& e : elements_)
+    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(e.particles[k], e.particles[(k + 1) % 3]);
+}
+
+void TriangleMembrane::attach(const solver::Assembly& assembly) {
+  for (Triangles& t : packs_)
+    for (std::size_t l = 0; l < 4; ++l) {
+      t.blocks[0][l] = assembly.block(t.corners[0][l], t.corners[1][l]);
+      t.blocks[1][l] = assembly.block(t.corners[0][l], t.corners[2][l]);
+      t.blocks[2][l] = assembly.block(t.corners[1][l], t.corners[2][l]);
+    }
+}
+
+// Computed from differences to the first corner, so that rounding errors are relative to the size of the triangle, not
+// to its distance from the world's origin.
+TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
+  const auto& [a, b, c] = element.particles;
+  const Vec3& origin = x[a];
+  const Vec3 p = x[b] - origin, q = x[c] - origin;
+  const Vec2 &gp = element.gradients[1], &gq = element.gradients[2];
+  return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
+}
+
+template <class Points>
+TriangleMembrane::GradientLanes TriangleMembrane::gradient(const Triangles& t, Points x) {
+  const VecLanes origin = gather(x, t.corners[0]);
+  const VecLanes p = gather(x, t.corners[1]) - origin, q = gather(x, t.corners[2]) - origin;
+  return {t.along[1] * p + t.along[2] * q, t.across[1] * p + t.across[2] * q};
+}
+
+VecLanes TriangleMembrane::strains_of(const GradientLanes& s) {
+  return {length_of(s.u), length_of(s.v), dot(s.u, s.v)};
+}
+
+void TriangleMembrane::cut(std::span<const Index> bounds) {
+  cut_packs(
+      bounds, packs_, [](const Triangles& t) { return std::span(t.corners); }, ranges_);
+}
+
+void TriangleMembrane::add(const Evaluation& at) const {
+  const bool viscous = stretch_.viscosity > 0 || shear_.viscosity > 0;
+  ranges_.for_each(at.range, packs_.size(), [&](std::size_t p) {
+    const Triangles& t = packs_[p];
+    const GradientLanes s = gradient(t, at.x);
+    const VecLanes strains = strains_of(s);
+    const auto& [length_u, length_v, shear] = strains;
+    // Tensions k (‖s‖ − 1) and shear stress ½ μ ⟨s_u, s_v⟩, both with viscosity [N/m].
+    Lanes tension_u = stretch_.weft * (length_u - 1), tension_v = stretch_.warp * (length_v - 1);
+    Lanes stress = 0.5 * shear_.modulus * shear;
+    if (viscous) {
+      const auto by_velocity = [&]() -> VecLanes {
+        const GradientLanes rate = gradient(t, at.v);
+        return {dot(s.u, rate.u) / strains.x, dot(s.v, rate.v) / strains.y, dot(rate.u, s.v) + dot(s.u, rate.v)};
+      };
+      const VecLanes rate = at.rate_of(
+          strains, [&](std::span<const Vec3> x) { return strains_of(gradient(t, x)); }, by_velocity);
+      tension_u += stretch_.viscosity * rate.x;
+      tension_v += stretch_.viscosity * rate.y;
+      stress += 0.5 * shear_.viscosity * rate.z;
+    }
+    const VecLanes along = t.area * (tension_u / length_u * s.u + stress * s.v),
+                   across = t.area * (tension_v / length_v * s.v + stress * s.u);
+    for (std::size_t k = 0; k < 3; ++k) subtract(at.force, t.corners[k], t.along[k] * along + t.across[k] * across);
+    if (at.assembly) add_stiffness(t, s, length_u, length_v, shear, at);
+  });
+}
+
+// Blocks of the pairs (a, b): gradients[a] gradients[b] times the second derivatives of the energy by s_u and s_v.
+// The stretch terms are those of Stretch for an edge of rest length 1. The shear terms are those of Shear: the second
+// derivative of ⟨s_u, s_v⟩ is 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). Times the stress, one of these two
+// squares is positive and one is negative; the matrix keeps only the positive one.
+void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s, const Lanes& length_u,
+                                     const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
+  const auto lateral_of = [](const Lanes& length) { return max(1 - 1 / length, lanes_of(0.0)); };
+  const Lanes lateral_u = lateral_of(length_u), lateral_v = lateral_of(length_v);
+  const double viscous = at.rate * stretch_.viscosity;
+  const Lanes shear_stress = 0.5 * shear_.modulus * t.area * shear;
+  // Factors of s_u s_uᵀ in ∂²/∂s_u², of s_v s_vᵀ in ∂²/∂s_v², of the outer products in shear, and of the identity.
+  const Lanes axial_u = t.area * (stretch_.weft * (1 - lateral_u) + viscous) / (length_u * length_u);
+  const Lanes axial_v = t.area * (stretch_.warp * (1 - lateral_v) + viscous) / (length_v * length_v);
+  const Lanes outer_shear = 0.5 * (shear_.modulus + at.rate * shear_.viscosity) * t.area;
+  const Lanes identity_u = t.area * stretch_.weft * lateral_u + 0.5 * abs(shear_stress);
+  const Lanes identity_v = t.area * stretch_.warp * lateral_v + 0.5 * abs(shear_stress);
+  for (std::size_t a = 0, pair = 0; a < 3; ++a)
+    for (std::size_t b = a + 1; b < 3; ++b, ++pair) {
+      const Lanes xx = t.along[a] * t.along[b], yy = t.across[a] * t.across[b];
+      const Lanes xy = t.along[a] * t.across[b], yx = t.across[a] * t.along[b];
+      const VecLanes of_u = (xx * axial_u + yy * outer_shear) * s.u + xy * outer_shear * s.v;
+      const VecLanes of_v = (yy * axial_v + xx * outer_shear) * s.v + yx * outer_shear * s.u;
+      const Lanes identity_factor = xx * identity_u + yy * identity_v + 0.5 * (xy + yx) * shear_stress;
+      forces::add(at.assembly, t.blocks[pair], outer(of_u, s.u, identity_factor) + outer(of_v, s.v));
+    }
+}
+
+// Derivative ∂/∂s + rate ∂/∂ṡ of T s/‖s‖, where T is the tension along a thread and `speed` is ṡ.
+Mat3 TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec3& speed, double rate) const {
+  const double length = std::max(s.norm(), kMinStretch), lateral = 1 - 1 / length;
+  const Vec3 n = s / length;
+  const double along = n.dot(speed), size = stretch_.viscosity / length;
+  return (k * (1 - lateral) + rate * stretch_.viscosity) * n * n.transpose() + k * lateral * Mat3::Identity() +
+         size * (n * (speed - 2 * along * n).transpose() + along * Mat3::Identity());
+}
+
+void TriangleMembrane::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                                    solver::BlockMatrix& jacobian) const {
+  for (const Element& element : elements_) {
+    const Gradient s = gradient(element, x), w = gradient(element, v);
+    const double outer = 0.5 * (shear_.modulus + rate * shear_.viscosity), viscosity = 0.5 * shear_.viscosity;
+    const double stress = 0.5 * shear_.modulus * s.u.dot(s.v) + viscosity * (w.u.dot(s.v) + s.u.dot(w.v));
+    const Mat3 uu = stretch_hessian(stretch_.weft, s.u, w.u, rate) + s.v * (outer * s.v + viscosity * w.v).transpose();
+    const Mat3 vv = stretch_hessian(stretch_.warp, s.v, w.v, rate) + s.u * (outer * s.u + viscosity * w.u).transpose();
+    const Mat3 uv = s.v * (outer * s.u + viscosity * w.u).transpose() + stress * Mat3::Identity();
+    const Mat3 vu = s.u * (outer * s.v + viscosity * w.v).transpose() + stress * Mat3::Identity();
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b) {
+        const Vec2 &g = element.gradients[a], &h = element.gradients[b];
+        jacobian.add(jacobian.slot(element.particles[a], element.particles[b]), element.area,
+                     g.x() * h.x() * uu + g.x() * h.y() * uv + g.y() * h.x() * vu + g.y() * h.y() * vv);
+      }
+  }
+}
+
+double TriangleMembrane::energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  for (const Element& element : elements_) {
+    const Gradient s = gradient(element, x);
+    const double weft = s.u.norm() - 1, warp = s.v.norm() - 1, c = s.u.dot(s.v);
+    sum += element.area *
+           (0.5 * stretch_.weft * weft * weft + 0.5 * stretch_.warp * warp * warp + 0.25 * shear_.modulus * c * c);
+  }
+  return sum;
+}
+
+double TriangleMembrane::strain(std::size_t triangle, std::span<const Vec3> x) const {
+  const Gradient s = gradient(elements_[triangle], x);
+  return std::max(std::abs(s.u.norm() - 1), std::abs(s.v.norm() - 1));
+}
+
+double TriangleMembrane::max_strain(std::span<const Vec3> x) const {
+  double largest = 0;
+  for (std::size_t t = 0; t < elements_.size(); ++t) largest = std::max(largest, strain(t, x));
+  return largest;
+}
+
+void TriangleMembrane::strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const {
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const auto largest = static_cast<float>(strain(t, x));
+    for (Index p : elements_[t].particles) {
+      float& value = heat[p - first_];
+      value = std::max(value, largest);
+    }
+  }
+}
+
+}  // namespace weft::forces

@@ -1,0 +1,92 @@
+// Stretch and shear of cloth made of triangles, elastic and viscous.
+#pragma once
+
+#include <array>
+
+#include "physics/forces/shear.hpp"
+#include "physics/forces/stretch.hpp"
+#include "physics/mesh/sheet.hpp"
+
+namespace weft::forces {
+
+/// The continuum of Stretch and Shear on triangles of constant strain: s_u and s_v are the derivatives of the positions
+/// along weft and warp, constant in each triangle (the elements of Baraff & Witkin, "Large Steps in Cloth Simulation",
+/// 1998, with the energy of the continuum). The energy density is
+///
+///     ½ k1 (‖s_u‖ − 1)² + ½ k2 (‖s_v‖ − 1)² + ¼ μ ⟨s_u, s_v⟩²
+///
+/// and dissipation has the same form in the rates. For every linear map, the stress is exactly that of the continuum,
+/// for any orientation of the triangles.
+class TriangleMembrane : public Membrane {
+ public:
+  /// A triangle; s_u and s_v are linear in its corners.
+  struct Element {
+    std::array<Index, 3> particles;
+    std::array<Vec2, 3> gradients;  // s_u = Σ gradients[k].x() x_k, s_v likewise [1/m]
+    double area;                    // [m²], times the reinforcement
+  };
+
+  TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
+                   const ShearParameters& shear);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
+  void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
+  double energy(std::span<const Vec3> x) const override;
+  /// For sewn sheets: interpolates the rest shape of each triangle between the start shape (progress 0), with which the
+  /// start has no stress, and that of the pattern (progress 1). The stretch U of the start relative to the pattern, in
+  /// weft and warp, is blended with the identity.
+  void interpolate_rest_shape(double progress);
+  std::span<const Element> elements() const { return elements_; }
+  double max_strain(std::span<const Vec3> x) const override;
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
+
+ protected:
+  /// Derivatives along weft and warp, of positions or of velocities.
+  struct Gradient {
+    Vec3 u, v;
+  };
+  /// The larger relative change of length, along weft or warp, in absolute value.
+  virtual double strain(std::size_t triangle, std::span<const Vec3> x) const;
+
+  StretchParameters stretch_;
+  ShearParameters shear_;
+
+ private:
+  /// Four triangles, with corners in the order of particle numbers.
+  struct Triangles {
+    std::array<Four, 3> corners{};
+    std::array<Four, 3> blocks{};        // of the pairs 01, 02, 12
+    std::array<Lanes, 3> along, across;  // x and y of the gradients
+    Lanes area{};
+  };
+  struct GradientLanes {
+    VecLanes u, v;
+  };
+  static void set_rest_shape(const Eigen::Matrix2d& inverse, Element& element);
+  static Eigen::Matrix2d stretch_of(const Gradient& s);
+  static Gradient gradient(const Element& element, std::span<const Vec3> x);
+  template <class Points>
+  static GradientLanes gradient(const Triangles& triangles, Points x);
+  /// ‖s_u‖, ‖s_v‖ and ⟨s_u, s_v⟩
+  static VecLanes strains_of(const GradientLanes& s);
+  void pack();
+  void add_stiffness(const Triangles& triangles, const GradientLanes& s, const Lanes& length_u, const Lanes& length_v,
+                     const Lanes& shear, const Evaluation& at) const;
+  Mat3 stretch_hessian(double k, const Vec3& s, const Vec3& speed, double rate) const;
+
+  Index first_;
+  std::vector<Element> elements_;
+  /// For sewn sheets: inverse of each triangle's matrix of sides in the pattern, and U of its start minus the identity.
+  struct Start {
+    Eigen::Matrix2d inverse, excess;
+  };
+  std::vector<Start> starts_;
+  std::vector<Triangles> packs_;
+  Ranges ranges_;  // of packs
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,81 @@
+#include "physics/integrator/momentum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace weft::integrator {
+namespace {
+
+/// Disjoint sets of diagonal blocks, each identified by its lowest block.
+class BlockGroups {
+ public:
+  explicit BlockGroups(std::span<const solver::DiagonalBlock> parts)
+      : blocks_(parts), lowest_(parts.size()), is_free_(parts.size(), 1) {
+    std::iota(lowest_.begin(), lowest_.end(), std::size_t{0});
+  }
+  std::size_t of_part(std::size_t part) const {
+    while (lowest_[part] != part) part = lowest_[part];
+    return part;
+  }
+  std::size_t of_particle(Index particle) const {
+    const auto after = std::ranges::upper_bound(blocks_, particle, {}, &solver::DiagonalBlock::begin);
+    return of_part(static_cast<std::size_t>(after - blocks_.begin()) - 1);
+  }
+  std::size_t join(std::size_t a, std::size_t b) {
+    const auto [low, high] = std::minmax(a, b);
+    lowest_[high] = low;
+    is_free_[low] = is_free_[low] && is_free_[high];
+    return low;
+  }
+  void hold(std::size_t group) { is_free_[group] = 0; }
+  bool is_free(std::size_t group) const { return is_free_[group] != 0; }
+
+ private:
+  std::span<const solver::DiagonalBlock> blocks_;
+  std::vector<std::size_t> lowest_;
+  std::vector<char> is_free_;  // per group: nothing acts on it from outside
+};
+
+template <class Term>
+void join_by_term(const Term& term, BlockGroups& groups) {
+  double sum = 0;
+  int first = -1;
+  for (std::size_t k = 0; k < term.particles.size(); ++k) {
+    if (term.weights[k] == 0) continue;
+    sum += term.weights[k];
+    if (first < 0)
+      first = static_cast<int>(k);
+    else
+      groups.join(groups.of_particle(term.particles[first]), groups.of_particle(term.particles[k]));
+  }
+  if (first >= 0 && std::abs(sum) > kRoundoff) groups.hold(groups.of_particle(term.particles[first]));
+}
+
+}  // namespace
+
+std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std::span<const double> masses,
+                                        std::span<const Vec3> residual) {
+  const std::vector<solver::DiagonalBlock> parts = solver::parts_of(linear);
+  BlockGroups groups(parts);
+  for (const auto& constraint : linear.constraints) groups.hold(groups.of_particle(constraint.particle));
+  for (const auto& term : linear.diagonal_terms) groups.hold(groups.of_particle(term.particle));
+  solver::for_each_term(linear, [&](const auto& term) { join_by_term(term, groups); });
+
+  std::vector<Vec3> force(parts.size(), Vec3::Zero());
+  std::vector<double> mass(parts.size(), 0);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const std::size_t group = groups.of_part(p);
+    for (auto i = static_cast<std::size_t>(parts[p].begin); i < static_cast<std::size_t>(parts[p].end); ++i) {
+      force[group] += residual[i];
+      mass[group] += masses[i];
+    }
+  }
+  std::vector<Vec3> result(parts.size(), Vec3::Zero());
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    if (const std::size_t group = groups.of_part(p); groups.is_free(group)) result[p] = force[group] / mass[group];
+  return result;
+}
+
+}  // namespace weft::integrator

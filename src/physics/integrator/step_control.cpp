@@ -1,0 +1,58 @@
+#include "physics/integrator/step_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numerics.hpp"
+
+namespace weft::integrator {
+namespace {
+
+// The proportional-integral controller PI.4.2 (Söderlind, "Digital filters in adaptive time-stepping", ACM TOMS 29,
+// 2003): exponents of the current and the last ratio of aimed error to error, to be divided by the order plus one.
+constexpr double kExponentNow = 3.0 / 5, kExponentBefore = -1.0 / 5;
+
+}  // namespace
+
+StepControl::StepControl(Method method, double tolerance, double first)
+    : order_plus_one_(method == Method::implicit_euler ? 2 : 3), tolerance_(tolerance), wanted_(first) {}
+
+bool StepControl::accepts(double h, double error) const {
+  return meets(error) || (h <= numerics.steps.least && std::isfinite(error));
+}
+
+// The aimed error over this error.
+double StepControl::aim_to_error_ratio(double error) const {
+  return numerics.steps.aim * tolerance_ / std::max(error, kRoundoff * tolerance_);
+}
+
+void StepControl::record_accepted_step(double h, double error) {
+  const double ratio = aim_to_error_ratio(error), elementary_factor = std::pow(ratio, 1 / order_plus_one_);
+  if (elementary_factor > 1 - numerics.steps.kept_change && elementary_factor < 1 + numerics.steps.kept_change) {
+    wanted_ = h;
+  } else {
+    const double factor =
+        std::pow(ratio, kExponentNow / order_plus_one_) * std::pow(last_ratio_, kExponentBefore / order_plus_one_);
+    // A step may be shorter than wanted to end with its frame; growth continues from the wanted length.
+    const double max_step = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
+    // Unsolved steps may be shorter than `least`.
+    wanted_ = std::min(std::max(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least), max_step);
+  }
+  last_ratio_ = ratio;
+  after_failure_ = false;
+}
+
+// The elementary controller, without `last_ratio_`.
+void StepControl::record_rejected_step(double h, double error) {
+  const double factor = std::pow(aim_to_error_ratio(error), 1 / order_plus_one_);
+  wanted_ = std::max(h * std::clamp(factor, numerics.steps.least_factor, 1 - numerics.steps.kept_change),
+                     numerics.steps.least);
+  after_failure_ = true;
+}
+
+void StepControl::record_unsolved_step(double h) {
+  wanted_ = 0.5 * h;
+  after_failure_ = true;
+}
+
+}  // namespace weft::integrator

@@ -1,0 +1,53 @@
+// Step sizes from estimates of the local error.
+#pragma once
+
+#include <cmath>
+
+#include "core/archive.hpp"
+#include "core/numerics.hpp"
+#include "physics/integrator/stepper.hpp"
+
+namespace weft::integrator {
+
+/// Keeps the local error of each step at a tolerance: error per step, not per second. An impact changes the velocity by
+/// Δv at once, so the error of its step is of the order h Δv however small h is; a bound of the error per second would
+/// reduce h to 0. With a method of order p, step sizes scale as tolerance^(1/(p+1)) and the final error as
+/// tolerance^(p/(p+1)): 1/2 for Euler, 2/3 for midpoint and BDF2.
+///
+/// `wanted_` and `last_ratio_` are part of the state of a simulation.
+class StepControl {
+ public:
+  /// `tolerance`: bound of the local error [m]; `first`: length of the first step [s].
+  StepControl(Method method, double tolerance, double first);
+
+  /// Whether a step over h [s] with this error [m] is accepted. A step of the minimum length or less needs only a
+  /// finite error.
+  bool accepts(double h, double error) const;
+  bool meets(double error) const { return error <= tolerance_; }
+
+  /// Length of the next step [s]. The functions below update it after a step over h [s] that was accepted, too inexact,
+  /// or not solved.
+  double next_step_size() const { return wanted_; }
+  void record_accepted_step(double h, double error);
+  void record_rejected_step(double h, double error);
+  void record_unsolved_step(double h);
+
+  /// Saves or restores the state after an accepted step. Throws std::runtime_error if a restored value is impossible.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    serialize_values(archive, wanted_, last_ratio_);
+    // After an unsolved step, the wanted length may be below the minimum.
+    if constexpr (Archive::kReads)
+      require(wanted_ >= 0.1 * numerics.steps.least && std::isfinite(wanted_) && std::isfinite(last_ratio_),
+              "a step length");
+  }
+
+ private:
+  double aim_to_error_ratio(double error) const;
+
+  double order_plus_one_, tolerance_, wanted_;
+  double last_ratio_ = 1;       // aimed error / error, of the last accepted step
+  bool after_failure_ = false;  // the last step was rejected: do not grow yet
+};
+
+}  // namespace weft::integrator

@@ -1,0 +1,474 @@
+#include "physics/integrator/stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/numerics.hpp"
+#include "core/stop.hpp"
+#include "physics/integrator/momentum.hpp"
+#include "physics/integrator/particle_loops.hpp"
+
+namespace weft::integrator {
+namespace {
+
+// Smallest error that is asked of the solver, in roundings of the largest coordinate of a block.
+constexpr double kMinRoundings = 32;
+
+// The largest coordinate of a block, as absolute value [m].
+double largest_coordinate(const solver::DiagonalBlock& rows, std::span<const Vec3> x) {
+  const auto part = x.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.end - rows.begin));
+  return parallel_max(part.size(), kGrainSize, 0.0, [&](std::size_t begin, std::size_t end) {
+    double largest = 0;
+    for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, part[i].cwiseAbs().maxCoeff());
+    return largest;
+  });
+}
+
+}  // namespace
+
+std::string_view describe(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::solved:
+      return "solved";
+    case Verdict::unfinished:
+      return "not yet solved";
+    case Verdict::not_finite:
+      return "a position or force is not finite";
+    case Verdict::newton_stalled:
+      return "Newton's method did not reach its tolerance";
+    case Verdict::indefinite:
+      return "the linear system is not positive definite";
+  }
+  return "unknown";
+}
+
+Stepper::Stage Stepper::begin(const State& now, double h) {
+  const std::size_t n = now.v.size();
+  for (auto* vector : {&x_hat_, &v_hat_, &x_, &v_, &x_end_, &constant_force_, &force_, &residual_, &delta_, &scratch_})
+    vector->resize(n);
+  std::copy_n(now.x.begin(), n, x_hat_.begin());
+  v_hat_ = now.v;
+  past_.clear();
+  if (method_ == Method::implicit_midpoint) return {0.5 * h, 2};
+  past_.push_back({{now.x.data(), n}, 1});
+  if (is_first_order(h)) return {h, 1};
+
+  // BDF2 with variable steps. Callers that choose step sizes respect longest_step().
+  const double r = h / history_.h;
+  const double now_weight = (1 + r) * (1 + r) / (1 + 2 * r), before_weight = r * r / (1 + 2 * r);
+  for_each_particle(n, [&](std::size_t i) {
+    x_hat_[i] = now_weight * now.x[i] - before_weight * history_.before.x[i];
+    v_hat_[i] = now_weight * now.v[i] - before_weight * history_.before.v[i];
+  });
+  past_ = {{{now.x.data(), n}, now_weight}, {history_.before.x, -before_weight}};
+  return {h * (1 + r) / (1 + 2 * r), 1};
+}
+
+// Updates v and x_end from x, and sets forces to zero.
+void Stepper::evaluate(const State& now, const Stage& stage) {
+  for_each_particle(x_.size(), [&](std::size_t i) {
+    v_[i] = (x_[i] - x_hat_[i]) / stage.beta;
+    x_end_[i] = now.x[i] + stage.end_rate * (x_[i] - now.x[i]);
+    force_[i].setZero();
+  });
+}
+
+void Stepper::gather_residual(std::span<const double> masses, const Stage& stage) {
+  for_each_particle(x_.size(), [&](std::size_t i) {
+    residual_[i] = force_[i] + constant_force_[i] - (masses[i] / stage.beta) * (v_[i] - v_hat_[i]);
+  });
+  cg_.filter(residual_);
+}
+
+void Stepper::linearise(System& system, const State& now, const Stage& stage, int iteration) {
+  const Stopwatch watch(times_.forces);
+  evaluate(now, stage);
+  system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, iteration, force_);
+}
+
+// The preconditioner times the residual. Valid until the next call.
+std::span<const Vec3> Stepper::precondition(std::span<const Vec3> residual) {
+  const Stopwatch watch(times_.preconditioner);
+  return cg_.precondition(residual);
+}
+
+// Residual at the current stage, of the full equation or of its last linearisation.
+void Stepper::residual(System& system, const State& now, const Stage& stage, Equation equation) {
+  const Stopwatch watch(times_.forces);
+  evaluate(now, stage);
+  const StagePoint at{x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_};
+  equation == Equation::itself ? system.forces(at, force_) : system.linear_forces(at, force_);
+  gather_residual(system.masses(), stage);
+}
+
+// Sets the velocity error [m/s], root mean square over the mass of a block, that the solver may leave: it displaces the
+// block by `tolerance` times the local error of positions within `lasting_time`. If that displacement were allowed in
+// each step, adaptive step sizes would lose one order.
+void Stepper::update_tolerances(double h, int iterations) {
+  const double time = numerics.newton.lasting_time;
+  double unseen = numerics.newton.unseen_acceleration * h * time;
+  if (parameters_.position_tolerance > 0) unseen = std::min(unseen, parameters_.position_tolerance);
+  for (BlockState& part : blocks_) {
+    double error = std::max(part.local_error, unseen) / time;
+    if (iterations >= numerics.newton.patience)
+      error = std::max(error, numerics.newton.velocity_ratio * part.velocity_error);
+    part.allowed = std::max(parameters_.tolerance * error, part.rounding);
+  }
+}
+
+// Root mean square over the mass of a block.
+double Stepper::root_mean_square(const BlockState& part, std::span<const double> masses, std::span<const Vec3> of) {
+  const double sum = sum_over_particles(part.rows, [&](std::size_t i) { return masses[i] * of[i].squaredNorm(); });
+  return std::sqrt(sum / part.mass);
+}
+
+// Velocities of the blocks, root mean square, that belong to these displacements [m/s].
+void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
+                                 std::vector<double>& speeds) const {
+  speeds.clear();
+  for (const BlockState& part : blocks_) speeds.push_back(root_mean_square(part, masses, displacements) / beta_);
+}
+
+// Estimates the velocity error of each block after a linear solve and a line search. The linear solver reports its own
+// error. The nonlinear error is known only as a residual, which the preconditioner converts to a displacement that is
+// too small. The result is corrected by the ratio of the last solution to its preconditioned right hand side, if that
+// is above 1.
+void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, double fraction,
+                                            std::span<const double> masses) {
+  const bool is_full_step = fraction == 1 && solved.definite;
+  for_each_particle(scratch_.size(), [&](std::size_t i) { scratch_[i] = residual_[i]; });
+  if (is_full_step)
+    for (std::size_t p : unsolved_)
+      for_each_particle(blocks_[p].rows, [&](std::size_t i) { scratch_[i] -= cg_.residual()[i]; });
+  compute_rms_speeds(delta_, masses, solved_speeds_);
+  compute_rms_speeds(precondition(scratch_), masses, speeds_);
+  for (std::size_t p = 0; p < blocks_.size(); ++p)
+    blocks_[p].left =
+        speeds_[p] * (predicted_speeds_[p] > 0 ? std::max(1.0, solved_speeds_[p] / predicted_speeds_[p]) : 1);
+  if (is_full_step)
+    for (std::size_t p : unsolved_)
+      blocks_[p].left = std::hypot(blocks_[p].left, solved.errors[p] / std::sqrt(blocks_[p].mass));
+}
+
+// Estimates the velocities by which whole blocks slide wrongly; only for blocks that otherwise count as solved.
+// Friction can at most stop a block, so the error is bounded by the velocity that the block has or gains in the step,
+// however large the force of a stiff contact is.
+void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) {
+  const auto masses = system.masses();
+  const auto needs_check = [](const BlockState& part) { return !part.holds_sliding && part.left <= part.allowed; };
+  const bool any = std::ranges::any_of(blocks_, needs_check) &&
+                   sliding_.evaluate(system, {x_, v_, x_end_, 1 / stage.beta, stage.end_rate});
+  for (BlockState& part : blocks_) {
+    part.sliding_error =
+        any && needs_check(part) ? sliding_.friction_error(part.rows, residual_) * stage.beta / part.mass : 0;
+    if (part.sliding_error == 0) continue;
+    for_each_particle(part.rows,
+                      [&](std::size_t i) { scratch_[i] = v_hat_[i] + stage.beta / masses[i] * constant_force_[i]; });
+    part.sliding_error = std::min(part.sliding_error, root_mean_square(part, masses, scratch_));
+  }
+}
+
+bool Stepper::is_solved(int iterations) const {
+  double unseen_speed =
+      iterations < numerics.newton.patience ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity;
+  if (parameters_.position_tolerance > 0)
+    unseen_speed = std::min(unseen_speed, parameters_.position_tolerance / numerics.newton.lasting_time);
+  return std::ranges::all_of(
+      blocks_, [&](const BlockState& part) { return part.error() <= std::max(part.allowed, unseen_speed); });
+}
+
+// Selects the blocks of the next linear solve.
+void Stepper::select_unsolved(int iterations) {
+  unsolved_.clear();
+  for (std::size_t p = 0; p < blocks_.size(); ++p)
+    if (iterations >= numerics.newton.patience / 2 ||
+        blocks_[p].error() > numerics.newton.linear_fraction * blocks_[p].allowed)
+      unsolved_.push_back(p);
+}
+
+// Line search along delta_: moves x by delta_, less if that overshoots, more if it hardly approaches the minimum.
+// Returns the factor of delta_, or a slope that is not finite.
+double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
+  // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
+  // of the energy: positive before the minimum along delta, negative behind it. It becomes strongly negative if
+  // contacts or compressed edges become active on the way; full steps would then oscillate. It hardly decreases if
+  // friction and compression make the matrix too stiff.
+  const std::size_t n = x_.size();
+  const double start_slope = dot(residual_, delta_);
+  line_start_.swap(x_);
+  x_.resize(n);
+  double fraction = 1, low = 0, low_slope = start_slope, high = 0, high_slope = 0;
+  for (int trial = 1;; ++trial) {
+    for_each_particle(n, [&](std::size_t i) { x_[i] = line_start_[i] + fraction * delta_[i]; });
+    residual(system, now, stage, Equation::linear);
+    const double slope = dot(residual_, delta_);
+    if (!std::isfinite(slope)) return slope;
+    if (std::abs(slope) <= numerics.newton.slope_left * std::abs(start_slope) || trial == numerics.newton.line_trials)
+      break;
+    if (slope < 0)
+      high = fraction, high_slope = slope;
+    else
+      low = fraction, low_slope = slope;
+    if (high == 0) {
+      if (trial == numerics.newton.line_trials / 2) break;
+      fraction *= 2;
+    } else {
+      // Regula falsi, at a distance from the ends.
+      const double guess = low + (high - low) * low_slope / (low_slope - high_slope);
+      fraction = std::clamp(guess, low + 0.1 * (high - low), high - 0.1 * (high - low));
+    }
+  }
+  return fraction;
+}
+
+// Initial guess: unchanged velocity.
+void Stepper::prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity) {
+  const auto masses = system.masses();
+  for_each_particle(x_.size(), [&](std::size_t i) {
+    x_[i] = now.x[i] + h / stage.end_rate * now.v[i];
+    constant_force_[i] = masses[i] * gravity;
+  });
+  system.constant_forces(constant_force_);
+}
+
+// Direction in which velocities are expected to change: as in the last step; without a history, as by constant forces.
+// Cloth that falls, slides or drifts uniformly is then exact at any linear tolerance, and flat sheets stay flat.
+std::span<const Vec3> Stepper::predict_velocity_change(std::span<const double> masses, const State& now) {
+  for_each_particle(masses.size(), [&](std::size_t i) {
+    scratch_[i] = history_.h > 0 ? Vec3(now.v[i] - history_.before.v[i]) : Vec3(constant_force_[i] / masses[i]);
+  });
+  return scratch_;
+}
+
+// Held directions start at their target and stay there.
+void Stepper::apply_constraints(const State& now, const Stage& stage, std::span<const HeldParticle> held,
+                                std::vector<solver::ParticleConstraint>& constraints) {
+  constraints.clear();
+  for (const HeldParticle& particle : held) {
+    const auto i = static_cast<std::size_t>(particle.constraint.particle);
+    const Vec3 target = now.x[i] + (particle.x_end - now.x[i]) / stage.end_rate;
+    x_[i] = target + particle.constraint.free * (x_[i] - target);
+    constraints.push_back(particle.constraint);
+  }
+}
+
+StepReport Stepper::step(System& system, const State& now, double h, const Vec3& gravity,
+                         std::span<const HeldParticle> held, State& next, Start start, int pause_after) {
+  const std::size_t n = now.v.size();
+  solver::LinearSystem& linear = system.linear_system();
+  const auto masses = system.masses();
+  const Stage stage = begin(now, h);
+  beta_ = stage.beta;
+  linear.norm_weights.resize(n);
+  for_each_particle(n, [&](std::size_t i) { linear.norm_weights[i] = masses[i] / (stage.beta * stage.beta); });
+  prepare_guess(system, now, stage, h, gravity);
+  if (start == Start::next)
+    for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage.end_rate;
+  next.x.resize(now.x.size());
+  next.v.resize(n);
+  apply_constraints(now, stage, held, linear.constraints);
+  collect_blocks(masses, now, linear);
+
+  const int previous_iterations = start == Start::next ? std::exchange(iterations_before_pause_, 0) : 0;
+  StepReport report;
+  times_ = {};
+  bool solved_all = false;
+  do {
+    end_if_stopped();
+    linearise(system, now, stage, previous_iterations + report.newton_iterations);
+    // Aggregates represent long waves, whose stiffness hardly changes within a step.
+    {
+      const Stopwatch watch(times_.preconditioner);
+      cg_.prepare(linear,
+                  report.newton_iterations == 0 ? solver::AggregateSums::recompute : solver::AggregateSums::reuse);
+    }
+    gather_residual(masses, stage);
+    if (report.newton_iterations == 0) {  // otherwise done at the end of the last iteration
+      estimate_local_errors(masses, now, stage, h);
+      update_tolerances(h, previous_iterations);
+    }
+    compute_rms_speeds(precondition(residual_), masses, predicted_speeds_);
+    const bool first = previous_iterations + report.newton_iterations == 0;
+    const solver::LinearReport solved =
+        solve_linear(first ? predict_velocity_change(masses, now) : std::span<const Vec3>(), now.x);
+    ++report.newton_iterations;
+    report.linear_iterations += solved.iterations;
+
+    const double fraction = search_along_delta(system, now, stage);
+    if (!std::isfinite(fraction)) {
+      report.verdict = Verdict::not_finite;
+      break;
+    }
+    residual(system, now, stage, Equation::itself);
+    estimate_local_errors(masses, now, stage, h);
+    update_tolerances(h, previous_iterations + report.newton_iterations);
+    estimate_remaining_velocities(solved, fraction, masses);
+    estimate_sliding_errors(system, stage);
+    select_unsolved(report.newton_iterations);
+    report_worst(report);
+    solved_all = is_solved(previous_iterations + report.newton_iterations);
+    if (!solved_all && !solved.definite)
+      report.verdict = Verdict::indefinite;
+    else if (!solved_all && report.newton_iterations >= parameters_.max_iterations)
+      report.verdict = Verdict::newton_stalled;
+    else if (!solved_all && report.newton_iterations >= pause_after)
+      report.verdict = Verdict::unfinished;
+  } while (!solved_all && report.verdict == Verdict::solved);
+  report.times = times_;
+  iterations_before_pause_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
+  if (report.verdict == Verdict::solved && system.is_translation_invariant()) balance_momentum(masses, linear, stage);
+  if (report.verdict != Verdict::solved && report.verdict != Verdict::unfinished) return report;
+  impact_changes_.clear();
+  if (method_ == Method::bdf2 && report.verdict == Verdict::solved) split_impacts(system, now, stage, h);
+  write_end_state(now, stage, held, next);
+  if (method_ == Method::bdf2) solved_v_ = next.v;
+  return report;
+}
+
+void Stepper::collect_blocks(std::span<const double> masses, const State& now, const solver::LinearSystem& linear) {
+  blocks_.clear();
+  unsolved_.clear();
+  for (const solver::DiagonalBlock& rows : solver::parts_of(linear)) {
+    BlockState& part = blocks_.emplace_back();
+    part.rows = rows;
+    for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];
+    part.rounding = kMinRoundings * std::numeric_limits<double>::epsilon() * largest_coordinate(rows, now.x) / beta_;
+    part.holds_sliding = is_held(rows, linear.constraints);
+    // The first iteration solves all blocks: cloth that creeps within the tolerance would never come to rest otherwise.
+    unsolved_.push_back(unsolved_.size());
+  }
+}
+
+// Restores the momentum of cloth on which nothing acts from outside.
+void Stepper::balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage) {
+  const std::vector<Vec3> missing = missing_accelerations(linear, masses, residual_);
+  for (std::size_t p = 0; p < blocks_.size(); ++p) {
+    if (missing[p] == Vec3::Zero()) continue;
+    for_each_particle(blocks_[p].rows, [&](std::size_t i) {
+      v_[i] += stage.beta * missing[p];
+      x_end_[i] += stage.end_rate * stage.beta * stage.beta * missing[p];
+    });
+  }
+}
+
+// Solves the linear system for the unsolved blocks. `start`: see solver::Directions. The remaining residual does no
+// work along the velocities of the stage, β v = x − x̂ (`motion_`), and, with BDF2, none along the displacement of the
+// step, x − x0 (the sum of `motion_` and `drift_`).
+solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0) {
+  goals_.clear();
+  const double tightening = method_ == Method::implicit_midpoint ? numerics.newton.undamped : 1;
+  const double fraction = tightening * numerics.newton.linear_fraction;
+  for (const BlockState& part : blocks_) goals_.push_back(fraction * part.allowed * std::sqrt(part.mass));
+  motion_.resize(x_.size());
+  for_each_particle(x_.size(), [&](std::size_t i) { motion_[i] = x_[i] - x_hat_[i]; });
+  drift_.resize(past_.size() > 1 ? x_.size() : 0);
+  for_each_particle(drift_.size(), [&](std::size_t i) { drift_[i] = x_hat_[i] - x0[i]; });
+  const Stopwatch watch(times_.linear);
+  return cg_.solve(residual_, {tightening * parameters_.linear_tolerance, goals_}, parameters_.max_linear_iterations,
+                   delta_, {start, motion_, drift_}, unsolved_);
+}
+
+// Reports the remaining and the allowed velocity error of the worst block.
+void Stepper::report_worst(StepReport& report) const {
+  const double time = numerics.newton.lasting_time;
+  report.local_error = report.solver_error = 0;
+  double worst = -1;
+  for (const BlockState& part : blocks_) {
+    report.local_error = std::max(report.local_error, part.local_error);
+    report.solver_error = std::max(report.solver_error, part.error() * time);
+    if (part.error() / part.allowed <= worst) continue;
+    worst = part.error() / part.allowed;
+    report.left = part.error();
+    report.allowed = part.allowed;
+  }
+}
+
+// Replaces the velocity changes that impacts cause; see the class.
+void Stepper::split_impacts(System& system, const State& now, const Stage& stage, double h) {
+  std::vector<Vec3>& right_side = scratch_;
+  std::ranges::fill(right_side, Vec3::Zero());
+  const StepStart start{h, now.x, now.v, history_.h, history_.before.x, history_.before.v};
+  if (!system.find_impacts({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, start, right_side)) return;
+  cg_.filter(right_side);
+  cg_.prepare(system.linear_system(), solver::AggregateSums::reuse);
+  goals_.clear();
+  for (const BlockState& part : blocks_)
+    goals_.push_back(numerics.newton.linear_fraction * part.allowed * std::sqrt(part.mass) / stage.beta);
+  impact_changes_.resize(x_.size());
+  cg_.solve(right_side, {parameters_.linear_tolerance, goals_}, parameters_.max_linear_iterations, impact_changes_,
+            {.motion = v_});
+  for_each_particle(x_.size(), [&](std::size_t i) { v_[i] += (1 - h / stage.beta) * impact_changes_[i]; });
+}
+
+void Stepper::write_end_state(const State& now, const Stage& stage, std::span<const HeldParticle> held,
+                              State& next) const {
+  for_each_particle(x_.size(), [&](std::size_t i) {
+    next.x[i] = x_end_[i];
+    next.v[i] = v_end(now, stage, i);
+  });
+  for (const HeldParticle& particle : held) {
+    const auto i = static_cast<std::size_t>(particle.constraint.particle);
+    const Mat3& free = particle.constraint.free;
+    next.x[i] = particle.x_end + free * (next.x[i] - particle.x_end);
+    next.v[i] = particle.v_end + free * (next.v[i] - particle.v_end);
+  }
+}
+
+Vec3 Stepper::v_end(const State& now, const Stage& stage, std::size_t i) const {
+  return stage.end_rate == 1 ? v_[i] : Vec3(2 * v_[i] - now.v[i]);
+}
+
+// Estimates local errors at the current iterate. For the formulas see the class.
+void Stepper::estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h) {
+  const bool first_order = is_first_order(h);
+  const double r = first_order ? 1 : h / history_.h;
+  const bool bdf2 = method_ == Method::bdf2;
+  const double gain_factor = bdf2 ? 0.75 * h : 0.5 * h;
+  const double change_factor = bdf2 ? h * h * (1 + r) / (2 * (1 + 2 * r)) : h * h * r / (6 * (1 + r));
+  for_each_particle(masses.size(), [&](std::size_t i) {
+    const Vec3 gain = v_end(now, stage, i) - now.v[i];
+    if (first_order)
+      scratch_[i] = gain_factor * gain;
+    else
+      scratch_[i] = change_factor * (gain / h - (now.v[i] - history_.before.v[i]) / history_.h);
+  });
+  cg_.filter(scratch_);
+  for (BlockState& part : blocks_) part.local_error = root_mean_square(part, masses, scratch_);
+  if (method_ != Method::implicit_euler || history_.h == 0) return;
+  for_each_particle(masses.size(), [&](std::size_t i) {
+    scratch_[i] = 0.5 * (v_[i] - now.v[i] - h / history_.h * (now.v[i] - history_.before.v[i]));
+  });
+  cg_.filter(scratch_);
+  for (BlockState& part : blocks_) part.velocity_error = root_mean_square(part, masses, scratch_);
+}
+
+Vec3 Stepper::constraint_force(Index particle, double mass) const {
+  const auto i = static_cast<std::size_t>(particle);
+  return mass / beta_ * (v_[i] - v_hat_[i]) - force_[i] - constant_force_[i];
+}
+
+// Whether a step over h is Euler's, or its error is estimated as Euler's.
+bool Stepper::is_first_order(double h) const {
+  return method_ == Method::implicit_euler || history_.h == 0 ||
+         (method_ == Method::bdf2 && h > (1 + 1e-9) * kMaxStepRatio * history_.h);
+}
+
+double Stepper::longest_step() const {
+  const bool bounded = method_ == Method::bdf2 && history_.h > 0;
+  return bounded ? kMaxStepRatio * history_.h : std::numeric_limits<double>::infinity();
+}
+
+void Stepper::accept(const State& before, const State& after, double h) {
+  history_.before.x.assign(before.x.begin(), before.x.begin() + std::ssize(before.v));
+  history_.before.v = before.v;
+  history_.h = h;
+  if (method_ != Method::bdf2) return;
+  for_each_particle(before.v.size(), [&](std::size_t i) {
+    history_.before.v[i] += after.v[i] - solved_v_[i];
+    if (!impact_changes_.empty()) history_.before.v[i] += impact_changes_[i];
+  });
+}
+
+}  // namespace weft::integrator

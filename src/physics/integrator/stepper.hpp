@@ -1,0 +1,210 @@
+// One implicit time step (seed, Fig. 2): method → implicit equation → Newton with residual control → constrained CG.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/archive.hpp"
+#include "core/timer.hpp"
+#include "physics/integrator/method.hpp"
+#include "physics/integrator/sliding.hpp"
+#include "physics/integrator/system.hpp"
+#include "physics/solver/conjugate_gradient.hpp"
+
+namespace weft::integrator {
+
+struct NewtonParameters {
+  /// Error that Newton's method and the linear solver may leave, relative to the local truncation error of the step,
+  /// with a visibility threshold as floor; see update_tolerances() in stepper.cpp.
+  double tolerance = 0.3;
+  int max_iterations = 60;
+  double linear_tolerance = 0.1;  ///< error of a linear solve, relative to its solution, in the energy norm
+  int max_linear_iterations = 1000;
+  /// If step sizes are adaptive: tolerance of the local error [m], which also bounds the visibility thresholds; else 0.
+  double position_tolerance = 0;
+};
+
+enum class Verdict { solved, unfinished, not_finite, newton_stalled, indefinite };
+std::string_view describe(Verdict verdict);
+
+struct StageTimes {
+  StageTime forces;          ///< evaluation of forces and assembly of their matrix
+  StageTime preconditioner;  ///< setup, and application to residuals
+  StageTime linear;
+};
+
+struct StepReport {
+  Verdict verdict = Verdict::solved;
+  int newton_iterations = 0;
+  int linear_iterations = 0;
+  double local_error = 0;  ///< estimate of the error of positions that the method adds in this step [m]
+  /// Estimate of the error that the solver adds: the remaining velocity error times `Numerics::Newton::lasting_time`
+  /// [m].
+  double solver_error = 0;
+  double left = 0, allowed = 0;  ///< velocity error that remains in the worst block, and its bound [m/s]
+  StageTimes times;
+};
+
+/// Every method is one implicit stage x = x̂ + β v, M (v − v̂) = β f(x, v) with its own β, x̂ and v̂. Below, 0 marks
+/// the start of the step, ₋ that of the previous step, whose length is h₋, and 1 the end; y is x or v:
+///
+///     method     β              x̂, v̂                                         end of the step
+///     Euler      h              x0, v0                                       the stage
+///     midpoint   h/2            x0, v0                                       2 · stage − start
+///     BDF2       h(1+r)/(1+2r)  ((1+r)² y0 − r² y₋)/(1+2r), r = h/h₋         the stage
+///
+/// Tests compare each method on x'' = −ω² x with its exact damping and phase (tests/integrator).
+///
+/// BDF2 assumes a smooth trajectory. Without further measures, cloth rebounds from obstacles with up to half of its
+/// energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's method,
+/// and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls, Int. J. Numer.
+/// Meth. Engng 96, 2013). Impacts move particles by δ. A δ = F, where F are the forces of impacts and A is the matrix
+/// of the step. Its only terms are those of friction in impacts and of contacts that pass impacts on. Positions stay as
+/// they are; velocities change by δ/h instead of δ/β. The start velocity in the history also changes by δ/h, so that
+/// the next step starts from a smooth trajectory. Changes of velocity by corrections after a solve count as impacts,
+/// too.
+///
+/// The local error of positions is estimated from known velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of
+/// the mean acceleration from the last step to this one; then the leading terms of the error are
+///
+///     Euler      h²/2 x''                           ≈ h/2 (v1 − v0)
+///     midpoint   h³/12 x'''                         ≈ h² r / (6 (1+r)) D
+///     BDF2       3/2 h³ (1+r)² / (6 r (1+2r)) x'''  ≈ h² (1+r) / (2 (1+2r)) D
+///
+/// (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, III.2 and III.5). The factor 3/2 of BDF2
+/// accounts for the following steps, which propagate a third of each change of the error. Steps without a history use
+/// Euler's estimate (BDF2: 3/2 of it, as its first step is Euler's; midpoint: an upper bound). Errors of velocity are
+/// not included; they affect positions only in later steps. The error is the root mean square over the mass of each
+/// diagonal block (a cloth or a rigid body), so that it depends neither on the mesh resolution nor on a single particle
+/// in contact; the block with the largest error counts. Held directions have no error.
+class Stepper {
+ public:
+  /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I, III.5). At
+  /// that bound a following step propagates a change of the error in full; at this ratio, four fifths of it.
+  static constexpr double kMaxStepRatio = 2;
+
+  Stepper(Method method, const NewtonParameters& parameters) : method_(method), parameters_(parameters) {}
+
+  /// Sets the method of the following steps. Single BDF2 steps may exceed longest_step(): a step that is too long for
+  /// the history is an Euler step.
+  void set_method(Method method) { method_ = method; }
+
+  /// Start of Newton's method: unchanged velocity, or the state in `next`, to solve a step again with other contacts.
+  enum class Start { unchanged_velocity, next };
+
+  /// Computes `next` from `now` over h [s]. Does not change the history: see accept(). `gravity` [m/s²] acts on all
+  /// particles. A step that is not solved after `pause_after` Newton iterations ends with Verdict::unfinished; the
+  /// caller can inspect `next` and continue with Start::next. After other failures, `next` is unspecified.
+  StepReport step(System& system, const State& now, double h, const Vec3& gravity, std::span<const HeldParticle> held,
+                  State& next, Start start = Start::unchanged_velocity,
+                  int pause_after = std::numeric_limits<int>::max());
+
+  /// Force [N] with which the constraint acted on a particle of this mass [kg] at the stage of the last computed step.
+  /// On a free particle: minus the remaining residual.
+  Vec3 constraint_force(Index particle, double mass) const;
+
+  /// Makes an accepted step over h [s] the history of the next one. `before`, `after`: states at its start and end.
+  void accept(const State& before, const State& after, double h);
+
+  struct History {
+    State before;  ///< start of the last accepted step
+    double h = 0;  ///< its length [s]; 0: no history
+  };
+  const History& history() const { return history_; }
+  void return_to(History history) { history_ = std::move(history); }
+
+  /// Longest step [s] that may follow the last accepted one; infinite if the method has no bound.
+  double longest_step() const;
+
+  /// Forgets the history: the next BDF2 step is an Euler step. For the first step and after discontinuities.
+  void restart() { history_.h = 0; }
+
+  /// Saves or restores the history of `particles` particles. Throws std::runtime_error if a restored value is
+  /// impossible.
+  template <class Archive>
+  void serialize(Archive& archive, std::size_t particles) {
+    archive.value(history_.h);
+    if constexpr (Archive::kReads) require(history_.h >= 0 && std::isfinite(history_.h), "a step length");
+    if (history_.h == 0) return;
+    serialize_points(archive, history_.before.x, particles);
+    serialize_points(archive, history_.before.v, particles);
+  }
+
+ private:
+  struct Stage {
+    double beta;      // [s]
+    double end_rate;  // dx_end/dx: 1, or 2 for the midpoint rule
+  };
+  /// State of one diagonal block, usually a cloth.
+  struct BlockState {
+    solver::DiagonalBlock rows;
+    double mass = 0;             // [kg]
+    double local_error = 0;      // of the method, at the current iterate [m]
+    double velocity_error = 0;   // of implicit Euler, if there is a history; else 0 [m/s]
+    double allowed = 0;          // bound of the remaining velocity error [m/s]
+    double left = 0;             // remaining velocity error [m/s]
+    double rounding = 0;         // velocity that corresponds to rounding of its positions [m/s]
+    bool holds_sliding = false;  // a constraint holds it against sliding
+    double sliding_error = 0;    // velocity error of the whole block by wrong friction, if it is about to slide [m/s]
+
+    double error() const { return std::max(left, sliding_error); }  // [m/s]
+  };
+
+  bool is_first_order(double h) const;
+  Stage begin(const State& now, double h);
+  void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity);
+  void apply_constraints(const State& now, const Stage& stage, std::span<const HeldParticle> held,
+                         std::vector<solver::ParticleConstraint>& constraints);
+  void collect_blocks(std::span<const double> masses, const State& now, const solver::LinearSystem& linear);
+  std::span<const Vec3> predict_velocity_change(std::span<const double> masses, const State& now);
+  solver::LinearReport solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0);
+  double search_along_delta(System& system, const State& now, const Stage& stage);
+  enum class Equation { itself, linear };
+  void linearise(System& system, const State& now, const Stage& stage, int iteration);
+  void residual(System& system, const State& now, const Stage& stage, Equation equation);
+  void evaluate(const State& now, const Stage& stage);
+  void gather_residual(std::span<const double> masses, const Stage& stage);
+  void estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h);
+  void update_tolerances(double h, int iterations);
+  static double root_mean_square(const BlockState& part, std::span<const double> masses, std::span<const Vec3> of);
+  void balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage);
+  std::span<const Vec3> precondition(std::span<const Vec3> residual);
+  void compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
+                          std::vector<double>& speeds) const;
+  void estimate_remaining_velocities(const solver::LinearReport& solved, double fraction,
+                                     std::span<const double> masses);
+  void estimate_sliding_errors(const System& system, const Stage& stage);
+  void select_unsolved(int iterations);
+  bool is_solved(int iterations) const;
+  void report_worst(StepReport& report) const;
+  void write_end_state(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const;
+  void split_impacts(System& system, const State& now, const Stage& stage, double h);
+  Vec3 v_end(const State& now, const Stage& stage, std::size_t i) const;
+
+  Method method_;
+  NewtonParameters parameters_;
+  History history_;
+  double beta_ = 0;                  // of the last stage [s]
+  int iterations_before_pause_ = 0;  // Newton iterations of the last solve, if it paused
+
+  // Scratch of one step.
+  StageTimes times_;
+  solver::ConjugateGradient cg_;
+  Sliding sliding_;
+  std::vector<BlockState> blocks_;
+  std::vector<std::size_t> unsolved_;
+  // Per block: allowed linear errors in the mass-weighted norm, and velocities [m/s].
+  std::vector<double> goals_, predicted_speeds_, solved_speeds_, speeds_;
+  std::vector<Past> past_;
+  std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, motion_,
+      drift_, scratch_;
+  // BDF2 only: change of velocities by impacts [m/s], and velocities at the end of the solve.
+  std::vector<Vec3> impact_changes_, solved_v_;
+};
+
+}  // namespace weft::integrator

@@ -1,0 +1,81 @@
+// The integrator's interface to the physical system: M x'' = f(x, x') with constraints.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/past.hpp"
+#include "core/types.hpp"
+#include "physics/solver/linear_system.hpp"
+
+namespace weft::integrator {
+
+/// Positions [m] and velocities [m/s] of all particles. x may have more entries behind those of the particles, for
+/// points that are not integrated; the integrator leaves them alone.
+struct State {
+  std::vector<Vec3> x, v;
+};
+
+/// Point at which the implicit equation of a step is evaluated.
+struct StagePoint {
+  std::span<const Vec3> x;      ///< stage positions
+  std::span<const Vec3> v;      ///< stage velocities, (x − x̂) / β as in Stepper
+  std::span<const Vec3> x_end;  ///< positions at the end of the step that belongs to this stage; contacts act there
+  double rate = 0;              ///< dv/dx = 1/β [1/s]
+  double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
+  /// Earlier positions that x̂ consists of, from which the rate of a quantity q(x) follows (see Past). Empty for the
+  /// midpoint rule, where the rate is ∂q/∂x v, the exact mean rate of a quadratic q over the step.
+  std::span<const Past> past = {};
+};
+
+class System {
+ public:
+  virtual ~System() = default;
+
+  virtual std::span<const double> masses() const = 0;
+
+  /// Adds the forces of a step that depend neither on positions nor on velocities, excluding the weight [N].
+  virtual void constant_forces(std::span<Vec3> force) const = 0;
+
+  /// Adds all other forces at a stage [N]. May update caches of the system, but must not change its results.
+  virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
+
+  /// As `forces`, but with the tangent in place of each force that the last linearise() replaced by its tangent. A line
+  /// search along the solution of that linear system must use these.
+  virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
+
+  /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. Forces
+  /// that lag behind the positions are updated first. `iteration`: Newton iteration, from 0 in each solve. If a paused
+  /// solve is continued, the count goes on.
+  virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
+
+  /// Whether translating a diagonal block changes no force except through terms, constraints, and air.
+  virtual bool is_translation_invariant() const { return false; }
+
+  /// Adds the contact part of `forces` [N] at each particle: `friction`, all other contact forces (`push`), and the
+  /// largest friction that the current normal forces allow (`limit`). Returns false, and adds nothing, if there is no
+  /// contact.
+  virtual bool contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
+                              std::span<double> limit) const {
+    (void)at, (void)push, (void)friction, (void)limit;
+    return false;
+  }
+
+  /// After a solved step: replaces the terms of linear_system() by those of impacts, and adds their right hand side.
+  /// The solution is the change of velocities by impacts [m/s]. Returns false if there is no impact.
+  virtual bool find_impacts(const StagePoint& at, const StepStart& start, std::span<Vec3> right_side) {
+    (void)at, (void)start, (void)right_side;
+    return false;
+  }
+
+  /// The system that linearise() fills. The integrator sets its constraints.
+  virtual solver::LinearSystem& linear_system() = 0;
+};
+
+/// A particle that is held in some directions, in which it ends the step at `x_end` [m] with velocity `v_end` [m/s].
+struct HeldParticle {
+  solver::ParticleConstraint constraint;
+  Vec3 x_end, v_end;
+};
+
+}  // namespace weft::integrator

@@ -1,0 +1,26 @@
+// Areas, normals and bounding boxes of triangle meshes.
+#pragma once
+
+#include <span>
+
+#include "physics/mesh/topology.hpp"
+
+namespace weft::mesh {
+
+/// Half the cross product of two sides: length = area [m²], direction = front normal.
+inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
+  const auto corner = [&](std::size_t k) -> const Vec3& { return x[t[k]]; };
+  return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0));
+}
+
+/// Sum of the triangle areas [m²].
+double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> positions);
+
+/// Computes one unit normal per vertex, as the area-weighted mean over its triangles; zero if the vertex has no
+/// triangle with an area. Writes `normals` (one per position) and allocates nothing.
+void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions, std::span<Vec3> normals);
+
+/// Smallest box around the points; empty without points.
+Box3 bounding_box(std::span<const Vec3> positions);
+
+}  // namespace weft::mesh

@@ -1,0 +1,284 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "physics/mesh/geometry.hpp"
+#include "physics/mesh/isosurface.hpp"
+#include "physics/mesh/topology.hpp"
+
+namespace weft::mesh {
+namespace {
+
+constexpr double kMaxEdgeRatio = 4.0 / 3, kMinEdgeRatio = 4.0 / 5;  // of the wanted length (Botsch & Kobbelt 2004)
+
+std::size_t z(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Projects a point to the zero set by two Newton steps along the gradient (forward differences). If `in_plane`, the x
+/// coordinate is kept.
+Vec3 project_to_surface(const Field& field, Vec3 p, bool in_plane) {
+  constexpr double step = 1e-6;  // m
+  for (int n = 0; n < 2; ++n) {
+    const double value = field(p);
+    Vec3 gradient = Vec3::Zero();
+    for (int k = in_plane ? 1 : 0; k < 3; ++k) gradient[k] = (field(p + step * Vec3::Unit(k)) - value) / step;
+    p -= value / std::max(gradient.squaredNorm(), 1e-4) * gradient;
+  }
+  return p;
+}
+
+double angle_at(const Vec3& corner, const Vec3& a, const Vec3& b) {
+  return std::atan2((a - corner).cross(b - corner).norm(), (a - corner).dot(b - corner));
+}
+
+/// A triangle mesh that is being changed, with the list of triangles around each vertex kept up to date.
+class Remesher {
+ public:
+  Remesher(Mesh& mesh, const Field& field, const Sizing& edge_length)
+      : x_(mesh.positions), triangles_(mesh.topology.triangles), field_(field), edge_length_(edge_length) {}
+
+  void run_round() {
+    split_long_edges();
+    update_connectivity();
+    collapse_short_edges();
+    drop_unused();
+    update_connectivity();
+    flip_edges();
+    relax();
+  }
+
+ private:
+  /// Puts a vertex in the middle of every edge that is too long, and cuts the triangles there.
+  void split_long_edges() {
+    const EdgeSet edges = collect_edges(triangles_);
+    std::vector<Index> middle(edges.edges.size(), -1);
+    for (std::size_t e = 0; e < middle.size(); ++e) {
+      const auto [a, b] = edges.edges[e].vertices;
+      const Vec3 m = 0.5 * (x_[z(a)] + x_[z(b)]);
+      if ((x_[z(b)] - x_[z(a)]).norm() <= kMaxEdgeRatio * edge_length_(m)) continue;
+      middle[e] = static_cast<Index>(x_.size());
+      x_.push_back(project_to_surface(field_, m, edges.edges[e].triangles[1] < 0));
+    }
+    std::vector<Triangle> cut;
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      const auto& of = edges.of_triangle[t];
+      cut_triangle(triangles_[t], {middle[z(of[0])], middle[z(of[1])], middle[z(of[2])]}, cut);
+    }
+    triangles_ = std::move(cut);
+  }
+
+  /// `m[k]` is the vertex between corners k and k + 1, or -1 if that edge is not cut.
+  void cut_triangle(Triangle t, std::array<Index, 3> m, std::vector<Triangle>& out) const {
+    const auto count = std::count_if(m.begin(), m.end(), [](Index v) { return v >= 0; });
+    if (count == 0) return out.push_back(t);
+    if (count == 3) {
+      out.insert(out.end(), {{t[0], m[0], m[2]}, {t[1], m[1], m[0]}, {t[2], m[2], m[1]}, {m[0], m[1], m[2]}});
+      return;
+    }
+    // Rotate the triangle so that its first edge is cut and its last edge is not.
+    while (m[0] < 0 || m[2] >= 0) {
+      std::rotate(t.begin(), t.begin() + 1, t.end());
+      std::rotate(m.begin(), m.begin() + 1, m.end());
+    }
+    if (count == 1) {
+      out.insert(out.end(), {{t[0], m[0], t[2]}, {m[0], t[1], t[2]}});
+    } else {
+      out.insert(out.end(), {{m[0], t[1], m[1]}, {t[0], m[0], m[1]}, {t[0], m[1], t[2]}});
+    }
+  }
+
+  /// Collects the triangles around each vertex, the edges, and the vertices on the border.
+  void update_connectivity() {
+    around_.assign(x_.size(), {});
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      for (const Index v : triangles_[t]) around_[z(v)].push_back(static_cast<Index>(t));
+    }
+    edges_ = collect_edges(triangles_).edges;
+    border_.assign(x_.size(), false);
+    for (const Edge& edge : edges_) {
+      if (edge.triangles[1] < 0) border_[z(edge.vertices[0])] = border_[z(edge.vertices[1])] = true;
+    }
+  }
+
+  /// Vertices that share a triangle with v, ascending, without duplicates.
+  std::vector<Index> neighbours(Index v) const {
+    std::vector<Index> list;
+    for (const Index t : around_[z(v)]) {
+      for (const Index w : triangles_[z(t)]) {
+        if (w != v) list.push_back(w);
+      }
+    }
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  }
+
+  void collapse_short_edges() {
+    std::vector<std::pair<double, std::size_t>> queue;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      const auto [a, b] = edges_[e].vertices;
+      const double wanted = edge_length_(0.5 * (x_[z(a)] + x_[z(b)]));
+      const double length = (x_[z(b)] - x_[z(a)]).norm();
+      if (length < kMinEdgeRatio * wanted) queue.emplace_back(length / wanted, e);
+    }
+    std::sort(queue.begin(), queue.end());
+    for (const auto& [ratio, e] : queue) {
+      auto [keep, gone] = edges_[e].vertices;
+      if (border_[z(gone)] && !border_[z(keep)]) std::swap(keep, gone);
+      collapse(keep, gone, edges_[e].triangles[1] < 0);
+    }
+  }
+
+  /// Whether `gone` may be merged into `keep` without a change of topology (link condition).
+  bool link_allows(Index keep, Index gone, bool on_border) const {
+    if (border_[z(gone)] && !on_border) return false;
+    const std::vector<Index> a = neighbours(keep), b = neighbours(gone);
+    if (!std::binary_search(a.begin(), a.end(), gone)) return false;
+    std::vector<Index> common;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+    if (common.size() != (on_border ? 1U : 2U)) return false;
+    // No inner edge may join two border vertices: its mirror image would be the same edge.
+    return on_border || !border_[z(keep)] ||
+           std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
+  }
+
+  /// Whether the triangles around `v` without `other` turn by at most 60° and need no split if `v` moves to p.
+  bool shape_allows(Index v, Index other, const Vec3& p) const {
+    for (const Index t : around_[z(v)]) {
+      Triangle corner = triangles_[z(t)];
+      if (std::find(corner.begin(), corner.end(), other) != corner.end()) continue;
+      while (corner[0] != v) std::rotate(corner.begin(), corner.begin() + 1, corner.end());
+      const Vec3 &q = x_[z(corner[1])], &r = x_[z(corner[2])];
+      const Vec3 before = (q - x_[z(v)]).cross(r - x_[z(v)]), after = (q - p).cross(r - p);
+      if (before.dot(after) < 0.5 * before.norm() * after.norm()) return false;
+      if ((q - p).norm() > kMaxEdgeRatio * edge_length_(0.5 * (p + q))) return false;
+    }
+    return true;
+  }
+
+  void collapse(Index keep, Index gone, bool on_border) {
+    if (!link_allows(keep, gone, on_border)) return;
+    const bool to_keep = border_[z(keep)] && !on_border;
+    const Vec3 p = to_keep ? x_[z(keep)] : project_to_surface(field_, 0.5 * (x_[z(keep)] + x_[z(gone)]), on_border);
+    if (!shape_allows(keep, gone, p) || !shape_allows(gone, keep, p)) return;
+    x_[z(keep)] = p;
+    for (const Index t : around_[z(gone)]) {
+      Triangle& corner = triangles_[z(t)];
+      if (std::find(corner.begin(), corner.end(), keep) == corner.end()) {
+        std::replace(corner.begin(), corner.end(), gone, keep);
+        around_[z(keep)].push_back(t);
+        continue;
+      }
+      for (const Index v : corner) {
+        if (v != gone) std::erase(around_[z(v)], t);
+      }
+      corner = {-1, -1, -1};
+    }
+    around_[z(gone)].clear();
+  }
+
+  void drop_unused() {
+    std::erase_if(triangles_, [](const Triangle& t) { return t[0] < 0; });
+    std::vector<Index> place(x_.size(), -1);
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < x_.size(); ++v) {
+      if (around_[v].empty()) continue;
+      place[v] = static_cast<Index>(count);
+      x_[count++] = x_[v];
+    }
+    x_.resize(count);
+    for (Triangle& t : triangles_) {
+      for (Index& v : t) v = place[z(v)];
+    }
+  }
+
+  /// Makes edges locally Delaunay: keeps an edge if the two angles opposite to it add up to less than π.
+  void flip_edges() {
+    for (const Edge& edge : edges_) {
+      if (edge.triangles[1] < 0) continue;
+      const auto [a, b] = edge.vertices;
+      // Earlier flips may have changed the triangles at this edge, so collect them anew.
+      std::vector<Index> sides;
+      for (const Index t : around_[z(a)]) {
+        const Triangle& corner = triangles_[z(t)];
+        if (std::find(corner.begin(), corner.end(), b) != corner.end()) sides.push_back(t);
+      }
+      if (sides.size() == 2) flip(a, b, sides[0], sides[1]);
+    }
+  }
+
+  void flip(Index a, Index b, Index left, Index right) {
+    const auto opposite = [&](Index t) {
+      const Triangle& corner = triangles_[z(t)];
+      return *std::find_if(corner.begin(), corner.end(), [&](Index v) { return v != a && v != b; });
+    };
+    // Make `left` the triangle that runs from a to b.
+    const auto follows = [&](Index t) {
+      const Triangle& corner = triangles_[z(t)];
+      const auto at = std::find(corner.begin(), corner.end(), a) - corner.begin();
+      return corner[static_cast<std::size_t>(at + 1) % 3] == b;
+    };
+    if (!follows(left)) std::swap(left, right);
+    const Index c = opposite(left), d = opposite(right);
+    if (c == d || (border_[z(c)] && border_[z(d)])) return;
+    const Vec3 &pa = x_[z(a)], &pb = x_[z(b)], &pc = x_[z(c)], &pd = x_[z(d)];
+    if (angle_at(pc, pa, pb) + angle_at(pd, pa, pb) < std::numbers::pi + 1e-6) return;
+    const std::vector<Index> of_c = neighbours(c);
+    if (std::binary_search(of_c.begin(), of_c.end(), d)) return;
+    // Avoid folds: the new triangles must face the same way as the old ones.
+    const Vec3 normal = (pb - pa).cross(pc - pa) + (pd - pa).cross(pb - pa);
+    const Vec3 first = (pd - pa).cross(pc - pa), second = (pb - pd).cross(pc - pd);
+    if (first.dot(normal) < 0.7 * first.norm() * normal.norm() ||
+        second.dot(normal) < 0.7 * second.norm() * normal.norm()) {
+      return;
+    }
+    triangles_[z(left)] = {a, d, c};
+    triangles_[z(right)] = {d, b, c};
+    std::erase(around_[z(a)], right);
+    std::erase(around_[z(b)], left);
+    around_[z(c)].push_back(right);
+    around_[z(d)].push_back(left);
+  }
+
+  /// Moves each vertex along the surface toward the weighted mean of its neighbours.
+  void relax() {
+    std::vector<Vec3> normals(x_.size());
+    vertex_normals(triangles_, x_, normals);
+    std::vector<Vec3> target(x_);
+    for (std::size_t v = 0; v < x_.size(); ++v) {
+      Vec3 sum = Vec3::Zero();
+      double count = 0;
+      for (const Index w : neighbours(static_cast<Index>(v))) {
+        if (border_[v] && !border_[z(w)]) continue;
+        // Finely meshed neighbours weigh more, so that gradual changes of size stay gradual.
+        const double weight = 1 / edge_length_(0.5 * (x_[v] + x_[z(w)]));
+        sum += weight * x_[z(w)];
+        count += weight;
+      }
+      Vec3 move = 0.8 * (sum / count - x_[v]);
+      move -= normals[v].dot(move) * normals[v];
+      if (border_[v]) move.x() = 0;
+      target[v] = project_to_surface(field_, x_[v] + move, border_[v]);
+    }
+    x_ = std::move(target);
+  }
+
+  std::vector<Vec3>& x_;
+  std::vector<Triangle>& triangles_;
+  const Field& field_;
+  const Sizing& edge_length_;
+  std::vector<std::vector<Index>> around_;
+  std::vector<Edge> edges_;
+  std::vector<bool> border_;
+};
+
+}  // namespace
+
+void remesh(Mesh& surface, const Field& field, const Sizing& edge_length, int rounds) {
+  Remesher remesher(surface, field, edge_length);
+  for (int n = 0; n < rounds; ++n) remesher.run_round();
+}
+
+}  // namespace weft::mesh

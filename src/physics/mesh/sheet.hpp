@@ -1,0 +1,75 @@
+// Triangulated cloth: its rest shape in material coordinates, and regular sheets.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "physics/mesh/mesh.hpp"
+#include "physics/mesh/topology.hpp"
+
+namespace weft::mesh {
+
+/// A band along a chain of edges: an elastic, a hem, or a seam allowance.
+struct Band {
+  std::vector<Index> vertices;
+  std::vector<double> lengths;  ///< of the cloth's edges between consecutive vertices [m]
+  double ratio = 1;             ///< rest length of the band / length of the cloth along it
+  double stiffness = 0;         ///< force per strain [N]
+  double mass = 0;              ///< per length of cloth [kg/m]
+  double bend = 0;              ///< bending stiffness [N·m²]
+  double allowance = 0;         ///< width of extra cloth along the band, not part of the triangles [m]
+};
+
+/// Two vertices that a button or a tooth of a zip holds together while it is closed. Times are scene times [s];
+/// infinite: the event never happens.
+struct Tie {
+  Index a = 0, b = 0;
+  double strength = 0;  ///< maximum force [N]
+  int tearing = -1;     ///< number of the seam in Sheet::tearing_seams that it belongs to; −1: it never tears
+  double open = std::numeric_limits<double>::infinity(), closed = std::numeric_limits<double>::infinity();
+};
+
+/// Factors by which one triangle multiplies in-plane stiffness, bending stiffness and mass of its cloth.
+struct Reinforcement {
+  double stretch = 1, bend = 1, density = 1;
+
+  bool operator==(const Reinforcement&) const = default;
+};
+
+/// Rest shape of cloth made of triangles, flat or not.
+struct Sheet {
+  std::vector<Triangle> triangles;            ///< manifold and equally oriented
+  std::vector<Vec3> rest;                     ///< per vertex [m]
+  std::vector<std::array<Vec2, 3>> material;  ///< (weft, warp) of each triangle's corners, counter-clockwise [m]
+  bool sewn = false;  ///< made of flat panels: the rest shape is `material` alone, and `rest` is the start position
+  std::vector<Band> bands;
+  std::vector<Tie> ties;
+  std::vector<std::string> tearing_seams;     ///< names of the seams that tear
+  std::vector<Reinforcement> reinforcements;  ///< per triangle; empty: no reinforcement
+};
+
+/// Area of a triangle at rest [m²].
+double rest_area(const Sheet& sheet, std::size_t triangle);
+
+/// Makes a sheet whose rest shape is the mesh. In each triangle the weft runs along the projection of x; in triangles
+/// nearly perpendicular to x, along the cross product of y and the normal. A flat mesh in the x-y plane has x as weft
+/// and y as warp. Each triangle has its own coordinates; they differ from those of its neighbours by a rigid motion.
+Sheet make_sheet_from_mesh(const Mesh& mesh);
+
+/// Shortest height of a triangle at rest [m].
+double height(const Sheet& sheet, std::size_t triangle);
+/// Smallest height of all triangles [m].
+double min_height(const Sheet& sheet);
+
+/// How each cell of a grid is cut.
+enum class Pattern {
+  aligned,  ///< all along the diagonal from (0,0) to (1,1)
+  crossed,  ///< along both diagonals, with a vertex in the middle
+};
+
+/// As make_sheet, but made of triangles; the middle vertices of crossed cells follow the vertices of the grid.
+Mesh make_triangle_sheet(const Grid& grid, Pattern pattern);
+
+}  // namespace weft::mesh

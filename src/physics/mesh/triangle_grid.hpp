@@ -1,0 +1,82 @@
+// Triangles sorted into cubic cells, to find those that a straight path crosses.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "physics/mesh/topology.hpp"
+
+namespace weft::mesh {
+
+/// Where a path crosses a triangle from its front.
+struct Entry {
+  double t = 0;         ///< fraction of the path
+  Index triangle = -1;  ///< index into the triangles of the grid; -1: no crossing
+};
+
+/// Finds crossings of straight paths with triangles. `triangles` and `x` must outlive the grid.
+class TriangleGrid {
+ public:
+  /// `cell`: edge length of a cell [m]; enlarged if there would be too many cells.
+  TriangleGrid(std::span<const Triangle> triangles, std::span<const Vec3> x, double cell);
+
+  /// Finds the first triangle with `passes(its index)` that the path from `from` to `to` crosses from its front.
+  template <class Passes>
+  Entry find_first_crossing(const Vec3& from, const Vec3& to, const Passes& passes) const {
+    Entry entry{1, -1};
+    walk(from, to, [&](std::span<const Index> here, double exit_t) {
+      for (const Index number : here) {
+        const double t = crossing_of(triangles_[number], from, to);
+        if (t < entry.t && passes(number)) entry = {t, number};
+      }
+      return entry.triangle >= 0 && entry.t <= exit_t;
+    });
+    return entry;
+  }
+
+ private:
+  /// Fraction of the path at which the path crosses the triangle from the front; 2 if it does not.
+  double crossing_of(const Triangle& triangle, const Vec3& from, const Vec3& to) const;
+  std::span<const Index> in_cell(const std::array<int, 3>& cell) const;
+
+  /// Calls `visit(triangles of the cell, fraction of the path at which the path leaves the cell)` for the cells along
+  /// the path, until a call returns true.
+  template <class Visit>
+  void walk(const Vec3& from, const Vec3& to, const Visit& visit) const;
+
+  std::span<const Triangle> triangles_;
+  std::span<const Vec3> x_;
+  Vec3 low_{0, 0, 0};
+  double cell_ = 1;
+  std::array<int, 3> counts_{};  // cells along each axis
+  std::vector<Index> first_;     // start of each cell in `listed_`, then the total count
+  std::vector<Index> listed_;    // triangle indices, cell by cell
+};
+
+template <class Visit>
+void TriangleGrid::walk(const Vec3& from, const Vec3& to, const Visit& visit) const {
+  std::array<int, 3> at{}, step{};
+  Vec3 next, stride;  // fraction of the path: at the next cell boundary of each axis, and between two
+  const Vec3 path = to - from;
+  for (int k = 0; k < 3; ++k) {
+    const double place = (from[k] - low_[k]) / cell_;
+    at[k] = static_cast<int>(std::floor(place));
+    step[k] = path[k] > 0 ? 1 : -1;
+    const double speed = std::abs(path[k]) / cell_;
+    const double left = path[k] > 0 ? at[k] + 1 - place : place - at[k];
+    next[k] = speed > 0 ? left / speed : 2;
+    stride[k] = speed > 0 ? 1 / speed : 2;
+  }
+  for (;;) {
+    int axis = 0;
+    const double exit_t = next.minCoeff(&axis);
+    if (visit(in_cell(at), exit_t) || exit_t >= 1) return;
+    at[axis] += step[axis];
+    next[axis] += stride[axis];
+  }
+}
+
+}  // namespace weft::mesh

@@ -1,0 +1,57 @@
+// Environment of the cloth: gravity and air.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/motion/interpolation.hpp"
+
+namespace weft::model {
+
+/// Turbulence, added to the mean velocity of the air.
+struct Gusts {
+  double speed = 0;  ///< root mean square of each component [m/s]; 0: none
+  double size = 1;   ///< integral length, the size of the most energetic eddies [m]
+  int seed = 0;      ///< selects the random gusts
+};
+
+struct PhysicsKey {
+  double time = 0;  ///< [s], strictly increasing
+  Vec3 gravity, wind;
+};
+
+struct Physics {
+  Vec3 gravity{0, 0, -9.81};  ///< [m/s²]; the default follows the up axis
+  double air_density = 1.2;   ///< [kg/m³]; 0: no air
+  Vec3 wind{0, 0, 0};         ///< velocity of the air [m/s]
+  Gusts gusts;
+  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between its keys
+  std::vector<PhysicsKey> keys;  ///< of gravity and wind; empty: the values above are constant
+
+  /// Largest gravity over all keys [m/s²].
+  double largest_gravity() const {
+    double largest = keys.empty() ? gravity.norm() : 0;
+    for (const PhysicsKey& key : keys) largest = std::max(largest, key.gravity.norm());
+    return largest;
+  }
+};
+
+struct FanKey {
+  double time = 0;                             ///< [s], strictly increasing
+  Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< [m]; wind direction, of any length but 0
+  double speed = 5;                            ///< [m/s]
+};
+
+/// A cone of wind, as of a fan; see Weather.
+struct Fan {
+  std::string name;
+  std::vector<FanKey> keys{FanKey{}};  ///< at least one; one: still
+  motion::Interpolation interpolation = motion::Interpolation::cubic;
+  double radius = 0.25;  ///< of the outlet disc [m]
+  double angle = 24;     ///< full opening angle of the cone [degrees]
+  double falloff = 1;    ///< exponent of the decrease of speed with the distance from the cone's apex
+};
+
+}  // namespace weft::model

@@ -1,0 +1,68 @@
+#include "physics/model/gusts.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace weft::model {
+namespace {
+
+// Shells of wave numbers around k_e, each kRatio times the one before: 1 / k falls from four integral lengths to a
+// thirtieth of one, finer than meshes of cloth. A tenth of the spectrum's energy is in still finer eddies.
+constexpr int kShells = 13;
+constexpr double kRatio = 1.5;
+constexpr int kShellsBelow = 3;
+// k_e times the integral length: (π/2 Σ E/k) / (2/3 Σ E), with the energies E and wave numbers k (relative to k_e) of
+// these shells. It is 0.747 for the whole spectrum.
+constexpr double kLengthFactor = 0.837;
+// Rate at which waves change, relative to the turnover rate of eddies (Fung et al., 1992, Section 2).
+constexpr double kUnsteadiness = 0.5;
+
+// Von Kármán's spectrum up to a factor; `k`: wave number relative to k_e.
+double spectrum(double k) {
+  return std::pow(k, 4) / std::pow(1 + k * k, 17.0 / 6);
+}
+
+}  // namespace
+
+GustField::GustField(const Gusts& gusts, const Vec3& wind) {
+  const double k_e = kLengthFactor / gusts.size;
+  std::vector<double> wave_numbers, energies;
+  double sum = 0;
+  for (int shell = 0; shell < kShells; ++shell) {
+    wave_numbers.push_back(std::pow(kRatio, shell - kShellsBelow));
+    // the width of a shell is proportional to its wave number
+    energies.push_back(spectrum(wave_numbers.back()) * wave_numbers.back());
+    sum += energies.back();
+  }
+  // The generator gives the same numbers everywhere; distributions of the standard library do not.
+  std::mt19937_64 generator(static_cast<std::uint64_t>(gusts.seed));
+  const auto random = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };  // in [0, 1)
+  for (int shell = 0; shell < kShells; ++shell) {
+    const double k = wave_numbers[shell] * k_e;
+    // E(k), whose integral is 3/2 speed²; the width of a shell is k ln(kRatio).
+    const double energy = 1.5 * gusts.speed * gusts.speed * energies[shell] / sum / (k * std::log(kRatio));
+    const double turnover = std::sqrt(k * k * k * energy);
+    // Three waves along perpendicular axes, each with its amplitude along the next axis: the mean square is isotropic.
+    const double a = 2 * std::numbers::pi * random(), b = 2 * std::numbers::pi * random(), c = random();
+    const Mat3 axes = Quat(std::sqrt(1 - c) * std::sin(a), std::sqrt(1 - c) * std::cos(a), std::sqrt(c) * std::sin(b),
+                           std::sqrt(c) * std::cos(b))
+                          .toRotationMatrix();  // Shoemake, "Uniform random rotations", 1992
+    const double amplitude = gusts.speed * std::sqrt(2 * energies[shell] / sum);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 wave_number = k * axes.col(axis);
+      const double own = kUnsteadiness * turnover * (random() < 0.5 ? -1 : 1);
+      waves_.push_back({wave_number, amplitude * axes.col((axis + 1) % 3), own - wave_number.dot(wind),
+                        2 * std::numbers::pi * random()});
+    }
+  }
+}
+
+Vec3 GustField::at(const Vec3& x, double t) const {
+  Vec3 sum = Vec3::Zero();
+  for (const Wave& wave : waves_)
+    sum += std::cos(wave.wave_number.dot(x) + wave.rate * t + wave.phase) * wave.amplitude;
+  return sum;
+}
+
+}  // namespace weft::model

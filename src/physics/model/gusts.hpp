@@ -1,0 +1,36 @@
+// Gusts of wind: turbulence added to the mean velocity of the air.
+#pragma once
+
+#include <vector>
+
+#include "physics/model/air.hpp"
+
+namespace weft::model {
+
+/// A smooth, divergence-free velocity field that is the same in every run: a sum of waves whose directions and phases
+/// depend on the seed (kinematic simulation: Fung, Hunt, Malik & Perkins, "Kinematic simulation of homogeneous
+/// turbulence by unsteady random Fourier modes", J. Fluid Mech. 236, 1992). The energies of the waves follow von
+/// Kármán's spectrum,
+///
+///     E(k) ~ k⁴ / (k² + k_e²)^(17/6) for the wave number k,
+///
+/// which falls with k^(−5/3) at large k; k_e is chosen so that Gusts::size is the integral length. The mean wind
+/// carries the waves along; they change at half the turnover rate of eddies of their size.
+class GustField {
+ public:
+  /// `wind`: the mean velocity of the air [m/s].
+  GustField(const Gusts& gusts, const Vec3& wind);
+
+  /// Velocity of the air at x [m] and time t [s], relative to the mean wind [m/s].
+  Vec3 at(const Vec3& x, double t) const;
+
+ private:
+  struct Wave {
+    Vec3 wave_number;    // [1/m]
+    Vec3 amplitude;      // perpendicular to wave_number [m/s]
+    double rate, phase;  // [rad/s], [rad]
+  };
+  std::vector<Wave> waves_;
+};
+
+}  // namespace weft::model

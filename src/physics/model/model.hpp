@@ -1,0 +1,196 @@
+// What is simulated: particles with their materials, and bodies with their motion. Plain values in SI units, with every
+// name resolved; it has no files and no looks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/mesh/mesh.hpp"
+#include "physics/mesh/rigid_frame.hpp"
+#include "physics/mesh/sheet.hpp"
+#include "physics/model/air.hpp"
+#include "physics/model/contact.hpp"
+#include "physics/model/material.hpp"
+#include "physics/model/pressure.hpp"
+#include "physics/model/rope.hpp"
+#include "physics/model/settings.hpp"
+#include "physics/motion/key_frames.hpp"
+#include "physics/motion/track.hpp"
+
+namespace weft::model {
+
+/// A particle of a region of a cloth; numbered within the cloth.
+struct Chosen {
+  Index particle = 0;
+  double share = 1;    ///< in (0, 1]: factor on the strength; the mass of a weight is distributed in proportion to it
+  bool faded = false;  ///< in the fade around the region of a pin, not in the region itself
+};
+
+/// Particles that are held in place, or moved.
+struct Pin {
+  std::vector<Chosen> particles;    ///< first its region, then its fade
+  Vec3 middle{0, 0, 0};             ///< mean start position of its region [m]
+  motion::PoseTrack motion;         ///< of `middle`, in the world, if it follows nothing
+  std::optional<std::size_t> body;  ///< number of the body whose motion the particles share
+  /// Index, for Model::vertex(), of the point of that body that moves as the first particle; the points of the others
+  /// come next. Absent: the particles follow the nearest triangles of the body, or its pose.
+  std::optional<std::size_t> first_vertex;
+  double release = -1;             ///< time of release [s]; negative: never
+  std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
+};
+
+/// Additional mass, distributed over particles in proportion to their shares.
+struct Weight {
+  std::vector<Chosen> particles;
+  double mass = 0;  ///< [kg]
+};
+
+/// A cloth as it starts: a deformable sheet of quads or triangles, or a rope.
+struct Cloth {
+  std::string name;
+  std::string source;    ///< names the cloth in error messages, such as "napkin.toml:3:1: cloth.napkin"
+  mesh::Grid grid;       ///< of quads; of a rope: one row
+  mesh::Sheet sheet;     ///< if it is made of triangles, in its own coordinates; else empty
+  bool crossed = false;  ///< triangles in fours around the middle of a rectangle, which would lock as they bend
+  mesh::Mesh mesh;       ///< rest shape in the world, posed as at the start; uv: along weft and warp from a corner [m]
+  /// Smallest distance between neighbouring particles of a grid or rope [m]. For triangles, √2 times the smallest
+  /// height, which gives the same value for the two halves of a square.
+  double spacing = 0;
+  Material material;
+  std::optional<Rope> rope;
+  std::vector<Vec3> start;        ///< positions of its particles [m]
+  Vec3 velocity{0, 0, 0};         ///< of all particles at the start [m/s]
+  Vec3 spin{0, 0, 0};             ///< added at the start: angular velocity about the centre of mass [rad/s]
+  double put_on = 0;              ///< time since the start of the run, preroll included, at which it is put on [s]
+  double sewing = 0;              ///< time in which the rest shape changes from the sewn start to flat panels [s]
+  std::vector<std::string> over;  ///< names of all cloths that are put on before it and stay inside it
+  bool untangle = false;          ///< whether it is moved off what it touches or crosses at the start
+  Pressure pressure;
+  std::vector<Pin> pins;
+  std::vector<Weight> weights;
+
+  /// Whether the start may move it: because it says so, or as it is worn over other cloth.
+  bool may_be_untangled() const { return untangle || !over.empty(); }
+};
+
+/// Properties of a body that forces move.
+struct Dynamics {
+  mesh::RigidFrame frame;
+  double mass = 0;                 ///< [kg]
+  Vec3 velocity{0, 0, 0};          ///< at the start [m/s]
+  Vec3 angular_velocity{0, 0, 0};  ///< at the start [rad/s]
+  double release = 0;  ///< from this time on, forces move it instead of its keys [s]; minus infinity: always
+};
+
+/// Some vertices of a body, with a thickness and friction of their own.
+struct Patch {
+  std::vector<std::uint8_t> vertices;  ///< one flag per vertex of the body; 1: belongs to the patch
+  double thickness = 0;                ///< of padding; half of it is added to the contact distance [m]
+  double friction = 0;                 ///< Coulomb coefficient
+};
+
+/// What a body or camera follows: another body, or a part of a deforming one.
+struct Parent {
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::size_t body = kNone;                             ///< number of the body
+  std::shared_ptr<const motion::Track> part = nullptr;  ///< motion of the part, else null
+  motion::Pose start = {};                              ///< of the parent at the start of the run
+
+  bool is_any() const { return body != kNone || part; }
+};
+
+/// A rigid body moves along a track, a deforming one by key frames of its vertices.
+using Mover = std::variant<motion::Track, motion::KeyFrames>;
+
+/// What cloth meets: a rigid obstacle (still, moved by keys or moved by forces), or a body that deforms.
+struct Body {
+  std::string name;
+  mesh::Mesh mesh;  ///< rigid: in its own coordinates; deforming: in the world at time 0
+  std::shared_ptr<const Mover> mover;
+  Parent parent = {};   ///< whose motion since the start of the run is added to its own; rigid bodies only
+  bool moving = false;  ///< whether `mover` or `parent` move it
+  bool collide = true;
+  bool infinite_floor = false;
+  double friction = 0.3;
+  std::vector<Patch> patches;
+  std::shared_ptr<const Dynamics> dynamics;  ///< of bodies that forces move; else null
+  std::vector<Index> limbs;                  ///< of deforming bodies: limb of each vertex, from 0; limbs may intersect
+  /// Triangles of the parts that collide, with cuts closed; empty if all parts collide.
+  std::vector<mesh::Triangle> colliding;
+  std::string advice;  ///< what may help if it touches something at the start, for the error message; or empty
+
+  bool deforms() const { return std::holds_alternative<motion::KeyFrames>(*mover); }
+  std::span<const mesh::Triangle> colliding_triangles() const {
+    return colliding.empty() ? mesh.topology.triangles : colliding;
+  }
+};
+
+/// Springs from particles of a cloth to the nearest points of another cloth or body: buttons, pegs, tacks.
+struct Attachment {
+  std::string name;
+  std::size_t cloth = 0;  ///< number of the cloth whose particles are attached
+  std::vector<Chosen> particles;
+  std::optional<std::size_t> to_cloth, to_body;  ///< number of the target; one of them is given
+  double stiffness = 10000;                      ///< stiffness of the spring of a particle with share 1 [N/m]
+  std::optional<double> length;                  ///< rest length of the springs [m]; absent: the distance at `begin`
+  double begin = -1e5, release = -1;             ///< times between which it acts [s]; negative release: for ever
+  std::optional<double> breaking_load;  ///< total force of its springs above which it breaks [N]; absent: never
+};
+
+/// A layer of cloths that is put on together.
+struct Layer {
+  int first_frame = 0;               ///< first frame of dressing; negative in the preroll
+  std::vector<std::size_t> cloths;   ///< numbers of the cloths of this layer
+  std::vector<std::size_t> dressed;  ///< numbers of the cloths of this and all lower layers, ascending
+};
+
+/// Only set_motion() changes the motion of a body, so results for one time stay valid.
+struct Model {
+  std::string source;  ///< names the scene in error messages: its file
+  Vec3 up{0, 0, 1};
+  Time time;
+  Physics physics;
+  std::vector<Fan> fans;
+  Solver solver;
+  Contact contact;
+  std::vector<Cloth> cloths;
+  std::vector<Body> bodies;
+  std::vector<Attachment> attachments;
+  std::vector<Layer> layers;  ///< of all cloths, from the skin outward; at least one
+
+  /// Start of the run, preroll included [s].
+  double start_time() const { return -time.preroll_frames / time.fps; }
+  /// Whether the air acts on any cloth.
+  bool air_acts() const;
+  /// Whether the start may move any cloth.
+  bool may_be_untangled() const;
+
+  /// A copy with these cloths alone (ascending numbers); motions are shared. It has no layers.
+  Model with_cloths(std::span<const std::size_t> numbers) const;
+
+  /// Writes the positions of all vertices of a body at time t [s]; `positions` has the size of its mesh. Takes time
+  /// linear in the vertices, in parallel; allocates nothing. A body that does not move has its pose of time 0.
+  void place(std::size_t body, double t, std::span<Vec3> positions) const;
+
+  /// Pose of a rigid body at time t [s], with velocities and accelerations.
+  motion::PoseSample pose(std::size_t body, double t) const;
+  motion::PoseSample pose(const Parent& parent, double t) const;
+
+  /// Motion of one vertex of a deforming body, or of a particle that follows it, at time t [s].
+  motion::VertexMotion vertex(std::size_t body, std::size_t vertex, double t) const {
+    return std::get<motion::KeyFrames>(*bodies[body].mover).at(t, vertex);
+  }
+
+  /// Replaces the motion of a rigid body, which from then on follows nothing. The body must be `moving`, and its
+  /// current pose must stay the same.
+  void set_motion(std::size_t body, const motion::PoseTrack& motion);
+};
+
+}  // namespace weft::model

@@ -1,0 +1,33 @@
+// Air that a cloth encloses.
+#pragma once
+
+#include <vector>
+
+#include "physics/motion/interpolation.hpp"
+
+namespace weft::model {
+
+/// The quantity that a scene prescribes. The other one, pressure or amount of air, follows from the volume.
+enum class PressureControl {
+  gauge,  ///< pressure above that of the outside air [Pa]
+  air,    ///< air pumped in after closing, as volume at outside pressure [m³]; negative: out
+  fill,   ///< total air, as a ratio of the enclosed volume at closing
+};
+
+struct PressureKey {
+  double time = 0;  ///< [s], strictly increasing
+  double value = 0;
+};
+
+/// Air in a cloth. The cloth counts as closed from the start or, if it is sewn, from the end of sewing.
+struct Pressure {
+  PressureControl control = PressureControl::gauge;
+  double value = 0;  ///< value of the controlled quantity if there are no keys
+  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between its keys
+  std::vector<PressureKey> keys;                                       ///< empty: constant `value`
+
+  /// Whether the enclosed air has any effect on the cloth.
+  bool acts() const { return control != PressureControl::gauge || value != 0 || !keys.empty(); }
+};
+
+}  // namespace weft::model

@@ -1,0 +1,33 @@
+// Thin chains of particles.
+#pragma once
+
+#include <vector>
+
+#include "physics/motion/interpolation.hpp"
+
+namespace weft::model {
+
+/// Minimum length of a piece between two particles [diameters].
+inline constexpr double kMinRopePiece = 1.5;
+
+/// Rest length of a rope at one time. A change of length is distributed evenly over the rope.
+struct RopeKey {
+  double time = 0;    ///< [s], strictly increasing
+  double length = 1;  ///< rest length [m]
+};
+
+/// What makes a cloth a rope: a chain of particles instead of a sheet.
+struct Rope {
+  std::vector<double> lengths;  ///< rest lengths of its pieces [m]; a closed rope has as many pieces as particles
+  bool closed = false;          ///< its end joins its beginning
+  double mass = 0;              ///< [kg/m]
+  double stretch = 0;           ///< stiffness EA: force per strain [N]
+  double bend = 0;              ///< bending stiffness EI [N·m²]
+  double damping = 0;           ///< viscosity of stretch and bending / their stiffness [s]
+  double diameter = 0;          ///< contact diameter [m]
+  double drag = 0;              ///< air resistance coefficient of a cylinder, for motion across the rope
+  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between its keys
+  std::vector<RopeKey> keys;                                           ///< of its length; empty: constant length
+};
+
+}  // namespace weft::model

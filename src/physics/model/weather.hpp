@@ -1,0 +1,52 @@
+// Gravity, and the velocity of the air, at any time and place.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "physics/model/gusts.hpp"
+#include "physics/model/model.hpp"
+#include "physics/motion/spline.hpp"
+
+namespace weft::model {
+
+/// Gravity is the same everywhere. The velocity of the air is the sum of wind, gusts and fans.
+///
+/// A fan blows into a cone through its disc: the apex is radius / tan(angle / 2) behind the disc. In front of the disc,
+/// the air moves away from the apex with the speed
+///
+///     u = speed · (a / s)^falloff · (1 − q²)²,
+///
+/// where s and a are the distances of the point and of the disc from the apex along the axis, and q is the distance
+/// from the axis relative to the radius of the cone there. A free round jet has an opening angle of about 24 degrees,
+/// and its speed falls as 1 / s (Pope, Turbulent Flows, 2000, section 5.1). (1 − q²)² is the profile of such a jet
+/// except at the edge, where (1 − q²)² falls to 0 with zero slope. Behind the disc and outside the cone, the air rests.
+class Weather {
+ public:
+  explicit Weather(const Model& model);
+
+  /// Gravity at time t [s], in [m/s²].
+  Vec3 gravity(double t) const { return keys_ ? Vec3(keys_->at(t).value.head<3>()) : gravity_; }
+  /// Whether the velocity of the air differs from Model::physics.wind at any time or place.
+  bool varies_in_space() const { return keys_.has_value() || gusts_.has_value() || !fans_.empty(); }
+  /// Velocity of the air at x [m] and time t [s], in [m/s].
+  Vec3 air(const Vec3& x, double t) const;
+  /// Whether gravity and air are the same at t0 and t1 [s]; false if there are gusts.
+  bool is_constant_between(double t0, double t1) const;
+
+ private:
+  struct Fan {
+    motion::Spline<7> track;  // position, direction, speed
+    double slope;             // tangent of half the opening angle
+    double apex;              // distance of the apex behind the disc [m]
+    double falloff;
+
+    Vec3 air(const Vec3& x, double t) const;
+  };
+  Vec3 gravity_, wind_;
+  std::optional<motion::Spline<6>> keys_;  // gravity and wind
+  std::optional<GustField> gusts_;
+  std::vector<Fan> fans_;
+};
+
+}  // namespace weft::model

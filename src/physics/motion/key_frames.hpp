@@ -1,0 +1,55 @@
+// Bodies whose vertices are stored as key frames before the simulation starts (section "System" of the seed, the paper
+// by Etzmuß et al. of 2001).
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/motion/interpolation.hpp"
+
+namespace weft::motion {
+
+/// State of one vertex in world space [m, m/s, m/s²].
+struct VertexMotion {
+  Vec3 position, velocity, acceleration;
+};
+
+/// Interpolates vertices between equally spaced key frames linearly, or by cubic splines with a continuous second
+/// derivative. Before the first key and after the last one, the body stands still.
+class KeyFrames {
+ public:
+  /// `from_rest`: the spline starts with zero velocity, because the body stands still before the first key. Otherwise
+  /// its acceleration is zero at the start. At the end, its acceleration is always zero. Needs at least one key and a
+  /// positive `interval` [s].
+  KeyFrames(Interpolation interpolation, double first_time, double interval, std::vector<std::vector<Vec3>> keys,
+            bool from_rest);
+
+  /// Writes the positions of all vertices at t [s], in parallel; allocates nothing.
+  void at(double t, std::span<Vec3> positions) const;
+
+  /// One vertex with its exact derivatives; at a key of a linear motion, those of the later segment.
+  VertexMotion at(double t, std::size_t vertex) const { return at(find_piece(t), vertex); }
+
+  bool moving() const { return keys_.size() > 1; }
+  std::vector<double> times() const;  ///< of the keys [s]
+  std::size_t bytes() const;
+
+ private:
+  /// Position of a time among the keys: `s` [s] after key i; `stands`: before the first or after the last key.
+  struct Piece {
+    std::size_t i;
+    double s;
+    bool stands;
+  };
+  Piece find_piece(double t) const;
+  VertexMotion at(const Piece& piece, std::size_t vertex) const;
+  void compute_second_derivatives(bool from_rest);
+
+  double first_time_, interval_;  // [s]
+  std::vector<std::vector<Vec3>> keys_;
+  std::vector<std::vector<Vec3>> second_derivatives_;  // at the keys [m/s²]; empty for linear motion
+};
+
+}  // namespace weft::motion

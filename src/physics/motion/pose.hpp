@@ -1,0 +1,32 @@
+// Poses of rigid bodies, and their keys.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/motion/interpolation.hpp"
+
+namespace weft::motion {
+
+/// A rigid placement: rotation, then translation.
+struct Pose {
+  Vec3 position{0, 0, 0};  ///< [m]
+  Quat rotation{1, 0, 0, 0};
+  std::optional<Vec3> angles{};  ///< the rotation as given by angles [degrees], may contain whole turns; absent: not so
+};
+
+/// Difference of the angles of two poses [degrees]; empty if one of them has no angles.
+std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to);
+
+struct PoseKey {
+  double time = 0;  ///< [s], strictly increasing
+  Pose pose;
+};
+
+struct PoseTrack {
+  Interpolation interpolation = Interpolation::cubic;
+  std::vector<PoseKey> keys;  ///< empty: keeps the object's own pose
+};
+
+}  // namespace weft::motion

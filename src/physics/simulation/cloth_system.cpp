@@ -1,0 +1,480 @@
+#include "physics/simulation/cloth_system.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/archive.hpp"
+#include "core/numerics.hpp"
+#include "core/parallel.hpp"
+#include "physics/forces/air.hpp"
+#include "physics/forces/bend.hpp"
+#include "physics/forces/cord.hpp"
+#include "physics/forces/crossed_membrane.hpp"
+#include "physics/forces/rigidity.hpp"
+#include "physics/forces/shear.hpp"
+#include "physics/forces/stretch.hpp"
+#include "physics/forces/stretch_limit.hpp"
+#include "physics/forces/triangle_bend.hpp"
+#include "physics/mesh/geometry.hpp"
+#include "physics/simulation/pins.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Minimum number of particles in a range. Maximum number of ranges per part and thread: several balance the load.
+constexpr Index kMinRangeSize = 512;
+constexpr Index kMaxRangesPerThread = 2;
+
+bool has_drag(const model::Material& m, const model::Physics& physics) {
+  return physics.air_density > 0 && m.drag > 0;
+}
+forces::StretchParameters stretch_of(const model::Material& m) {
+  return {m.stretch_weft, m.stretch_warp, m.stretch_viscosity};
+}
+forces::ShearParameters shear_of(const model::Material& m) {
+  return {m.shear, m.shear_viscosity};
+}
+forces::BendParameters bend_of(const model::Material& m) {
+  return {m.bend, m.bend_viscosity, m.bend_friction};
+}
+forces::AirParameters air_of(const model::Material& m, const model::Physics& physics) {
+  return {physics.air_density, physics.wind, m.drag};
+}
+
+// Sine of the shear angle at which the threads lock; infinite if they never do.
+double max_shear_sine(const model::Material& m) {
+  return m.max_shear > 0 ? std::sin(m.max_shear * std::numbers::pi / 180) : std::numeric_limits<double>::infinity();
+}
+double max_extension(const model::Material& m) {
+  return m.max_stretch > 0 ? m.max_stretch : std::numeric_limits<double>::infinity();
+}
+
+/// A box of a lattice over the rest shape: indices along the normal, warp and weft.
+using Box = std::array<int, 3>;
+struct Lattice {
+  std::vector<Box> boxes;       // of each particle, or of each box of the finer lattice
+  std::array<double, 3> sides;  // of a box, along the same axes [m]
+};
+
+// The finest lattice. Grids have one box per particle; triangles have cubes with the mean particle distance as side.
+Lattice lattice_of(const model::Cloth& cloth) {
+  Lattice lattice;
+  const mesh::Grid& grid = cloth.grid;
+  lattice.sides = {grid.lu, grid.lv, grid.lu};
+  for (int j = 0; j < grid.nv; ++j)
+    for (int i = 0; i < grid.nu; ++i) lattice.boxes.push_back({0, j, i});
+  if (cloth.sheet.triangles.empty()) return lattice;
+  const std::vector<Vec3>& rest = cloth.sheet.rest;
+  const Vec3 corner = mesh::bounding_box(rest).min();
+  const double side = std::sqrt(mesh::surface_area(cloth.sheet.triangles, rest) / static_cast<double>(rest.size()));
+  lattice.sides.fill(side);
+  for (const Vec3& x : rest) {
+    const Vec3 place = (x - corner) / side;
+    lattice.boxes.push_back({static_cast<int>(place.z()), static_cast<int>(place.y()), static_cast<int>(place.x())});
+  }
+  return lattice;
+}
+
+// Doubles all sides of the boxes, except those longer than `slender_aggregate` times the shortest one: cloth is
+// stiffest between close particles, so these are merged first.
+void coarsen(Lattice& lattice) {
+  Box last{0, 0, 0};
+  for (const Box& box : lattice.boxes)
+    for (std::size_t axis = 0; axis < 3; ++axis) last[axis] = std::max(last[axis], box[axis]);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (last[axis] > 0) least = std::min(least, lattice.sides[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (lattice.sides[axis] > numerics.linear.slender_aggregate * least) continue;
+    lattice.sides[axis] *= 2;
+    for (Box& box : lattice.boxes) box[axis] /= 2;
+  }
+}
+
+// Progress of sewing as a function of the elapsed fraction of its duration; the slope is zero at both ends.
+double ease(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+}  // namespace
+
+ClothSystem::ClothSystem(const model::Model& model) : gravity_(model.physics.gravity), begin_(model.start_time()) {
+  Index first = 0;
+  forces_.resize(model.cloths.size());
+  for (std::size_t c = 0; c < model.cloths.size(); ++c) {
+    const model::Cloth& cloth = model.cloths[c];
+    first_.push_back(first);
+    const double density = cloth.material.density;
+    const auto masses = cloth.rope ? forces::lumped_masses(cloth.rope->lengths, cloth.rope->closed, cloth.rope->mass)
+                        : cloth.sheet.triangles.empty() ? forces::lumped_masses(cloth.grid, density)
+                                                        : forces::lumped_masses(cloth.sheet, density);
+    masses_.insert(masses_.end(), masses.begin(), masses.end());
+    for (const model::Weight& weight : cloth.weights) {
+      double fraction_sum = 0;
+      for (const model::Chosen& carrier : weight.particles) fraction_sum += carrier.share;
+      for (const model::Chosen& carrier : weight.particles)
+        masses_[first + carrier.particle] += weight.mass * (carrier.share / fraction_sum);
+    }
+    held_.resize(masses_.size());
+    for (const model::Pin& pin : cloth.pins)
+      for (const model::Chosen& chosen : pin.particles)
+        if (!pin.strength) held_[first + chosen.particle] = 1;
+    if (cloth.rope)
+      add_rope_forces(c, *cloth.rope, model.physics);
+    else if (cloth.sheet.triangles.empty())
+      add_quad_forces(c, cloth, model.physics);
+    else
+      add_triangle_forces(c, cloth, model.physics);
+    spacing_ = std::min(spacing_, cloth.spacing);
+    first += static_cast<Index>(masses.size());
+  }
+  first_.push_back(first);
+  inflation_ = Inflation(model, first_);
+  add_frames(model);
+  build_aggregates(model);
+
+  const solver::Assembly assembly(lay_out_matrix());
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->attach(assembly);
+  divide_into_ranges();
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->hold(held_);
+  sew(0);
+}
+
+void ClothSystem::add_frames(const model::Model& model) {
+  const double stiffness = numerics.bodies.rigidity / (model.time.step * model.time.step);
+  for (const model::Body& body : model.bodies) {
+    if (!body.dynamics) continue;
+    const auto& [frame, mass, velocity, turn, release] = *body.dynamics;
+    forces_.emplace_back().push_back(std::make_unique<forces::Rigidity>(frame, first_.back(), mass, stiffness));
+    masses_.insert(masses_.end(), mesh::RigidFrame::kParticles, mass / mesh::RigidFrame::kParticles);
+    held_.resize(masses_.size());
+    first_.push_back(static_cast<Index>(masses_.size()));
+  }
+}
+
+std::vector<Index> ClothSystem::first_of_frames(const model::Model& model) const {
+  std::vector<Index> first;
+  std::size_t part = cloths();
+  for (const model::Body& body : model.bodies) first.push_back(body.dynamics ? first_[part++] : -1);
+  return first;
+}
+
+solver::BlockMatrix ClothSystem::lay_out_matrix() const {
+  solver::BlockMatrix::Couplings couplings, isotropic;
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->couple(force->isotropic() ? isotropic : couplings);
+  return {first_.back(), std::move(couplings), std::move(isotropic)};
+}
+
+solver::LinearSystem ClothSystem::make_linear_system() const {
+  solver::LinearSystem system;
+  system.matrix = lay_out_matrix();
+  system.aggregate_levels = aggregate_levels_;
+  for (std::size_t p = 0; p < parts(); ++p)
+    system.parts.push_back({.begin = first_[p], .end = first_[p + 1], .is_small = p >= cloths()});
+  return system;
+}
+
+void ClothSystem::add_quad_forces(std::size_t cloth, const model::Cloth& of, const model::Physics& physics) {
+  const mesh::Grid& grid = of.grid;
+  const model::Material& material = of.material;
+  const Index first = first_[cloth];
+  auto stretch = std::make_unique<forces::Stretch>(grid, first, stretch_of(material));
+  membranes_.push_back(stretch.get());
+  forces_[cloth].push_back(std::move(stretch));
+  if (material.shear > 0 || material.shear_viscosity > 0)
+    forces_[cloth].push_back(std::make_unique<forces::Shear>(grid, first, shear_of(material)));
+  if (material.locks())
+    add_limit(cloth, std::make_unique<forces::StretchLimit>(grid, first, stretch_of(material), max_extension(material),
+                                                            max_shear_sine(material)));
+  if (material.bends()) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
+  if (has_drag(material, physics))
+    forces_[cloth].push_back(std::make_unique<forces::Air>(grid, first, air_of(material, physics)));
+}
+
+void ClothSystem::add_rope_forces(std::size_t cloth, const model::Rope& rope, const model::Physics& physics) {
+  auto cord = std::make_unique<forces::Cord>(rope.lengths, rope.closed, first_[cloth],
+                                             forces::CordParameters{.stretch = rope.stretch,
+                                                                    .stretch_viscosity = rope.damping * rope.stretch,
+                                                                    .bend = rope.bend,
+                                                                    .bend_viscosity = rope.damping * rope.bend,
+                                                                    .air_density = physics.air_density,
+                                                                    .wind = physics.wind,
+                                                                    .drag = rope.drag,
+                                                                    .diameter = rope.diameter});
+  if (!rope.keys.empty()) {
+    std::vector<double> times;
+    std::vector<motion::Spline<1>::Value> values;
+    for (const model::RopeKey& key : rope.keys) {
+      times.push_back(key.time);
+      values.emplace_back(key.length);
+    }
+    keyed_ropes_.push_back({cord.get(),
+                            std::accumulate(rope.lengths.begin(), rope.lengths.end(), 0.0),
+                            {rope.interpolation, std::move(times), std::move(values)}});
+  }
+  membranes_.push_back(cord.get());
+  forces_[cloth].push_back(std::move(cord));
+}
+
+void ClothSystem::add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit) {
+  if (!std::isinf(limit->limit())) limits_.emplace_back(cloth, limit.get());
+  forces_[cloth].push_back(std::move(limit));
+}
+
+void ClothSystem::add_triangle_forces(std::size_t cloth, const model::Cloth& of, const model::Physics& physics) {
+  const mesh::Sheet& sheet = of.sheet;
+  const model::Material& material = of.material;
+  const Index first = first_[cloth];
+  std::unique_ptr<forces::TriangleMembrane> membrane;
+  if (of.crossed && material.bends())  // membrane locking matters only with bending stiffness
+    membrane = std::make_unique<forces::CrossedMembrane>(sheet, first, stretch_of(material), shear_of(material));
+  else
+    membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
+  membranes_.push_back(membrane.get());
+  if (sheet.sewn) sewing_.push_back({cloth, of.put_on, of.sewing, -1, membrane.get(), nullptr, nullptr, nullptr});
+  if (material.locks()) {
+    auto limit = std::make_unique<forces::StretchLimit>(*membrane, stretch_of(material), max_extension(material),
+                                                        max_shear_sine(material));
+    if (sheet.sewn) sewing_.back().limit = limit.get();
+    add_limit(cloth, std::move(limit));
+  }
+  forces_[cloth].push_back(std::move(membrane));
+  if (!sheet.bands.empty()) {
+    auto bands = std::make_unique<forces::Bands>(sheet, first, 0.5 * (material.stretch_weft + material.stretch_warp));
+    if (sheet.sewn) sewing_.back().bands = bands.get();
+    forces_[cloth].push_back(std::move(bands));
+  }
+  if (!sheet.ties.empty()) {
+    auto ties = std::make_unique<forces::Ties>(sheet, first);
+    sewing_.back().ties = ties.get();
+    for (const std::string& seam : sheet.tearing_seams) sewing_.back().tearing_seams.push_back(of.name + ": " + seam);
+    forces_[cloth].push_back(std::move(ties));
+  }
+  if (material.bends())
+    forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material), held_));
+  if (has_drag(material, physics))
+    forces_[cloth].push_back(std::make_unique<forces::Air>(sheet, first, air_of(material, physics)));
+}
+
+// Divides each part into ranges that threads evaluate in parallel, the same number for each thread. Forces across the
+// border of two ranges are evaluated twice: a tenth of all if a range has 1,024 particles in 16 rows.
+void ClothSystem::divide_into_ranges() {
+  const Index threads = thread_count();
+  for (std::size_t c = 0; c < parts(); ++c) {
+    const Index first = first_[c], count = first_[c + 1] - first;
+    Index range_count = threads == 1 ? 1 : std::clamp<Index>(count / kMinRangeSize, 1, kMaxRangesPerThread * threads);
+    if (range_count > threads) range_count -= range_count % threads;
+    if (range_count == 1) {
+      ranges_.push_back({c, first, first + count, forces::Evaluation::kAll});
+      continue;
+    }
+    std::vector<Index> bounds;
+    for (Index r = 0; r <= range_count; ++r)
+      bounds.push_back(first + static_cast<Index>(std::int64_t{count} * r / range_count));
+    for (Index r = 0; r < range_count; ++r)
+      ranges_.push_back({c, bounds[r], bounds[r + 1], static_cast<std::size_t>(r)});
+    for (const auto& force : forces_[c]) force->cut(bounds);
+  }
+}
+
+std::size_t ClothSystem::largest_range_count() const {
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < parts(); ++c)
+    count += static_cast<std::size_t>(std::max<Index>(1, (first_[c + 1] - first_[c]) / kMinRangeSize));
+  return count;
+}
+
+// Builds the aggregates of the preconditioner. Each level merges the boxes of the next finer one (coarsen()), until at
+// most numerics.linear.coarsest_aggregates boxes are left, or one per cloth. Frame particles stay aggregates of their
+// own.
+void ClothSystem::build_aggregates(const model::Model& model) {
+  std::vector<Lattice> lattices;
+  for (const model::Cloth& cloth : model.cloths) lattices.push_back(lattice_of(cloth));
+  bool is_coarse = false;
+  do {
+    solver::Aggregates grouping;
+    for (Lattice& lattice : lattices) {
+      coarsen(lattice);
+      std::vector<Box>& members = lattice.boxes;
+      std::vector<Box> halved = members;
+      std::ranges::sort(halved);
+      halved.erase(std::unique(halved.begin(), halved.end()), halved.end());
+      for (const Box& box : members)
+        grouping.of.push_back(grouping.count +
+                              static_cast<Index>(std::ranges::lower_bound(halved, box) - halved.begin()));
+      grouping.count += static_cast<Index>(halved.size());
+      members = std::move(halved);
+    }
+    const Index of_cloths = grouping.count;
+    for (Index i = first_[cloths()]; i < first_.back(); ++i) grouping.of.push_back(grouping.count++);
+    aggregate_levels_.push_back(std::move(grouping));
+    is_coarse = of_cloths <= std::max(numerics.linear.coarsest_aggregates, static_cast<Index>(lattices.size()));
+  } while (!is_coarse);
+}
+
+void ClothSystem::Sewing::set_progress(double new_progress) {
+  progress = new_progress;
+  membrane->interpolate_rest_shape(progress);
+  if (limit != nullptr) limit->follow(*membrane);
+  if (bands != nullptr) bands->interpolate_rest_shape(progress);
+}
+
+bool ClothSystem::lengths_are_constant(double t0, double t1) const {
+  return std::ranges::all_of(
+      keyed_ropes_, [&](const KeyedRope& rope) { return rope.lengths.at(t0).value == rope.lengths.at(t1).value; });
+}
+
+void ClothSystem::sew(double t) {
+  for (const KeyedRope& rope : keyed_ropes_)
+    rope.cord->set_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
+  for (Sewing& sewing : sewing_) {
+    const double progress = sewing.duration > 0 ? ease((t - sewing.begin) / sewing.duration) : 1;
+    if (sewing.ties != nullptr) {
+      sewing.time = t;
+      sewing.ties->use(begin_ + t, progress);
+    }
+    if (progress != sewing.progress) sewing.set_progress(progress);
+  }
+}
+
+void ClothSystem::inflate(double t, std::span<const Vec3> x) {
+  if (inflation_.empty()) return;
+  inflation_.begin_step(begin_ + t, x, [&](std::size_t cloth) {
+    return std::ranges::none_of(sewing_,
+                                [&](const Sewing& sewing) { return sewing.cloth == cloth && sewing.progress < 1; });
+  });
+}
+
+bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {
+  std::vector<char> held(held_.size());
+  for (const integrator::HeldParticle& particle : pinned) held[particle.constraint.particle] = 1;
+  if (held == held_) return false;
+  held_ = std::move(held);
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->hold(held_);
+  return true;
+}
+
+void ClothSystem::accept(std::span<const Vec3> x) {
+  for (Sewing& sewing : sewing_)
+    if (!sewing.tearing_seams.empty()) sewing.ties->accept(x);
+}
+
+std::vector<AttachmentLoad> ClothSystem::measure_seams(std::span<const Vec3> x) const {
+  std::vector<AttachmentLoad> loads;
+  for (const Sewing& sewing : sewing_) {
+    if (sewing.tearing_seams.empty()) continue;
+    const auto seams = sewing.ties->measure_seams(x);
+    for (std::size_t s = 0; s < seams.size(); ++s)
+      loads.push_back({sewing.tearing_seams[s], seams[s].load, seams[s].holds});
+  }
+  return loads;
+}
+
+void ClothSystem::copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths) {
+  for (const Sewing& before : there.sewing_) {
+    if (before.tearing_seams.empty()) continue;
+    std::ranges::find(sewing_, cloths[before.cloth], &Sewing::cloth)->ties->copy_state_from(*before.ties);
+  }
+}
+
+template <class Archive>
+void ClothSystem::serialize(Archive& archive) {
+  for (Sewing& sewing : sewing_) {
+    archive.value(sewing.progress);
+    if (sewing.ties != nullptr) archive.value(sewing.time);
+    if (sewing.ties != nullptr) sewing.ties->serialize(archive);
+    if constexpr (!Archive::kReads) continue;
+    require(sewing.progress >= 0 && sewing.progress <= 1, "a progress of sewing");
+    sewing.set_progress(sewing.progress);
+    if (sewing.ties != nullptr) sewing.ties->use(begin_ + sewing.time, sewing.progress);
+  }
+  inflation_.serialize(archive);
+}
+
+template void ClothSystem::serialize(ByteWriter&);
+template void ClothSystem::serialize(ByteReader&);
+
+void ClothSystem::cancel_weight_of_sewn_cloth(std::span<Vec3> force) const {
+  for (const Sewing& sewing : sewing_) {
+    if (sewing.progress == 1) continue;
+    const auto end = static_cast<std::size_t>(first_[sewing.cloth + 1]);
+    for (auto i = static_cast<std::size_t>(first_[sewing.cloth]); i < end; ++i) force[i] -= masses_[i] * gravity_;
+  }
+}
+
+void ClothSystem::add_forces(std::size_t cloth, const forces::Evaluation& at) const {
+  for (const auto& force : forces_[cloth]) force->add(at);
+}
+
+void ClothSystem::begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const {
+  lags.resize(cloths());
+  for (const auto& [cloth, limit] : limits_) limit->begin(x, lags[cloth]);
+}
+
+void ClothSystem::update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const {
+  for (const auto& [cloth, limit] : limits_) limit->update(x, first, lags[cloth]);
+}
+
+void ClothSystem::add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const {
+  for (const auto& [cloth, limit] : limits_) limit->add_lag(x, lags[cloth], force);
+}
+
+void ClothSystem::fill_constant(double rate, solver::Assembly& assembly) const {
+  assembly.clear();
+  for (std::size_t i = 0; i < masses_.size(); ++i)
+    assembly.add_constant_to_own(static_cast<Index>(i), rate * rate * masses_[i]);
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->add_constant_stiffness(assembly);
+  assembly.keep_constant();
+}
+
+double ClothSystem::elastic_energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  for (const auto& of_cloth : forces_)
+    sum += parallel_sum(of_cloth.size(), 1, [&](std::size_t f, std::size_t) { return of_cloth[f]->energy(x); });
+  return sum;
+}
+
+double ClothSystem::potential_energy(std::span<const Vec3> x, const Vec3& gravity) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sum -= masses_[i] * gravity.dot(x[i]);
+  return sum;
+}
+
+double ClothSystem::kinetic_energy(std::span<const Vec3> v) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) sum += 0.5 * masses_[i] * v[i].squaredNorm();
+  return sum;
+}
+
+double ClothSystem::max_strain(std::span<const Vec3> x) const {
+  double largest = 0;
+  for (const forces::Membrane* membrane : membranes_) largest = std::max(largest, membrane->max_strain(x));
+  return largest;
+}
+
+ClothSystem::Overstretch ClothSystem::overstretch(std::span<const Vec3> x) const {
+  Overstretch largest;
+  for (const auto& [cloth, limit] : limits_) {
+    const forces::StretchLimit::Worst worst = limit->worst(x);
+    if (const double ratio = worst.extension / limit->limit(); ratio > largest.ratio)
+      largest = {ratio, cloth, worst.extension, worst.place};
+  }
+  return largest;
+}
+
+std::vector<float> ClothSystem::strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const {
+  std::vector<float> heat(static_cast<std::size_t>(first_[cloth + 1] - first_[cloth]));
+  membranes_[cloth]->strain_per_particle(x, heat);
+  return heat;
+}
+
+}  // namespace weft::simulation

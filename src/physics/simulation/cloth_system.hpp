@@ -1,0 +1,170 @@
+// The particles of all cloths: their masses, the forces of their materials, and the layout of their matrix.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/forces/bands.hpp"
+#include "physics/forces/force.hpp"
+#include "physics/forces/ties.hpp"
+#include "physics/forces/triangle_membrane.hpp"
+#include "physics/integrator/system.hpp"
+#include "physics/model/model.hpp"
+#include "physics/motion/spline.hpp"
+#include "physics/simulation/frame_report.hpp"
+#include "physics/simulation/inflation.hpp"
+#include "physics/solver/linear_system.hpp"
+
+namespace weft::forces {
+class Cord;
+class StretchLimit;
+struct LockLinearisation;
+}  // namespace weft::forces
+
+namespace weft::simulation {
+
+/// Numbers the particles of all cloths consecutively, in the order of the model. After them come four particles for
+/// each body that forces move: its frame. A part is a cloth or such a frame. Forces depend on their arguments, and
+/// besides only on what changes with time: rest shapes of cloth that is being sewn, rope lengths, enclosed air, and
+/// which particles are held.
+class ClothSystem {
+ public:
+  explicit ClothSystem(const model::Model& model);
+
+  std::span<const double> masses() const { return masses_; }
+  std::size_t cloths() const { return membranes_.size(); }
+  std::size_t parts() const { return forces_.size(); }
+  /// First particle of a part (cloths come first); for `parts()`, the number of all particles.
+  Index first_particle(std::size_t part) const { return first_[part]; }
+  /// First frame particle of each body of the environment; −1 for a body without a frame.
+  std::vector<Index> first_of_frames(const model::Model& model) const;
+  /// Smallest distance between neighbouring particles of all cloths [m].
+  double spacing() const { return spacing_; }
+
+  /// Sets gravity for cancel_weight_of_sewn_cloth() in the following steps [m/s²].
+  void use_gravity(const Vec3& gravity) { gravity_ = gravity; }
+  /// Cancels the weight of cloth that is being sewn, which would otherwise fall before it fits.
+  void cancel_weight_of_sewn_cloth(std::span<Vec3> force) const;
+
+  /// Particles of one part whose forces can be evaluated in parallel with those of other ranges.
+  struct Range {
+    std::size_t cloth;
+    Index begin, end;
+    std::size_t number;  ///< as in forces::Evaluation::range
+  };
+  /// The ranges of all parts. The division does not change any bit of the forces.
+  std::span<const Range> ranges() const { return ranges_; }
+  /// Number of ranges if the number of threads were unlimited.
+  std::size_t largest_range_count() const;
+
+  /// Adds the forces on one part, without its weight; `at` has positions, velocities and forces of all particles.
+  void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
+
+  /// Where the thread locks (forces::StretchLimit) are linearised, per cloth; empty for cloths without a limit to
+  /// stretch.
+  using LockLinearisations = std::vector<forces::LockLinearisation>;
+  void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
+  void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
+  void add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const;
+
+  /// Fills in rate² M and the constant part of the stiffness, which only hold() changes.
+  void fill_constant(double rate, solver::Assembly& assembly) const;
+
+  /// An empty system with the sparsity pattern of these forces.
+  solver::LinearSystem make_linear_system() const;
+
+  /// Updates rope lengths and the rest shapes of cloth that is being sewn to time t [s since the start of the run].
+  void sew(double t);
+
+  /// Whether the key-framed rope lengths are equal at times t0 and t1 of the scene [s].
+  bool lengths_are_constant(double t0, double t1) const;
+
+  /// Updates the enclosed air for the step that ends at time t [s since the start of the run]; call it after sew(t).
+  /// `x`: particles at the start of the step [m].
+  void inflate(double t, std::span<const Vec3> x);
+  const Inflation& inflation() const { return inflation_; }
+  Inflation& inflation() { return inflation_; }
+
+  /// Sets which particles pins hold. Returns whether this set has changed; the bending stiffness beside pins then
+  /// changes, too.
+  bool hold(std::span<const integrator::HeldParticle> pinned);
+
+  /// Accepts a step that ends with particles at x [m]: seams may tear.
+  void accept(std::span<const Vec3> x);
+  /// The pull of each seam that can tear [N].
+  std::vector<AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
+  /// Copies which ties of seams hold or are torn. `cloths[k]`: number in this object of cloth k of `there`.
+  void copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths);
+
+  /// Saves or restores what persists from frame to frame: progress of sewing, torn seams, and enclosed air.
+  template <class Archive>
+  void serialize(Archive& archive);
+
+  double elastic_energy(std::span<const Vec3> x) const;
+  /// Energy of the enclosed air [J].
+  double air_energy(std::span<const Vec3> x) const { return inflation_.energy(x); }
+  double kinetic_energy(std::span<const Vec3> v) const;
+  /// Gravitational energy, zero at the origin [J].
+  double potential_energy(std::span<const Vec3> x, const Vec3& gravity) const;
+  double max_strain(std::span<const Vec3> x) const;
+  /// The largest extension of threads, relative to the limit of their cloth.
+  struct Overstretch {
+    double ratio = 0;       ///< extension / limit; 0 if no cloth has a limit
+    std::size_t cloth = 0;  ///< number of the cloth
+    double extension = 0;   ///< length / rest length − 1
+    Vec3 place = Vec3::Zero();
+  };
+  Overstretch overstretch(std::span<const Vec3> x) const;
+  /// Largest |strain| of weft and warp next to each particle of one cloth.
+  std::vector<float> strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const;
+
+ private:
+  void add_quad_forces(std::size_t cloth, const model::Cloth& of, const model::Physics& physics);
+  void add_triangle_forces(std::size_t cloth, const model::Cloth& of, const model::Physics& physics);
+  void add_rope_forces(std::size_t cloth, const model::Rope& rope, const model::Physics& physics);
+  void add_frames(const model::Model& model);
+  void add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit);
+  solver::BlockMatrix lay_out_matrix() const;
+  void build_aggregates(const model::Model& model);
+  void divide_into_ranges();
+
+  std::vector<Index> first_;  // of each part, then the number of all particles
+  std::vector<double> masses_;
+  std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;          // per part
+  std::vector<Range> ranges_;                                                // in the order of particles
+  std::vector<const forces::Membrane*> membranes_;                           // one per cloth; owned by forces_
+  std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // of cloths with a limit to stretch
+  /// A cloth that is sewn during the run.
+  struct Sewing {
+    std::size_t cloth;
+    double begin, duration;  // [s]
+    double progress = -1;    // from the start shape (0) to the pattern (1); −1: not set yet
+    forces::TriangleMembrane* membrane;
+    forces::Bands* bands;                      // nullptr if the cloth has none
+    forces::StretchLimit* limit;               // nullptr if the cloth has none
+    forces::Ties* ties;                        // nullptr if the cloth has none
+    std::vector<std::string> tearing_seams{};  // names
+    double time = 0;                           // at which the ties were last updated [s since the start of the run]
+
+    void set_progress(double new_progress);
+  };
+  std::vector<Sewing> sewing_;
+  /// A rope with key-framed length.
+  struct KeyedRope {
+    forces::Cord* cord;
+    double length;              // rest length at construction [m]
+    motion::Spline<1> lengths;  // over the time of the scene
+  };
+  std::vector<KeyedRope> keyed_ropes_;
+  Inflation inflation_;
+  std::vector<char> held_;  // per particle: whether a pin holds it
+  Vec3 gravity_;
+  double begin_;  // start of the run, in the time of the scene [s]
+  double spacing_ = std::numeric_limits<double>::infinity();
+  std::vector<solver::Aggregates> aggregate_levels_;  // aggregates of the preconditioner, finest first
+};
+
+}  // namespace weft::simulation

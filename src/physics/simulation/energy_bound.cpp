@@ -1,0 +1,107 @@
+#include "physics/simulation/energy_bound.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/numerics.hpp"
+#include "physics/simulation/collision_stage.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Whether pins alone drive the cloth, and their work is counted.
+bool is_driven_by_pins_alone(const model::Model& model) {
+  const auto moves = [](const auto& track) { return track.keys.size() > 1; };
+  for (const model::Cloth& cloth : model.cloths) {
+    if (cloth.sewing > 0) return false;                // sewing does work
+    if (!cloth.over.empty()) return false;             // this cloth is added later
+    if (cloth.pressure.keys.size() > 1) return false;  // pumping does work
+    if (cloth.rope && cloth.rope->keys.size() > 1) return false;
+    // A pin with a strength is a spring, whose work is not counted.
+    for (const model::Pin& pin : cloth.pins)
+      if (pin.strength && (moves(pin.motion) || pin.body)) return false;
+  }
+  for (const model::Body& body : model.bodies) {
+    if (body.deforms() || (body.collide && body.moving)) return false;
+    // A body that gets a velocity at its release gains energy then.
+    if (body.dynamics && body.dynamics->release > 0 &&
+        (body.dynamics->velocity != Vec3::Zero() || body.dynamics->angular_velocity != Vec3::Zero()))
+      return false;
+  }
+  // The work of attachments is not counted if they contract to a given length, or if their target moves.
+  for (const model::Attachment& attachment : model.attachments)
+    if (attachment.length || (attachment.to_body && model.bodies[*attachment.to_body].moving)) return false;
+  if (model.physics.keys.size() > 1 || !model.fans.empty()) return false;
+  return model.physics.air_density == 0 || (model.physics.wind == Vec3::Zero() && model.physics.gusts.speed == 0);
+}
+
+double mechanical_energy(const FrameReport& report) {
+  return report.kinetic_energy + report.potential_energy + report.elastic_energy + report.air_energy;
+}
+
+}  // namespace
+
+EnergyBound::EnergyBound(const model::Model& model, double mass, const FrameReport& start)
+    : applies_(is_driven_by_pins_alone(model)),
+      damped_contact_(CollisionStage::needed(model) && model.time.integrator != integrator::Method::implicit_midpoint),
+      integrator_(model.time.integrator),
+      negligible_energy_(mass * numerics.energy.negligible),
+      start_energy_(mechanical_energy(start)),
+      start_kinetic_(start.kinetic_energy),
+      start_elastic_(start.elastic_energy),
+      potential_low_(start.potential_energy),
+      potential_high_(start.potential_energy) {}
+
+std::vector<std::string> EnergyBound::check(const FrameReport& energies) {
+  potential_low_ = std::min(potential_low_, energies.potential_energy);
+  potential_high_ = std::max(potential_high_, energies.potential_energy);
+  pin_work_ += energies.pin_work;
+  pin_work_low_ = std::min(pin_work_low_, pin_work_);
+  pin_work_high_ = std::max(pin_work_high_, pin_work_);
+  solver_work_ += std::abs(energies.solver_work);
+  highest_ = std::max(highest_, energies.kinetic_energy + energies.elastic_energy);
+  has_lagged_ = has_lagged_ || energies.lagging_particles > 0;
+  std::vector<std::string> warnings;
+  for (std::optional<std::string> warning : {check_gain(energies), check_solver(energies.frame)})
+    if (warning) warnings.push_back(*std::move(warning));
+  return warnings;
+}
+
+double EnergyBound::energy_in_play() const {
+  return start_kinetic_ + start_elastic_ + potential_high_ - potential_low_ + pin_work_high_ - pin_work_low_;
+}
+
+std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) {
+  if (!applies_ || has_lagged_) return {};
+  const double in_play = energy_in_play();
+  const double gain = mechanical_energy(energies) - start_energy_ - pin_work_;
+  const auto is_above = [&](double ratio) { return gain > ratio * in_play + negligible_energy_; };
+  const bool refused = is_above(numerics.energy.failing_gain) && !damped_contact_;
+  if (!refused && (warned_ || !is_above(numerics.energy.doubtful_gain))) return {};
+  const std::string text = fmt::format(
+      "frame {}: the cloth has {:.3g} J more than at the start{}, with {:.3g} J in play and nothing else that drives "
+      "it; try a smaller time.step or solver.newton_tolerance{}",
+      energies.frame, gain,
+      pin_work_high_ > pin_work_low_ ? fmt::format(" and by the work of its pins ({:.3g} J)", pin_work_) : "", in_play,
+      integrator_ == integrator::Method::implicit_midpoint
+          ? ", or integrator = \"bdf2\": the midpoint rule damps nothing"
+          : "");
+  if (refused) throw Error(ExitCode::simulation_failed, "{}", text);
+  warned_ = true;
+  return text;
+}
+
+std::optional<std::string> EnergyBound::check_solver(int frame) {
+  const double in_play = energy_in_play() + highest_;  // highest_: other things than pins may drive the cloth
+  if (warned_of_solver_ || solver_work_ <= numerics.energy.failing_gain * in_play + negligible_energy_) return {};
+  warned_of_solver_ = true;
+  return fmt::format(
+      "frame {}: the solver has left forces in the cloth that did {:.3g} J of work, with {:.3g} J in play: the motion "
+      "may be far off; try a smaller solver.newton_tolerance or time.step, or a softer material",
+      frame, solver_work_, in_play);
+}
+
+}  // namespace weft::simulation

@@ -1,0 +1,53 @@
+// Detects energy without a source, because an unstable run may stay finite for long. Detects large work of the solver's
+// residual, too.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/archive.hpp"
+#include "physics/model/model.hpp"
+#include "physics/simulation/simulation.hpp"
+
+namespace weft::simulation {
+
+/// If nothing but pins drives a scene (no moving body, no wind), its mechanical energy grows at most by the work of the
+/// pins, and by what inexact solves add. A run that gains more warns (numerics.energy.doubtful_gain); a run that gains
+/// much more fails (failing_gain). If cloth can touch something and the method damps, the run only warns: contacts at
+/// long steps can add energy, which the method then damps away. In any scene, a run warns if the work of the solver's
+/// residual is large: the motion stays finite but may be far off.
+class EnergyBound {
+ public:
+  /// `mass`: of all particles [kg].
+  EnergyBound(const model::Model& model, double mass, const FrameReport& start);
+
+  /// Checks a frame. Returns warnings, each once in a run; throws Error(simulation_failed) if far too much is gained.
+  std::vector<std::string> check(const FrameReport& energies);
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    serialize_values(archive, potential_low_, potential_high_, pin_work_, pin_work_low_, pin_work_high_, solver_work_,
+                     highest_, has_lagged_, warned_, warned_of_solver_);
+  }
+
+ private:
+  double energy_in_play() const;
+  std::optional<std::string> check_gain(const FrameReport& energies);
+  std::optional<std::string> check_solver(int frame);
+
+  bool applies_, damped_contact_;
+  bool has_lagged_ = false;  // a pin has lagged: the force that pulls it does work that is not counted
+  bool warned_ = false, warned_of_solver_ = false;
+  integrator::Method integrator_;
+  double negligible_energy_;               // smaller differences are no error [J]
+  double start_energy_;                    // mechanical energy at the start [J]
+  double start_kinetic_, start_elastic_;   // at the start [J]
+  double potential_low_, potential_high_;  // lowest and highest so far [J]
+  // Work of pins since the start, with its lowest and highest value [J].
+  double pin_work_ = 0, pin_work_low_ = 0, pin_work_high_ = 0;
+  double solver_work_ = 0;  // sum over frames of |work of the solver's residual| [J]
+  double highest_ = 0;      // largest sum of kinetic and elastic energy so far [J]
+};
+
+}  // namespace weft::simulation

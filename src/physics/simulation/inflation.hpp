@@ -1,0 +1,78 @@
+// Air that cloths enclose: its pressure, its force, its energy.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "physics/forces/enclosed_volume.hpp"
+#include "physics/model/model.hpp"
+#include "physics/motion/spline.hpp"
+#include "physics/simulation/frame_report.hpp"
+#include "physics/solver/linear_system.hpp"
+
+namespace weft::simulation {
+
+/// The gauge pressure p (above the pressure outside) of an enclosed volume V pushes with the force p ∂V/∂x. If the
+/// scene gives p, the energy is −p V. If it gives an amount of air, as the volume A that the air has at the outside
+/// pressure p₀, the air is isothermal: (p₀ + p) V = p₀ A, with the energy p₀ (V − A − A ln(V / A)).
+///
+/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ, but not the change of ∂V/∂x, which is indefinite and small against the
+/// stiffness of cloth under tension.
+class Inflation {
+ public:
+  /// Pressure outside [Pa]: standard atmosphere.
+  static constexpr double kAmbientPressure = 101325;
+
+  Inflation() = default;
+  /// Keeps the cloths whose pressure acts. `first_particle`: of each cloth of the model.
+  Inflation(const model::Model& model, std::span<const Index> first_particle);
+
+  bool empty() const { return cloths_.empty(); }
+
+  /// Begins a step that ends at time t of the scene [s]. Cloth that is still open, for which is_closed(cloth) is false,
+  /// has no gauge pressure. In the first step in which it is closed, the volume that it encloses at x [m] becomes the
+  /// reference of its amount of air. Throws Error(scene_invalid) if the scene gives an amount of air, but the cloth
+  /// encloses no volume then.
+  void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
+  /// Whether the values of the scene are equal at t0 and t1 [s].
+  bool is_constant_between(double t0, double t1) const;
+
+  /// `x`, `force` [N] and the rows of `system` are those of all particles.
+  void add_forces(std::span<const Vec3> x, std::span<Vec3> force) const;
+  void linearise(std::span<const Vec3> x, std::span<Vec3> force, solver::LinearSystem& system) const;
+
+  /// Energy of the air in all cloths [J].
+  double energy(std::span<const Vec3> x) const;
+  std::vector<EnclosedAir> measure(std::span<const Vec3> x) const;
+
+  /// Copies the enclosed air from another simulation. `numbers[k]`: number in this scene of cloth k of `there`.
+  void copy_state_from(const Inflation& there, std::span<const std::size_t> numbers);
+
+  template <class Archive>
+  void serialize(Archive& archive);
+
+ private:
+  static constexpr double kOpen = -1;
+  struct Cloth {
+    std::string name;
+    std::string where;   // in the scene file, for errors
+    std::size_t number;  // of the cloth in the scene
+    Index first, end;    // particles
+    forces::EnclosedVolume volume;
+    model::PressureControl control;
+    motion::Spline<1> track;
+    double value = 0;                      // of the track in the current step; for the unit, see PressureControl
+    double closed_volume = kOpen;          // volume when it was closed [m³]; kOpen: not closed yet
+    mutable std::vector<Vec3> gradient{};  // scratch
+
+    double air() const;
+    double pressure(double at_volume) const;
+    double stiffness(double at_volume) const;
+    double energy(double at_volume) const;
+    double evaluate(std::span<const Vec3> x) const { return volume.evaluate(x.subspan(first, end - first), gradient); }
+  };
+  std::vector<Cloth> cloths_;
+};
+
+}  // namespace weft::simulation

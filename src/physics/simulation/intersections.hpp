@@ -1,0 +1,21 @@
+// Places where surfaces touch or cross at the start of a scene, for error messages and pictures.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/collision/bodies.hpp"
+#include "physics/collision/response/certificate.hpp"
+#include "physics/simulation/simulation.hpp"
+
+namespace weft::simulation {
+
+/// Groups pairs that meet into places, the place with most pairs first. `x`: the vertices [m]. Pairs of the same two
+/// objects belong to one place if their triangles share vertices. `names`: of the bodies.
+std::vector<IntersectionPlace> group_intersections(std::span<const collision::CornerPair> pairs,
+                                                   const collision::Bodies& bodies, std::span<const std::string> names,
+                                                   std::span<const Vec3> x);
+
+}  // namespace weft::simulation

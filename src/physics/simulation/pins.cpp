@@ -1,0 +1,165 @@
+#include "physics/simulation/pins.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "physics/collision/proximity/surface_point.hpp"
+
+namespace weft::simulation {
+namespace {
+
+/// Position and velocity of a point.
+struct MovingPoint {
+  Vec3 x, v;
+};
+
+/// Unit vector along u and its rate of change, for u that changes at u_rate.
+MovingPoint unit(const Vec3& u, const Vec3& u_rate) {
+  const double length = u.norm();
+  const Vec3 along = u / length;
+  return {along, (u_rate - along.dot(u_rate) * along) / length};
+}
+
+/// Axes of a triangle with their rates of change: its first side, its normal, and their vector product.
+struct TriangleAxes {
+  Mat3 axes, rates;
+
+  TriangleAxes(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c) {
+    const Vec3 p = b.x - a.x, q = c.x - a.x, p_rate = b.v - a.v, q_rate = c.v - a.v;
+    const MovingPoint side = unit(p, p_rate), normal = unit(p.cross(q), p_rate.cross(q) + p.cross(q_rate));
+    axes << side.x, normal.x, side.x.cross(normal.x);
+    rates << side.v, normal.v, side.v.cross(normal.x) + side.x.cross(normal.v);
+  }
+};
+
+}  // namespace
+
+// Takes time linear in the particles of all pins.
+std::vector<Pins::Owner> Pins::owners(const model::Model& model, const std::vector<Index>& first_particle) {
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < model.cloths.size(); ++c)
+    count = static_cast<std::size_t>(first_particle[c]) + model.cloths[c].start.size();
+  std::vector<Owner> owner_of(count);
+  for (const bool faded : {false, true}) {
+    std::size_t pin = 0;
+    for (std::size_t c = 0; c < model.cloths.size(); ++c)
+      for (const model::Pin& each : model.cloths[c].pins) {
+        for (const model::Chosen& chosen : each.particles) {
+          const auto i = static_cast<std::size_t>(first_particle[c] + chosen.particle);
+          if (chosen.faded == faded && owner_of[i].fraction == 0) owner_of[i] = {pin, chosen.share};
+        }
+        ++pin;
+      }
+  }
+  return owner_of;
+}
+
+Pins::Pins(const model::Model& model, const std::vector<Index>& first_particle)
+    : owner_of_(owners(model, first_particle)) {
+  const double start_time = model.start_time();
+  for (std::size_t c = 0; c < model.cloths.size(); ++c) {
+    const model::Cloth& cloth = model.cloths[c];
+    for (std::size_t number = 0; number < cloth.pins.size(); ++number) {
+      const model::Pin& pin = cloth.pins[number];
+      Group& group = groups_.emplace_back();
+      const std::vector<model::Chosen>& all = pin.particles;
+      std::vector<std::size_t> places;  // index of each particle of the group in `all`
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        const Index particle = first_particle[c] + all[k].particle;
+        if (pin_of(particle) != groups_.size() - 1) continue;
+        group.particles.push_back(particle);
+        places.push_back(k);
+      }
+      group.info = {c, number, group.particles.size(), pin.strength};
+      if (group.particles.empty()) continue;
+
+      const auto start = [&](Index particle) -> const Vec3& { return cloth.start[particle - first_particle[c]]; };
+      group.release = pin.release;
+      if (pin.body) group.follow = static_cast<int>(*pin.body);
+      if (pin.first_vertex) {
+        for (const std::size_t place : places) group.skinned.push_back(*pin.first_vertex + place);
+      } else if (pin.body && model.bodies[*pin.body].deforms()) {
+        std::vector<Vec3> starts;
+        for (Index particle : group.particles) starts.push_back(start(particle));
+        group.anchors = anchor(model, static_cast<std::size_t>(group.follow), start_time, starts);
+      } else if (group.follow >= 0) {
+        const motion::PoseSample pose = model.pose(static_cast<std::size_t>(group.follow), start_time);
+        for (Index particle : group.particles)
+          group.arms.push_back(pose.rotation.conjugate() * (start(particle) - pose.position));
+      } else {
+        group.track.emplace(pin.motion, motion::Pose{.position = pin.middle});
+        for (Index particle : group.particles) group.arms.push_back(start(particle) - pin.middle);
+      }
+    }
+  }
+}
+
+std::vector<Pins::Anchor> Pins::anchor(const model::Model& model, std::size_t character, double t,
+                                       std::span<const Vec3> places) {
+  const mesh::Mesh& skin = model.bodies[character].mesh;
+  std::vector<MovingPoint> vertices;
+  std::vector<Vec3> x;
+  for (std::size_t v = 0; v < skin.positions.size(); ++v) {
+    vertices.push_back({model.vertex(character, v, t).position, Vec3::Zero()});
+    x.push_back(vertices.back().x);
+  }
+  std::vector<Anchor> anchors;
+  for (const Vec3& place : places) {
+    const collision::SurfacePoint nearest = collision::nearest_point(place, skin.topology.triangles, x);
+    Anchor& anchor = anchors.emplace_back();
+    Vec3 foot = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      anchor.corners[k] = static_cast<std::size_t>(nearest.face[k]);
+      anchor.weights[k] = nearest.weights[k];
+      foot += nearest.weights[k] * x[anchor.corners[k]];
+    }
+    const auto& [a, b, c] = anchor.corners;
+    anchor.arm = TriangleAxes(vertices[a], vertices[b], vertices[c]).axes.transpose() * (place - foot);
+  }
+  return anchors;
+}
+
+bool Pins::release_between(double t0, double t1) const {
+  return std::ranges::any_of(groups_, [&](const Group& group) {
+    return !group.particles.empty() && group.release >= 0 && t0 <= group.release && group.release < t1;
+  });
+}
+
+void Pins::held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const {
+  held.clear();
+  for (const Group& group : groups_) {
+    if (group.particles.empty() || (group.release >= 0 && t > group.release)) continue;
+    for (std::size_t p = 0; p < group.anchors.size(); ++p) {
+      const Anchor& anchor = group.anchors[p];
+      std::array<MovingPoint, 3> corners;
+      MovingPoint place{Vec3::Zero(), Vec3::Zero()};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto vertex = model.vertex(static_cast<std::size_t>(group.follow), anchor.corners[k], t);
+        corners[k] = {vertex.position, vertex.velocity};
+        place.x += anchor.weights[k] * vertex.position;
+        place.v += anchor.weights[k] * vertex.velocity;
+      }
+      const TriangleAxes triangle(corners[0], corners[1], corners[2]);
+      held.push_back({{group.particles[p], Mat3::Zero()},
+                      place.x + triangle.axes * anchor.arm,
+                      place.v + triangle.rates * anchor.arm});
+    }
+    for (std::size_t p = 0; p < group.skinned.size(); ++p) {
+      const auto place = model.vertex(static_cast<std::size_t>(group.follow), group.skinned[p], t);
+      held.push_back({{group.particles[p], Mat3::Zero()}, place.position, place.velocity});
+    }
+    if (!group.anchors.empty() || !group.skinned.empty()) continue;
+    motion::PoseSample pose;
+    if (group.follow >= 0) {
+      pose = model.pose(static_cast<std::size_t>(group.follow), t);
+    } else {
+      pose = group.track->at(t);
+    }
+    for (std::size_t p = 0; p < group.particles.size(); ++p) {
+      const Vec3 arm = pose.rotation * group.arms[p];
+      held.push_back({{group.particles[p], Mat3::Zero()}, pose.position + arm, pose.velocity_at(arm)});
+    }
+  }
+}
+
+}  // namespace weft::simulation

@@ -1,0 +1,76 @@
+// Particles that pins of the scene hold or move.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "physics/integrator/system.hpp"
+#include "physics/model/model.hpp"
+
+namespace weft::simulation {
+
+/// Largest speed at which a pin or an attachment can move cloth without tearing it [m/s]; a hand reaches 10.
+inline constexpr double kMaxHoldSpeed = 20;
+
+/// All pins of a scene; they move particles along key frames or with a body.
+class Pins {
+ public:
+  /// `first_particle`: of each cloth.
+  Pins(const model::Model& model, const std::vector<Index>& first_particle);
+
+  bool empty() const { return groups_.empty(); }
+
+  struct Info {
+    std::size_t cloth = 0, number = 0;  ///< from 0: of the cloth in the scene, of the pin in its cloth
+    std::size_t particles = 0;
+    std::optional<double> strength;  ///< stiffness of the spring to each particle [N/m]; none: the particles are held
+  };
+  std::size_t size() const { return groups_.size(); }
+  const Info& info(std::size_t pin) const { return groups_[pin].info; }
+  /// The pin that has this particle. The particle must belong to a pin.
+  std::size_t pin_of(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].pin; }
+  /// Fraction of that pin's strength for this particle, in (0, 1]; 0 for a particle without a pin.
+  double strength_fraction(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].fraction; }
+
+  /// Particles of all pins with their targets at time t [s], without those of pins released before t. Each particle has
+  /// one entry. If pins overlap, the particle belongs to the first of them in the scene; but a pin with the particle in
+  /// its region comes before one with the particle in its fade.
+  void held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const;
+  /// Whether a pin is released at a time in [t0, t1) [s].
+  bool release_between(double t0, double t1) const;
+
+ private:
+  /// A point beside a triangle of a body without bones; it moves with the triangle as if rigidly attached.
+  struct Anchor {
+    std::array<std::size_t, 3> corners;
+    std::array<double, 3> weights;  // barycentric, of the nearest point of the triangle at the start
+    Vec3 arm;                       // from that point, in the axes of the triangle [m]
+  };
+  /// The pin that has a particle, and the fraction of the pin's strength for this particle.
+  struct Owner {
+    std::size_t pin = 0;
+    double fraction = 0;  // 0: no pin
+  };
+  static std::vector<Owner> owners(const model::Model& model, const std::vector<Index>& first_particle);
+  static std::vector<Anchor> anchor(const model::Model& model, std::size_t character, double t,
+                                    std::span<const Vec3> places);
+  /// The particles of one pin, which share one motion.
+  struct Group {
+    Info info;
+    std::vector<Index> particles;
+    std::vector<Vec3> arms;       // particles at the start relative to the origin of the motion, in its axes [m]
+    double release = -1;          // [s]; negative: never
+    int follow = -1;              // number of the obstacle or character that it follows; −1: it follows `track`
+    std::vector<Anchor> anchors;  // in place of `arms`, if it follows a body without bones
+    // In place of `arms`, if it follows a body with bones: the vertices that represent its particles.
+    std::vector<std::size_t> skinned;
+    std::optional<motion::Track> track;  // of the mean position of the particles
+  };
+
+  std::vector<Group> groups_;
+  std::vector<Owner> owner_of_;  // per particle
+};
+
+}  // namespace weft::simulation

@@ -1,0 +1,54 @@
+// Vertices of bodies that forces move: weighted sums of the particles of the bodies' frames.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/mesh/rigid_frame.hpp"
+#include "physics/solver/linear_system.hpp"
+
+namespace weft::simulation {
+
+/// In arrays of positions, the vertices of bodies that forces move come after all particles. Contacts act on them as on
+/// particles; this class passes the resulting forces and terms on to the frames.
+class RigidVertices {
+ public:
+  /// `first`: number of the first vertex, which equals the number of particles.
+  explicit RigidVertices(Index first) : first_(first) {}
+
+  /// Appends the vertices of a body. `first_of_frame`: first particle of its frame. The frame must outlive this object.
+  void add(const mesh::RigidFrame& frame, Index first_of_frame);
+
+  bool empty() const { return bodies_.empty(); }
+  Index first() const { return first_; }
+  Index end() const { return first_ + static_cast<Index>(body_of_vertex_.size()); }
+
+  /// Computes the vertices in x from the frame particles in x.
+  void place(std::span<Vec3> x) const;
+  /// force[frame particle] += weight · of_all[vertex], for all vertices.
+  void gather(std::span<const Vec3> of_all, std::span<Vec3> force) const;
+  /// The same for bounds of forces, with absolute weights.
+  void gather(std::span<const double> of_all, std::span<double> limit) const;
+  /// Mass of the whole body of a vertex [kg]; `masses`: of the particles. Contacts use it for their stiffness
+  /// (measured: with the effective mass of a corner, a stack of ten boxes sways for ten seconds).
+  double mass_of(Index vertex, std::span<const double> masses) const;
+  /// Replaces terms on vertices by wide terms on frame particles, and appends these to the existing wide terms.
+  void spread(solver::LinearSystem& system) const;
+
+ private:
+  struct Body {
+    const mesh::RigidFrame* frame;
+    Index first_of_frame, first_vertex;
+  };
+  bool is_vertex(Index i) const { return i >= first_; }
+  template <class Visit>
+  void for_each_weight(Index vertex, const Visit& visit) const;
+
+  Index first_;
+  std::vector<Body> bodies_;
+  std::vector<std::size_t> body_of_vertex_;  // index of the body of each vertex
+};
+
+}  // namespace weft::simulation

@@ -1,0 +1,112 @@
+// Simulates a model frame by frame: positions, reports, and saved states.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "physics/model/model.hpp"
+#include "physics/simulation/frame_report.hpp"
+
+namespace weft::simulation {
+
+/// FrameReport::stretch_ratio above which a run warns.
+inline constexpr double kMaxStretchRatio = 1.1;
+
+/// All particles of the cloths that are put on, cloth by cloth in the order of the model.
+struct ParticleState {
+  std::span<const Vec3> positions, velocities;  ///< [m], [m/s]
+  std::span<const double> masses;               ///< [kg]
+};
+
+/// Velocities and strains of a cloth in a frame; empty until the cloth is put on.
+struct ClothMotion {
+  std::span<const Vec3> velocities;  ///< per particle [m/s]
+  std::vector<float> strains;        ///< per particle: largest relative change of length of the threads next to it
+};
+
+/// A place where two objects, or one object and itself, touch or cross at the start.
+struct IntersectionPlace {
+  std::string a, b;                            ///< the objects
+  std::size_t pairs = 0;                       ///< number of pairs of triangles
+  Vec3 centre = Vec3::Zero();                  ///< [m]
+  double size = 0;                             ///< longest side of the bounding box [m]
+  std::vector<std::array<Vec3, 3>> triangles;  ///< those that meet there [m]
+};
+
+/// "12 pairs of triangles that touch or cross in 2 places: 'sheet' and 'ball' (8 pairs) around (0, 0, 1) m, ...".
+std::string describe(std::span<const IntersectionPlace> places);
+
+/// Places where surfaces touch or cross at the start, before its preroll and without untangling; largest number of
+/// pairs first; empty if a run may begin. Layers are not checked against each other.
+std::vector<IntersectionPlace> find_start_intersections(const model::Model& model);
+
+/// Size of the matrix of one Newton iteration, without contacts.
+struct MatrixSize {
+  std::size_t full_blocks = 0;       ///< 3×3 blocks, diagonal included
+  std::size_t isotropic_blocks = 0;  ///< multiples of the identity, one number each
+};
+
+class Simulation {
+ public:
+  /// Builds only what the model needs. Throws Error(scene_invalid) if surfaces touch or cross at the start.
+  explicit Simulation(model::Model model);
+  ~Simulation();
+
+  /// With the motions of driven bodies.
+  const model::Model& model() const;
+  /// Number of the current frame, negative in the preroll, and its time [s].
+  int frame() const;
+  double time() const;
+  /// Number of changes of the state so far: of frames advanced, and of restored states.
+  std::uint64_t changes() const;
+
+  /// Simulates the next frame. If that fails, keeps the state of the current one and throws Error(simulation_failed)
+  /// with the reason, or Error(scene_invalid) if a cloth that is put on or closed in this frame does not fit.
+  FrameReport advance();
+
+  /// The report of frame 0: energies and distances of the start.
+  FrameReport initial_report() const;
+
+  /// Simulates time.preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before
+  /// each frame, and returns false as soon as that does: frame 0 is then not reached. Throws as advance() does.
+  bool run_preroll(const std::function<bool()>& proceed = [] { return true; });
+  std::size_t particles() const;
+  MatrixSize matrix() const;
+  /// Positions of the particles of all cloths [m], in the order of the model; a cloth that is not put on is at its
+  /// start.
+  std::vector<Vec3> particles_of_all() const;
+  /// Whether all cloths are put on.
+  bool all_dressed() const;
+  /// Vertices of a body that forces move [m]; empty for other bodies.
+  std::vector<Vec3> vertices_of(std::size_t body) const;
+  /// State of the current frame, for the cloths that are put on; valid until the next advance().
+  ParticleState state() const;
+  /// `cloth`: number in the model. The result is valid until the next advance().
+  ClothMotion motion_of(std::size_t cloth) const;
+  /// Total contact force on each particle [N] at the end of the last step, per cloth; empty until the cloth is put on.
+  std::vector<std::vector<Vec3>> contact_forces() const;
+
+  /// Moves a rigid body (number in the model) to `end` at constant velocity during the next frame, whatever its own
+  /// motion; it then stays there. The body must be `moving`.
+  void drive(std::size_t body, const motion::Pose& end);
+
+  /// Appends everything that later frames depend on. Only machines of one kind and one version of the program can read
+  /// it. Not allowed after a failed advance().
+  void save(std::string& bytes) const;
+  /// Restores what a simulation of the same model has saved; the frames that follow have the same bits. Only allowed
+  /// before the first advance(). If bodies were driven, first call drive() once for each of them, to any pose.
+  /// Throws std::runtime_error if the bytes do not fit this model; the simulation is then unusable.
+  void restore(std::string_view bytes);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace weft::simulation

@@ -1,0 +1,238 @@
+// One attempt at a step: StepLoop::attempt and what it consists of.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/numerics.hpp"
+#include "core/parallel.hpp"
+#include "core/timer.hpp"
+#include "physics/simulation/step_loop.hpp"
+#include "physics/simulation/step_settings.hpp"
+
+namespace weft::simulation {
+
+// If obstacles or other cloth keep pinned particles from their targets, repeats the attempt with these particles
+// released.
+StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool is_last, FrameReport& report) {
+  for (int tries = 1;; ++tries) {
+    const Attempt attempt{t, h, rejections, is_last, tries > numerics.repair.halvings};
+    pins_.begin_step(t, h, progress_.now.x);
+    const Start start = begin_attempt(attempt, report);
+    if (!collisions_) return rejection_of(solve(h, start, false, report));
+
+    const bool with_springs = collisions_->response().form() == collision::ResponseForm::springs;
+    Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
+                                       : solve_with_velocity_constraints(attempt, start, report);
+    if (!rejection && may_shorten(attempt)) rejection = check_overstretch(h);
+    if (collisions_->obstructed_pins().empty() || attempt.may_move_pins) return rejection;
+    if (!is_short_enough(attempt) && !pins_.any_lags()) return rejection;
+    for (const collision::ObstructedPin& given : collisions_->obstructed_pins())
+      pins_.release_particle(given.particle, collisions_->describe(given, progress_.now));
+  }
+}
+
+// Sets up pins, bodies, forces and contacts. Returns where the solve starts.
+StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& report) {
+  const double t = attempt.t, h = attempt.h;
+  held_ = pins_.held();
+  hold_frames(model_, cloth_, t + h, held_);
+  // What is released changes its acceleration at once: the stepper's history does not predict the motion that follows.
+  const bool releases = release_frames(model_, cloth_, t, h, progress_.now.v) || pins_.release_between(t, t + h);
+  if (releases) stepper_.restart();
+  pinned_ = held_.size();
+  problem_.begin_step(t + h - start_, progress_.now.particles(), held_, pins_.pulls());
+  attachments_.begin_step(t, t + h, progress_.now.particles(), cloth_.masses());
+  Start start = Start::unchanged_velocity;
+  if (collisions_) {
+    const Stopwatch watch(report.collide);
+    if (collisions_->begin_step(t, h, held_, progress_.now, next_)) start = Start::next;
+  }
+  update_weather(t, h);
+  return start;
+}
+
+// Sets gravity at the stage of the step, and the air velocity there at the positions that unchanged velocities lead to.
+void StepLoop::update_weather(double t, double h) {
+  const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
+  gravity_ = weather_.gravity(t + until_stage);
+  cloth_.use_gravity(gravity_);
+  if (!weather_.varies_in_space()) return;
+  const SystemState& now = progress_.now;
+  std::vector<solver::PaddedVec3<double>> air(now.v.size());
+  parallel_for(air.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      air[i] = solver::padded<double>(weather_.air(now.x[i] + until_stage * now.v[i], t + until_stage));
+  });
+  problem_.set_air_velocity(std::move(air));
+}
+
+// Solves, checks, pushes particles apart and continues the solve from there, with the contacts there, until every
+// candidate pair has a separating plane.
+StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
+  const SystemState& now = progress_.now;
+  int continuations = 0;
+  bool is_separated = false;
+  for (bool is_first = true;; is_first = false, start = Start::next) {
+    const bool may_continue = continuations < numerics.repair.restarts;
+    // An iterate that is separated already is solved to the end; others are checked early.
+    const bool check_early = !is_separated && (is_first || may_continue);
+    bool solved = false;
+    if (Rejection rejection = solve_contacts(attempt, start, is_first, check_early, solved, report)) return rejection;
+    const Stopwatch watch(report.collide);
+    is_separated = collisions_->is_separated(now, next_);
+    if (is_separated && solved) return std::nullopt;
+    if (!is_separated && !may_continue && solved) return push_apart(attempt);
+    if (is_separated || !may_continue) continue;
+
+    // Pins may press cloth into cloth that a continued solve has not moved out of the way.
+    const bool may_release_pins =
+        continuations > 0 && !attempt.may_move_pins && (is_short_enough(attempt) || pins_.any_lags());
+    if (may_release_pins && collisions_->find_pins_between_cloths()) return "pins press cloth into cloth";
+    const double energy_before = solved ? energy(next_) : 0;
+    const double strain_before = solved ? cloth_.max_strain(next_.particles()) : 0;
+    if (collisions_->push_apart(attempt.h, false, false, now, next_)) {
+      continuations = numerics.repair.restarts;  // some pairs cannot be pushed apart: push_apart(attempt) decides
+      continue;
+    }
+    if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.energy.doubtful_gain &&
+        cloth_.max_strain(next_.particles()) <= strain_before + numerics.repair.added_strain)
+      return std::nullopt;
+    ++continuations;
+    collisions_->continue_from(next_);
+    problem_.limit_friction_updates();
+  }
+}
+
+// The response of the seed (contact.response). After each solve, it sets and releases velocity constraints, and adds
+// some for pairs without a separating plane.
+StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
+                                                              FrameReport& report) {
+  const SystemState& now = progress_.now;
+  collision::ContactResponse& response = collisions_->response();
+  const auto force_on = [&](Index particle) { return stepper_.constraint_force(particle, cloth_.masses()[particle]); };
+  int revisions = 0;
+  for (bool is_first = true;; is_first = false, start = Start::next) {
+    bool solved = false;
+    if (Rejection rejection = solve_contacts(attempt, start, is_first, is_first, solved, report)) return rejection;
+    const Stopwatch watch(report.collide);
+    const bool may_revise = revisions + 1 < numerics.walls.solves;
+    if (solved && response.revise(now.x, next_.x, force_on) > 0 && may_revise) {
+      ++revisions;
+    } else if (collisions_->is_separated(now, next_)) {
+      if (solved) return std::nullopt;
+    } else if (may_revise && collisions_->add_failing_contacts(now, next_) > 0) {
+      ++revisions;
+      if (solved) response.revise(now.x, next_.x, force_on);
+    } else if (solved) {
+      return push_apart(attempt);
+    }
+  }
+}
+
+// Solves the step with the current contacts and constraints; writes the result into `next_`. `solved`: false if the
+// solve ended for an early check.
+StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early,
+                                             bool& solved, FrameReport& report) {
+  held_.resize(pinned_);
+  collisions_->append_prescribed_particles(held_);
+  integrator::StepReport step = solve(attempt.h, start, check_early, report);
+  // Normal forces and friction depend on each other, and can increase each other without end. With fixed normal forces,
+  // friction has a potential, and dissipates (measured without this: a sheet of 0.5 J with friction 10 gains 1,300 J).
+  if (is_first && step.verdict == integrator::Verdict::unfinished &&
+      added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.astray_energy) {
+    problem_.fix_normal_forces();
+    step = solve(attempt.h, Start::unchanged_velocity, check_early, report);
+  }
+  if (Rejection rejection = rejection_of(step)) {
+    progress_.longest = 0.5 * attempt.h;
+    return rejection;
+  }
+  solved = step.verdict == integrator::Verdict::solved;
+  return std::nullopt;
+}
+
+// `check_early`: the solve ends unfinished after a few iterations, so that contacts that it reveals are found soon.
+integrator::StepReport StepLoop::solve(double h, Start start, bool check_early, FrameReport& report) {
+  stepper_.set_method(method());
+  const integrator::StepReport step =
+      stepper_.step(problem_, progress_.now, h, gravity_, held_, next_, start,
+                    check_early ? numerics.newton.check_after : std::numeric_limits<int>::max());
+  if (collisions_) collisions_->place_rigid_vertices(next_);
+  report.newton_iterations += step.newton_iterations;
+  report.linear_iterations += step.linear_iterations;
+  report.forces += step.times.forces;
+  report.preconditioner += step.times.preconditioner;
+  report.linear += step.times.linear;
+  local_error_ = step.local_error;
+  solver_error_ = step.solver_error;
+  return step;
+}
+
+// The midpoint rule has no damping, and contacts that switch on and off would excite cloth: BDF2 replaces it in steps
+// with contacts.
+integrator::Method StepLoop::method() const {
+  const integrator::Method chosen = model_.time.integrator;
+  const bool needs_damping =
+      chosen == integrator::Method::implicit_midpoint && collisions_ && !collisions_->response().empty();
+  return needs_damping ? integrator::Method::bdf2 : chosen;
+}
+
+// Pushes particles of `next_` apart without solving again. Asks for a shorter step if this adds much energy.
+StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
+  const double energy_before = energy(next_);
+  const bool may_pinch = is_short_enough(attempt);
+  if (Rejection stuck = collisions_->push_apart(attempt.h, may_pinch, attempt.may_move_pins, progress_.now, next_))
+    return stuck;
+  if (!may_shorten(attempt)) return std::nullopt;
+  const double ratio = added_energy_ratio(energy_before, attempt.h);
+  if (ratio <= numerics.energy.doubtful_gain) return std::nullopt;
+  progress_.longest = 0.5 * attempt.h;
+  return fmt::format("keeping cloth from passing through adds {:.2g} times the energy of its motion and threads",
+                     ratio);
+}
+
+bool StepLoop::may_shorten(const Attempt& attempt) {
+  return !attempt.is_last && attempt.rejections < numerics.repair.halvings;
+}
+
+// Whether a shorter step would find no more space for cloth than this one.
+bool StepLoop::is_short_enough(const Attempt& attempt) const {
+  return attempt.is_last ||
+         (attempt.rejections >= numerics.repair.halvings && collisions_->obstacles_move_little(progress_.now, next_));
+}
+
+// Asks for a shorter step if this one stretches threads far beyond their limit.
+StepLoop::Rejection StepLoop::check_overstretch(double h) {
+  const double ratio = cloth_.overstretch(next_.particles()).ratio;
+  const double most = numerics.repair.overstretch;
+  if (ratio <= 1 + most || ratio <= cloth_.overstretch(progress_.now.particles()).ratio + most) return std::nullopt;
+  progress_.longest = 0.5 * h;
+  return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", ratio);
+}
+
+// Mechanical energy at `moment`, with the gravity of the current step [J].
+double StepLoop::energy(const SystemState& moment) const {
+  return cloth_.elastic_energy(moment.particles()) + cloth_.air_energy(moment.particles()) +
+         attachments_.energy(moment.particles()) + cloth_.kinetic_energy(moment.v) +
+         cloth_.potential_energy(moment.particles(), gravity_);
+}
+
+// Energy of `next_` beyond `before` [J], relative to the kinetic and elastic energy at the start of the step. The
+// kinetic energy counts as at least that of a free fall over h [s], so that cloth at rest has a scale.
+double StepLoop::added_energy_ratio(double before, double h) const {
+  double mass = 0;
+  for (const double m : cloth_.masses()) mass += m;
+  const double fall = h * gravity_.norm();
+  const double motion = std::max(cloth_.kinetic_energy(progress_.now.v), 0.5 * mass * fall * fall);
+  return (energy(next_) - before) / (motion + cloth_.elastic_energy(progress_.now.particles()));
+}
+
+StepLoop::Rejection StepLoop::rejection_of(const integrator::StepReport& step) {
+  if (step.verdict == integrator::Verdict::solved || step.verdict == integrator::Verdict::unfinished)
+    return std::nullopt;
+  return fmt::format("{} (a velocity of {:.2g} m/s left where {:.2g} may be, after {} iterations)",
+                     integrator::describe(step.verdict), step.left, step.allowed, step.newton_iterations);
+}
+
+}  // namespace weft::simulation

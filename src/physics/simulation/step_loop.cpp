@@ -1,0 +1,287 @@
+#include "physics/simulation/step_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/archive.hpp"
+#include "core/error.hpp"
+#include "core/numerics.hpp"
+#include "physics/simulation/step_settings.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// A cloth is reported again once its stretch is this many times the last reported one.
+constexpr double kReportAgainRatio = 1.5;
+
+}  // namespace
+
+StepLoop::StepLoop(const model::Model& model, double start)
+    : model_(model),
+      start_(model.start_time()),
+      cloth_(model),
+      problem_(cloth_),
+      pins_(model, first_particles(cloth_), cloth_.masses()),
+      progress_{start_of(model, cloth_, start), step_control_of(model), std::numeric_limits<double>::infinity()},
+      stepper_(model.time.integrator, newton_of(model)),
+      reported_overstretch_(cloth_.cloths(), 0),
+      attachments_(model, first_particles(cloth_), cloth_.first_of_frames(model)),
+      weather_(model),
+      gravity_(weather_.gravity(start)) {
+  SystemState& now = progress_.now;
+  pins_.begin_step(start, 0, now.x);
+  held_ = pins_.held();
+  cloth_.hold(held_);
+  for (const integrator::HeldParticle& particle : held_) now.v[particle.constraint.particle] = particle.v_end;
+  if (CollisionStage::needed(model)) {
+    collisions_.emplace(model, cloth_, now);
+    problem_.use_contacts(collisions_->response(), collisions_->rigid_vertices());
+  }
+  if (!attachments_.empty()) problem_.use_attachments(attachments_);
+  cloth_.inflate(start - start_, now.particles());
+  next_ = now;
+}
+
+void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths) {
+  dressed_.assign(cloths.begin(), cloths.end());
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const Index there = before.cloth_.first_particle(c), here = cloth_.first_particle(cloths[c]);
+    const Index count = before.cloth_.first_particle(c + 1) - there;
+    std::copy_n(before.progress_.now.x.begin() + there, count, progress_.now.x.begin() + here);
+    std::copy_n(before.progress_.now.v.begin() + there, count, progress_.now.v.begin() + here);
+    pins_.copy_state_from(before.pins_, there, here, count);
+    reported_overstretch_[cloths[c]] = before.reported_overstretch_[c];
+  }
+  for (std::size_t p = 0; p + before.cloth_.cloths() < before.cloth_.parts(); ++p) {
+    const Index there = before.cloth_.first_particle(before.cloth_.cloths() + p),
+                here = cloth_.first_particle(cloth_.cloths() + p);
+    std::copy_n(before.progress_.now.x.begin() + there, mesh::RigidFrame::kParticles, progress_.now.x.begin() + here);
+    std::copy_n(before.progress_.now.v.begin() + there, mesh::RigidFrame::kParticles, progress_.now.v.begin() + here);
+  }
+  if (collisions_) collisions_->place_rigid_vertices(progress_.now);
+  if (collisions_ && before.collisions_) collisions_->copy_state_from(*before.collisions_, cloths);
+  cloth_.inflation().copy_state_from(before.cloth_.inflation(), cloths);
+  attachments_.copy_state_from(before.attachments_, cloths);
+  cloth_.copy_seams_from(before.cloth_, cloths);
+  next_ = progress_.now;
+}
+
+void StepLoop::untangle() {
+  if (!collisions_) return;
+  collisions_->untangle(held_, dressed_, progress_.now);
+  next_ = progress_.now;
+}
+
+double StepLoop::lift_bodies() {
+  if (!collisions_ || collisions_->rigid_vertices() == nullptr) return 0;
+  const double lift = collisions_->lift_bodies(model_.up, start_, progress_.now);
+  next_ = progress_.now;
+  return lift;
+}
+
+std::vector<Vec3> StepLoop::contact_forces() const {
+  std::vector<Vec3> forces(cloth_.masses().size(), Vec3::Zero()), friction = forces;
+  std::vector<double> limit(forces.size(), 0);
+  problem_.contact_forces({.x = {}, .v = {}, .x_end = progress_.now.x}, forces, friction, limit);
+  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += friction[i];
+  return forces;
+}
+
+std::vector<Vec3> StepLoop::vertices_of(std::size_t body) const {
+  std::vector<Vec3> vertices;
+  if (!model_.bodies[body].dynamics) return vertices;
+  const Index first = cloth_.first_of_frames(model_)[body];
+  vertices.resize(model_.bodies[body].mesh.positions.size());
+  model_.bodies[body].dynamics->frame.place(
+      std::span(progress_.now.x).subspan(static_cast<std::size_t>(first), mesh::RigidFrame::kParticles), vertices);
+  return vertices;
+}
+
+void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
+  if (cloth_.masses().empty()) return;  // no particles: nothing to simulate
+  if (collisions_) collisions_->forget();
+  progress_.control ? advance_controlled(t_t0, t_t1, report) : advance_equally(t_t0, report);
+}
+
+// Divides the frame into equal steps, or takes one step if everything rests. Computes times from the number of steps
+// before, so that they have the same bits at any frame rate.
+void StepLoop::advance_equally(double t_t0, FrameReport& report) {
+  const double fps = model_.time.fps;
+  const int steps = std::max(1, static_cast<int>(std::ceil(1 / (fps * model_.time.step) - 1e-9)));
+  const double h = 1 / (fps * steps);
+  if (steps > 1 && may_rest(t_t0, h, steps) && rest(t_t0, 1 / fps, report)) return;
+  const double done = std::round(t_t0 * fps) * steps;
+  for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, model_.solver.halvings, report);
+}
+
+// Whether one long step may replace the next `steps` steps of length h [s]: all cloth is slow and has settled in its
+// last step, and everything that keys move is, at the end of each of these steps, where it is at t. If something moves,
+// the long step is not even tried: contacts that it alone needs would remain for the steps that follow.
+bool StepLoop::may_rest(double t, double h, int steps) {
+  const double whole = steps * h;
+  // Velocity constraints release and stick again from step to step.
+  const bool needs_steps = model_.contact.response == model::Response::velocity_constraints;
+  if (model_.time.integrator != integrator::Method::implicit_euler || needs_steps || whole > progress_.longest ||
+      !is_slow(progress_.now) || !has_settled())
+    return false;
+  for (int s = 1; s <= steps; ++s) {
+    const double end = t + s * h;
+    if (!weather_.is_constant_between(t, end) || !cloth_.inflation().is_constant_between(t, end) ||
+        !attachments_.are_constant_between(t, end))
+      return false;
+    if (!cloth_.lengths_are_constant(t, end)) return false;
+    if (!pins_.are_constant_between(t, end) || !frames_are_constant(model_, t, end) ||
+        (collisions_ && !collisions_->bodies_are_constant(t, end, progress_.now, next_)))
+      return false;
+  }
+  return true;
+}
+
+// Whether the root mean square of all accelerations in the last step is below the visibility threshold.
+bool StepLoop::has_settled() const {
+  const integrator::Stepper::History& last = stepper_.history();
+  if (last.h == 0) return false;
+  double sum = 0;
+  for (std::size_t i = 0; i < last.before.v.size(); ++i) sum += (progress_.now.v[i] - last.before.v[i]).squaredNorm();
+  const double most = numerics.newton.unseen_acceleration * last.h;
+  return sum <= most * most * static_cast<double>(last.before.v.size());
+}
+
+bool StepLoop::is_slow(const SystemState& moment) {
+  return std::ranges::all_of(moment.v, [](const Vec3& v) {
+    return v.squaredNorm() <= numerics.steps.rest_velocity * numerics.steps.rest_velocity;
+  });
+}
+
+// Takes one step in place of several. Returns false if something begins to move; the step is then discarded, and not
+// counted.
+bool StepLoop::rest(double t, double h, FrameReport& report) {
+  if (attempt(t, h, 0, false, report)) return false;
+  if (!is_slow(next_) || local_error_ > 0.5 * h * h * numerics.newton.unseen_acceleration) return false;
+  accept(h, report);
+  return true;
+}
+
+// Advances from t to t + h. Takes two halves if the step is rejected, or if it is too long after the last step or for
+// obstacles that turn. `rejections`: number of rejected steps that contain this one. Earlier rejections count, too,
+// while steps are still short because of them (measured without this rule: pinched cloth takes 75,202 steps instead of
+// 160).
+void StepLoop::advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report) {
+  const bool after_rejection = h > (1 + 1e-9) * progress_.longest;
+  const bool too_long = after_rejection || h > (1 + 1e-9) * stepper_.longest_step() || obstacle_turns_too_far(t, h);
+  if (!too_long) {
+    const Rejection rejection = attempt(t, h, rejections, halvings_left == 0, report);
+    if (!rejection) return accept(h, report);
+    ++report.rejected_steps;
+    if (halvings_left == 0) fail(report.frame, t, h, *rejection);
+    --halvings_left;
+  }
+  if (!too_long || after_rejection) ++rejections;
+  advance_over(t, 0.5 * h, rejections, halvings_left, report);
+  advance_over(t + 0.5 * h, 0.5 * h, rejections, halvings_left, report);
+}
+
+// Takes steps whose local error is at most time.tolerance, as far as their minimum length allows. The remainder of the
+// frame is divided into equal steps no longer than `control` wants. So no step is much shorter than those before it,
+// and lengths change rarely.
+void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report) {
+  integrator::StepControl& control = *progress_.control;
+  double t = t_t0, h = 0;
+  int left = 0, rejections = 0;
+  for (;;) {
+    const double longest = std::min(control.next_step_size(), stepper_.longest_step());
+    const int needed = std::max(1, static_cast<int>(std::ceil((t_t1 - t) / longest - 1e-9)));
+    if (needed != left) {
+      left = needed;
+      h = (t_t1 - t) / left;
+    }
+    for (; obstacle_turns_too_far(t, h); h *= 0.5) left *= 2;
+    const bool is_last = rejections == model_.solver.halvings || h < numerics.steps.least;
+    const Rejection rejection = attempt(t, h, rejections, is_last, report);
+    if (rejection && is_last) fail(report.frame, t, h, *rejection);
+    // In an impact, the error may ask for shorter steps without end. So the last attempt is accepted whatever its
+    // error.
+    if (rejection || !(is_last || control.accepts(h, local_error_))) {
+      ++report.rejected_steps, ++rejections;
+      rejection ? control.record_unsolved_step(h) : control.record_rejected_step(h, local_error_);
+      continue;
+    }
+    report.inexact_steps += !control.meets(local_error_);
+    control.record_accepted_step(h, local_error_);
+    accept(h, report);
+    rejections = 0;
+    if (--left == 0) return;
+    t += h;
+  }
+}
+
+void StepLoop::fail(int frame, double t, double h, const std::string& reason) const {
+  throw Error(ExitCode::simulation_failed,
+              "frame {}: the step at t = {:.6g} s was rejected down to h = {:.3g} s: {}; try a smaller time.{} or "
+              "softer material",
+              frame, t, h, reason, progress_.control ? "tolerance" : "step");
+}
+
+// Makes `next_`, the end of a step over h [s], the current state.
+void StepLoop::accept(double h, FrameReport& report) {
+  count_work(measure_work(stepper_, std::span(held_).first(pinned_), cloth_.masses(), progress_.now, next_), report);
+  stepper_.accept(progress_.now, next_, h);
+  pins_.accept();
+  for (const std::string& text : attachments_.accept(next_.particles()))
+    report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
+  cloth_.accept(next_.particles());
+  if (collisions_) collisions_->accept();
+  std::swap(progress_.now, next_);
+  progress_.longest *= numerics.steps.largest_factor;
+  measure_stretch(report);
+  ++report.steps;
+  report.error_estimate += local_error_;
+  report.solver_error += solver_error_;
+}
+
+// Measures the accepted step, whose start is in `next_`. Warns when a cloth exceeds kMaxStretchRatio, and again once it
+// exceeds the last report by half: a tight waist would otherwise be reported with every breath.
+void StepLoop::measure_stretch(FrameReport& report) {
+  report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
+  const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());
+  const bool begins = report.stretch_ratio <= kMaxStretchRatio && most.ratio > kMaxStretchRatio;
+  report.stretch_ratio = std::max(report.stretch_ratio, most.ratio);
+  if (!begins || cloth_.overstretch(next_.particles()).ratio > kMaxStretchRatio) return;
+  double& reported = reported_overstretch_[most.cloth];
+  if (most.ratio < kReportAgainRatio * reported) return;
+  reported = most.ratio;
+  report.warnings.push_back(
+      fmt::format("frame {}: '{}' is stretched by {:.0f} %, which its threads do not allow (max_stretch {:g}), near "
+                  "({:.4g}, {:.4g}, {:.4g}) m",
+                  report.frame, model_.cloths[most.cloth].name, 100 * most.extension, most.extension / most.ratio,
+                  most.place.x(), most.place.y(), most.place.z()));
+}
+
+template <class Archive>
+void StepLoop::serialize(Archive& archive) {
+  SystemState& now = progress_.now;
+  const std::size_t particles = cloth_.masses().size();
+  std::vector<Vec3> x(now.particles().begin(), now.particles().end());
+  serialize_points(archive, x, particles);
+  std::ranges::copy(x, now.x.begin());
+  serialize_points(archive, now.v, particles);
+  stepper_.serialize(archive, particles);
+  if (progress_.control) progress_.control->serialize(archive);
+  archive.value(progress_.longest);
+  if constexpr (Archive::kReads) require(progress_.longest > 0, "a step length");
+  cloth_.serialize(archive);
+  pins_.serialize(archive);
+  attachments_.serialize(archive);
+  for (double& reported : reported_overstretch_) {
+    archive.value(reported);
+    if constexpr (Archive::kReads) require(reported >= 0, "a ratio of stretch");
+  }
+}
+
+template void StepLoop::serialize(ByteWriter&);
+template void StepLoop::serialize(ByteReader&);
+
+}  // namespace weft::simulation

@@ -1,0 +1,162 @@
+// Advances a simulation from frame to frame: divides frames into steps, and attempts each step until it is accepted.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/integrator/step_control.hpp"
+#include "physics/integrator/stepper.hpp"
+#include "physics/model/model.hpp"
+#include "physics/model/weather.hpp"
+#include "physics/simulation/cloth_system.hpp"
+#include "physics/simulation/collision_stage.hpp"
+#include "physics/simulation/simulation.hpp"
+#include "physics/simulation/step_problem.hpp"
+#include "physics/simulation/step_work.hpp"
+#include "physics/simulation/yielding_pins.hpp"
+
+namespace weft::simulation {
+
+/// Parts that a model does not need are not built: there is no collision stage if nothing collides, and no force of
+/// zero stiffness.
+class StepLoop {
+ public:
+  /// `start`: time of the first step [s]. The model must outlive the loop.
+  StepLoop(const model::Model& model, double start);
+
+  StepLoop(const StepLoop&) = delete;  // members refer to each other
+  StepLoop& operator=(const StepLoop&) = delete;
+
+  /// Before the first advance(): takes over the cloths of `before`, a loop that this one replaces. `cloths[k]`: number
+  /// in this loop of cloth k of `before`.
+  void copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths);
+  /// Before the first advance(): untangles cloths that touch or intersect at the start, if the scene allows it.
+  /// Cloths that were taken over stay as they are.
+  void untangle();
+  /// Before the first advance(): lifts dynamic bodies off what they touch. Returns the largest lift [m].
+  double lift_bodies();
+  /// Before the first advance(): places where surfaces touch or intersect at the start.
+  std::vector<IntersectionPlace> find_intersections() {
+    return collisions_ ? collisions_->find_intersections(progress_.now) : std::vector<IntersectionPlace>{};
+  }
+
+  /// Advances from the time t_t0 of a frame to the time t_t1 of the next one [s], whose number is report.frame, and
+  /// adds counts to `report`. Throws Error(simulation_failed) if a step is rejected at every length.
+  void advance(double t_t0, double t_t1, FrameReport& report);
+
+  /// State from which the next step begins.
+  struct Progress {
+    SystemState now;
+    std::optional<integrator::StepControl> control;  // if the scene has a tolerance in place of a step
+    double longest;  // longest step allowed after a rejection [s]; infinite before the first one
+  };
+  const Progress& progress() const { return progress_; }
+  /// State between two frames, to which a simulation returns after a failure.
+  struct Checkpoint {
+    Progress progress;
+    integrator::Stepper::History history;
+  };
+  Checkpoint checkpoint() const { return {progress_, stepper_.history()}; }
+  void return_to(Checkpoint checkpoint) {
+    progress_ = std::move(checkpoint.progress);
+    stepper_.return_to(std::move(checkpoint.history));
+  }
+
+  const ClothSystem& cloth() const { return cloth_; }
+  const model::Weather& weather() const { return weather_; }
+  const Attachments& attachments() const { return attachments_; }
+  const StepProblem& problem() const { return problem_; }
+  /// Number of particles that pins, keys or velocity constraints hold.
+  std::size_t held() const { return held_.size(); }
+  /// Contact forces with friction on all particles at the end of the last step [N]; zeros before the first step.
+  std::vector<Vec3> contact_forces() const;
+  /// Vertex positions of a dynamic body [m]; empty for other bodies.
+  std::vector<Vec3> vertices_of(std::size_t body) const;
+  /// nullptr if nothing collides.
+  const CollisionStage* collisions() const { return collisions_ ? &*collisions_ : nullptr; }
+  /// Pinched cloth in the frame that ends now.
+  CollisionStage::Pinches take_pinches() {
+    return collisions_ ? collisions_->take_pinches(next_) : CollisionStage::Pinches{};
+  }
+  /// Pins that lagged in that frame.
+  YieldingPins::Lags take_lags() { return pins_.take_lags(); }
+
+  /// Save or restore the state that later frames depend on: first all but contacts, then contacts at the time t of a
+  /// frame [s].
+  template <class Archive>
+  void serialize(Archive& archive);
+  template <class Archive>
+  void serialize_contacts(Archive& archive, double t) {
+    if (collisions_) collisions_->serialize(archive, t, progress_.now);
+  }
+
+ private:
+  using Start = integrator::Stepper::Start;
+  /// Why a step was rejected; empty if it was accepted.
+  using Rejection = std::optional<std::string>;
+  /// One attempt at a step.
+  struct Attempt {
+    double t, h;         // start and length [s]
+    int rejections;      // number of rejected steps that contain this one
+    bool is_last;        // the run fails if it is rejected
+    bool may_move_pins;  // true: pinned particles move if nothing else helps; false: they are only listed
+  };
+
+  // From frames to steps: step_loop.cpp.
+  void advance_equally(double t_t0, FrameReport& report);
+  void advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report);
+  void advance_controlled(double t_t0, double t_t1, FrameReport& report);
+  bool may_rest(double t, double h, int steps);
+  bool has_settled() const;
+  static bool is_slow(const SystemState& moment);
+  bool rest(double t, double h, FrameReport& report);
+  bool obstacle_turns_too_far(double t, double h) const {
+    return collisions_ && collisions_->obstacle_turns_too_far(t, h, progress_.now);
+  }
+  void accept(double h, FrameReport& report);
+  static void count_work(const StepWork& work, FrameReport& report) {
+    report.pin_work += work.pins;
+    report.solver_work += work.solver;
+  }
+  void measure_stretch(FrameReport& report);
+  [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
+
+  // One step into `next_`: step_attempt.cpp.
+  Rejection attempt(double t, double h, int rejections, bool is_last, FrameReport& report);
+  Start begin_attempt(const Attempt& attempt, FrameReport& report);
+  void update_weather(double t, double h);
+  Rejection solve_with_springs(const Attempt& attempt, Start start, FrameReport& report);
+  Rejection solve_with_velocity_constraints(const Attempt& attempt, Start start, FrameReport& report);
+  Rejection solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early, bool& solved,
+                           FrameReport& report);
+  integrator::StepReport solve(double h, Start start, bool check_early, FrameReport& report);
+  integrator::Method method() const;
+  Rejection push_apart(const Attempt& attempt);
+  static bool may_shorten(const Attempt& attempt);
+  bool is_short_enough(const Attempt& attempt) const;
+  Rejection check_overstretch(double h);
+  double energy(const SystemState& moment) const;
+  double added_energy_ratio(double before, double h) const;
+  static Rejection rejection_of(const integrator::StepReport& step);
+
+  const model::Model& model_;
+  double start_;                      // time at which the simulation starts [s]
+  std::vector<std::size_t> dressed_;  // cloths that were taken over
+  ClothSystem cloth_;
+  StepProblem problem_;
+  YieldingPins pins_;
+  Progress progress_;
+  integrator::Stepper stepper_;
+  SystemState next_;                           // end of the current step; its start once the step is accepted
+  double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
+  std::vector<double> reported_overstretch_;   // last reported ratio of stretch to limit, per cloth; 0: none
+  std::vector<integrator::HeldParticle> held_;
+  std::size_t pinned_ = 0;  // pins and keys hold the first pinned_ of held_, velocity constraints the others
+  std::optional<CollisionStage> collisions_;
+  Attachments attachments_;
+  model::Weather weather_;
+  Vec3 gravity_;  // in the current step [m/s²]
+};
+
+}  // namespace weft::simulation

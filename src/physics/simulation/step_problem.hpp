@@ -1,0 +1,111 @@
+// The equation of one step as the integrator sees it: forces of cloth, contacts and attachments, and what they keep.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "physics/collision/response/contact_response.hpp"
+#include "physics/forces/stretch_limit.hpp"
+#include "physics/integrator/system.hpp"
+#include "physics/simulation/attachments.hpp"
+#include "physics/simulation/cloth_system.hpp"
+#include "physics/simulation/rigid_vertices.hpp"
+
+namespace weft::simulation {
+
+/// What evaluations keep for later ones. Evaluations with equal memory and equal arguments give the same bits.
+struct SolveMemory {
+  // Linearisations change the following members. Cloth at rest keeps its rows of the matrix.
+  solver::LinearSystem system;
+  solver::Assembly assembly;        ///< from which the matrix is written
+  double rate = 0;                  ///< for which system and assembly were filled [1/s]; 0: not set
+  std::vector<Vec3> linearised_at;  ///< positions where each cloth's rows were assembled; empty: not assembled
+  collision::ContactLag contacts;
+  ClothSystem::LockLinearisations locks;  ///< empty before the first step
+
+  // Internal forces of cloths, kept to save time: in a solve, most cloths stop moving before the last cloth does.
+  using PaddedVec3s = std::vector<solver::PaddedVec3<double>>;
+  PaddedVec3s x, v;   ///< where each cloth's forces were last evaluated; NaN: nowhere
+  PaddedVec3s force;  ///< the forces there [N]
+};
+
+/// A damped spring that pulls a particle to a point.
+struct PinSpring {
+  Index particle;
+  Vec3 x, v;         ///< the point and its velocity at the end of the step [m], [m/s]
+  double stiffness;  ///< [N/m]
+  double damping;    ///< [N·s/m]
+};
+
+/// Combines ClothSystem, Attachments and ContactResponse, and keeps their memory between evaluations.
+class StepProblem final : public integrator::System {
+ public:
+  /// The cloth must outlive this object.
+  explicit StepProblem(ClothSystem& cloth);
+
+  /// Sets the contacts, and the vertices of bodies that forces move, if there are any. Both must outlive the steps.
+  void use_contacts(const collision::ContactResponse& contacts, const RigidVertices* vertices = nullptr) {
+    contacts_ = &contacts;
+    vertices_ = vertices;
+  }
+
+  /// Sets the springs between cloths and to bodies. They must outlive the steps.
+  void use_attachments(const Attachments& attachments) { attachments_ = &attachments; }
+
+  /// Begins a step that ends at time t [s since the start of the run], before its first solve. `pinned`: particles that
+  /// pins or keys hold in the step. Updates rest shapes and enclosed air. Friction starts from the normal forces at the
+  /// particles' start positions x [m], and thread locks from the tensions there. The next linearisation assembles the
+  /// matrix anew. `pulls` must outlive the step.
+  void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
+                  std::span<const PinSpring> pulls = {});
+
+  /// Sets the air velocity at each particle in the step that begins [m/s]. Without it, the air velocity is uniform.
+  void set_air_velocity(SolveMemory::PaddedVec3s air);
+
+  /// Call it within a step if contacts have changed. Friction then follows the normal forces for those of the step's
+  /// numerics.newton.patience updates that are left, but at least for half of that number.
+  void limit_friction_updates() {
+    memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.patience / 2)};
+  }
+
+  /// Before a step is solved again: friction uses the normal forces at its start, even if they change.
+  void fix_normal_forces() { memory_.contacts = {{}, {}, {}, numerics.newton.patience}; }
+
+  const SolveMemory& memory() const { return memory_; }
+
+  std::span<const double> masses() const override { return cloth_.masses(); }
+  void constant_forces(std::span<Vec3> force) const override { cloth_.cancel_weight_of_sewn_cloth(force); }
+  void forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
+  void linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
+  void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
+  bool contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
+                      std::span<double> limit) const override;
+  bool find_impacts(const integrator::StagePoint& at, const StepStart& start, std::span<Vec3> right_side) override;
+  bool is_translation_invariant() const override { return true; }
+  solver::LinearSystem& linear_system() override { return memory_.system; }
+
+ private:
+  void reset_memory();
+  void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
+  void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
+  bool update_positions(std::size_t cloth, const integrator::StagePoint& at);
+  void evaluate(const integrator::StagePoint& at, bool assemble);
+  void use_rate(double rate);
+  bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
+  template <class Add>
+  void add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3> force, const Add& add);
+  std::vector<Vec3> with_vertices(std::span<const Vec3> of_particles) const;
+  void assemble_rows(const integrator::StagePoint& at);
+
+  ClothSystem& cloth_;
+  const collision::ContactResponse* contacts_ = nullptr;  // nullptr if nothing in the scene can collide
+  const RigidVertices* vertices_ = nullptr;               // nullptr if there are none
+  const Attachments* attachments_ = nullptr;
+  std::span<const PinSpring> pulls_;
+  SolveMemory::PaddedVec3s air_;
+  SolveMemory memory_;
+  std::vector<char> is_active_;  // scratch, per part: whether to evaluate it
+};
+
+}  // namespace weft::simulation

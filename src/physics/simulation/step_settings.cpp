@@ -1,0 +1,113 @@
+#include "physics/simulation/step_settings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace weft::simulation {
+
+integrator::NewtonParameters newton_of(const model::Model& model) {
+  return {model.solver.newton_tolerance, model.solver.newton_iterations, model.solver.linear_tolerance,
+          model.solver.linear_iterations, model.time.tolerance.value_or(0)};
+}
+
+std::optional<integrator::StepControl> step_control_of(const model::Model& model) {
+  if (!model.time.tolerance) return std::nullopt;
+  // Without a history, the error in free fall is estimated as that of implicit Euler: ½ h² g (BDF2: 3/2 of it).
+  const double first = std::sqrt(2 * *model.time.tolerance / std::max(model.physics.largest_gravity(), 1.0));
+  return integrator::StepControl(model.time.integrator, *model.time.tolerance, first);
+}
+
+std::vector<Index> first_particles(const ClothSystem& cloth) {
+  std::vector<Index> first;
+  for (std::size_t c = 0; c < cloth.cloths(); ++c) first.push_back(cloth.first_particle(c));
+  return first;
+}
+
+namespace {
+
+// Times that differ by less count as equal [s].
+constexpr double kSameTime = 1e-9;
+
+// Velocities of the frame particles of a body as its keys move it at t; if the body is free, plus its own velocity and
+// spin.
+std::array<Vec3, mesh::RigidFrame::kParticles> velocities_of_frame(const model::Model& model, std::size_t number,
+                                                                   double t, bool is_free) {
+  const model::Dynamics& body = *model.bodies[number].dynamics;
+  const motion::PoseSample pose = model.pose(number, t);
+  std::array<Vec3, mesh::RigidFrame::kParticles> velocities;
+  for (std::size_t k = 0; k < velocities.size(); ++k) {
+    const Vec3& particle = body.frame.particles()[k];
+    velocities[k] = pose.velocity_at(pose.rotation * particle);
+    if (is_free)
+      velocities[k] += body.velocity + body.angular_velocity.cross(pose.rotation * (particle - body.frame.centre()));
+  }
+  return velocities;
+}
+
+}  // namespace
+
+SystemState start_of(const model::Model& model, const ClothSystem& cloth, double t) {
+  SystemState start;
+  start.bodies_time = t;
+  for (std::size_t c = 0; c < model.cloths.size(); ++c) {
+    const model::Cloth& object = model.cloths[c];
+    start.x.insert(start.x.end(), object.start.begin(), object.start.end());
+    start.v.insert(start.v.end(), object.start.size(), object.velocity);
+    if (object.spin == Vec3::Zero()) continue;
+    const std::size_t first = start.v.size() - object.start.size();
+    Vec3 middle = Vec3::Zero();
+    double mass = 0;
+    for (std::size_t i = first; i < start.v.size(); ++i) {
+      mass += cloth.masses()[i];
+      middle += cloth.masses()[i] * start.x[i];
+    }
+    middle /= mass;
+    const Vec3& rate = object.spin;
+    for (std::size_t i = first; i < start.v.size(); ++i) start.v[i] += rate.cross(start.x[i] - middle);
+  }
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (!model.bodies[b].dynamics) continue;
+    const motion::PoseSample pose = model.pose(b, t);
+    for (const Vec3& particle : model.bodies[b].dynamics->frame.particles())
+      start.x.push_back(pose.position + pose.rotation * particle);
+    const bool is_free = t >= model.bodies[b].dynamics->release;
+    for (const Vec3& v : velocities_of_frame(model, b, t, is_free)) start.v.push_back(v);
+  }
+  return start;
+}
+
+void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
+                 std::vector<integrator::HeldParticle>& held) {
+  const std::vector<Index> first_of_frames = cloth.first_of_frames(model);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const model::Dynamics* body = model.bodies[b].dynamics.get();
+    if (body == nullptr || t > body->release + kSameTime) continue;
+    const motion::PoseSample pose = model.pose(b, t);
+    for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k) {
+      const Vec3 arm = pose.rotation * body->frame.particles()[k];
+      held.push_back({{first_of_frames[b] + static_cast<Index>(k)}, pose.position + arm, pose.velocity_at(arm)});
+    }
+  }
+}
+
+bool release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v) {
+  const std::vector<Index> first_of_frames = cloth.first_of_frames(model);
+  bool any = false;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const model::Dynamics* body = model.bodies[b].dynamics.get();
+    const auto is_held_until = [&](double end) { return end <= body->release + kSameTime; };
+    if (body == nullptr || !is_held_until(t) || is_held_until(t + h)) continue;
+    std::ranges::copy(velocities_of_frame(model, b, t, true), v.begin() + first_of_frames[b]);
+    any = true;
+  }
+  return any;
+}
+
+bool frames_are_constant(const model::Model& model, double t0, double t1) {
+  return std::ranges::none_of(model.bodies, [&](const model::Body& body) {
+    return body.dynamics && t0 < body.dynamics->release && (body.moving || t1 > body.dynamics->release);
+  });
+}
+
+}  // namespace weft::simulation

@@ -1,0 +1,21 @@
+// Work that one step does on the cloth: by pins, and by the residual of the equation of motion.
+#pragma once
+
+#include <span>
+
+#include "physics/integrator/stepper.hpp"
+
+namespace weft::simulation {
+
+/// Work in one step [J].
+struct StepWork {
+  double pins = 0;    ///< by held particles; includes the change of their own kinetic energy
+  double solver = 0;  ///< by the residual of the equation of motion; 0 if it is solved exactly
+};
+
+/// Work of the last step of the stepper, from `start` to `end`. `pinned`: particles that the scene holds. Uses the
+/// forces of the stage, so the work is exact to the order of the method.
+StepWork measure_work(const integrator::Stepper& stepper, std::span<const integrator::HeldParticle> pinned,
+                      std::span<const double> masses, const integrator::State& start, const integrator::State& end);
+
+}  // namespace weft::simulation

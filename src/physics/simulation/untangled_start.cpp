@@ -1,0 +1,105 @@
+// CollisionStage::untangle(): moves cloth apart before the first step.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/log.hpp"
+#include "physics/simulation/collision_stage.hpp"
+#include "physics/untangle/untangle.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Maximum ratio of border edges to all edges at which a body counts as closed: characters are open at eyes and soles.
+constexpr double kClosedBorder = 0.02;
+
+untangle::Kind kind_of(const model::Body& body) {
+  if (body.infinite_floor) return untangle::Kind::floor;
+  const mesh::EdgeSet edges = mesh::collect_edges(body.colliding_triangles());
+  const auto border = std::ranges::count_if(edges.edges, [](const mesh::Edge& e) { return e.triangles[1] < 0; });
+  const bool closed = static_cast<double>(border) <= kClosedBorder * static_cast<double>(edges.edges.size());
+  return closed && !edges.edges.empty() ? untangle::Kind::solid : untangle::Kind::open;
+}
+
+// Whether a cloth that is not dressed yet is worn over this one.
+bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std::size_t> dressed) {
+  for (std::size_t c = 0; c < model.cloths.size(); ++c)
+    if (std::ranges::find(dressed, c) == dressed.end() &&
+        std::ranges::find(model.cloths[c].over, model.cloths[cloth].name) != model.cloths[c].over.end())
+      return true;
+  return false;
+}
+
+}  // namespace
+
+void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> dressed,
+                              SystemState& start) {
+  // Dressed cloths stand still, like obstacles. They come last, so that cloth is moved out of bodies first, then out of
+  // dressed cloths.
+  std::vector<std::size_t> order;  // numbers of the engine's bodies
+  const std::size_t cloths = model_.cloths.size();
+  for (std::size_t c = 0; c < cloths; ++c)
+    if (std::ranges::find(dressed, c) == dressed.end()) order.push_back(c);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) order.push_back(cloths + b);
+  if (model_.contact.self) order.insert(order.end(), dressed.begin(), dressed.end());
+
+  collision::Bodies bodies;
+  std::vector<untangle::Kind> kinds;
+  std::vector<Vec3> x, rest;
+  std::vector<std::uint8_t> movable, is_held(start.v.size(), 0);
+  for (const integrator::HeldParticle& particle : held) is_held[particle.constraint.particle] = 1;
+  for (const std::size_t b : order) {
+    const collision::Surface& surface = engine_.bodies().surfaces()[b];
+    const auto first = static_cast<std::size_t>(surface.first_vertex);
+    std::vector<collision::Triangle> triangles(surface.triangles.begin(), surface.triangles.end());
+    for (collision::Triangle& t : triangles)
+      for (Index& v : t) v -= surface.first_vertex;
+    const bool fresh = b < cloths && std::ranges::find(dressed, b) == dressed.end();
+    bodies.add(triangles, surface.vertex_count, {.deformable = fresh, .thickness = engine_.bodies()[b].thickness});
+    if (fresh)
+      kinds.push_back(untangle::Kind::cloth);
+    else if (b >= cloths)
+      kinds.push_back(kind_of(model_.bodies[bodies_[b - cloths]]));
+    else
+      kinds.push_back(is_layer(model_, b, dressed) ? untangle::Kind::layer : untangle::Kind::open);
+    for (std::size_t v = first; v < first + static_cast<std::size_t>(surface.vertex_count); ++v) {
+      x.push_back(start.x[v]);
+      movable.push_back(fresh && model_.cloths[b].may_be_untangled() && is_held[v] == 0);
+    }
+    const std::vector<Vec3>& given = b < cloths ? model_.cloths[b].mesh.positions : rest;
+    if (fresh) rest.insert(rest.end(), given.begin(), given.end());
+  }
+
+  const untangle::Fabric fabric(bodies, std::move(kinds), x, rest, movable);
+  const untangle::Report report =
+      untangle::untangle(fabric, {model_.contact.self, order.size() > cloths - dressed.size()}, x);
+  if (!report.locked.empty()) {
+    std::string regions;
+    for (const untangle::InsideRegion& region : report.locked) {
+      regions += fmt::format("{}'{}' in '{}' around ({:.3g}, {:.3g}, {:.3g}) m, {:.3g} m across, ",
+                             regions.empty() ? "" : "; ", names_[order[region.cloth]], names_[order[region.body]],
+                             region.centre.x(), region.centre.y(), region.centre.z(), region.size);
+      regions +=
+          std::isfinite(region.shortest) ? fmt::format("by {:.2f} m", region.shortest) : "no straight way is free";
+    }
+    throw Error(ExitCode::scene_invalid,
+                "{}: expected a start that can be untangled, got {} pairs of triangles that cross, and cloth that an "
+                "obstacle goes through; it would have to move: {}; 'weft thumbnail --start' draws it; move it, or have "
+                "the body raise its arms as sleeves do (stance_arms) or grow into it (grow)",
+                model_.source, report.pairs_before, regions);
+  }
+  if (report.pairs_before > 0 || report.farthest > 0)
+    log::info(
+        fmt::format("untangled the start: {} pairs of triangles crossed, {} do after {} rounds; particles moved by "
+                    "up to {:.3g} m, threads are up to {:.3g} % longer",
+                    report.pairs_before, report.pairs_after, report.rounds, report.farthest, 100 * report.stretch));
+  std::size_t next = 0;
+  for (const std::size_t b : order) {
+    if (b >= cloths) break;
+    for (Vec3& moved : engine_.bodies().part(b, std::span(start.x))) moved = x[next++];
+  }
+}
+
+}  // namespace weft::simulation

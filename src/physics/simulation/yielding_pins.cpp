@@ -1,0 +1,165 @@
+#include "physics/simulation/yielding_pins.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/archive.hpp"
+#include "core/numerics.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Distance from its target at which a particle is held again [m].
+double arrived_distance() {
+  return 0.5 * numerics.separation.restored_gap;
+}
+
+}  // namespace
+
+YieldingPins::YieldingPins(const model::Model& model, const std::vector<Index>& first_particle,
+                           std::span<const double> masses)
+    : pins_(model, first_particle),
+      model_(model),
+      masses_(masses),
+      lagged_(masses.size(), 0),
+      lags_(masses.size(), 0),
+      released_(masses.size(), 0),
+      lagging_particles_(pins_.size(), 0) {
+  for (std::size_t pin = 0; pin < pins_.size(); ++pin) {
+    const Pins::Info& info = pins_.info(pin);
+    const auto begin = static_cast<std::size_t>(first_particle[info.cloth]);
+    const std::size_t count = model.cloths[info.cloth].start.size();
+    double weight = 0;
+    for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * model.physics.largest_gravity();
+    pull_force_.push_back(numerics.pins.weights * weight);
+  }
+}
+
+void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
+  if (t != forced_t_ || h != forced_h_) {
+    std::ranges::fill(released_, std::uint8_t{0});
+    obstructions_.clear();
+  }
+  forced_t_ = t;
+  forced_h_ = h;
+  pins_.held_at(t + h, model_, targets_);
+  const bool any_lagged = std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; });
+  if (any_lagged) pins_.held_at(t, model_, at_start_);
+  std::ranges::fill(lags_, std::uint8_t{0});
+  // Particles that have arrived are held again. Particles whose pin is released before t + h are not in `targets_`.
+  if (any_lagged)
+    for (const integrator::HeldParticle& start : at_start_) {
+      const auto i = static_cast<std::size_t>(start.constraint.particle);
+      const double near = std::max(arrived_distance(), h * std::min(start.v_end.norm(), numerics.pins.return_velocity));
+      lags_[i] = lagged_[i] != 0 && (x[i] - start.x_end).norm() > near;
+    }
+  held_.clear();
+  pulls_.clear();
+  std::ranges::fill(lagging_particles_, std::size_t{0});
+  for (const integrator::HeldParticle& target : targets_) {
+    const auto i = static_cast<std::size_t>(target.constraint.particle);
+    lags_[i] |= released_[i];
+    lagging_particles_[pins_.pin_of(target.constraint.particle)] += lags_[i];
+  }
+  any_lags_ = std::ranges::any_of(lagging_particles_, [](std::size_t count) { return count > 0; });
+  for (const integrator::HeldParticle& target : targets_) {
+    const auto i = static_cast<std::size_t>(target.constraint.particle);
+    if (lags_[i] != 0 || pins_.info(pins_.pin_of(target.constraint.particle)).strength)
+      pull(target, h, x);
+    else
+      held_.push_back(target);
+  }
+}
+
+bool YieldingPins::are_constant_between(double t0, double t1) {
+  if (std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; })) return false;
+  pins_.held_at(t0, model_, at_start_);
+  pins_.held_at(t1, model_, targets_);
+  return std::ranges::equal(at_start_, targets_, [](const auto& start, const auto& target) {
+    return start.constraint.particle == target.constraint.particle && start.x_end == target.x_end;
+  });
+}
+
+// A pin with a strength is a damped spring. The force on a lagging particle falls linearly with its speed, from the
+// maximum at rest to zero at the target speed: a load below the maximum slows the particle but does not stop it.
+void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x) {
+  const Index particle = target.constraint.particle;
+  const auto i = static_cast<std::size_t>(particle);
+  const std::size_t pin = pins_.pin_of(particle);
+  if (const auto& pin_strength = pins_.info(pin).strength) {
+    const double strength = *pin_strength * pins_.strength_fraction(particle);
+    pulls_.push_back({particle, target.x_end, target.v_end, strength, 2 * std::sqrt(strength * masses_[i])});
+    return;
+  }
+  Vec3 speed = (target.x_end - h * target.v_end - x[i]) / h;
+  if (const double size = speed.norm(); size > numerics.pins.return_velocity)
+    speed *= numerics.pins.return_velocity / size;
+  speed += target.v_end;
+  const double max_force =
+      std::max({pull_force_[pin] / static_cast<double>(std::max<std::size_t>(pins_.info(pin).particles, 1)),
+                std::min(pull_force_[pin] / static_cast<double>(lagging_particles_[pin]),
+                         numerics.pins.most_acceleration * masses_[i]),
+                numerics.pins.acceleration * masses_[i]});
+  pulls_.push_back({particle, x[i], speed, 0, max_force / std::max(numerics.newton.unseen_velocity, speed.norm())});
+}
+
+void YieldingPins::release_particle(Index particle, const std::string& obstruction) {
+  released_[static_cast<std::size_t>(particle)] = 1;
+  obstructions_.emplace(pins_.pin_of(particle), obstruction);
+}
+
+void YieldingPins::accept() {
+  int count = 0;
+  for (const integrator::HeldParticle& target : targets_) {
+    const Index particle = target.constraint.particle;
+    if (lags_[static_cast<std::size_t>(particle)] == 0) continue;
+    ++count;
+    const std::size_t pin = pins_.pin_of(particle);
+    if (!lagging_.insert(pin).second || lagging_before_.contains(pin)) continue;
+    const Pins::Info& info = pins_.info(pin);
+    seen_.turns.push_back(
+        fmt::format("pin {} of '{}' gives way to {}", info.number, model_.cloths[info.cloth].name, obstructions_[pin]));
+  }
+  seen_.particles = std::max(seen_.particles, count);
+  std::swap(lagged_, lags_);
+  std::ranges::fill(released_, std::uint8_t{0});
+  obstructions_.clear();
+}
+
+YieldingPins::Lags YieldingPins::take_lags() {
+  for (std::size_t pin : lagging_before_) {
+    if (lagging_.contains(pin)) continue;
+    const Pins::Info& info = pins_.info(pin);
+    seen_.turns.push_back(fmt::format("pin {} of '{}' is held again", info.number, model_.cloths[info.cloth].name));
+  }
+  lagging_before_ = std::move(lagging_);
+  lagging_.clear();
+  return std::exchange(seen_, {});
+}
+
+void YieldingPins::copy_state_from(const YieldingPins& there, Index first_there, Index first, Index count) {
+  std::copy_n(there.lagged_.begin() + first_there, count, lagged_.begin() + first);
+  if (there.lagging_before_.empty()) return;
+  for (Index i = 0; i < count; ++i)
+    if (pins_.strength_fraction(first + i) > 0 && there.lagging_before_.contains(there.pins_.pin_of(first_there + i)))
+      lagging_before_.insert(pins_.pin_of(first + i));
+}
+
+template <class Archive>
+void YieldingPins::serialize(Archive& archive) {
+  if (pins_.empty()) return;
+  for (std::uint8_t& lags : lagged_) archive.value(lags);
+  std::vector<std::uint64_t> before(lagging_before_.begin(), lagging_before_.end());
+  serialize_plain(archive, before);
+  if constexpr (Archive::kReads)
+    require(std::ranges::all_of(before, [&](std::uint64_t pin) { return pin < pins_.size(); }), "pins of the scene");
+  lagging_before_ = {before.begin(), before.end()};
+}
+
+template void YieldingPins::serialize(ByteWriter&);
+template void YieldingPins::serialize(ByteReader&);
+
+}  // namespace weft::simulation

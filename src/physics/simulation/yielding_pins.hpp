@@ -1,0 +1,79 @@
+// Pins as the step sees them: held exactly, or pulled along if something obstructs them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/simulation/pins.hpp"
+#include "physics/simulation/step_problem.hpp"
+
+namespace weft::simulation {
+
+/// A pin with a `strength` is always a damped spring. Any other pin holds its particles exactly at their targets, until
+/// something keeps one of them from its target. That particle then lags: a force of bounded size pulls it, until it
+/// arrives and is held again.
+class YieldingPins {
+ public:
+  /// `first_particle`: of each cloth; `masses`: of all particles [kg]. The environment and `masses` must outlive this
+  /// object.
+  YieldingPins(const model::Model& model, const std::vector<Index>& first_particle, std::span<const double> masses);
+
+  /// Begins a step from t to t + h [s] with particles at x [m]: finds which ones are held at t + h, and which are
+  /// pulled.
+  void begin_step(double t, double h, std::span<const Vec3> x);
+  const std::vector<integrator::HeldParticle>& held() const { return held_; }
+  const std::vector<PinSpring>& pulls() const { return pulls_; }
+
+  /// Whether the pins hold the same particles at the same places at t0 and t1 [s], and no particle lags.
+  bool are_constant_between(double t0, double t1);
+
+  /// Whether the scene releases a pin at a time in [t0, t1) [s]. See also release_particle(), which is another release.
+  bool release_between(double t0, double t1) const { return pins_.release_between(t0, t1); }
+
+  /// Makes a held particle lag in the current step; the step must then begin again. `obstruction`: what is in its way
+  /// and where, as text.
+  void release_particle(Index particle, const std::string& obstruction);
+  /// Whether any particle lags in this step.
+  bool any_lags() const { return any_lags_; }
+  /// Accepts the step: particles that lag in it lag in the next one too, until they arrive.
+  void accept();
+
+  /// Lagging pins of the steps of a frame. take_lags() also begins the next frame.
+  struct Lags {
+    int particles = 0;               ///< largest number that lagged at once
+    std::vector<std::string> turns;  ///< pins that began to lag or are held again: "pin 0 of 'a' gives way to 'b' ..."
+  };
+  Lags take_lags();
+
+  /// Between two frames: copies which particles of one cloth lag. The cloth has `count` particles, from `first_there`
+  /// on in `there`, from `first` on in this object. Pins that `there` has reported are not reported again.
+  void copy_state_from(const YieldingPins& there, Index first_there, Index first, Index count);
+
+  /// Saves or restores which particles lag, and which pins were reported.
+  template <class Archive>
+  void serialize(Archive& archive);
+
+ private:
+  void pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x);
+
+  Pins pins_;
+  const model::Model& model_;
+  std::span<const double> masses_;
+  std::vector<double> pull_force_;  // per pin: maximum total force on its lagging particles [N]; pull() may raise it
+  std::vector<integrator::HeldParticle> targets_, at_start_, held_;
+  std::vector<PinSpring> pulls_;
+  std::vector<std::uint8_t> lagged_, lags_;     // per particle: in the previous step, and in this one
+  std::vector<std::uint8_t> released_;          // per particle: whether release_particle() was called for this step
+  std::vector<std::size_t> lagging_particles_;  // number of particles that lag in this step, per pin
+  std::map<std::size_t, std::string> obstructions_;  // per pin: text of its first obstruction in this step
+  double forced_t_ = 0, forced_h_ = 0;               // start and length of the step to which released_ belongs [s]
+  bool any_lags_ = false;
+  std::set<std::size_t> lagging_, lagging_before_;  // pins, in this frame and in the previous one
+  Lags seen_;
+};
+
+}  // namespace weft::simulation

@@ -1,0 +1,150 @@
+// Symmetric sparse matrix of 3×3 blocks. Its pattern is fixed; its values change with every linearisation.
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/solver/padded_vec3.hpp"
+
+namespace weft::solver {
+
+/// Position of one block among the values of a BlockMatrix; negative if the block is a multiple of the identity.
+using Slot = Index;
+
+using Lanes = PaddedVec3<double>;
+
+inline Lanes load_lanes(const double* p) {
+  return load_padded(p);
+}
+inline void store_lanes(double* p, const Lanes& lanes) {
+  store_padded(p, lanes);
+}
+
+/// A 3×3 block in registers, column by column as the matrix stores it: entries 0 to 3, 4 to 7, and 8.
+struct PackedBlock {
+  Lanes low, high, last;  // of `last` only lane 0 counts
+
+  friend PackedBlock operator+(const PackedBlock& a, const PackedBlock& b) {
+    return {a.low + b.low, a.high + b.high, a.last + b.last};
+  }
+  friend PackedBlock operator*(double factor, const PackedBlock& a) {
+    return {factor * a.low, factor * a.high, factor * a.last};
+  }
+  PackedBlock operator-() const { return {-low, -high, -last}; }
+};
+
+/// a bᵀ
+inline PackedBlock packed_outer(const Vec3& a, const Vec3& b) {
+  return {Lanes{a[0], a[1], a[2], a[0]} * Lanes{b[0], b[0], b[0], b[1]},
+          Lanes{a[1], a[2], a[0], a[1]} * Lanes{b[1], b[1], b[2], b[2]}, Lanes{a[2] * b[2], 0, 0, 0}};
+}
+/// `value` times the identity
+inline PackedBlock packed_scalar(double value) {
+  return {Lanes{value, 0, 0, 0}, Lanes{value, 0, 0, 0}, Lanes{value, 0, 0, 0}};
+}
+
+/// Stores the upper and the lower triangle, so that each row of a product is computed on its own, with the same bits on
+/// any number of threads. A block that can only be a multiple of the identity is stored as one number: 30 of the 37
+/// blocks in a garment's row come from bending alone. A product then reads a third of the memory.
+class BlockMatrix {
+ public:
+  BlockMatrix() = default;
+
+  using Couplings = std::vector<std::pair<Index, Index>>;
+
+  /// Pattern of `rows` block rows: the diagonal, and (i, j) and (j, i) for each pair in `couplings`. Pairs in
+  /// `isotropic` that are not in `couplings` hold multiples of the identity only. Pairs may repeat.
+  BlockMatrix(Index rows, Couplings couplings, Couplings isotropic = {});
+
+  Index rows() const { return static_cast<Index>(diagonal_.size()); }
+  std::size_t blocks() const { return blocks_.columns.size() + isotropic_.columns.size(); }
+
+  /// Slot of block (row, column), which the pattern must hold.
+  Slot slot(Index row, Index column) const;
+  Slot diagonal(Index row) const { return diagonal_[row]; }
+
+  void set_zero();
+
+  void add(Slot slot, const Mat3& block) { add(slot, 1, block); }
+  void subtract(Slot slot, const Mat3& block) { add(slot, -1, block); }
+  /// Adds `factor` times the block. The slot must not be negative.
+  void add(Slot slot, double factor, const Mat3& block) {
+    double* value = values_.data() + 9 * static_cast<std::size_t>(slot);
+    for (int k = 0; k < 8; k += 4)
+      store_lanes(value + k, load_lanes(value + k) + factor * load_lanes(block.data() + k));
+    value[8] += factor * block.data()[8];
+  }
+  void add(Slot slot, const PackedBlock& block) {
+    double* value = values_.data() + 9 * static_cast<std::size_t>(slot);
+    store_lanes(value, load_lanes(value) + block.low);
+    store_lanes(value + 4, load_lanes(value + 4) + block.high);
+    value[8] += block.last[0];
+  }
+  /// Adds `value` times the identity.
+  void add_scalar(Slot slot, double value) {
+    if (slot < 0) {
+      scalars_[~slot] += value;
+      return;
+    }
+    double* block = values_.data() + 9 * static_cast<std::size_t>(slot);
+    block[0] += value;
+    block[4] += value;
+    block[8] += value;
+  }
+  Mat3 block(Slot slot) const {
+    if (slot < 0) return scalars_[~slot] * Mat3::Identity();
+    return Eigen::Map<const Mat3>(values_.data() + 9 * static_cast<std::size_t>(slot));
+  }
+
+  /// Calls body(row, column, block) for every block of the rows [begin, end), row by row in ascending columns.
+  template <class Body>
+  void for_each_block(Index begin, Index end, const Body& body) const {
+    for (Index row = begin; row < end; ++row) {
+      Index s = blocks_.start[row], t = isotropic_.start[row];
+      const Index s_end = blocks_.start[static_cast<std::size_t>(row) + 1],
+                  t_end = isotropic_.start[static_cast<std::size_t>(row) + 1];
+      while (s < s_end || t < t_end) {
+        const bool full = t == t_end || (s < s_end && blocks_.columns[s] < isotropic_.columns[t]);
+        if (full)
+          body(row, blocks_.columns[s], block(s)), ++s;
+        else
+          body(row, isotropic_.columns[t], block(~t)), ++t;
+      }
+    }
+  }
+
+  /// y = A x over the rows [begin, end). x and y hold Vec3 or PaddedVec3<double> per block row, and must not overlap.
+  template <class Vector>
+  void multiply(std::span<const Vector> x, std::span<Vector> y, std::size_t begin, std::size_t end) const;
+
+  /// Positions of the blocks, in compressed rows.
+  struct Pattern {
+    std::vector<Index> start;    ///< rows + 1 entries into columns
+    std::vector<Index> columns;  ///< ascending within a row
+
+    /// `pairs` must be sorted and must not repeat.
+    static Pattern of(Index rows, const Couplings& pairs);
+    /// Index of (row, column); −1 if the pattern does not hold it.
+    Index find(Index row, Index column) const;
+  };
+  /// Pattern of the full blocks. values() holds nine numbers for each, column by column, and three more after the last,
+  /// so that every column can be loaded as four numbers.
+  const Pattern& full() const { return blocks_; }
+  std::span<const double> values() const { return values_; }
+  std::span<double> values() { return values_; }
+  /// Pattern of the multiples of the identity, which scalars() holds.
+  const Pattern& isotropic() const { return isotropic_; }
+  std::span<const double> scalars() const { return scalars_; }
+  std::span<double> scalars() { return scalars_; }
+
+ private:
+  Pattern blocks_, isotropic_;
+  std::vector<Slot> diagonal_;   // per row
+  std::vector<double> values_;   // 9 per block, and 3 of padding
+  std::vector<double> scalars_;  // per isotropic block
+};
+
+}  // namespace weft::solver

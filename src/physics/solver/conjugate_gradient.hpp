@@ -1,0 +1,71 @@
+// Filtered, preconditioned conjugate gradients.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/solver/linear_system.hpp"
+#include "physics/solver/recurrence.hpp"
+
+namespace weft::solver {
+
+struct LinearReport {
+  int iterations = 0;
+  std::vector<double> errors = {};  ///< per diagonal block: estimated error, in the mass-weighted norm if there is one
+  bool converged = false;
+  bool definite = true;  ///< false: the iteration ended at a direction without positive curvature
+};
+
+/// Solves A x = b on the free directions, with the Preconditioner P of particles and multigrid levels.
+///
+/// Single precision is used if `relative` is at least kSmallestSingleGoal, and no particle exceeds kMaxSingleStiffness.
+/// Single precision is safe because Newton's method evaluates its residual in double, so that the next solve corrects
+/// errors of rounding.
+class ConjugateGradient {
+ public:
+  /// Prepares the preconditioner for `system`, which must outlive the following calls. With AggregateSums::reuse, sums
+  /// over aggregates are reused if they have been made since the last call with AggregateSums::recompute.
+  void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
+
+  /// Returns P⁻¹ b, a rough solution that obeys the constraints. Valid until the next call.
+  std::span<const Vec3> precondition(std::span<const Vec3> b);
+
+  /// Iterates from x = 0, whatever x contains, until the error meets `goal`, or for `max_iterations`.
+  ///
+  /// The iteration itself gives the error e: a step of length α along a search direction reduces ‖e‖²_A by α rᵀz with z
+  /// = P⁻¹ r, so the gains of the last steps estimate ‖e‖²_A before them (Hestenes & Stiefel 1952; Strakoš & Tichý,
+  /// "Error Estimation in Preconditioned Conjugate Gradients", BIT 45, 2005). Each diagonal block has its own summand
+  /// of rᵀz. The squared error in the mass-weighted norm is that estimate times the largest ratio of a last step's
+  /// squared norm to its gain. √(rᵀz) cannot replace the estimate: for smooth motion this root is far below ‖e‖_A, and
+  /// flat sheets would fold in free fall.
+  LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
+                     const Directions& directions = {});
+  /// Solves for these diagonal blocks only: all other particles count as held, so x is zero there.
+  LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
+                     const Directions& directions, std::span<const std::size_t> parts);
+  /// b − A x of the last solve, on the rows that it solved for.
+  std::span<const Vec3> residual() const { return residual_; }
+
+  /// Sets the constrained components of each entry to zero.
+  void filter(std::span<Vec3> b) const;
+
+ private:
+  const LinearSystem* system_ = nullptr;
+  bool allows_single_ = false;  // for the prepared system
+  /// Recurrence in one precision, and whether it is prepared.
+  template <class Real>
+  struct PrecisionState {
+    Recurrence<Real> recurrence;
+    bool has_aggregate_sums = false;  // made since the last AggregateSums::recompute
+    bool is_prepared = false;         // for the current system
+  };
+  template <class Real>
+  Recurrence<Real>& prepare_recurrence(PrecisionState<Real>& in);
+
+  PrecisionState<float> single_;
+  PrecisionState<double> double_;
+  std::vector<std::size_t> all_parts_;
+  std::vector<Vec3> residual_, preconditioned_;
+};
+
+}  // namespace weft::solver

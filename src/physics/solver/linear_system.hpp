@@ -1,0 +1,132 @@
+// The linear system of one Newton iteration: the assembled matrix, contact terms beside it, and constraints.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/solver/block_matrix.hpp"
+#include "physics/solver/row_chunks.hpp"
+
+namespace weft::solver {
+
+/// Directions in which a particle may move: the solution stays in the range of `free` (Baraff & Witkin, "Large Steps in
+/// Cloth Simulation", 1998, section 5). Zero pins the particle; I − n nᵀ keeps it from moving along n.
+struct ParticleConstraint {
+  Index particle = 0;
+  Mat3 free = Mat3::Zero();  ///< a projection: symmetric, free² = free
+};
+
+/// Contribution of a contact to the matrix, w wᵀ ⊗ stiffness: a spring that resists displacements by their weighted
+/// sum. Contacts change with every step, so they are not part of the fixed pattern.
+struct StencilTerm {
+  std::array<Index, 4> particles{0, 0, 0, 0};
+  std::array<double, 4> weights{0, 0, 0, 0};  ///< zero for unused entries
+  Mat3 stiffness = Mat3::Zero();              ///< symmetric, positive semidefinite [N/m]
+};
+
+/// A StencilTerm for points of rigid bodies, which follow four frame particles each: up to eight particles.
+struct WideTerm {
+  std::array<Index, 8> particles{};
+  std::array<double, 8> weights{};
+  Mat3 stiffness = Mat3::Zero();
+};
+
+/// A StencilTerm for a single particle.
+struct DiagonalTerm {
+  Index particle = 0;
+  Mat3 stiffness = Mat3::Zero();  ///< symmetric, positive semidefinite [N/m]
+};
+
+/// stiffness · d dᵀ over the rows of one diagonal block: the contribution of a quantity that depends on all of the
+/// block's particles, such as the enclosed volume (d is its derivative). Such terms are few and dense, so they are kept
+/// out of the matrix.
+struct RankOneTerm {
+  Index begin = 0;              ///< first row
+  std::vector<Vec3> direction;  ///< d, one entry per row from `begin` on
+  double stiffness = 0;         ///< at least 0
+};
+
+/// Partition into aggregates, of particles or of the aggregates of the next finer level.
+struct Aggregates {
+  std::vector<Index> of;  ///< aggregate of each member, 0 to count − 1
+  Index count = 0;
+};
+
+/// A diagonal block: rows [begin, end) that the matrix does not couple with other rows. Terms may couple different
+/// blocks.
+struct DiagonalBlock {
+  Index begin = 0, end = 0;
+  std::uint64_t version = 1;  ///< changes whenever the values of these rows change
+  /// Few rows with stiff forces between them, such as those of a rigid body. On every level of the preconditioner each
+  /// of these particles is an aggregate of its own, so that the coarsest level solves the block exactly.
+  bool is_small = false;
+};
+
+struct LinearSystem {
+  BlockMatrix matrix;                ///< positive definite on the free directions
+  std::vector<DiagonalBlock> parts;  ///< all rows, in order; empty: one diagonal block
+  std::vector<StencilTerm> terms;
+  std::vector<WideTerm> wide_terms;
+  std::vector<DiagonalTerm> diagonal_terms;
+  std::vector<RankOneTerm> rank_one_terms;
+  std::vector<ParticleConstraint> constraints;  ///< at most one per particle
+  /// Weights of the mass-weighted norm in which errors are measured, rate² m, one per row. As a diagonal matrix they
+  /// must not exceed the system's matrix, rate² M + K. Empty: the energy norm is used instead.
+  std::vector<double> norm_weights;
+  /// Multigrid levels of the preconditioner, finest first: aggregates of particles, aggregates of those, and so on. The
+  /// coarsest level must be small enough for a dense factorisation. No aggregate spans two diagonal blocks, and the
+  /// aggregates of one diagonal block have consecutive numbers. Empty: no coarse level.
+  std::vector<Aggregates> aggregate_levels;
+};
+
+/// Calls visit(term) for each StencilTerm, then for each WideTerm.
+template <class Visit>
+void for_each_term(const LinearSystem& system, const Visit& visit) {
+  for (const StencilTerm& term : system.terms) visit(term);
+  for (const WideTerm& term : system.wide_terms) visit(term);
+}
+
+/// A term of any kind.
+struct AnyTerm {
+  std::span<const Index> particles;
+  std::span<const double> weights;
+  const Mat3& stiffness;
+};
+
+/// Number of terms of all kinds.
+inline std::size_t term_count(const LinearSystem& system) {
+  return system.diagonal_terms.size() + system.terms.size() + system.wide_terms.size();
+}
+
+/// The term with this number. Diagonal terms come first, then those in the order of for_each_term().
+inline AnyTerm term_at(const LinearSystem& system, std::size_t number) {
+  static constexpr double kWeightOfOne = 1;
+  const std::size_t diagonal = system.diagonal_terms.size(), small = diagonal + system.terms.size();
+  if (number < diagonal) {
+    const DiagonalTerm& term = system.diagonal_terms[number];
+    return {{&term.particle, 1}, {&kWeightOfOne, 1}, term.stiffness};
+  }
+  if (number < small) {
+    const StencilTerm& term = system.terms[number - diagonal];
+    return {term.particles, term.weights, term.stiffness};
+  }
+  const WideTerm& term = system.wide_terms[number - small];
+  return {term.particles, term.weights, term.stiffness};
+}
+
+inline std::vector<DiagonalBlock> parts_of(const LinearSystem& system) {
+  return system.parts.empty() ? std::vector<DiagonalBlock>{{0, system.matrix.rows()}} : system.parts;
+}
+
+/// The rows of the diagonal blocks with these indices.
+inline std::vector<RowRange> ranges_of(std::span<const DiagonalBlock> parts, std::span<const std::size_t> numbers) {
+  std::vector<RowRange> ranges;
+  for (std::size_t p : numbers)
+    ranges.push_back({static_cast<std::size_t>(parts[p].begin), static_cast<std::size_t>(parts[p].end)});
+  return ranges;
+}
+
+}  // namespace weft::solver

@@ -1,0 +1,120 @@
+// Additive multilevel preconditioner: particles, aggregates of particles, and the coarsest aggregates solved together.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/solver/linear_system.hpp"
+#include "physics/solver/padded_vec3.hpp"
+#include "physics/solver/weights.hpp"
+
+namespace weft::solver {
+
+/// Whether sums over aggregates are made from the current matrix, or kept from an earlier matrix with the same
+/// constraints. Particle blocks and contact terms (StencilTerm, WideTerm, DiagonalTerm) are current in either case.
+enum class AggregateSums { recompute, reuse };
+
+/// P⁻¹ = S Σ_l T_l A_l⁻¹ T_lᵀ S, where T_l interpolates from level l to particles and S is the projection on the free
+/// directions. T_0 is the identity, and A_0 the diagonal of 3×3 blocks of S A S + (I − S) (prefiltered, Tamstorf, Jones
+/// & McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation", 2015). Each further level reduces errors whose
+/// wavelength is about the width of its aggregates (Bramble, Pasciak & Xu, "Parallel Multilevel Preconditioners",
+/// 1990). T_l = Q_1 Q_2 … Q_l, where Q_k gives each member a weighted mean of the values of its own aggregate and of
+/// the aggregates of its neighbours. This is a step of damped Jacobi on the graph of the matrix, applied to constants
+/// (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
+///
+/// Ideally A_l is the diagonal of 3×3 blocks of T_lᵀ A T_l, or all of it on the last level. Both are expensive, so A_l
+/// is built from R_l A R_lᵀ, where R_l sums over each aggregate. If each aggregate moves as a whole, all strain is at
+/// the boundaries of aggregates. If the same motion is spread over the width of an aggregate, its stiffness halves with
+/// each doubling of that width. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters with
+/// the factor 1/2 per level, the mass part with factor 1. Contact terms are not part of the matrix. For each particle
+/// of a contact term, the particle's stiffness enters the aggregates from which it interpolates. The sum bounds the
+/// contact part of the diagonal of T_lᵀ A T_l from above. The last level has T_lᵀ A T_l of the contact terms exactly.
+///
+/// If threads are so stiff that the trace of a particle's block exceeds `stiff_particle` times the sum of
+/// `norm_weights` over its diagonal block, levels do not interpolate: T_l = R_lᵀ, and the factor per level is 1.
+/// Interpolated motion would stretch threads across folds. Sums over boundaries of aggregates do not contain the
+/// threads inside of the aggregates.
+///
+/// Set up in double, applied in `Real`.
+template <class Real>
+class Preconditioner {
+ public:
+  /// Reads `system`, which must outlive the following calls. Keeps what has not changed since the last call.
+  void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
+
+  /// z = P⁻¹ r on the rows of these diagonal blocks of the system, as if r were zero on all others. r must obey the
+  /// constraints; z then does too.
+  void apply(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z, std::span<const std::size_t> parts);
+
+ private:
+  /// One level of aggregates.
+  struct Level {
+    std::vector<Index> aggregate_of;        // per particle
+    std::vector<Index> parent;              // per aggregate: its aggregate on the next level
+    Weights<Real> interpolation;            // per member (a particle, or an aggregate of the finer level)
+    Weights<Real> restriction;              // per aggregate
+    std::vector<RowRange> of_part;          // aggregates of each diagonal block
+    RowChunks chunks;                       // of aggregates, in the selected blocks
+    std::vector<Mat3> of_matrix;            // per aggregate: scaled stiffness and mass part, no terms
+    std::vector<char> touched;              // per aggregate: its `inverse` contains terms
+    std::vector<PaddedMat3<Real>> inverse;  // per aggregate, with contact terms
+    std::vector<PaddedVec3<Real>> residual, correction;
+  };
+  bool has_stiff_threads() const;
+  void allocate_levels();
+  void compute_weights();
+  void find_common_levels();
+  void sum_aggregate_blocks(std::size_t part);
+  void scale_sums(std::size_t part);
+  void mark_touched_particles();
+  void invert_particles();
+  /// A 3×3 block for each particle that terms act on.
+  struct TouchedBlocks {
+    std::vector<Index> place;  // per particle, −1 for none
+    std::vector<Mat3> blocks;
+    Mat3& of(Index i) { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
+    const Mat3& of(Index i) const { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
+  };
+  TouchedBlocks make_touched_blocks() const;
+  TouchedBlocks lump_terms() const;
+  void invert_aggregates();
+  void factorise_coarsest();
+  void select(std::span<const std::size_t> parts);
+  void restrict_residual(std::span<const PaddedVec3<Real>> r);
+  void correct_aggregates();
+  bool is_free(Index i) const { return constraint_of_[i] < 0; }
+  Mat3 own_block(Index i) const { return system_->matrix.block(system_->matrix.diagonal(i)); }
+  Mat3 filtered(Index i, const Mat3& block, Index j) const;
+
+  const LinearSystem* system_ = nullptr;
+  bool interpolates_ = true;                       // false if threads are very stiff
+  std::vector<DiagonalBlock> parts_;               // at the last call of prepare()
+  std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
+  std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: the matrix, its sums over aggregates
+  std::vector<ParticleConstraint> constraints_;    // when the sums were made
+  std::vector<Index> constraint_of_;               // per particle, −1 for none
+  struct Filter {
+    Index particle;
+    PaddedMat3<Real> free;
+  };
+  std::vector<std::vector<Filter>> filters_;    // per diagonal block
+  std::vector<char> touched_, touched_before_;  // per particle: terms act on it
+  std::vector<PaddedMat3<Real>> inverse_;       // per particle: S A_0⁻¹ S
+  std::vector<Level> levels_;                   // the last one is the coarsest
+  Weights<Real> coarse_weights_;                // per particle, from the coarsest aggregates
+  // Per block of the matrix: first level that has row and column in one aggregate, or the number of levels.
+  std::vector<std::uint8_t> common_level_full_, common_level_isotropic_;
+  std::vector<std::vector<Index>> members_of_coarse_;  // particles
+  std::vector<std::size_t> selected_;                  // diagonal blocks of the last apply()
+  RowChunks rows_;                                     // their rows
+  Eigen::MatrixXd coarse_matrix_without_terms_, coarse_matrix_;
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> coarse_factor_;
+  Eigen::Vector<Real, Eigen::Dynamic> coarse_vector_;
+};
+
+extern template class Preconditioner<float>;
+extern template class Preconditioner<double>;
+
+}  // namespace weft::solver

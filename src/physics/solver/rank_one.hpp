@@ -1,0 +1,56 @@
+// Outer products beside a system's matrix: their contribution to products and to the preconditioner.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "physics/solver/linear_system.hpp"
+#include "physics/solver/padded_vec3.hpp"
+
+namespace weft::solver {
+
+/// Extends a preconditioner P of the matrix without outer products to all of it by the formula of Sherman and Morrison,
+/// for one outer product k d dᵀ after the other: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P
+/// bounds the rest of the matrix, P + k d dᵀ bounds the whole matrix with the same constants, however large k is.
+template <class Real>
+class RankOneTerms {
+ public:
+  using Apply = std::function<void(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z)>;
+
+  /// Reads `system`, which must outlive the following calls.
+  void prepare(const LinearSystem& system);
+
+  /// Restricts the following calls to vectors that are zero outside of these diagonal blocks.
+  void select(std::span<const std::size_t> parts);
+  /// Computes w with `apply`, the preconditioner of the rest of the matrix on the selected blocks.
+  void use(const Apply& apply);
+
+  /// Adds k d dᵀ p of each selected term to q, where d is filtered; returns the increase of p·q.
+  double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q) const;
+
+  /// Corrects z = P⁻¹ r to the preconditioner of the whole matrix.
+  void correct(std::span<PaddedVec3<Real>> z) const;
+
+  bool empty() const { return terms_.empty(); }
+
+ private:
+  struct Term {
+    std::size_t begin = 0, part = 0;
+    double stiffness = 0;
+    std::vector<PaddedVec3<Real>> direction;  // filtered by the constraints
+    std::vector<PaddedVec3<Real>> inverse;    // w, on all rows
+    double factor = 0;                        // k / (1 + k d·w)
+    bool is_selected = false;
+  };
+  static double dot(const Term& term, std::span<const PaddedVec3<Real>> v);
+  void correct(std::span<PaddedVec3<Real>> z, std::size_t terms) const;
+
+  std::size_t rows_ = 0;
+  std::vector<Term> terms_;
+};
+
+extern template class RankOneTerms<float>;
+extern template class RankOneTerms<double>;
+
+}  // namespace weft::solver

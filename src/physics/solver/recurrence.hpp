@@ -1,0 +1,117 @@
+// The recurrence of conjugate gradients, in double or in single precision.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/solver/block_motions.hpp"
+#include "physics/solver/linear_system.hpp"
+#include "physics/solver/preconditioner.hpp"
+#include "physics/solver/product.hpp"
+#include "physics/solver/rank_one.hpp"
+#include "physics/solver/row_chunks.hpp"
+
+namespace weft::solver {
+
+/// Relative residual that single precision can still tell from rounding: in the energy norm 6e-8 times the root of the
+/// largest stiffness for which single precision is used (kMaxSingleStiffness), times a safety factor of five.
+inline constexpr double kSmallestSingleGoal = 1e-3;
+
+/// Allowed error of the solution, per diagonal block. One of two bounds must be met: in the energy norm `relative`
+/// times the norm of what the iteration adds to its start, or an absolute bound in the mass-weighted norm.
+struct LinearGoal {
+  double relative = 0;
+  std::span<const double> absolute = {};  ///< per diagonal block; empty: none
+};
+
+/// Known directions of the solution; each may be empty.
+struct Directions {
+  /// The first step of a solve is along this direction, of the length that is best in the energy norm. Costs one
+  /// product.
+  std::span<const Vec3> start = {};
+  /// Motion to which the solution is added. At the end, the residual does no work along the sum of both, and the
+  /// residual sums to zero over each diagonal block that no constraint holds (Galerkin's condition for these directions
+  /// of each diagonal block).
+  std::span<const Vec3> motion = {};
+  /// Second motion along which the residual does no work at the end; ignored without `motion`.
+  std::span<const Vec3> drift = {};
+};
+
+/// State of a solve, in either precision.
+struct Progress {
+  /// Error data of one diagonal block.
+  struct OfPart {
+    double energy = 0;  ///< ‖x‖²_A of what the iteration has added to its start, x
+    std::vector<double> gains,
+        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step, relative to it
+    double error_energy() const;  ///< estimate of ‖e‖²_A
+    double error_norm_ratio() const;
+
+   private:
+    std::ptrdiff_t count_recent() const;
+  };
+  std::vector<OfPart> parts;  ///< of the whole system
+  int iterations = 0;
+  bool is_exact = false;
+
+  bool meets(const LinearGoal& goal, std::span<const std::size_t> selected) const;
+};
+
+enum class End {
+  converged,
+  out_of_iterations,
+  indefinite,    ///< a direction without positive curvature
+  needs_double,  ///< single precision only: continue in double, with a new direction
+};
+
+template <class Real>
+class Recurrence {
+ public:
+  /// Reads `system`, which must outlive the following calls.
+  void prepare(const LinearSystem& system, AggregateSums sums);
+
+  /// Returns P⁻¹ b. Valid until the next call.
+  std::span<const PaddedVec3<Real>> precondition(std::span<const Vec3> b);
+
+  /// Solves A x = b on these diagonal blocks; all others are held. At the call, x must be zero or, if `progress` has
+  /// iterations already, their result.
+  End solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
+            const Directions& directions, std::span<const std::size_t> parts, Progress& progress);
+
+  /// b − A x of the last solve, on the rows that it solved for.
+  std::span<const PaddedVec3<Real>> residual() const { return r_; }
+
+ private:
+  void begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start, Progress& progress);
+  void step_along_start(std::span<const Vec3> start);
+  End iterate(const LinearGoal& goal, int max_iterations, Progress& progress);
+  double multiply() {
+    const double curvature = product_.multiply(p_, q_, norms_sq_);
+    return curvature + rank_one_.multiply(p_, q_);
+  }
+  void precondition_rank_one();
+  void advance(double alpha, Progress& progress);
+  double apply_preconditioner(std::span<PaddedVec3<Real>> z);
+  void balance(const Directions& directions, std::span<Vec3> x);
+  std::vector<double> dots(std::span<const PaddedVec3<Real>> a, std::span<const PaddedVec3<Real>> b) const;
+  std::vector<AlongMotions> along_motions(std::span<const PaddedVec3<Real>> v, bool has_second) const;
+
+  const LinearSystem* system_ = nullptr;
+  std::vector<DiagonalBlock> parts_;
+  std::vector<std::size_t> all_parts_, selected_;
+  RowChunks rows_;  // of the selected blocks
+  Product<Real> product_;
+  Preconditioner<Real> preconditioner_;
+  RankOneTerms<Real> rank_one_;
+  BlockMotions block_motions_;
+  std::vector<PaddedVec3<Real>> x_, r_, z_, p_, q_;
+  std::vector<Vec3> start_;            // filtered by the constraints
+  double start_multiple_ = 0;          // the solution is x_ plus this multiple of start_
+  double start_gain_ = 0;              // decrease of ‖e‖²_A by that multiple
+  std::vector<double> norms_sq_, rz_;  // per selected block: Σ norm_weights ‖p‖², r·z
+};
+
+extern template class Recurrence<float>;
+extern template class Recurrence<double>;
+
+}  // namespace weft::solver

@@ -1,0 +1,38 @@
+// Sparse interpolation weights of the preconditioner.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/solver/linear_system.hpp"
+#include "physics/solver/padded_vec3.hpp"
+
+namespace weft::solver {
+
+/// Rows of weights: per member the weights of its aggregates, or the transpose.
+template <class Real>
+struct Weights {
+  std::vector<Index> start;  // rows + 1 entries into columns
+  std::vector<Index> columns;
+  std::vector<Real> values;
+
+  PaddedVec3<Real> sum(std::size_t row, std::span<const PaddedVec3<Real>> of) const {
+    PaddedVec3<Real> result{};
+    for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
+    return result;
+  }
+  /// Interpolation from aggregates to their members. The aggregates of a member's neighbours together have the weight
+  /// `smoothing`, its own has the rest. `neighbours`: neighbours of each member; replaced by those of the aggregates.
+  static Weights make_interpolation(const Aggregates& grouping, double smoothing,
+                                    std::vector<std::vector<Index>>& neighbours);
+  /// The transpose, with `rows` rows: the number of columns of this matrix.
+  Weights transposed(std::size_t rows) const;
+  /// The product of this interpolation with `next`, the interpolation between this level and the next coarser one.
+  Weights times(const Weights& next) const;
+};
+
+extern template struct Weights<float>;
+extern template struct Weights<double>;
+
+}  // namespace weft::solver

@@ -1,0 +1,305 @@
+#include "physics/untangle/contours.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "physics/collision/proximity/surface_point.hpp"
+#include "physics/untangle/solid.hpp"
+
+namespace weft::untangle {
+namespace {
+
+// Slope of a folded island on the surface that it crossed: sine and cosine of 15 degrees.
+constexpr double kFoldSine = 0.2588, kFoldCosine = 0.9659;
+
+// Returns the island of each particle: a set that is connected without the `cut` edges.
+std::vector<Index> label_islands(const Fabric& fabric, const std::set<std::array<Index, 2>>& cut) {
+  std::vector<Index> island(static_cast<std::size_t>(fabric.particles()), -1);
+  std::vector<Index> open;
+  Index count = 0;
+  for (Index first = 0; first < fabric.particles(); ++first) {
+    if (island[first] >= 0) continue;
+    island[first] = count;
+    open.assign(1, first);
+    while (!open.empty()) {
+      const Index i = open.back();
+      open.pop_back();
+      for (const Index j : fabric.neighbours[i]) {
+        if (island[j] >= 0 || cut.contains({std::min(i, j), std::max(i, j)})) continue;
+        island[j] = count;
+        open.push_back(j);
+      }
+    }
+    ++count;
+  }
+  return island;
+}
+
+/// A point of the line of crossing, and the normal of the other surface there, towards the rest of the cloth.
+struct CutPoint {
+  Vec3 place, normal;
+};
+
+struct Island {
+  std::vector<Index> particles;
+  std::set<Index> beside;  // particles of other islands across the line
+  std::vector<CutPoint> line;
+  std::set<Index> through;           // corners of the triangles that cut it off
+  std::optional<std::size_t> other;  // the body of `through`, if there is only one and not its own
+};
+
+const CutPoint& nearest(std::span<const CutPoint> line, const Vec3& p) {
+  return *std::ranges::min_element(line, {}, [&](const CutPoint& c) { return (c.place - p).squaredNorm(); });
+}
+
+CrossedPair crossed_pair_of(const Fabric& fabric, const Crossing& c) {
+  return {fabric.bodies.body_of(fabric.edges.edges[c.edge].vertices[0]),
+          fabric.bodies.body_of(fabric.bodies.triangles()[c.triangle][0])};
+}
+
+// Extends a cut: adds the edges of a cloth that cross another surface extended beyond its border. The plane of the
+// crossed triangle nearest to a particle decides on which side the particle is.
+void extend_cut(const Fabric& fabric, std::span<const Crossing> crossings, std::size_t cloth, std::span<const Vec3> x,
+                std::set<std::array<Index, 2>>& cut) {
+  std::vector<CutPoint> line;
+  for (const Crossing& c : crossings) {
+    const auto [i, j] = fabric.edges.edges[c.edge].vertices;
+    line.push_back(
+        {x[i] + c.fraction * (x[j] - x[i]), collision::face_normal(fabric.bodies.triangles()[c.triangle], x)});
+  }
+  const collision::Surface& surface = fabric.bodies.surfaces()[cloth];
+  const Index first = surface.first_vertex, end = first + surface.vertex_count;
+  std::vector<std::int8_t> side(static_cast<std::size_t>(surface.vertex_count));
+  for (Index i = first; i < end; ++i) {
+    const CutPoint& at = nearest(line, x[i]);
+    side[i - first] = (x[i] - at.place).dot(at.normal) < 0 ? -1 : 1;
+  }
+  for (const mesh::Edge& edge : fabric.edges.edges) {
+    const auto [i, j] = edge.vertices;
+    if (i >= first && i < end && side[i - first] != side[j - first]) cut.insert(edge.vertices);
+  }
+}
+
+// Moves particles along `up` to `height` above the plane at the nearest point of the line, then above the other
+// surface.
+std::vector<Move> flatten(const Island& island, const Vec3& up, double height, const collision::BroadPhase& surfaces,
+                          std::span<const Vec3> x) {
+  std::vector<Move> moves;
+  for (const Index i : island.particles) {
+    const double h = (x[i] - nearest(island.line, x[i]).place).dot(up);
+    Vec3 target = h < height ? Vec3(x[i] + (height - h) * up) : x[i];
+    if (island.other) {
+      const collision::SurfacePoint point = collision::nearest_point(target, surfaces, *island.other, x);
+      const Vec3 place = target - point.height * point.normal;
+      Vec3 n = collision::face_normal(point.face, x);
+      if (n.dot(up) < 0) n = -n;
+      const double over = (target - place).dot(n);
+      if (over < height) target += (height - over) * n;
+    }
+    if (target != x[i]) moves.push_back({i, target});
+  }
+  return moves;
+}
+
+// Rotates each particle around the line towards `away`, keeping its distance from the line, and raises it by `height`.
+std::vector<Move> fold(const Island& island, const Vec3& up, const Vec3& away, double height, std::span<const Vec3> x) {
+  std::vector<Move> moves;
+  const Vec3 along = up.cross(away);
+  for (const Index i : island.particles) {
+    const Vec3& place = nearest(island.line, x[i]).place;
+    const Vec3 arm = x[i] - place;
+    const double radius = (arm - arm.dot(along) * along).norm();
+    const Vec3 end =
+        place + arm.dot(along) * along + (kFoldCosine * radius) * away + (kFoldSine * radius + height) * up;
+    moves.push_back({i, end});
+  }
+  return moves;
+}
+
+// Principal direction of the line, by power iteration.
+Vec3 direction_of(std::span<const CutPoint> line) {
+  Vec3 mean = Vec3::Zero();
+  for (const CutPoint& c : line) mean += c.place / static_cast<double>(line.size());
+  Mat3 spread = Mat3::Zero();
+  for (const CutPoint& c : line) spread += (c.place - mean) * (c.place - mean).transpose();
+  Vec3 along(1, 0.3, 0.1);
+  for (int step = 0; step < 30; ++step) along = (spread * along + 1e-12 * along).stableNormalized();
+  return along;
+}
+
+std::vector<Move> best_moves(const Fabric& fabric, const Island& island, double height,
+                             const collision::BroadPhase& surfaces, std::span<const Vec3> x) {
+  Vec3 up = Vec3::Zero();
+  for (const CutPoint& c : island.line) up += c.normal;
+  if (up.norm() < 0.1 * static_cast<double>(island.line.size())) return {};  // crossed from all sides: no way is better
+  up.normalize();
+  std::vector<Move> best = flatten(island, up, height, surfaces, x);
+  double min_cost = stretch_cost(fabric, best, x);
+  const Vec3 away = direction_of(island.line).cross(up).stableNormalized();
+  if (away.isZero()) return best;
+  // Try first the side on which most of the island lies.
+  Vec3 offset_sum = Vec3::Zero();
+  for (const Index i : island.particles) offset_sum += x[i] - nearest(island.line, x[i]).place;
+  const double side = offset_sum.dot(away) < 0 ? -1 : 1;
+  for (const double sign : {side, -side}) {
+    std::vector<Move> moves = fold(island, up, sign * away, height, x);
+    const double cost = stretch_cost(fabric, moves, x);
+    if (cost >= 0.9 * min_cost) continue;
+    min_cost = cost;
+    best = std::move(moves);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<CrossedPair> list_crossed_pairs(const Fabric& fabric, std::span<const Crossing> crossings) {
+  std::set<CrossedPair> found;
+  for (const Crossing& c : crossings)
+    if (!involves_solid(fabric, c) && fabric.is_cloth(fabric.edges.edges[c.edge].vertices[0]))
+      found.insert(crossed_pair_of(fabric, c));
+  return {found.begin(), found.end()};
+}
+
+std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::span<const Crossing> all_crossings,
+                                                    const collision::BroadPhase& surfaces,
+                                                    std::span<const double> above,
+                                                    const std::optional<CrossedPair>& only, std::span<const Vec3> x) {
+  std::vector<Crossing> crossings;
+  std::ranges::copy_if(all_crossings, std::back_inserter(crossings), [&](const Crossing& c) {
+    if (involves_solid(fabric, c) || !fabric.is_cloth(fabric.edges.edges[c.edge].vertices[0])) return false;
+    return !only || crossed_pair_of(fabric, c) == *only;
+  });
+  std::set<std::array<Index, 2>> cut;
+  for (const Crossing& c : crossings) cut.insert(fabric.edges.edges[c.edge].vertices);
+  if (only && only->cloth != only->other) extend_cut(fabric, crossings, only->cloth, x, cut);
+  const std::vector<Index> whole = label_islands(fabric, {}), island_of = label_islands(fabric, cut);
+  const Index count = island_of.empty() ? 0 : 1 + *std::ranges::max_element(island_of);
+  std::vector<Island> islands(static_cast<std::size_t>(count));
+  for (Index i = 0; i < fabric.particles(); ++i) islands[island_of[i]].particles.push_back(i);
+  std::vector<Index> largest(islands.size(), -1);  // per connected mesh
+  for (Index p = 0; p < count; ++p) {
+    Index& best = largest[whole[islands[p].particles.front()]];
+    if (best < 0 || islands[p].particles.size() > islands[best].particles.size()) best = p;
+  }
+  for (const Crossing& c : crossings) {
+    const auto [i, j] = fabric.edges.edges[c.edge].vertices;
+    if (island_of[i] == island_of[j]) continue;
+    const collision::Triangle& t = fabric.bodies.triangles()[c.triangle];
+    const Vec3 place = x[i] + c.fraction * (x[j] - x[i]);
+    Vec3 normal = collision::face_normal(t, x);
+    if (normal.dot(x[j] - x[i]) < 0) normal = -normal;
+    const CrossedPair through = crossed_pair_of(fabric, c);
+    for (const auto& [inner, outer, sign] : {std::tuple{i, j, 1.0}, {j, i, -1.0}}) {
+      Island& island = islands[island_of[inner]];
+      island.beside.insert(outer);
+      island.line.push_back({place, sign * normal});
+      island.through.insert(t.begin(), t.end());
+      island.other = through.other;
+    }
+  }
+
+  std::vector<Index> order(islands.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::ranges::stable_sort(order, {}, [&](Index p) { return islands[p].particles.size(); });
+  std::vector<std::uint8_t> moved(x.size(), 0);
+  std::vector<std::vector<Move>> all;
+  const auto has_moved = [&](Index v) { return moved[v] != 0; };
+  for (const Index p : order) {
+    Island& island = islands[p];
+    const bool stays = largest[whole[island.particles.front()]] == p || island.line.empty() ||
+                       std::ranges::any_of(island.through, has_moved) ||
+                       std::ranges::any_of(island.beside, has_moved) ||
+                       std::ranges::any_of(island.particles, [&](Index i) { return !fabric.movable[i]; });
+    if (stays) continue;
+    const std::size_t cloth = fabric.bodies.body_of(island.particles.front());
+    const double height = above[cloth];
+    const auto is_other = [&](Index v) { return fabric.bodies.body_of(v) == island.other; };
+    if (island.other == cloth || !std::ranges::all_of(island.through, is_other)) island.other.reset();
+    std::vector<Move> moves = best_moves(fabric, island, height, surfaces, x);
+    for (const Move& move : moves) moved[move.particle] = 1;
+    if (!moves.empty()) all.push_back(std::move(moves));
+  }
+  return all;
+}
+
+void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings, double length, std::span<Vec3> x) {
+  std::vector<Vec3> push(x.size(), Vec3::Zero());
+  std::vector<double> weight(x.size(), 0);
+  for (const Crossing& c : crossings) {
+    if (involves_solid(fabric, c)) continue;
+    const mesh::Edge& edge = fabric.edges.edges[c.edge];
+    const auto [i, j] = edge.vertices;
+    const collision::Triangle& t = fabric.bodies.triangles()[c.triangle];
+    const Vec3 n = collision::face_normal(t, x), e = (x[j] - x[i]).stableNormalized();
+    const double across = e.dot(n);
+    if (std::abs(across) < 1e-3) continue;
+    // Volino & Magnenat-Thalmann (2006), Eq. (2): r points from the edge into each of its triangles, along the line.
+    Vec3 gradient = Vec3::Zero();
+    for (const Index triangle : edge.triangles) {
+      if (triangle < 0) continue;
+      const collision::Triangle& beside = fabric.bodies.triangles()[triangle];
+      Index third = beside[0];
+      for (const Index v : beside)
+        if (v != i && v != j) third = v;
+      Vec3 r = collision::face_normal(beside, x).cross(n).stableNormalized();
+      const Vec3 arm = x[third] - x[i];
+      if (r.dot(arm - arm.dot(e) * e) < 0) r = -r;
+      gradient += r - 2 * e.dot(r) / across * n;
+    }
+    // Nearly a unit vector; shorter if the gradient is small and therefore uncertain.
+    const Vec3 direction = gradient / std::sqrt(gradient.squaredNorm() + 0.01);
+    const auto add = [&](Index v, double fraction, double sign) {
+      push[v] += sign * fraction * direction;
+      weight[v] += fraction;
+    };
+    add(i, 1 - c.fraction, 1);
+    add(j, c.fraction, 1);
+    for (std::size_t k = 0; k < 3; ++k) add(t[k], c.weights[k], -1);
+  }
+  for (Index v = 0; v < fabric.particles(); ++v)
+    if (weight[v] > 0 && fabric.movable[v]) x[v] += length * push[v] / std::max(weight[v], 0.5);
+}
+
+void push_out_of_solids(const Fabric& fabric, std::span<const Crossing> crossings, std::span<const Solid> solids,
+                        std::span<const double> above, std::span<Vec3> x) {
+  const auto raise = [&](const Solid& solid, std::span<const Index> corners, std::span<const double> weights,
+                         double height) {
+    Vec3 p = Vec3::Zero();
+    double sum_sq = 0;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      p += weights[k] * x[corners[k]];
+      sum_sq += fabric.movable[corners[k]] ? weights[k] * weights[k] : 0;
+    }
+    const Solid::Exit exit = solid.exit(p);
+    if (exit.height >= height || sum_sq == 0) return;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      if (fabric.movable[corners[k]]) x[corners[k]] += (height - exit.height) * weights[k] / sum_sq * exit.normal;
+  };
+  for (const Crossing& c : crossings) {
+    if (!involves_solid(fabric, c)) continue;
+    const std::array<Index, 2>& edge = fabric.edges.edges[c.edge].vertices;
+    const collision::Triangle& t = fabric.bodies.triangles()[c.triangle];
+    const bool cloth_edge = fabric.is_cloth(edge[0]);
+    const std::size_t cloth = fabric.bodies.body_of(cloth_edge ? edge[0] : t[0]),
+                      body = fabric.bodies.body_of(cloth_edge ? t[0] : edge[0]);
+    const auto solid = std::ranges::find(solids, body, &Solid::number);
+    if (cloth_edge) {
+      for (const double fraction : {0.5, 0.25, 0.75, c.fraction})
+        raise(*solid, edge, std::array{1 - fraction, fraction}, above[cloth]);
+    } else {
+      // Raise by the length of the shorter part of the edge, at most by half the longest side of the triangle.
+      const double out = std::min(c.fraction, 1 - c.fraction) * (x[edge[1]] - x[edge[0]]).norm();
+      const double longest =
+          std::max({(x[t[1]] - x[t[0]]).norm(), (x[t[2]] - x[t[1]]).norm(), (x[t[0]] - x[t[2]]).norm()});
+      raise(*solid, t, c.weights, above[cloth] + std::min(out, 0.5 * longest));
+    }
+  }
+}
+
+}  // namespace weft::untangle

@@ -1,0 +1,98 @@
+#include "physics/untangle/crossings.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+
+namespace weft::untangle {
+namespace {
+
+struct SegmentHit {
+  double fraction;
+  std::array<double, 3> weights;
+};
+
+// Where the segment from p to q crosses a triangle. Empty also if it lies in the plane of the triangle.
+std::optional<SegmentHit> intersect_segment(const Vec3& p, const Vec3& q, const collision::Triangle& t,
+                                            std::span<const Vec3> x) {
+  const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
+  const Vec3 n = (b - a).cross(c - a);
+  const double from = n.dot(p - a), to = n.dot(q - a);
+  if (from * to > 0 || from == to) return std::nullopt;
+  const Vec3 segment = q - p;
+  const double u = segment.dot((b - p).cross(c - p)), v = segment.dot((c - p).cross(a - p)),
+               w = segment.dot((a - p).cross(b - p));
+  const double sum = u + v + w;
+  if (sum == 0 || std::min({u / sum, v / sum, w / sum}) < 0) return std::nullopt;
+  return SegmentHit{from / (from - to), {u / sum, v / sum, w / sum}};
+}
+
+bool is_solid(const Fabric& fabric, Index vertex) {
+  const Kind kind = fabric.kinds[fabric.bodies.body_of(vertex)];
+  return kind == Kind::solid || kind == Kind::floor || kind == Kind::layer;
+}
+
+}  // namespace
+
+bool involves_solid(const Fabric& fabric, const Crossing& crossing) {
+  return is_solid(fabric, fabric.edges.edges[crossing.edge].vertices[0]) ||
+         is_solid(fabric, fabric.bodies.triangles()[crossing.triangle][0]);
+}
+
+CrossingFinder::CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles)
+    : fabric_(fabric), broad_phase_(fabric.bodies.surfaces(), x) {
+  const collision::Bodies& bodies = fabric.bodies;
+  for (std::size_t a = 0; a < bodies.size() && bodies[a].deformable; ++a)
+    for (std::size_t b = a; b < bodies.size(); ++b)
+      if (bodies[b].deformable ? self : obstacles) wanted_.push_back({a, b});
+}
+
+void CrossingFinder::collect(std::span<const Vec3> x, double margin) {
+  for (std::size_t b = 0; b < fabric_.bodies.size(); ++b) broad_phase_.refit(b, x, x, margin);
+  candidates_.clear();
+  for (const auto& [a, b] : wanted_)
+    a == b ? broad_phase_.self_pairs(a, candidates_) : broad_phase_.pairs(a, b, candidates_);
+}
+
+std::span<const collision::TrianglePair> CrossingFinder::near(std::span<const Vec3> x, double distance) {
+  collect(x, 0.5 * distance);
+  return candidates_.apart.view();
+}
+
+// Tests the edges of one triangle against another. Skips edges that end in `without`, the vertex that both share.
+bool CrossingFinder::test(Index of_edge, Index triangle, Index without, std::span<const Vec3> x) {
+  bool any = false;
+  for (const Index e : fabric_.edges.of_triangle[of_edge]) {
+    const auto [i, j] = fabric_.edges.edges[e].vertices;
+    if (i == without || j == without) continue;
+    const auto hit = intersect_segment(x[i], x[j], fabric_.bodies.triangles()[triangle], x);
+    if (!hit) continue;
+    any = true;
+    crossings_.push_back({e, triangle, hit->fraction, hit->weights});
+  }
+  return any;
+}
+
+std::span<const Crossing> CrossingFinder::find(std::span<const Vec3> x) {
+  collect(x, 0);
+  crossings_.clear();
+  pairs_ = 0;
+  const auto both = [&](Index a, Index b, Index shared) {
+    const bool first = test(a, b, shared, x), second = test(b, a, shared, x);
+    pairs_ += first || second;
+  };
+  for (const auto& [a, b] : candidates_.apart) both(a, b, -1);
+  for (const auto& [a, b] : candidates_.one_shared) {
+    const auto& corners = fabric_.bodies.triangles()[b];
+    for (const Index v : fabric_.bodies.triangles()[a])
+      if (std::ranges::find(corners, v) != corners.end()) both(a, b, v);
+  }
+  const auto key = [](const Crossing& c) { return std::tie(c.edge, c.triangle); };
+  std::ranges::stable_sort(crossings_, {}, key);
+  crossings_.erase(std::unique(crossings_.begin(), crossings_.end(),
+                               [&](const Crossing& a, const Crossing& b) { return key(a) == key(b); }),
+                   crossings_.end());
+  return crossings_;
+}
+
+}  // namespace weft::untangle

@@ -1,0 +1,52 @@
+// Finds where edges cross triangles.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "physics/collision/hierarchy/broad_phase.hpp"
+#include "physics/untangle/problem.hpp"
+
+namespace weft::untangle {
+
+struct Crossing {
+  Index edge;                     ///< of Fabric::edges
+  Index triangle;                 ///< global number
+  double fraction;                ///< position on the edge, from its first vertex (0) to its second (1)
+  std::array<double, 3> weights;  ///< of the corners of the triangle
+};
+
+/// Whether the edge or the triangle belongs to a solid, a floor or a layer.
+bool involves_solid(const Fabric& fabric, const Crossing& crossing);
+
+/// Crossings between surfaces of which at least one is cloth.
+class CrossingFinder {
+ public:
+  /// `self`: cloth with cloth. `obstacles`: cloth with obstacles. The fabric must outlive it.
+  CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles);
+
+  /// All crossings at x [m], sorted by edge and triangle, each once. Touching counts, except if the edge lies in the
+  /// plane of the triangle.
+  std::span<const Crossing> find(std::span<const Vec3> x);
+  /// Number of crossing pairs of triangles in the last find().
+  int pairs() const { return pairs_; }
+
+  /// Pairs of triangles without a common vertex whose bounding boxes are within `distance` [m] of each other.
+  std::span<const collision::TrianglePair> near(std::span<const Vec3> x, double distance);
+
+  const collision::BroadPhase& surfaces() const { return broad_phase_; }
+
+ private:
+  void collect(std::span<const Vec3> x, double margin);
+  bool test(Index of_edge, Index triangle, Index without, std::span<const Vec3> x);
+
+  const Fabric& fabric_;
+  collision::BroadPhase broad_phase_;
+  std::vector<std::array<std::size_t, 2>> wanted_;
+  collision::CandidatePairs candidates_;
+  std::vector<Crossing> crossings_;
+  int pairs_ = 0;
+};
+
+}  // namespace weft::untangle

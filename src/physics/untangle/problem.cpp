@@ -1,0 +1,64 @@
+#include "physics/untangle/problem.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace weft::untangle {
+namespace {
+
+// Threads may be compressed to this fraction of the smaller of their lengths at the start and at rest; such threads
+// buckle when the run begins.
+constexpr double kMinLengthRatio = 0.6;
+
+}  // namespace
+
+Fabric::Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, std::span<const Vec3> x,
+               std::span<const Vec3> rest, std::span<const std::uint8_t> may_move)
+    : bodies(of_bodies),
+      kinds(std::move(of_kinds)),
+      movable(may_move),
+      edges(mesh::collect_edges(of_bodies.triangles())),
+      neighbours(rest.size()),
+      on_border(x.size(), 0) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) thickness.push_back(bodies[b].thickness);
+  const auto add = [&](Index i, Index j, bool bend) {
+    const double at_start = (x[i] - x[j]).norm(), at_rest = (rest[i] - rest[j]).norm();
+    links.push_back({i, j, kMinLengthRatio * std::min(at_start, at_rest), std::max(at_start, at_rest), bend});
+  };
+  const auto third = [&](Index triangle, const mesh::Edge& edge) {
+    for (const Index v : bodies.triangles()[triangle])
+      if (v != edge.vertices[0] && v != edge.vertices[1]) return v;
+    return edge.vertices[0];
+  };
+  for (const mesh::Edge& edge : edges.edges) {
+    const auto [i, j] = edge.vertices;
+    if (edge.triangles[1] < 0) on_border[i] = on_border[j] = 1;
+    if (!is_cloth(i)) continue;
+    neighbours[i].push_back(j);
+    neighbours[j].push_back(i);
+    add(i, j, false);
+    if (edge.triangles[1] >= 0) add(third(edge.triangles[0], edge), third(edge.triangles[1], edge), true);
+  }
+}
+
+double stretch_cost(const Fabric& fabric, std::span<const Move> moves, std::span<const Vec3> x) {
+  std::unordered_map<Index, Vec3> targets;
+  for (const Move& move : moves) targets.emplace(move.particle, move.target);
+  const auto at = [&](Index i) {
+    const auto found = targets.find(i);
+    return found == targets.end() ? x[i] : found->second;
+  };
+  double sum = 0;
+  std::size_t count = 0;
+  for (const Fabric::Link& link : fabric.links) {
+    if (link.is_bend || (!targets.contains(link.i) && !targets.contains(link.j))) continue;
+    const double now = (x[link.i] - x[link.j]).norm(), then = (at(link.i) - at(link.j)).norm();
+    const double beyond = then / std::max(link.max_length, now) - 1, below = 1 - then / std::min(link.min_length, now);
+    const double error = std::max({beyond, below, 0.0});
+    sum += error * error;
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+}  // namespace weft::untangle

@@ -1,0 +1,62 @@
+// Input of untangling: surfaces in one numbering, which vertices may move, and how cloth is connected.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "physics/collision/bodies.hpp"
+#include "physics/mesh/topology.hpp"
+
+namespace weft::untangle {
+
+/// On which sides of a body cloth may be.
+enum class Kind : std::uint8_t {
+  cloth,
+  solid,  ///< has an inside, where cloth may not be
+  floor,  ///< cloth may not be below it
+  open,   ///< has two sides, both allowed
+  layer,  ///< worn cloth: its inner side belongs to the body below it
+};
+
+/// Connectivity of surfaces and allowed lengths of threads (links between neighbours); constant.
+struct Fabric {
+  /// `x`: all vertices as given by the scene; `rest`: stress-free particles [m]. `may_move`: per vertex. `of_bodies`
+  /// and `may_move` must outlive it.
+  Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, std::span<const Vec3> x,
+         std::span<const Vec3> rest, std::span<const std::uint8_t> may_move);
+
+  /// Allowed range of the distance between two particles [m].
+  struct Link {
+    Index i, j;
+    double min_length, max_length;
+    bool is_bend;  ///< between opposite corners of two triangles; corrected less
+  };
+
+  const collision::Bodies& bodies;
+  std::vector<Kind> kinds;  ///< per body
+  std::span<const std::uint8_t> movable;
+  mesh::EdgeSet edges;                         ///< of all triangles, with global numbers
+  std::vector<Link> links;                     ///< of cloth
+  std::vector<std::vector<Index>> neighbours;  ///< per particle
+  std::vector<std::uint8_t> on_border;         ///< per vertex
+  std::vector<double> thickness;               ///< per body [m]
+
+  bool is_cloth(Index vertex) const { return vertex < particles(); }
+  Index particles() const { return static_cast<Index>(neighbours.size()); }
+};
+
+/// New position of a particle.
+struct Move {
+  Index particle;
+  Vec3 target;  ///< [m]
+};
+
+/// Cost of these moves: mean squared strain of the threads of the moved particles. Strain is the relative excess over
+/// the maximum length, or the relative shortfall below the minimum length. Excess or shortfall before the moves does
+/// not count.
+double stretch_cost(const Fabric& fabric, std::span<const Move> moves, std::span<const Vec3> x);
+
+}  // namespace weft::untangle

@@ -1,0 +1,23 @@
+// Relaxation: the rest of the cloth follows moved particles, so that threads and folds regain allowed lengths.
+#pragma once
+
+#include <span>
+
+#include "physics/untangle/problem.hpp"
+#include "physics/untangle/solid.hpp"
+
+namespace weft::untangle {
+
+/// Sweeps over all links in order and corrects each at once (position-based dynamics without time: Müller et al.,
+/// "Position Based Dynamics", 2007). After every few sweeps, particles that are too low over a solid are raised to
+/// `above` its surface (per body of cloth, [m]).
+void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, int sweeps,
+           std::span<Vec3> x);
+
+/// Raises particles that are lower than `above` over a solid to that height, the nearest way.
+void raise(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, std::span<Vec3> x);
+
+/// Moves movable particles within `rings` edges of the given ones to the centre of their neighbours, `times` times.
+void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, int times, std::span<Vec3> x);
+
+}  // namespace weft::untangle

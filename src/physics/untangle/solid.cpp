@@ -1,0 +1,160 @@
+#include "physics/untangle/solid.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "physics/collision/proximity/closest_points.hpp"
+#include "physics/collision/proximity/surface_point.hpp"
+
+namespace weft::untangle {
+namespace {
+
+// Offset at which a face's outside is probed, relative to the size of the body: below any detail, above rounding.
+constexpr double kProbeOffset = 1e-6;
+// Corner weight below which the nearest point of a face counts as on the opposite edge.
+constexpr double kMaxZeroWeight = 1e-9;
+// Direction of rays: nearly along an axis, so that boxes around them are thin, but along no edge that a modeller draws.
+const Vec3 kRayDirection(1, 0.00137, 0.00211);
+
+}  // namespace
+
+Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kind, std::span<const Vec3> x)
+    : surfaces_(surfaces), number_(number), kind_(kind), x_(x) {
+  const collision::Surface& surface = surfaces.surface(number);
+  for (const collision::Triangle& t : surface.triangles)
+    for (const Index v : t) box_.extend(x[v]);
+  if (kind == Kind::floor) {
+    normal_ = collision::face_normal(surface.triangles.front(), x);
+    place_ = x[surface.triangles.front()[0]];
+    return;
+  }
+  const double above = kProbeOffset * box_.diagonal().norm();
+  for (const collision::Triangle& t : surface.triangles)
+    buried_.push_back(inside((x[t[0]] + x[t[1]] + x[t[2]]) / 3 + above * collision::face_normal(t, x)));
+}
+
+Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
+             std::span<const std::uint8_t> on_border, std::span<const Solid> below)
+    : surfaces_(surfaces), number_(number), kind_(Kind::layer), x_(x), on_border_(on_border) {
+  const collision::Surface& surface = surfaces.surface(number);
+  for (const collision::Triangle& t : surface.triangles)
+    for (const Index v : t) box_.extend(x[v]);
+  double outward = 0;  // area facing outward minus area facing inward [m²]
+  for (const collision::Triangle& t : surface.triangles) {
+    const Vec3 centre = (x[t[0]] + x[t[1]] + x[t[2]]) / 3;
+    Vec3 away = (centre - box_.center()).stableNormalized();
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Solid& body : below) {
+      const Exit exit = body.exit(centre);
+      if (std::abs(exit.height) >= nearest) continue;
+      nearest = std::abs(exit.height);
+      away = exit.normal;
+    }
+    outward += 0.5 * (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).dot(away);
+  }
+  if (outward < 0) outer_sign_ = -1;
+}
+
+bool Solid::is_near(const Vec3& p, double distance) const {
+  if (kind_ == Kind::floor) return normal_.dot(p - place_) < distance;
+  return box_.squaredExteriorDistance(p) <= distance * distance;
+}
+
+// Where the segment from p along `way` crosses faces, in order.
+std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
+  const collision::Surface& surface = surfaces_.surface(number_);
+  std::vector<Index> numbers;
+  surfaces_.triangles_in_box(number_, p.cwiseMin(p + way), p.cwiseMax(p + way), numbers);
+  std::vector<Hit> found;
+  for (const Index number : numbers) {
+    const collision::Triangle& t = surface.triangles[number - surface.first_triangle];
+    const Vec3 &a = x_[t[0]], &b = x_[t[1]], &c = x_[t[2]];
+    const double u = way.dot((b - p).cross(c - p)), v = way.dot((c - p).cross(a - p)),
+                 w = way.dot((a - p).cross(b - p));
+    const bool one_side = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+    if (!one_side || u + v + w == 0) continue;
+    const Vec3 n = (b - a).cross(c - a);
+    const double along = n.dot(way);
+    if (along == 0) continue;
+    const double at = n.dot(a - p) / along;
+    if (at > 0 && at <= 1) found.push_back({at, along > 0 ? -outer_sign_ : outer_sign_});
+  }
+  std::ranges::stable_sort(found, {}, &Hit::fraction);
+  return found;
+}
+
+bool Solid::inside(const Vec3& p) const {
+  if (kind_ == Kind::floor) return normal_.dot(p - place_) < 0;
+  if (kind_ == Kind::layer) return exit_of_layer(p).height < 0;
+  if (!box_.contains(p)) return false;
+  int turns = 0;
+  for (const Hit& hit : hits(p, 1.01 * box_.diagonal().norm() * kRayDirection)) turns += hit.winding;
+  return turns < 0;
+}
+
+// Points whose nearest point is on the border are next to the cloth, and so outside.
+Solid::Exit Solid::exit_of_layer(const Vec3& p) const {
+  const collision::SurfacePoint point = collision::nearest_point(p, surfaces_, number_, x_);
+  const Vec3 place = p - point.height * point.normal;
+  bool beside = true;
+  for (std::size_t c = 0; c < 3; ++c)
+    beside = beside && (point.weights[c] <= kMaxZeroWeight || on_border_[point.face[c]] != 0);
+  if (!beside) return {place, outer_sign_ * point.normal, outer_sign_ * point.height};
+  const Vec3 arm = p - place;
+  return {place, arm.isZero() ? Vec3(outer_sign_ * point.normal) : arm.normalized(), arm.norm()};
+}
+
+Solid::Exit Solid::exit(const Vec3& p) const {
+  if (kind_ == Kind::layer) return exit_of_layer(p);
+  if (kind_ == Kind::floor) {
+    const double height = normal_.dot(p - place_);
+    return {p - height * normal_, normal_, height};
+  }
+  const collision::Surface& surface = surfaces_.surface(number_);
+  std::vector<Index> numbers;
+  surfaces_.nearest_triangles(
+      number_, p,
+      [&](Index number) {
+        if (buried_[number - surface.first_triangle]) return std::numeric_limits<double>::infinity();
+        const collision::Triangle& t = surface.triangles[number - surface.first_triangle];
+        return collision::closest_vertex_face(p, x_[t[0]], x_[t[1]], x_[t[2]]).distance_sq;
+      },
+      numbers);
+  std::vector<collision::Triangle> nearest;
+  for (const Index number : numbers) nearest.push_back(surface.triangles[number - surface.first_triangle]);
+  collision::SurfacePoint point = collision::nearest_point(p, nearest, x_);
+  const Vec3 place = p - point.height * point.normal;
+  // Where shells cross, the sign at the nearest point may be wrong.
+  const double side = inside(p) ? -1 : 1;
+  if (side * point.height < 0) point.normal = -point.normal;
+  return {place, point.normal, side * std::abs(point.height)};
+}
+
+double Solid::distance_out(const Vec3& p, const Vec3& d) const {
+  if (kind_ == Kind::floor) {
+    const double rise = normal_.dot(d);
+    return rise > 0 ? -normal_.dot(p - place_) / rise : std::numeric_limits<double>::infinity();
+  }
+  const double length = 1.01 * box_.diagonal().norm();
+  int depth = 0, shells = 0;
+  const std::vector<Hit> found = hits(p, length * d);
+  if (kind_ == Kind::layer) {
+    for (const Hit& hit : found)
+      if (hit.winding < 0) return length * hit.fraction;
+    return std::numeric_limits<double>::infinity();
+  }
+  for (const Hit& hit : found) shells -= hit.winding;
+  depth = shells;  // shells around p: the ray leaves them more often than it enters
+  for (const Hit& hit : found) {
+    depth += hit.winding;
+    if (depth <= 0) return length * hit.fraction;
+  }
+  return 0;
+}
+
+double Solid::midpoint_depth(const Vec3& p, const Vec3& q) const {
+  const Vec3 middle = 0.5 * (p + q);
+  return is_near(middle, 0) && inside(middle) ? -exit(middle).height / (p - q).norm() : 0;
+}
+
+}  // namespace weft::untangle

@@ -1,0 +1,285 @@
+#include "physics/untangle/untangle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/collision/response/certificate.hpp"
+#include "physics/untangle/contours.hpp"
+#include "physics/untangle/crossings.hpp"
+#include "physics/untangle/relaxation.hpp"
+#include "physics/untangle/solid.hpp"
+
+namespace weft::untangle {
+namespace {
+
+// Height of cloth over an obstacle, and over cloth that it is moved to, in thicknesses.
+constexpr double kHeightInThicknesses = 0.75;
+// Minimum gap between surfaces, in thicknesses: far above Numerics::Separation::least_gap.
+constexpr double kGapInThicknesses = 0.1;
+// Cloth closer than this to other cloth is on neither side of it [m].
+constexpr double kTouchDistance = 1e-9;
+constexpr int kMaxRounds = 400;
+// After kPatience rounds without fewer crossings, the cloth around the remaining ones is smoothed, each time over a
+// larger area, at most kMaxSmoothings times.
+constexpr int kPatience = 12, kMaxSmoothings = 12;
+// Maximum number of islands of a crossed pair that are tried one by one.
+constexpr std::size_t kMaxSingleIslands = 12;
+constexpr int kSweepsAfterMove = 120, kSweeps = 8;
+// Maximum displacement of a region inside a body, relative to its size. Beyond it the region is locked.
+constexpr double kMaxDisplacementRatio = 1.5;
+// Maximum number of passes: a region that leaves one body may enter another.
+constexpr int kMaxPasses = 3;
+// If the particles of a region move by less than this, its way out is always tried: it is locked only by strain after
+// the move. In heights over the obstacle (kHeightInThicknesses).
+constexpr double kShallowDepth = 4;
+// Maximum strain of a thread after the move; beyond it the body goes through the cloth and the region is locked
+// (measured: 0.44 for a tube 4 cm too small, the largest of the valid starts; 4.9 for trousers with a leg through the
+// seat).
+constexpr double kMaxStrain = 1.5;
+// Maximum fraction of the threads of a region that the body may still block: those at its border recover.
+constexpr double kMaxBlockedFraction = 0.2;
+// Step along the gradients of contours, in mean lengths of the threads.
+constexpr double kStep = 0.12;
+constexpr int kMaxGapRounds = 60;
+
+class Untangling {
+ public:
+  Untangling(const Fabric& fabric, const Options& options, std::span<Vec3> x)
+      : fabric_(fabric), x_(x), start_(x.begin(), x.end()), finder_(fabric, x, options.self, options.obstacles) {
+    for (std::size_t b = 0; b < fabric.bodies.size(); ++b) {
+      above_.push_back(kHeightInThicknesses * fabric.thickness[b]);
+      const bool solid = fabric.kinds[b] == Kind::solid || fabric.kinds[b] == Kind::floor;
+      if (solid && options.obstacles) solids_.emplace_back(finder_.surfaces(), b, fabric.kinds[b], x);
+    }
+    const std::vector<Solid> bodies = solids_;
+    for (std::size_t b = 0; b < fabric.bodies.size(); ++b)
+      if (fabric.kinds[b] == Kind::layer) solids_.emplace_back(finder_.surfaces(), b, x, fabric.on_border, bodies);
+    double sum = 0;
+    std::size_t count = 0;
+    for (const Fabric::Link& link : fabric.links) {
+      if (link.is_bend) continue;
+      sum += link.max_length;
+      ++count;
+    }
+    step_ = kStep * sum / static_cast<double>(std::max<std::size_t>(count, 1));
+  }
+
+  Report run() {
+    finder_.find(x_);
+    report_.pairs_before = finder_.pairs();
+    separate_touching();
+    if (move_out_of_solids()) {
+      reduce_crossings();
+      if (report_.pairs_after == 0) restore_gaps();
+    }
+    measure();
+    return report_;
+  }
+
+ private:
+  // Moves cloth out of bodies, region by region. If a region has no way out, restores the start and returns false.
+  bool move_out_of_solids() {
+    for (int pass = 0; pass < kMaxPasses && report_.locked.empty(); ++pass) {
+      std::vector<InsideRegion> regions;
+      for (const Solid& solid : solids_) {
+        for (InsideRegion& region : find_inside(fabric_, solid, above_, x_)) {
+          const bool shallow = region.farthest < kShallowDepth * above_[region.cloth];
+          const bool free = !region.moves.empty() && region.farthest <= kMaxDisplacementRatio * region.size &&
+                            region.blocked <= kMaxBlockedFraction;
+          (shallow || free ? regions : report_.locked).push_back(std::move(region));
+        }
+      }
+      if (regions.empty() || !report_.locked.empty()) break;
+      for (const InsideRegion& region : regions) apply(region.moves);
+      relax(fabric_, solids_, above_, kSweepsAfterMove, x_);
+      for (InsideRegion& region : regions)
+        if (is_overstretched(region)) report_.locked.push_back(std::move(region));
+    }
+    if (report_.locked.empty()) return true;
+    std::ranges::copy(start_, x_.begin());
+    report_.pairs_after = report_.pairs_before;
+    return false;
+  }
+
+  bool is_overstretched(const InsideRegion& region) const {
+    std::vector<std::uint8_t> in(static_cast<std::size_t>(fabric_.particles()), 0);
+    for (const Move& move : region.moves) in[move.particle] = 1;
+    return std::ranges::any_of(fabric_.links, [&](const Fabric::Link& link) {
+      return !link.is_bend && (in[link.i] || in[link.j]) &&
+             (x_[link.i] - x_[link.j]).norm() > (1 + kMaxStrain) * link.max_length;
+    });
+  }
+
+  bool apply(std::span<const Move> moves) {
+    bool any = false;
+    for (const Move& move : moves) {
+      if (!fabric_.movable[move.particle]) continue;
+      x_[move.particle] = move.target;
+      any = true;
+    }
+    return any;
+  }
+
+  // Separates coincident cloths, which are not on any side of each other: moves one to the front of the other; the
+  // later cloth, if it is movable.
+  void separate_touching() {
+    std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
+    for (const collision::TrianglePair& pair : finder_.near(x_, kTouchDistance)) {
+      const collision::CornerPair corners{fabric_.bodies.triangles()[pair.a], fabric_.bodies.triangles()[pair.b]};
+      if (!fabric_.is_cloth(corners.b[0]) ||
+          fabric_.bodies.body_of(corners.a[0]) == fabric_.bodies.body_of(corners.b[0]))
+        continue;
+      if (collision::closest_features(corners, x_).points.distance_sq > kTouchDistance * kTouchDistance) continue;
+      const bool later = fabric_.movable[corners.b[0]];
+      const collision::Triangle &still = later ? corners.a : corners.b, &moves = later ? corners.b : corners.a;
+      for (const Index v : moves)
+        normals[v] += (x_[still[1]] - x_[still[0]]).cross(x_[still[2]] - x_[still[0]]).stableNormalized();
+    }
+    for (Index i = 0; i < fabric_.particles(); ++i)
+      if (fabric_.movable[i])
+        x_[i] += 1.1 * kGapInThicknesses * fabric_.thickness[fabric_.bodies.body_of(i)] * normals[i].stableNormalized();
+  }
+
+  // Repeats until nothing crosses, or nothing improves.
+  void reduce_crossings() {
+    find();
+    best_x_.assign(x_.begin(), x_.end());
+    fewest_pairs_ = finder_.pairs();
+    for (int waited = 0, smoothings = 0; report_.rounds < kMaxRounds && fewest_pairs_ > 0; ++report_.rounds) {
+      if (waited == 0 && move_islands()) continue;
+      push_out_of_solids(fabric_, crossings_, solids_, above_, x_);
+      shorten_contours(fabric_, crossings_, step_, x_);
+      relax(fabric_, solids_, above_, kSweeps, x_);
+      find();
+      waited = keep_if_better() ? 0 : waited + 1;
+      if (waited < kPatience) continue;
+      if (++smoothings > kMaxSmoothings) break;
+      smooth_around(smoothings);
+      waited = 0;
+    }
+    return_to_best();
+    report_.pairs_after = fewest_pairs_;
+  }
+
+  // Tries to move cut-off islands: first all at once; then, for each cloth and each surface that it crosses, those of
+  // this pair at once, then each of them alone. Returns whether fewer triangles cross; if not, nothing has changed.
+  bool move_islands() {
+    const std::vector<Vec3> before(x_.begin(), x_.end());
+    const auto try_moves = [&](std::span<const std::vector<Move>> islands) {
+      bool any = false;
+      for (const std::vector<Move>& moves : islands) any = apply(moves) || any;
+      if (!any) return false;
+      relax(fabric_, solids_, above_, kSweepsAfterMove, x_);
+      find();
+      if (keep_if_better()) return true;
+      std::ranges::copy(before, x_.begin());
+      find();
+      return false;
+    };
+    const auto islands_of = [&](const std::optional<CrossedPair>& only) {
+      return move_cut_off_islands(fabric_, crossings_, finder_.surfaces(), above_, only, x_);
+    };
+    if (try_moves(islands_of(std::nullopt))) return true;
+    for (const CrossedPair& only : list_crossed_pairs(fabric_, crossings_)) {
+      const auto islands = islands_of(only);
+      if (try_moves(islands)) return true;
+      for (std::size_t p = 0; islands.size() > 1 && p < std::min(islands.size(), kMaxSingleIslands); ++p)
+        if (try_moves(std::span(islands).subspan(p, 1))) return true;
+    }
+    return false;
+  }
+
+  // Smooths cloth around its crossings with cloth, over a growing area. Not around bodies: cloth would go back inside.
+  void smooth_around(int smoothings) {
+    std::vector<Index> around;
+    for (const Crossing& c : crossings_) {
+      if (involves_solid(fabric_, c)) continue;
+      const auto& edge = fabric_.edges.edges[c.edge].vertices;
+      const auto& t = fabric_.bodies.triangles()[c.triangle];
+      around.insert(around.end(), {edge[0], edge[1], t[0], t[1], t[2]});
+    }
+    smooth(fabric_, around, 1 + smoothings, 4 * smoothings, x_);
+    relax(fabric_, solids_, above_, kSweepsAfterMove, x_);
+    find();
+    keep_if_better();
+  }
+
+  void find() {
+    const std::span<const Crossing> found = finder_.find(x_);
+    crossings_.assign(found.begin(), found.end());
+  }
+  // Stores the present state as the best one if fewer pairs cross than ever before.
+  bool keep_if_better() {
+    if (finder_.pairs() >= fewest_pairs_) return false;
+    fewest_pairs_ = finder_.pairs();
+    best_x_.assign(x_.begin(), x_.end());
+    return true;
+  }
+  void return_to_best() { std::ranges::copy(best_x_, x_.begin()); }
+
+  // Nothing crosses any more, but surfaces may touch: pushes close pairs apart until none is left or some would cross.
+  void restore_gaps() {
+    std::vector<Vec3> good(x_.begin(), x_.end());
+    double max_gap = 0;
+    for (const double thickness : fabric_.thickness) max_gap = std::max(max_gap, kGapInThicknesses * thickness);
+    for (int round = 0; round < kMaxGapRounds; ++round) {
+      int close = 0;
+      for (const collision::TrianglePair& pair : finder_.near(x_, max_gap)) {
+        const collision::CornerPair corners{fabric_.bodies.triangles()[pair.a], fabric_.bodies.triangles()[pair.b]};
+        close += push(corners);
+      }
+      if (close == 0) break;
+      finder_.find(x_);
+      if (finder_.pairs() > 0) break;
+      std::ranges::copy(x_, good.begin());
+    }
+    std::ranges::copy(good, x_.begin());
+  }
+
+  bool push(const collision::CornerPair& pair) {
+    const double wanted = kGapInThicknesses * std::max(fabric_.thickness[fabric_.bodies.body_of(pair.a[0])],
+                                                       fabric_.thickness[fabric_.bodies.body_of(pair.b[0])]);
+    const collision::ClosestFeatures closest = collision::closest_features(pair, x_);
+    const double distance = std::sqrt(closest.points.distance_sq);
+    if (distance >= wanted) return false;
+    const Vec3 n = distance > 0
+                       ? Vec3(closest.points.difference / distance)
+                       : (x_[pair.b[1]] - x_[pair.b[0]]).cross(x_[pair.b[2]] - x_[pair.b[0]]).stableNormalized();
+    double sum_sq = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (fabric_.movable[closest.vertices[k]]) sum_sq += closest.points.weights[k] * closest.points.weights[k];
+    if (sum_sq == 0) return false;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (fabric_.movable[closest.vertices[k]])
+        x_[closest.vertices[k]] += (1.1 * wanted - distance) * closest.points.weights[k] / sum_sq * n;
+    return true;
+  }
+
+  void measure() {
+    for (Index i = 0; i < fabric_.particles(); ++i)
+      report_.farthest = std::max(report_.farthest, (x_[i] - start_[i]).norm());
+    for (const Fabric::Link& link : fabric_.links)
+      if (!link.is_bend)
+        report_.stretch = std::max(report_.stretch, (x_[link.i] - x_[link.j]).norm() / link.max_length - 1);
+  }
+
+  const Fabric& fabric_;
+  std::span<Vec3> x_;
+  std::vector<Vec3> start_;
+  CrossingFinder finder_;
+  std::vector<Solid> solids_;
+  std::vector<double> above_;  // per body [m]
+  double step_ = 0;            // [m]
+  std::vector<Crossing> crossings_;
+  std::vector<Vec3> best_x_;  // state with the fewest crossing pairs
+  int fewest_pairs_ = 0;      // number of these pairs
+  Report report_;
+};
+
+}  // namespace
+
+Report untangle(const Fabric& fabric, const Options& options, std::span<Vec3> x) {
+  return Untangling(fabric, options, x).run();
+}
+
+}  // namespace weft::untangle

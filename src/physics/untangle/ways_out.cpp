@@ -1,0 +1,178 @@
+#include "physics/untangle/ways_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace weft::untangle {
+namespace {
+
+// Cost of a thread that would still go through the body, in units of squared strain.
+constexpr double kBlockedCost = 25;
+// Depth of a thread's midpoint in the body, relative to the length of the thread. Above kBlockedDepth, the thread goes
+// through the body and does not just cut a corner. Below kFreeDepth, it certainly does not go through.
+constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
+// Cost of a way as long as the region, so that the shorter of two ways with equal stretch is chosen.
+constexpr double kDisplacementCost = 0.05;
+// Cost of moving a whole cloth, so that it stays if the region can leave alone; and the longest such move, in sizes of
+// the region.
+constexpr double kWholeMeshCost = 0.3, kMaxWholeMeshRatio = 1.1;
+// Maximum fraction of the particles that may pass through the body in such a move: more would pull cloth off a body
+// that wears it.
+constexpr double kMaxThroughFraction = 0.1;
+
+// The 26 directions to the neighbours in a cubic grid, nearest first.
+std::vector<Vec3> directions() {
+  std::vector<Vec3> all;
+  for (const int steps : {1, 2, 3})
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        for (int z = -1; z <= 1; ++z)
+          if (std::abs(x) + std::abs(y) + std::abs(z) == steps) all.push_back(Vec3(x, y, z).normalized());
+  return all;
+}
+
+/// State, after a move, of the threads of the moved particles.
+struct Threads {
+  double blocked = 0;  // fraction that the body blocks
+  bool free = true;    // none goes through the body
+};
+Threads threads_after(const Fabric& fabric, const Solid& solid, std::span<const Move> moves,
+                      const std::vector<Index>& move_of, std::span<const Vec3> x) {
+  std::size_t blocked = 0, all = 0;
+  Threads threads;
+  for (const Move& move : moves) {
+    for (const Index j : fabric.neighbours[move.particle]) {
+      if (move_of[j] >= 0 && j < move.particle) continue;
+      const double depth = solid.midpoint_depth(move.target, move_of[j] >= 0 ? moves[move_of[j]].target : x[j]);
+      ++all;
+      blocked += depth > kBlockedDepth;
+      threads.free = threads.free && depth < kFreeDepth;
+    }
+  }
+  if (all > 0) threads.blocked = static_cast<double>(blocked) / static_cast<double>(all);
+  return threads;
+}
+
+// Mean normal of the triangles around these particles.
+Vec3 mean_normal(const collision::Surface& cloth, const std::vector<Index>& move_of, std::span<const Vec3> x) {
+  Vec3 sum = Vec3::Zero();
+  for (const collision::Triangle& t : cloth.triangles)
+    if (move_of[t[0]] >= 0 || move_of[t[1]] >= 0 || move_of[t[2]] >= 0)
+      sum += (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+  return sum.stableNormalized();
+}
+
+// All particles of the mesh that contains this one.
+std::vector<Index> mesh_of(const Fabric& fabric, Index first) {
+  std::vector<Index> mesh{first};
+  std::vector<std::uint8_t> in(static_cast<std::size_t>(fabric.particles()), 0);
+  in[first] = 1;
+  for (std::size_t m = 0; m < mesh.size(); ++m)
+    for (const Index j : fabric.neighbours[mesh[m]])
+      if (!in[j]) {
+        in[j] = 1;
+        mesh.push_back(j);
+      }
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, std::span<const double> above,
+                                      std::span<const Vec3> x) {
+  const Index particles = fabric.particles();
+  std::vector<std::uint8_t> inside(particles, 0);
+  for (Index i = 0; i < particles; ++i) inside[i] = solid.is_near(x[i], 0) && solid.inside(x[i]);
+  std::vector<Index> move_of(x.size(), -1);  // per vertex: index among the moves of the present region
+  std::vector<InsideRegion> regions;
+  for (Index first = 0; first < particles; ++first) {
+    if (!inside[first]) continue;
+    // Collect the connected region of the first particle.
+    std::vector<Index> members{first};
+    inside[first] = 0;
+    for (std::size_t m = 0; m < members.size(); ++m)
+      for (const Index j : fabric.neighbours[members[m]])
+        if (inside[j]) {
+          inside[j] = 0;
+          members.push_back(j);
+        }
+    InsideRegion region;
+    region.cloth = fabric.bodies.body_of(first);
+    region.body = solid.number();
+    for (std::size_t m = 0; m < members.size(); ++m) move_of[members[m]] = static_cast<Index>(m);
+    // Extend the box half-way to neighbours, so that a single particle of a coarse mesh is as wide as its cells.
+    Box3 box;
+    for (const Index i : members) {
+      box.extend(x[i]);
+      for (const Index j : fabric.neighbours[i]) box.extend(0.5 * (x[i] + x[j]));
+    }
+    region.centre = box.center();
+    region.size = box.sizes().maxCoeff();
+
+    const double height = above[region.cloth];
+    double best = std::numeric_limits<double>::infinity();
+    const auto consider = [&](const std::function<Vec3(const Vec3&)>& out_of) {
+      std::vector<Move> moves;
+      double farthest = 0;
+      for (const Index i : members) {
+        moves.push_back({i, out_of(x[i])});
+        if (!moves.back().target.allFinite()) return;
+        farthest = std::max(farthest, (moves.back().target - x[i]).norm());
+      }
+      const double cost = stretch_cost(fabric, moves, x);
+      const Threads threads = threads_after(fabric, solid, moves, move_of, x);
+      const double whole =
+          cost + kBlockedCost * threads.blocked + kDisplacementCost * farthest / std::max(region.size, height);
+      if (threads.free) region.shortest = std::min(region.shortest, farthest);
+      if (whole >= best) return;
+      best = whole;
+      region.cost = cost;
+      region.blocked = threads.blocked;
+      region.farthest = farthest;
+      region.moves = std::move(moves);
+    };
+    consider([&](const Vec3& p) -> Vec3 {
+      const Solid::Exit exit = solid.exit(p);
+      return exit.place + height * exit.normal;
+    });
+    // Move the whole mesh of the region, if that takes it out of the body and nothing else into it.
+    const auto consider_whole_mesh = [&](const Vec3& d) {
+      double way = 0;
+      for (const Index i : members) way = std::max(way, solid.distance_out(x[i], d) + height);
+      const double whole = kWholeMeshCost + kDisplacementCost * way / std::max(region.size, height);
+      if (!(way <= kMaxWholeMeshRatio * region.size) || whole >= best) return;
+      std::vector<Move> moves;
+      std::size_t through = 0;
+      for (const Index i : mesh_of(fabric, members.front())) {
+        const Vec3 target = x[i] + way * d;
+        if (!fabric.movable[i] || (solid.is_near(target, 0) && solid.inside(target))) return;
+        through += move_of[i] < 0 && solid.crosses_surface(x[i], target);
+        moves.push_back({i, target});
+      }
+      if (static_cast<double>(through) > kMaxThroughFraction * static_cast<double>(moves.size())) return;
+      for (const Move& move : moves)
+        for (const Index j : fabric.neighbours[move.particle])
+          if (solid.midpoint_depth(move.target, x[j] + way * d) > kBlockedDepth) return;
+      best = whole;
+      region.cost = region.blocked = 0;
+      region.farthest = way;
+      region.shortest = std::min(region.shortest, way);
+      region.moves = std::move(moves);
+    };
+    std::vector<Vec3> ways = directions();
+    const Vec3 normal = mean_normal(fabric.bodies.surfaces()[region.cloth], move_of, x);
+    if (!normal.isZero()) ways.insert(ways.begin(), {normal, -normal});
+    for (const Vec3& d : ways)
+      consider([&](const Vec3& p) -> Vec3 { return p + (solid.distance_out(p, d) + height) * d; });
+    if (best > kWholeMeshCost) {
+      for (const Vec3& d : ways) consider_whole_mesh(d);
+    }
+    for (const Index i : members) move_of[i] = -1;
+    regions.push_back(std::move(region));
+  }
+  return regions;
+}
+
+}  // namespace weft::untangle

@@ -1,7 +1,0 @@
-#include "python/bindings.hpp"
-
-PYBIND11_MODULE(_weft, module) {
-  weft::python::bind_simulation(module);
-  weft::python::bind_tools(module);
-  weft::python::bind_drawing(module);
-}

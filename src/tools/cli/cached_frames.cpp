@@ -1,0 +1,70 @@
+#include "tools/cli/cached_frames.hpp"
+
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/log.hpp"
+
+namespace weft::cli {
+namespace {
+
+/// Frames that cannot be used.
+struct Missing {
+  std::vector<int> absent, broken;
+  std::string first_problem;  ///< message of the first broken frame
+
+  void look_at(const cache::Reader& reader, int frame) {
+    if (!reader.has(frame)) return absent.push_back(frame);
+    try {
+      reader.verify(frame);
+    } catch (const Error& error) {
+      if (broken.empty()) first_problem = error.what();
+      broken.push_back(frame);
+    }
+  }
+
+  bool none() const { return absent.empty() && broken.empty(); }
+
+  std::string text() const {
+    const auto frames = [](const std::vector<int>& list) {
+      return fmt::format("frame{} {}", list.size() == 1 ? "" : "s", frames_text(list));
+    };
+    std::string text;
+    if (!absent.empty()) text = fmt::format("{} {} missing", frames(absent), absent.size() == 1 ? "is" : "are");
+    if (!absent.empty() && !broken.empty()) text += "; ";
+    if (!broken.empty()) text += fmt::format("{} cannot be used: {}", frames(broken), first_problem);
+    return text;
+  }
+};
+
+}  // namespace
+
+FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial) {
+  const FrameRange wanted = resolve_frames(selection, reader.manifest().frame_count);
+  FrameRange before{wanted.begin, wanted.begin, wanted.step};  // frames before the first missing one
+  Missing missing;
+  for (int frame = wanted.begin; frame < wanted.end; frame += wanted.step) {
+    missing.look_at(reader, frame);
+    if (missing.none()) before.end = frame + 1;
+  }
+  if (missing.none()) return wanted;
+  if (!partial || before.end == wanted.begin)
+    throw Error(ExitCode::frames_missing,
+                "{}: of frames {} {}; weft simulate --resume simulates the missing frames, --partial uses those before "
+                "the first missing one",
+                reader.folder().string(), wanted.text(), missing.text());
+  log::warn(fmt::format("{}: of frames {} {}; only {} are used", reader.folder().string(), wanted.text(),
+                        missing.text(), before.text()));
+  return before;
+}
+
+void show_frames(const cache::Reader& reader, render::CameraPath& camera) {
+  const cache::Reader any(reader.folder(), cache::Looks::any);
+  for (const int frame : any.frames()) {
+    const cache::CachedFrame cached = any.read(frame);
+    if (cached.scene_hash == any.manifest().scene_hash) camera.see(*cached.snapshot);
+  }
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,19 @@
+// Selection of the frames of a cache that a command uses.
+#pragma once
+
+#include "film/cache/reader.hpp"
+#include "film/render/camera_path.hpp"
+#include "tools/cli/frame_range.hpp"
+
+namespace weft::cli {
+
+/// Returns the selected frames, or all frames of the scene if `selection` names none. Reads each frame first, so that a
+/// damaged one is found before anything is written. If frames are missing or broken, throws Error(frames_missing) with
+/// their numbers; with `partial`, warns and returns the frames before the first missing one, and throws only if there
+/// are none. Throws Error(usage) for a selection without frames.
+FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial);
+
+/// Passes all frames of the cache that have the scene's current looks to the camera.
+void show_frames(const cache::Reader& reader, render::CameraPath& camera);
+
+}  // namespace weft::cli

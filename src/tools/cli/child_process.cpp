@@ -1,0 +1,109 @@
+#include "tools/cli/child_process.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include "core/error.hpp"
+#include "core/installation.hpp"
+
+namespace weft::cli {
+namespace {
+
+/// Output descriptors of a child process; -1: the child uses that of its parent.
+struct Outputs {
+  int out = -1, err = -1;
+};
+
+/// Executes the program, in the child process. If this fails, returns with the reason in errno. Calls only
+/// async-signal-safe functions, since another thread of the parent may have held a lock at the fork.
+void become(const std::vector<char*>& arguments, Outputs outputs, pid_t parent) {
+  // If the parent is killed, the child must end too: otherwise a resumed command and this child would write the same
+  // files. posix_spawn has no such option.
+  if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
+  if (::getppid() != parent) ::_exit(127);  // the parent has died before prctl()
+  int input[2];  // a closed pipe as empty input, since a container may lack /dev/null; exec closes the write end
+  if (::pipe2(input, O_CLOEXEC) != 0 || ::dup2(input[0], STDIN_FILENO) < 0) return;
+  if (outputs.out >= 0 && ::dup2(outputs.out, STDOUT_FILENO) < 0) return;
+  if (outputs.err >= 0 && ::dup2(outputs.err, STDERR_FILENO) < 0) return;
+  ::execvp(arguments[0], arguments.data());
+}
+
+/// Returns 0, or the errno if the process could not be started.
+int start(std::vector<std::string> words, Outputs outputs, pid_t& process) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  std::array<int, 2> answer{};
+  if (::pipe2(answer.data(), O_CLOEXEC) != 0) return errno;
+  const pid_t parent = ::getpid();
+  process = ::fork();
+  int problem = process < 0 ? errno : 0;
+  if (process == 0) {
+    become(arguments, outputs, parent);
+    problem = errno;
+    ::_exit(::write(answer[1], &problem, sizeof problem) < 0 ? 126 : 127);
+  }
+  ::close(answer[1]);
+  // If the program starts, the pipe is closed without data.
+  while (process > 0 && ::read(answer[0], &problem, sizeof problem) < 0 && errno == EINTR) continue;
+  ::close(answer[0]);
+  if (process > 0 && problem != 0) ::waitpid(process, nullptr, 0);
+  return problem;
+}
+
+[[noreturn]] void fail(const std::string& program, int problem) {
+  throw Error(ExitCode::output_failed, "{}: cannot be started: {}", program, std::strerror(problem));
+}
+
+}  // namespace
+
+std::filesystem::path own_program() {
+  std::filesystem::path program = own_installation().program;
+  if (program.empty())
+    throw Error(ExitCode::usage,
+                "/proc/self/exe: cannot be read: expected /proc to be mounted, to start this program again");
+  if (program.filename() == kToolsName) program.replace_filename("weft");
+  return program;
+}
+
+pid_t start_process(const std::vector<std::string>& words, const std::filesystem::path& log) {
+  Outputs outputs;
+  if (!log.empty()) {
+    outputs.out = outputs.err = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (outputs.out < 0)
+      throw Error(ExitCode::output_failed, "{}: cannot be written: {}", log.string(), std::strerror(errno));
+  }
+  pid_t process = -1;
+  const int problem = start(words, outputs, process);
+  if (outputs.out >= 0) ::close(outputs.out);
+  if (problem != 0) fail(words[0], problem);
+  return process;
+}
+
+ProcessResult run_process(const std::vector<std::string>& words) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(words[0], errno);
+  pid_t process = -1;
+  const int problem = start(words, {.out = ends[1]}, process);
+  ::close(ends[1]);
+  ProcessResult result{127, {}};
+  std::array<char, 4096> bytes;
+  for (ssize_t count = 0; problem == 0 && (count = ::read(ends[0], bytes.data(), bytes.size())) != 0;) {
+    if (count > 0) result.output.append(bytes.data(), static_cast<std::size_t>(count));
+    if (count < 0 && errno != EINTR) break;
+  }
+  ::close(ends[0]);
+  int status = 0;
+  while (problem == 0 && ::waitpid(process, &status, 0) < 0 && errno == EINTR) continue;
+  if (problem == 0) result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+}  // namespace weft::cli

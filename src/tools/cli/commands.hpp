@@ -1,0 +1,67 @@
+// One function per command. Each returns the exit code or throws Error.
+#pragma once
+
+#include "core/error.hpp"
+#include "tools/cli/options.hpp"
+
+namespace weft::cli {
+
+/// Simulates, draws and writes a film concurrently. On SIGINT, SIGTERM or a failure it ends early and keeps the
+/// finished frames.
+ExitCode run(const RunOptions& options);
+
+/// Simulates into a frame cache.
+ExitCode simulate(const SimulateOptions& options);
+
+/// Draws and writes the frames of a frame cache.
+ExitCode render(const RenderOptions& options);
+
+/// Checks scenes. Mistakes go to standard error, valid scenes and plans to standard output.
+ExitCode check(const CheckOptions& options);
+
+/// Draws one still: the requested frame, or the most informative one.
+ExitCode thumbnail(const ThumbnailOptions& options);
+
+/// Draws evenly spaced frames on one picture, with their numbers and times.
+ExitCode sheet(const SheetOptions& options);
+
+/// Joins the parts of a film to one video.
+ExitCode join(const JoinOptions& options);
+
+/// Runs a scene with many values; returns the exit code of the first failed run in the order of the sweep, 0 if none
+/// failed.
+ExitCode sweep(const SweepOptions& options);
+
+/// Submits runs and sweeps to a Slurm cluster, reports their progress, or cancels them.
+ExitCode farm(const FarmOptions& options);
+
+/// Writes a template scene.
+ExitCode make_new(const NewOptions& options);
+
+/// Names of the templates that make_new() accepts.
+std::vector<std::string> template_names();
+
+/// Draws a scene again whenever one of its files changes, until it is interrupted.
+ExitCode watch(const WatchOptions& options);
+
+/// Prints processor, libraries and OpenGL of this machine, and tests them.
+ExitCode doctor(const DoctorOptions& options);
+
+/// Measures the program and writes tables and plots. Returns exit code 1 if a stability case is wrong (unbounded energy
+/// or not finite).
+ExitCode bench(const BenchOptions& options);
+
+/// Prints the difference of each pair. Exit code 4 if a file cannot be read, else 7 if a pair differs, else 8 if a
+/// picture has no reference.
+ExitCode diff(const DiffOptions& options);
+
+/// Writes the reason to the log, then replaces references by the named files.
+ExitCode accept(const AcceptOptions& options);
+
+/// Writes the review page.
+ExitCode review(const ReviewOptions& options);
+
+/// Exports the frames of a frame cache to files for other programs.
+ExitCode export_frames(const ExportOptions& options);
+
+}  // namespace weft::cli

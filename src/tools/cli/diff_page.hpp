@@ -1,0 +1,27 @@
+// The result of `weft diff` as an HTML page.
+#pragma once
+
+#include <string>
+
+#include "tools/compare/files.hpp"
+
+namespace weft::cli {
+
+/// One self-contained HTML file without scripts. It shows each differing pair (of videos, the worst frame) as
+/// reference, test and map of the differences; other pairs are only listed.
+class DiffPage {
+ public:
+  /// `description`: text of the result.
+  void add(const compare::FileComparison& result, const std::string& description);
+  /// `title`: how many pairs are within their limits.
+  std::string html(const std::string& title) const;
+
+ private:
+  void add_figure(const char* kind, const std::string& caption, const image::Image& picture);
+
+  int differing_ = 0;
+  std::string sections_, good_;
+  std::size_t picture_bytes_ = 0;
+};
+
+}  // namespace weft::cli

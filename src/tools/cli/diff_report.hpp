@@ -1,0 +1,32 @@
+// Output of `weft diff` for people, scripts and CI systems.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/compare/files.hpp"
+
+namespace weft::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// One line; marks each figure that exceeds its limit.
+std::string describe(const compare::FileComparison& result, const compare::Limits& limits);
+
+Json describe_json(const compare::Limits& limits);
+/// `heatmap` may be empty.
+Json describe_json(const compare::FileComparison& result, const compare::Limits& limits,
+                   const std::filesystem::path& heatmap);
+
+/// A workflow annotation of GitHub Actions, attached to the reference, or to the test if there is no reference. Paths
+/// are relative to GITHUB_WORKSPACE if that is set. `description`: text of the result.
+std::string annotation(const compare::FileComparison& result, const std::string& description);
+
+/// JUnit XML with one test case per pair: different or missing pictures are failures, unreadable ones are errors.
+/// `descriptions`: one text per result.
+std::string junit_xml(const std::vector<compare::FileComparison>& results,
+                      const std::vector<std::string>& descriptions);
+
+}  // namespace weft::cli

@@ -1,0 +1,16 @@
+// Detection of cloth that starts wholly inside a body. Such cloth touches nothing, so that the start is accepted, but
+// contact then keeps the cloth inside.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "film/scene/scene.hpp"
+
+namespace weft::cli {
+
+/// Returns one sentence per cloth and closed, colliding obstacle that contains the cloth in this frame.
+std::vector<std::string> find_enclosed(const scene::Scene& scene, const frame::FrameSnapshot& snapshot);
+
+}  // namespace weft::cli

@@ -1,0 +1,278 @@
+// weft farm: runs and sweeps as jobs of a Slurm cluster. Tasks are weft commands that resume where they were stopped.
+// Their whole state is in the folder of the sweep, which the machines share.
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "core/input_file.hpp"
+#include "core/json.hpp"
+#include "core/log.hpp"
+#include "core/temporary_file.hpp"
+#include "film/cache/reader.hpp"
+#include "tools/cli/child_process.hpp"
+#include "tools/cli/commands.hpp"
+#include "tools/cli/estimate.hpp"
+#include "tools/cli/farm_scripts.hpp"
+#include "tools/cli/program_archive.hpp"
+#include "tools/cli/scene_input.hpp"
+#include "tools/cli/standard_output.hpp"
+#include "tools/cli/sweep_report.hpp"
+#include "tools/cli/table.hpp"
+#include "tools/review/find_runs.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Requested time and memory, relative to those of a trial. Frames with contact take longer than the first ones. A task
+// that exceeds its time is resumed later; a task that exceeds its memory is killed.
+constexpr double kTimeFactor = 4, kMemoryFactor = 1.5;
+constexpr int kMinTaskMinutes = 10, kExtraMemory = 256;  // [min], [MB]
+
+void check_slurm_found(const char* program, const ProcessResult& result) {
+  if (result.exit_code == 127)
+    throw Error(ExitCode::output_failed,
+                "{} is not found: expected a machine that can submit jobs to Slurm; weft farm submit --dry-run writes "
+                "scripts for other schedulers",
+                program);
+}
+
+/// Numbers and names of submitted jobs, oldest first.
+std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folder) {
+  std::vector<std::pair<std::string, std::string>> jobs;
+  std::istringstream in(read_start(folder / "farm/jobs", kMaxTextBytes));
+  for (std::string line; std::getline(in, line);)
+    if (const auto tab = line.find('\t'); tab != std::string::npos)
+      jobs.emplace_back(line.substr(0, tab), line.substr(tab + 1));
+  return jobs;
+}
+
+/// Numbers of the waiting or running jobs of this folder. Also counts their tasks by state, in `states`.
+std::vector<std::string> active_jobs(const fs::path& folder, std::map<std::string, int>& states) {
+  std::vector<std::string> numbers;
+  for (const auto& [number, name] : read_jobs(folder)) numbers.push_back(number);
+  std::vector<std::string> active;
+  if (numbers.empty()) return active;
+  const ProcessResult queue = run_process({"squeue", "--noheader", "--array", "--format=%A %F %T"});
+  if (queue.exit_code == 127) return active;
+  std::istringstream lines(queue.output);
+  for (std::string own, array, state; lines >> own >> array >> state;) {
+    if (std::ranges::find(numbers, array) == numbers.end()) continue;
+    ++states[state];
+    if (std::ranges::find(active, array) == active.end()) active.push_back(array);
+  }
+  return active;
+}
+
+/// Progress of a run.
+struct State {
+  std::string text;
+  bool done = false;
+};
+
+int count_files(const fs::path& folder, const char* ending) {
+  int count = 0;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) count += entry.path().extension() == ending ? 1 : 0;
+  return count;
+}
+
+State state_of(const fs::path& folder, const nlohmann::ordered_json& run) {
+  const std::string scene = value_or(run, "scene", std::string());
+  const nlohmann::ordered_json stats = read_json_or_null(folder / (scene + ".json"));
+  const bool simulated = value_or(stats, "exit_code", -1) == 0;
+  if (simulated && fs::exists(folder / (scene + ".mp4"))) return {"done", true};
+  const int frames = value_or(run, "frames", 0);
+  if (simulated) return {fmt::format("{} of {} frames drawn", count_files(folder / "frames", ".png"), frames), false};
+  try {
+    return {fmt::format("{} of {} frames simulated", cache::Reader(folder / "cache").frames().size(), frames), false};
+  } catch (const Error&) {
+    return {"not begun", false};
+  }
+}
+
+class Farm {
+ public:
+  explicit Farm(const FarmOptions& options) : options_(options), folder_(options.sweep.output) {}
+
+  ExitCode submit() {
+    PathLedger paths;
+    if (!options_.program.empty()) paths.reads(options_.program, "the program");
+    plan_.jobs = read_sweep(options_.sweep, paths);
+    check_sweep_folder(options_.sweep, paths);
+    paths.check_writable();
+    if (!options_.program.empty()) program_.emplace(options_.program);
+    std::map<std::string, int> states;
+    if (!options_.dry_run && !active_jobs(folder_, states).empty())
+      throw Error(ExitCode::output_failed, "{}: has jobs that wait or run; weft farm cancel {} ends them",
+                  folder_.string(), folder_.string());
+    for (std::size_t i = 0; i < plan_.jobs.size(); ++i) {
+      plan_.frames.push_back(resolve_frames(options_.frames, plan_.jobs[i].frame_count));
+      if (!plan_.jobs[i].twin && !plan_.jobs[i].is_done()) plan_.submitted.push_back(i);
+    }
+    plan_.part = options_.part;
+    for (const FrameRange& frames : plan_.frames) plan_.part = std::max(plan_.part, (frames.count() + 999) / 1000);
+    if (plan_.submitted.empty()) {
+      log::info(fmt::format("{}: all runs are done", folder_.string()));
+      return ExitCode::ok;
+    }
+    find_needs();
+    write();
+    if (options_.dry_run) return ExitCode::ok;
+    const ProcessResult submission = run_process({"sh", (folder_ / "farm/submit.sh").string()});
+    check_slurm_found("sbatch", submission);
+    if (submission.exit_code != 0)
+      throw Error(ExitCode::output_failed, "{}: ended with {}; weft farm cancel {} cancels the submitted jobs",
+                  (folder_ / "farm/submit.sh").string(), submission.exit_code, folder_.string());
+    log::info(fmt::format("{}: {} of {} runs submitted; weft farm status {} reports their progress", folder_.string(),
+                          plan_.submitted.size(), plan_.jobs.size(), folder_.string()));
+    return ExitCode::ok;
+  }
+
+  ExitCode status() const {
+    const nlohmann::ordered_json index = read_index();
+    std::vector<std::vector<std::string>> rows;
+    std::size_t done = 0;
+    for (const auto& run : index["runs"]) {
+      const std::string name = value_or(run, "folder", std::string());
+      const State state = state_of(folder_ / name, run);
+      done += state.done ? 1 : 0;
+      rows.push_back({name, state.text});
+    }
+    print("{}", format_table(rows, "ll", 2));
+    for (const std::string& line : failures()) print("{}\n", line);
+    std::map<std::string, int> states;
+    active_jobs(folder_, states);
+    std::string queue;
+    for (const auto& [state, count] : states) queue += fmt::format(", {} {}", count, state);
+    print("{} of {} runs are done{}\n", done, rows.size(), queue);
+    return done == rows.size() ? ExitCode::ok : ExitCode::frames_missing;
+  }
+
+  ExitCode cancel() const {
+    read_index();
+    std::map<std::string, int> states;
+    std::vector<std::string> words{"scancel"};
+    for (const std::string& job : active_jobs(folder_, states)) words.push_back(job);
+    if (words.size() > 1) {
+      const ProcessResult result = run_process(words);
+      check_slurm_found("scancel", result);
+      if (result.exit_code != 0)
+        throw Error(ExitCode::output_failed, "scancel ended with {}; its output is above", result.exit_code);
+    }
+    log::info(fmt::format("{}: {} jobs cancelled; finished results are kept, and weft farm submit continues from there",
+                          folder_.string(), words.size() - 1));
+    return ExitCode::ok;
+  }
+
+ private:
+  nlohmann::ordered_json read_index() const {
+    nlohmann::ordered_json index = read_json_or_null(folder_ / review::kSweepName);
+    if (!index.is_object() || !index.contains("runs"))
+      throw Error(ExitCode::asset_unreadable, "{}: expected the folder that weft farm submit was given with -o",
+                  folder_.string());
+    if (index["runs"].size() > kMaxRuns)
+      throw Error(ExitCode::asset_unreadable, "{}: expected at most {} runs, got {}",
+                  (folder_ / review::kSweepName).string(), kMaxRuns, index["runs"].size());
+    return index;
+  }
+
+  /// The last message of the program, preceded by a line feed; empty if there is none.
+  static std::string last_error(const fs::path& log) {
+    std::string last;
+    std::istringstream in(read_start(log, kMaxTextBytes));
+    for (std::string line; std::getline(in, line);)
+      if (line.starts_with("weft: ")) last = "\n  " + line.substr(6);
+    return last;
+  }
+
+  /// One line for each task that ended with an exit code other than 0, with its log.
+  std::vector<std::string> failures() const {
+    std::vector<std::string> lines;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder_ / "farm/log", none)) {
+      if (entry.path().extension() != ".code") continue;
+      const std::string task = entry.path().stem().string();
+      const fs::path log = fs::path(entry.path()).replace_extension(".log");
+      int code = 0;
+      std::istringstream(read_start(entry.path(), 16)) >> code;
+      if (entry.file_size(none) == 0)
+        lines.push_back(fmt::format("{} could not write its exit code: is the disk full? {}", task, log.string()));
+      else if (code != 0)
+        lines.push_back(fmt::format("{} ended with exit code {}: {}{}", task, code, log.string(), last_error(log)));
+    }
+    std::ranges::sort(lines);
+    return lines;
+  }
+
+  // Estimates the resources from the first and the last run, which usually have the smallest and the largest values of
+  // the sweep.
+  void find_needs() {
+    plan_.needs.simulate_minutes = plan_.needs.draw_minutes = options_.minutes.value_or(0);
+    plan_.needs.memory = options_.memory.value_or(0);
+    if (options_.minutes && options_.memory) return;
+    double simulate = 0, picture = 0, peak = 0;
+    for (const std::size_t i : {plan_.submitted.front(), plan_.submitted.back()}) {
+      SceneOptions scene;
+      scene.scene = options_.sweep.scene;
+      scene.overrides = plan_.jobs[i].overrides();
+      const scene::Scene loaded = load_scene(scene);
+      const Estimate estimate = estimate_run(loaded, render_settings(loaded, scene));
+      simulate = std::max(simulate, estimate.simulate_total());
+      picture = std::max(picture, estimate.draw);
+      peak = std::max(peak, static_cast<double>(estimate.peak));
+      if (plan_.submitted.size() == 1) break;
+    }
+    const auto minutes = [](double seconds) { return kMinTaskMinutes + static_cast<int>(kTimeFactor * seconds / 60); };
+    if (!options_.minutes) plan_.needs.simulate_minutes = minutes(simulate);
+    if (!options_.minutes) plan_.needs.draw_minutes = minutes(picture * plan_.part);
+    if (!options_.memory) plan_.needs.memory = kExtraMemory + static_cast<int>(kMemoryFactor * 1e-6 * peak);
+    log::info(fmt::format("by a trial: {} min at most to simulate a run, {} min to draw {} frames, {} MB",
+                          plan_.needs.simulate_minutes, plan_.needs.draw_minutes, plan_.part, plan_.needs.memory));
+  }
+
+  void write() {
+    fs::create_directories(folder_ / "farm/log");
+    if (program_) write_program();
+    write_sweep_index(options_.sweep, plan_.jobs);
+    for (const std::size_t i : plan_.submitted) fs::create_directories(folder_ / plan_.jobs[i].run.name);
+    for (const auto& [name, text] :
+         {std::pair("task.sh", task_script(options_, plan_)), std::pair("submit.sh", submit_script(options_, plan_)),
+          std::pair("tasks.tsv", task_list(options_, plan_))}) {
+      write_file(folder_ / "farm" / name, text);
+      if (options_.dry_run) print("==> {} <==\n{}\n", (folder_ / "farm" / name).string(), text);
+    }
+    write_file(folder_ / "farm/jobs", "");
+  }
+
+  // Writes the program archive, unless the file exists already or a task has already unpacked it.
+  void write_program() {
+    plan_.archive = program_->fingerprint();
+    const fs::path tar = folder_ / program_tar(plan_.archive);
+    if (!fs::exists(fs::path(tar).replace_extension()) && !fs::exists(tar)) program_->write_tar(tar);
+  }
+
+  const FarmOptions& options_;
+  const fs::path folder_;
+  FarmPlan plan_;
+  std::optional<ProgramArchive> program_;
+};
+
+}  // namespace
+
+ExitCode farm(const FarmOptions& options) {
+  Farm farm(options);
+  switch (options.action) {
+    case FarmOptions::Action::submit:
+      return farm.submit();
+    case FarmOptions::Action::status:
+      return farm.status();
+    case FarmOptions::Action::cancel:
+      break;
+  }
+  return farm.cancel();
+}
+
+}  // namespace weft::cli

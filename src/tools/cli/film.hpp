@@ -1,0 +1,62 @@
+// The pipeline of a film. Three threads run concurrently: one makes and stores frames, one draws them, one writes and
+// reports them. Bounded queues between the threads limit memory.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "tools/cli/event_log.hpp"
+#include "tools/cli/frame_range.hpp"
+#include "tools/cli/frame_source.hpp"
+#include "tools/cli/run_report.hpp"
+#include "tools/cli/stages.hpp"
+#include "tools/cli/store.hpp"
+
+namespace weft::cli {
+
+/// The stages of a film. Each stage is opened, used and destroyed in its own thread, since an OpenGL context belongs to
+/// one thread. The writer is opened at the first picture, when the painter's description is known.
+struct FilmParts {
+  std::function<std::unique_ptr<FrameSource>()> open_source;
+  std::function<std::unique_ptr<FramePainter>()> open_painter;  ///< empty: nothing is drawn
+  std::function<std::unique_ptr<FrameWriter>(const std::string& painter_description)> open_writer;  ///< empty: nothing
+                                                                                                    ///< is written
+  Store* store = nullptr;  ///< keeps simulated frames
+  /// Set if the scene does not place the camera: the camera path is then computed from all frames. Unless the source
+  /// can show all frames beforehand, drawing waits until the last frame is made, and then reads frames from the store.
+  std::optional<render::CameraPath> camera = std::nullopt;
+  std::filesystem::path meshes;      ///< folder; empty: none
+  std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn already
+  bool keeps_partial_output = true;  ///< if source or painter fails, the output is finished with the earlier frames
+  bool motion = false;               ///< whether the painter also needs the previous frame, for motion blur
+  std::function<void(const MadeFrame&)> on_frame = {};  ///< called after each frame is made, in order; may be empty
+};
+
+struct FilmResult {
+  std::vector<frame::ObjectInfo> objects;
+  StageTime setup;                  ///< opening the source
+  std::vector<FrameRecord> frames;  ///< all frames that were made, in order
+  int written = 0;
+  double cloth_size = 0;         ///< longest side of the box around the largest cloth, in the first frame [m]
+  bool interrupted = false;      ///< stopped by request before the last wanted frame
+  std::string painter = "none";  ///< its description
+  std::exception_ptr failure;    ///< of the failed stage nearest to the output; null if none failed
+  bool finished_output = false;  ///< the output has its final name; it may have fewer frames than wanted
+};
+
+/// Makes the frames `made` and draws and writes the frames `wanted`, a subset of them. Ends with the last frame of
+/// `wanted` (of `made` if the camera path is computed from them), or earlier at `stop` or a failure. The output is then
+/// completed with the frames written so far, unless the writer fails, or another stage fails and `keeps_partial_output`
+/// is false. Does not throw if a stage fails; see `failure`.
+FilmResult make_film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted,
+                     const std::atomic<bool>& stop, Progress& progress, EventLog& log);
+
+}  // namespace weft::cli

@@ -1,0 +1,215 @@
+// The command line as checked values.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "film/render/renderer.hpp"
+#include "film/video/encoder.hpp"
+#include "lab/bench/accuracy_plan.hpp"
+#include "tools/cli/frame_range.hpp"
+#include "tools/cli/output_target.hpp"
+#include "tools/cli/sweep_plan.hpp"
+#include "tools/compare/compare.hpp"
+#include "tools/export/export.hpp"
+
+namespace weft::cli {
+
+struct PictureSize {
+  int width = 0, height = 0;  ///< pixels
+};
+
+/// Options shared by all commands that start from a scene.
+struct SceneOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;      ///< of --set
+  std::optional<PictureSize> size;         ///< default: that of the scene
+  std::optional<double> fps;               ///< default: that of the scene
+  std::string camera;                      ///< empty: the scene's choice
+  std::optional<frame::Stage::Look> look;  ///< default: that of the scene
+  std::optional<double> motion_blur;       ///< shutter angle [degrees]; default: that of the scene
+  render::Quality quality = render::Quality::final;
+  render::Backend backend = render::Backend::automatic;
+  int threads = 0;  ///< 0: all cores
+  bool overwrite = false;
+  Progress::Style progress = Progress::Style::automatic;
+};
+
+struct RunOptions {
+  SceneOptions common;
+  std::string output;  ///< empty: output/<scene>.mp4
+  FrameSelection frames;
+  std::filesystem::path meshes;  ///< folder; empty: none
+  std::filesystem::path stats;   ///< file; empty: none
+  std::string log_json;          ///< file, "-" for standard output; empty: none
+  bool resume = false;
+  int depth = 8;  ///< bits per channel of PNG pictures, 8 or 16
+  VideoOptions video;
+  bool error = false, mesh_error = false;  ///< estimate the error; mesh_error: also that of the mesh
+};
+
+struct SimulateOptions : RunOptions {
+  std::filesystem::path cache;  ///< folder
+};
+
+/// `common.scene` is the folder of a cache.
+struct RenderOptions : RunOptions {
+  bool partial = false;  ///< use the frames before the first missing one
+};
+
+struct CheckOptions {
+  std::vector<std::filesystem::path> scenes;
+  std::vector<std::string> overrides;
+  std::filesystem::path against;  ///< a scene, an effective scene or a cache to compare with; may be empty
+  bool plan = false;
+  bool estimate = false;  ///< also estimate time and memory
+};
+
+struct ThumbnailOptions {
+  SceneOptions common;                        ///< `scene` is set for each scene in turn
+  std::vector<std::filesystem::path> scenes;  ///< scenes or caches, at least one
+  /// A picture, or without an extension a folder that gets <scene>.png for each; empty: output/<scene>.png.
+  std::filesystem::path output;
+  std::optional<int> frame;  ///< default: the most informative one
+  bool start = false;        ///< draw the start of the scene instead of a frame, even if the simulation refuses it
+};
+
+struct SheetOptions {
+  SceneOptions common;           ///< the size is that of each picture
+  std::filesystem::path output;  ///< empty: output/<scene>.sheet.png
+  int count = 12;                ///< maximum number of pictures
+  std::optional<int> columns;
+
+  SheetOptions() { common.quality = render::Quality::preview; }
+};
+
+struct JoinOptions {
+  std::vector<std::filesystem::path> parts;  ///< videos, or folders of pictures
+  std::filesystem::path output;
+  VideoOptions video;  ///< used if the parts are pictures
+  FrameSelection frames;
+  bool partial = false;  ///< use the frames before the first missing one
+  bool overwrite = false;
+};
+
+struct SweepOptions {
+  std::filesystem::path scene, list;  ///< the list may be empty
+  std::vector<Axis> axes;
+  std::filesystem::path output;        ///< folder
+  std::vector<std::string> passed_on;  ///< checked options that are passed on to each run
+  int jobs = 1;                        ///< number of concurrent runs
+  std::optional<int> frame;            ///< frame shown on the sheet; default: the last
+  bool gather = false;                 ///< make only sheet, table and page from existing runs
+  bool overwrite = false;
+};
+
+struct FarmOptions {
+  enum class Action { submit, status, cancel };
+  Action action = Action::status;
+  SweepOptions sweep;  ///< for submit: the scene, and the folder as output; otherwise the folder as both
+  FrameSelection frames;
+  int part = 50;                           ///< frames per drawing task
+  int threads = 1;                         ///< per task
+  int retries = 3;                         ///< of a task that was killed or found no disk space
+  std::optional<int> memory, minutes;      ///< per task [MB, min]; default: from a trial
+  std::vector<std::string> for_scheduler;  ///< options of sbatch
+  std::filesystem::path program;  ///< program archive that tasks unpack and run; empty: this program at its own path
+  bool dry_run = false;           ///< write and print the scripts, submit nothing
+};
+
+struct NewOptions {
+  std::string name;            ///< of the scene, with its folder
+  std::string kind = "drape";  ///< name of the template
+  bool overwrite = false;
+};
+
+struct WatchOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;  ///< of --set
+  std::vector<std::string> passed_on;  ///< checked options that are passed on to the drawing command
+  bool film = false;                   ///< draw the whole video instead of a still
+  int times = 0;                       ///< number of drawings before it ends; 0: until interrupted
+};
+
+struct SchemaOptions {
+  bool pattern = false;  ///< schema of sewing patterns instead of scenes
+};
+
+struct DoctorOptions {
+  render::Backend backend = render::Backend::automatic;
+};
+
+struct BenchOptions {
+  enum class Kind { stability, accuracy, speed, fabrics };
+  Kind kind = Kind::stability;
+  std::filesystem::path scene;         ///< for stability, accuracy and speed; empty: built-in ones
+  std::vector<std::string> overrides;  ///< of --set
+  /// For speed: varied values, ascending.
+  std::vector<double> sizes{0.5, 1, 2, 4}, steps{0.5, 1, 2};
+  std::vector<int> threads;  ///< empty: 1, and all cores
+  FrameSelection frames;     ///< for speed: the measured frames, as typed
+  std::optional<render::Quality> drawing;
+  bench::AccuracyPlan plan;      ///< for accuracy
+  std::filesystem::path output;  ///< folder; empty: output/bench
+  bool overwrite = false;
+};
+
+/// An option of weft bench that only some kinds accept.
+struct BenchOption {
+  std::string name;
+  std::vector<BenchOptions::Kind> kinds;
+};
+
+struct DiffOptions {
+  std::filesystem::path reference, test;  ///< files or folders
+  compare::Limits limits;
+  std::filesystem::path limits_file;  ///< limits and masks of single pictures; empty: none
+  std::filesystem::path heatmap;      ///< picture or folder; empty: none
+  std::filesystem::path junit, html;  ///< files; empty: none
+  bool annotations = false;           ///< print annotations even outside GitHub Actions
+  bool overwrite = false;
+  bool json = false;
+};
+
+struct AcceptOptions {
+  std::filesystem::path reference;           ///< file or folder
+  std::vector<std::filesystem::path> tests;  ///< files or folders
+  std::string reason;
+};
+
+struct ReviewOptions {
+  std::vector<std::filesystem::path> folders;
+  std::filesystem::path reference;  ///< folder; empty: none
+  std::filesystem::path output;     ///< folder; empty: output/review
+  bool overwrite = false;
+};
+
+struct ExportOptions {
+  std::filesystem::path cache, output;  ///< folders
+  exporter::Format format = exporter::Format::gltf;
+  FrameSelection frames;
+  bool partial = false;  ///< use the frames before the first missing one
+  bool overwrite = false;
+};
+
+/// Text of help or version, to be printed on standard output instead of running a command.
+struct PrintText {
+  std::string text;
+};
+
+using Command =
+    std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SheetOptions, JoinOptions,
+                 SweepOptions, FarmOptions, NewOptions, WatchOptions, SchemaOptions, DoctorOptions, BenchOptions,
+                 DiffOptions, AcceptOptions, ReviewOptions, ExportOptions, PrintText>;
+
+/// `arguments` without the program's name. Throws Error(usage) with what was expected and the most similar known name.
+Command parse_command_line(const std::vector<std::string>& arguments);
+
+/// Parses `1280x720`. Throws Error(usage).
+PictureSize parse_size(const std::string& text);
+
+}  // namespace weft::cli

@@ -1,0 +1,63 @@
+// Destination of the pictures: one video, one PNG or EXR file per frame, or none.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "film/video/encoder.hpp"
+#include "tools/cli/frame_range.hpp"
+
+namespace weft::cli {
+
+/// Encoding options of a video.
+struct VideoOptions {
+  video::Codec codec = video::Codec::automatic;
+  std::optional<int> crf;  ///< for H.264; default: 18
+
+  bool any() const { return codec != video::Codec::automatic || crf.has_value(); }
+};
+
+/// The codec of a video of this name. Throws Error(usage) if the options do not suit it.
+video::Codec codec_of(const std::filesystem::path& file, const VideoOptions& options);
+
+/// A file name with a place for the frame number: `{frame}`, or `{frame:05}` for five digits.
+class FramePattern {
+ public:
+  /// Throws Error(usage) if the text has no such place or more than one.
+  explicit FramePattern(std::string_view text);
+  FramePattern(std::string before, int digits, std::string after)
+      : before_(std::move(before)), after_(std::move(after)), digits_(digits) {}
+
+  std::filesystem::path name(int frame) const;
+  std::vector<std::filesystem::path> names(const FrameRange& frames) const;
+  /// Removes files whose name fits this pattern with a frame outside of `frames`, if `is_own` accepts them as outputs
+  /// of an earlier run.
+  void remove_others(const FrameRange& frames,
+                     const std::function<bool(const std::filesystem::path&, int frame)>& is_own) const;
+
+ private:
+  std::string before_, after_;
+  int digits_ = 1;
+};
+
+struct OutputTarget {
+  enum class Kind { video, images, none };
+  Kind kind = Kind::video;
+  std::string text;  ///< as typed, or the default; a pattern if kind is images
+
+  /// Whether pictures are written as OpenEXR with all layers of a frame.
+  bool layered() const { return kind == Kind::images && std::filesystem::path(text).extension() == ".exr"; }
+  /// The file of one frame (images) or of all frames (video).
+  std::filesystem::path file(int frame) const;
+  std::vector<std::filesystem::path> files(const FrameRange& frames) const;
+};
+
+/// Parses `-o`; empty: `output/<scene>.mp4`. Throws Error(usage) for unsupported extensions.
+OutputTarget parse_output(const std::string& text, const std::string& scene_name);
+
+}  // namespace weft::cli

@@ -1,0 +1,69 @@
+#include "tools/cli/own_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string_view>
+#include <system_error>
+
+#include "core/error.hpp"
+#include "core/input_file.hpp"
+#include "core/json.hpp"
+#include "film/image/exr.hpp"
+#include "film/image/png.hpp"
+#include "film/video/decoder.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool starts_with_one_of(const fs::path& file, std::initializer_list<std::string> beginnings) {
+  constexpr std::size_t kMaxStartBytes = 4096;  // [bytes]
+  const std::string start = read_start(file, kMaxStartBytes);
+  return std::ranges::any_of(beginnings, [&](const std::string& each) { return start.starts_with(each); });
+}
+
+/// Metadata of a picture or video; empty if it has none or cannot be read.
+std::map<std::string, std::string> metadata_of(const fs::path& file) {
+  try {
+    if (file.extension() == ".png") return image::read_png_metadata(file);
+    if (file.extension() == ".exr") return image::read_exr_header(file).metadata;
+    return video::Decoder(file).metadata();
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+bool has_entry(const std::map<std::string, std::string>& metadata, const std::string& key, const std::string& value) {
+  const auto found = metadata.find(key);
+  return found != metadata.end() && found->second == value;
+}
+
+}  // namespace
+
+bool is_picture_of(const fs::path& file, const std::string& scene, int frame) {
+  const auto metadata = metadata_of(file);
+  return metadata.contains("weft_version") && has_entry(metadata, "scene", scene) &&
+         has_entry(metadata, "frame", fmt::format("{}", frame));
+}
+
+bool is_own_mesh(const fs::path& file) {
+  return starts_with_one_of(file, {"ply\nformat binary_little_endian 1.0\ncomment Weft, ", "# Weft, "});
+}
+
+bool is_output_of(const fs::path& file, const std::string& scene) {
+  std::error_code error;
+  if (fs::file_size(file, error) == 0 && !error) return true;
+  const std::string ending = file.extension().string();
+  // An effective scene has no mark by which Weft recognises it. It may be replaced, as it can be made again from the
+  // scene.
+  if (ending == ".toml" || (ending == ".ply" && is_own_mesh(file))) return true;
+  const auto metadata = metadata_of(file);
+  if (metadata.contains("weft_version") && has_entry(metadata, "scene", scene)) return true;
+  const std::string name = json_text(scene);
+  return starts_with_one_of(file, {fmt::format("{{\n  \"scene\": {},", name),
+                                   fmt::format("{{\"event\":\"scene_loaded\",\"scene\":{},", name)});
+}
+
+}  // namespace weft::cli

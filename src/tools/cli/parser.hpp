@@ -1,0 +1,62 @@
+// The program's commands, and the values that CLI11 sets while parsing.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/cli/options.hpp"
+
+namespace weft::cli {
+
+struct Parser {
+  CLI::App app{"Weft: cloth scenes to video, on any machine, without a window.", "weft"};
+  RunOptions run;
+  SimulateOptions simulate;
+  RenderOptions render;
+  CheckOptions check;
+  ThumbnailOptions thumbnail;
+  SheetOptions sheet;
+  JoinOptions join;
+  SweepOptions sweep;
+  FarmOptions farm;
+  NewOptions fresh;
+  WatchOptions watch;
+  std::string shell;  // for completion
+  SchemaOptions schema;
+  DoctorOptions doctor;
+  BenchOptions bench;
+  std::vector<BenchOption> bench_options;  // given options that only some kinds accept
+  DiffOptions diff;
+  AcceptOptions accept;
+  ReviewOptions review;
+  ExportOptions exported;
+
+  Parser();
+
+  void add_run();
+  void add_simulate();
+  void add_render();
+  void add_check();
+  void add_thumbnail();
+  void add_sheet();
+  void add_join();
+  void add_sweep();
+  void add_farm();
+  void add_new();
+  void add_watch();
+  void add_completion();
+  void add_schema();
+  void add_doctor();
+  void add_bench();
+  void add_diff();
+  void add_accept();
+  void add_review();
+  void add_export();
+
+  std::vector<std::string> command_names() const;
+  /// The parsed command; null before parsing.
+  CLI::App* selected() const;
+};
+
+}  // namespace weft::cli

@@ -1,0 +1,94 @@
+#include "tools/cli/program.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <variant>
+
+#include "core/input_file.hpp"
+#include "core/installation.hpp"
+#include "core/log.hpp"
+#include "film/garment/pattern.hpp"
+#include "film/scene/loader.hpp"
+#include "tools/cli/child_process.hpp"
+#include "tools/cli/commands.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/cli/standard_output.hpp"
+
+namespace weft::cli {
+namespace {
+
+ExitCode print_all(const std::string& text) {
+  write_standard_output(text);
+  return ExitCode::ok;
+}
+
+struct Dispatch {
+  ExitCode operator()(const RunOptions& options) const { return run(options); }
+  ExitCode operator()(const SimulateOptions& options) const { return simulate(options); }
+  ExitCode operator()(const RenderOptions& options) const { return render(options); }
+  ExitCode operator()(const CheckOptions& options) const { return check(options); }
+  ExitCode operator()(const ThumbnailOptions& options) const { return thumbnail(options); }
+  ExitCode operator()(const SheetOptions& options) const { return sheet(options); }
+  ExitCode operator()(const NewOptions& options) const { return make_new(options); }
+  ExitCode operator()(const WatchOptions& options) const { return watch(options); }
+  ExitCode operator()(const SchemaOptions& options) const {
+    return print_all(
+        (options.pattern ? scene::json_schema(garment::pattern_rules(), "Weft pattern") : scene::json_schema()) + "\n");
+  }
+  ExitCode operator()(const PrintText& text) const { return print_all(text.text); }
+  template <class ToolOptions>
+  ExitCode operator()(const ToolOptions&) const {
+    return run_other(command, argv);
+  }
+
+  const Command& command;
+  char** argv;
+  ExitCode (*run_other)(const Command&, char**);
+};
+
+// Throws if the working folder is gone, since relative paths start there.
+void check_working_folder() {
+  std::error_code error;
+  if (std::filesystem::current_path(error).empty())
+    throw Error(ExitCode::usage, "the working folder cannot be used: {}; go to one that exists", error.message());
+}
+
+}  // namespace
+
+ExitCode become_tools(const Command& /*command*/, char** argv) {
+  const std::filesystem::path tools = own_program().replace_filename(kToolsName);
+  ::execv(tools.c_str(), argv);
+  throw Error(ExitCode::usage,
+              "{}: cannot be started: {}; this command needs it beside the program, where ./weft builds it",
+              tools.string(), std::strerror(errno));
+}
+
+int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {
+  try {
+    // If a pipe is closed or a file exceeds its size limit, the write must return an error. By default, a signal would
+    // kill the process and leave half a file.
+    ::signal(SIGPIPE, SIG_IGN);
+    ::signal(SIGXFSZ, SIG_IGN);
+    // A program from an archive is started by the dynamic loader. Without this call, the process would have the name of
+    // the loader.
+    if (const Installation own = own_installation(); !own.libraries.empty())
+      ::prctl(PR_SET_NAME, own.code.filename().c_str());
+    const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
+    const Command command = parse_command_line(arguments);
+    if (!std::holds_alternative<PrintText>(command)) check_working_folder();
+    return static_cast<int>(std::visit(Dispatch{command, argv, run_other}, command));
+  } catch (...) {
+    const Failure failure = describe_failure(std::current_exception());
+    report(failure);
+    return static_cast<int>(failure.code);
+  }
+}
+
+}  // namespace weft::cli

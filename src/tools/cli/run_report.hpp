@@ -1,0 +1,72 @@
+// All results of a run, for the statistics file and the summary.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/timer.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "lab/bench/companions.hpp"
+#include "tools/cli/frame_range.hpp"
+
+namespace weft::cli {
+
+/// The outcome of one frame.
+struct FrameRecord {
+  simulation::FrameReport report;
+  bool written = false;  ///< whether it is drawn and written; false for frames that are not wanted or after a failure
+  StageTime render, encode, meshes;
+};
+
+/// Number of particles of all cloths.
+std::size_t count_particles(const std::vector<frame::ObjectInfo>& objects);
+
+struct RunReport {
+  std::string scene;  ///< its name
+  std::string scene_file;
+  std::uint64_t scene_hash = 0;
+  std::vector<frame::ObjectInfo> objects;
+  std::size_t particles = 0;
+  double cloth_size = 0;  ///< longest side of the box around the largest cloth, in the first frame [m]; 0: no cloth
+  int threads = 0;
+  std::string gl;
+  int width = 0, height = 0;  ///< [pixels]; 0 if nothing is drawn
+  double fps = 0;
+  std::string output;               ///< as the user named it
+  std::uintmax_t output_bytes = 0;  ///< of a video; 0 for pictures or none
+  bool replayed = false;            ///< frames were read from a cache, not simulated
+  FrameRange wanted;
+  std::vector<FrameRecord> frames;  ///< simulated or read frames
+  int written = 0;
+  StageTime cache;                 ///< storing frames and states
+  std::uintmax_t cache_bytes = 0;  ///< written to the cache
+  StageTime setup;                 ///< reading the scene and building the simulation, or opening the cache
+  double wall_s = 0, cpu_s = 0;    ///< of the whole process, all threads
+  std::int64_t peak_memory = 0;    ///< [bytes]
+  std::vector<std::string> warnings;
+  std::vector<std::string> notes;  ///< remarks that are not problems, such as skin moved to make space for cloth
+  ExitCode exit_code = ExitCode::ok;
+  std::string message;                        ///< why the run ended early; empty if it did not
+  std::optional<bench::ErrorEstimate> error;  ///< if requested
+};
+
+struct StageTotals {
+  StageTime simulate, collide, forces, preconditioner, linear;  ///< all but the first are parts of `simulate`
+  StageTime render, encode, meshes;
+};
+
+StageTotals total_times(const std::vector<FrameRecord>& frames);
+
+struct StepTotals {
+  long long accepted = 0, rejected = 0;
+  long long inexact = 0;      ///< accepted steps with an error above the tolerance
+  double error_estimate = 0;  ///< of the time steps [m]
+  double solver_error = 0;    ///< residual error of the solver [m]
+};
+
+StepTotals total_steps(const std::vector<FrameRecord>& frames);
+
+}  // namespace weft::cli

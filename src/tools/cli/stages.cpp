@@ -1,0 +1,153 @@
+#include "tools/cli/stages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/log.hpp"
+#include "core/version.hpp"
+#include "film/frame/heat_name.hpp"
+#include "film/image/png.hpp"
+#include "film/render/framing.hpp"
+#include "film/render/seen.hpp"
+#include "film/video/encoder.hpp"
+#include "physics/mesh/ply.hpp"
+#include "tools/cli/option_groups.hpp"
+
+namespace weft::cli {
+namespace {
+
+bool shows_single_color(const image::Image& image) {
+  // If the pixels equal those shifted by one, all pixels are equal.
+  return image.rgb.size() > 3 && std::equal(image.rgb.begin() + 3, image.rgb.end(), image.rgb.begin());
+}
+
+class GlPainter : public FramePainter {
+ public:
+  explicit GlPainter(const render::Settings& settings) : renderer_(settings), deep_(settings.deep) {}
+
+  void set_camera_path(render::CameraPath path) override { renderer_.set_camera_path(std::move(path)); }
+
+  Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) override {
+    Picture picture{renderer_.draw(snapshot, before), renderer_.layers()};
+    if (deep_) picture.deep = renderer_.deep();
+    if (!warned_ && shows_single_color(picture.image)) {
+      warned_ = true;
+      log::warn(fmt::format("frame {} shows a single color: does the camera look at the scene?", snapshot.frame));
+    }
+    return picture;
+  }
+
+  StageTime last_time() const override {
+    const render::DrawTimes times = renderer_.last_times();
+    return {times.wall_seconds, times.cpu_seconds};
+  }
+
+  std::string description() const override { return renderer_.description(); }
+
+ private:
+  render::Renderer renderer_;
+  bool deep_ = false, warned_ = false;
+};
+
+// Adds the name of each object under its number in the layer id.object.
+Metadata name_objects(Metadata metadata, const frame::FrameSnapshot& snapshot) {
+  int number = render::kFirstSurface;
+  for (const auto& surface : snapshot.surfaces)
+    if (render::is_subject(*surface)) metadata[fmt::format("object.{}", number++)] = surface->name;
+  return metadata;
+}
+
+class OutputWriter : public FrameWriter {
+ public:
+  explicit OutputWriter(const WriterSettings& settings) : settings_(settings) {
+    if (settings.target.kind == OutputTarget::Kind::video) open_video();
+  }
+
+  void write(const frame::FrameSnapshot& snapshot, const Picture& picture) override {
+    if (video_) return video_->add(picture.image);
+    if (settings_.target.kind != OutputTarget::Kind::images) return;
+    const std::filesystem::path file = settings_.target.file(snapshot.frame);
+    const Metadata metadata = describe_still(settings_.metadata, snapshot.frame, snapshot.time);
+    if (settings_.target.layered()) {
+      image::write_exr(file, picture.layers, name_objects(metadata, snapshot));
+    } else if (settings_.depth == 16) {
+      image::write_png(file, picture.deep, metadata);
+    } else {
+      image::write_png(file, picture.image, metadata);
+    }
+  }
+
+  void finish() override {
+    if (video_) video_->finish();
+  }
+
+ private:
+  void open_video() {
+    video::Settings video;
+    video.width = settings_.width;
+    video.height = settings_.height;
+    // If only every step-th frame is drawn, a lower frame rate keeps the speed of the motion.
+    video.fps = settings_.fps / settings_.frames.step;
+    video.codec = settings_.codec;
+    video.crf = settings_.crf.value_or(video.crf);
+    video.metadata = settings_.metadata;
+    video.metadata["frames"] = settings_.frames.text();
+    video_.emplace(settings_.target.file(0), video);
+  }
+
+  const WriterSettings settings_;
+  std::optional<video::Encoder> video_;
+};
+
+}  // namespace
+
+std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings) {
+  return std::make_unique<GlPainter>(settings);
+}
+
+Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl) {
+  constexpr const char* kNames[] = {"draft", "preview", "final"};
+  Metadata metadata{{"scene", scene.scene},
+                    {"scene_hash", fmt::format("{:016x}", scene.scene_hash)},
+                    {"weft_version", kVersion},
+                    {"gl", gl},
+                    {"fps", fmt::format("{}", scene.fps)},
+                    {"scene_frames", fmt::format("{}", scene.frame_count)},
+                    {"quality", kNames[static_cast<int>(settings.quality)]}};
+  const auto look = std::ranges::find_if(kLooks, [&](const auto& each) { return each.second == settings.look; });
+  if (look != kLooks.end()) metadata["look"] = look->first;
+  if (settings.motion_blur) metadata["motion_blur"] = fmt::format("{}", *settings.motion_blur);
+  if (!settings.camera.empty()) metadata["camera"] = settings.camera;
+  if (!scene.title.empty()) metadata["title"] = scene.title;
+  return metadata;
+}
+
+Metadata describe_still(Metadata metadata, int frame, double time_s) {
+  metadata["frame"] = fmt::format("{}", frame);
+  metadata["time_s"] = fmt::format("{}", time_s);
+  return metadata;
+}
+
+std::unique_ptr<FrameWriter> make_writer(const WriterSettings& settings) {
+  return std::make_unique<OutputWriter>(settings);
+}
+
+FramePattern mesh_files(const std::filesystem::path& folder, const std::string& object) {
+  return {(folder / (object + "_")).string(), 5, ".ply"};
+}
+
+void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapshot& snapshot) {
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    const frame::Surface& surface = *snapshot.surfaces[i];
+    mesh::write_ply(mesh_files(folder, surface.name).name(snapshot.frame), snapshot.states[i].positions,
+                    surface.triangles,
+                    {.passed_through = surface.passed_through,
+                     .values = snapshot.states[i].heat,
+                     .values_name = name_of(snapshot.stage->heat)});
+  }
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,79 @@
+// The stages of the pipeline in a real run.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "film/cache/manifest.hpp"
+#include "film/frame/frame_snapshot.hpp"
+#include "film/image/exr.hpp"
+#include "film/image/image.hpp"
+#include "film/render/renderer.hpp"
+#include "film/video/encoder.hpp"
+#include "tools/cli/output_target.hpp"
+#include "tools/cli/run_report.hpp"
+
+namespace weft::cli {
+
+/// A drawn frame.
+struct Picture {
+  image::Image image;
+  image::Layers layers = {};  ///< if requested
+  image::Image16 deep = {};   ///< if requested
+};
+
+/// Draws frames.
+class FramePainter {
+ public:
+  virtual ~FramePainter() = default;
+  /// Sets the camera path. Without it, cameras that the scene does not place are found from the first drawn frame.
+  virtual void set_camera_path(render::CameraPath) {}
+  /// `before`: the previous frame if motion blur is on and there is one; else null.
+  virtual Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) = 0;
+  virtual StageTime last_time() const = 0;
+  virtual std::string description() const = 0;
+};
+
+/// Writes pictures. If it is destroyed without finish(), no incomplete file may remain.
+class FrameWriter {
+ public:
+  virtual ~FrameWriter() = default;
+  virtual void write(const frame::FrameSnapshot& snapshot, const Picture& picture) = 0;
+  virtual void finish() = 0;
+};
+
+/// Draws with OpenGL; warns once if a picture has a single colour.
+std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings);
+
+using Metadata = std::map<std::string, std::string>;
+
+/// Metadata of video and stills: scene, scene_hash, weft_version, gl, fps, scene_frames, camera, quality and others.
+Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl);
+
+/// Adds the metadata of one still: frame and time_s.
+Metadata describe_still(Metadata metadata, int frame, double time_s);
+
+struct WriterSettings {
+  OutputTarget target;
+  FrameRange frames;
+  int width = 0, height = 0;  ///< [pixels]
+  double fps = 0;             ///< of the scene
+  int depth = 8;              ///< bits per channel of PNG pictures
+  video::Codec codec = video::Codec::automatic;
+  std::optional<int> crf;
+  Metadata metadata = {};
+};
+
+/// Returns the writer of a video or of pictures.
+std::unique_ptr<FrameWriter> make_writer(const WriterSettings& settings);
+
+/// `DIR/<object>_<frame:05>.ply`.
+FramePattern mesh_files(const std::filesystem::path& folder, const std::string& object);
+
+/// Writes each object of the snapshot. Throws Error(output_failed).
+void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapshot& snapshot);
+
+}  // namespace weft::cli

@@ -1,0 +1,19 @@
+// Pictures of the start of a scene, in which touching or crossing triangles are marked.
+#pragma once
+
+#include <vector>
+
+#include "film/image/contact_sheet.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "film/render/renderer.hpp"
+#include "tools/cli/stages.hpp"
+
+namespace weft::cli {
+
+/// Draws the whole scene (from its camera, or framed automatically), and close-ups of the places with the most pairs of
+/// touching or crossing triangles. These triangles are outlined in red, also if they are hidden. `painter` must use the
+/// first camera of each snapshot.
+std::vector<image::SheetPicture> draw_start(const production::StartView& start, const render::Settings& settings,
+                                            FramePainter& painter);
+
+}  // namespace weft::cli

@@ -1,0 +1,62 @@
+// Single frames of a scene or a cache, for commands that draw few of them.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "film/cache/manifest.hpp"
+#include "film/frame/frame_snapshot.hpp"
+#include "film/render/renderer.hpp"
+#include "tools/cli/options.hpp"
+#include "tools/cli/path_ledger.hpp"
+#include "tools/cli/signals.hpp"
+
+namespace weft::cli {
+
+class Stills {
+ public:
+  virtual ~Stills() = default;
+
+  /// Description and default drawing settings of the scene.
+  const cache::Manifest& scene() const { return scene_; }
+  const render::Settings& settings() const { return settings_; }
+  /// The available frames, ascending; at least one.
+  const std::vector<int>& frames() const { return frames_; }
+
+  virtual void add_inputs(PathLedger& paths) const = 0;
+  /// Number of frames to simulate until frame `last` is available.
+  virtual int cost(int last) const = 0;
+  /// Returns a frame. Call it with ascending frame numbers. Throws Error(interrupted) after SIGINT or a similar signal.
+  virtual frame::SnapshotPtr at(int frame, Progress& progress) = 0;
+  /// The camera path, found from the frames of the cache or from those simulated so far. Call it after all wanted
+  /// frames were requested.
+  render::CameraPath camera();
+  /// Whether SIGINT or a similar signal has requested an end.
+  bool is_stopped() const { return signals_.requested(); }
+  /// Overrides the size of the scene. Call it before the first frame.
+  void set_size(const PictureSize& size);
+
+ protected:
+  /// Passes a frame to the camera, in order.
+  void show(const frame::FrameSnapshot& snapshot);
+
+  const StopSignals signals_;
+  cache::Manifest scene_;
+  render::Settings settings_;
+  std::vector<int> frames_;
+  std::optional<render::CameraPath> camera_;  // set if the camera must be computed
+};
+
+/// Opens `options.scene`: a scene, or the folder of a cache. Throws as load_scene() and cache::Reader do.
+std::unique_ptr<Stills> open_stills(const SceneOptions& options);
+
+/// The file that `-o` names, or output/<default_name>, checked before any work. Throws Error(usage) if it is not a PNG
+/// or is an input, Error(output_failed) if it cannot be written.
+std::filesystem::path still_file(const Stills& stills, const std::filesystem::path& output,
+                                 const std::string& default_name, bool overwrite);
+
+}  // namespace weft::cli

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "tools/cli/run_report.hpp"
+
+namespace weft::cli {
+
+/// Result and cost of a run, for people: several lines, without a line feed at the end. The last lines are warnings
+/// about suspicious figures.
+std::string summary(const RunReport& report);
+
+/// Warnings about suspicious figures: strain, rejected steps, touching surfaces.
+std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames);
+
+}  // namespace weft::cli

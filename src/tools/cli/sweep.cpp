@@ -1,0 +1,189 @@
+// weft sweep: many runs of one scene. Each run is `weft run` in its own process, so that a failure does not affect the
+// others and each run can be repeated alone.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include "core/input_file.hpp"
+#include "core/json.hpp"
+#include "core/log.hpp"
+#include "core/progress.hpp"
+#include "core/temporary_file.hpp"
+#include "core/timer.hpp"
+#include "tools/cli/child_process.hpp"
+#include "tools/cli/commands.hpp"
+#include "tools/cli/signals.hpp"
+#include "tools/cli/sweep_jobs.hpp"
+#include "tools/cli/sweep_report.hpp"
+#include "tools/review/review.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr auto kProcessPollPause = 20'000;  // [microseconds]
+
+/// A run and its process.
+struct Job : SweepJob {
+  pid_t process = -1;
+  ExitCode code = ExitCode::ok;
+  bool tried = false;
+
+  fs::path log() const { return folder / "run.log"; }
+
+  /// Exit code of the run, from the files that it has left.
+  ExitCode outcome() const {
+    if (is_done()) return ExitCode::ok;
+    const auto told = static_cast<ExitCode>(value_or(read_json_or_null(stats()), "exit_code", 0));
+    constexpr std::array kFailures{ExitCode::internal,          ExitCode::usage,         ExitCode::scene_invalid,
+                                   ExitCode::asset_unreadable,  ExitCode::output_failed, ExitCode::frames_missing,
+                                   ExitCode::simulation_failed, ExitCode::interrupted};
+    return std::ranges::find(kFailures, told) != kFailures.end() ? told : ExitCode::frames_missing;
+  }
+
+  std::string last_words() const {
+    std::string last;
+    std::istringstream in(read_start(log(), kMaxTextBytes));
+    for (std::string line; std::getline(in, line);)
+      if (!line.empty()) last = line;
+    return last;
+  }
+};
+
+class Sweep {
+ public:
+  explicit Sweep(const SweepOptions& options) : options_(options) {
+    plan_ = read_sweep(options_, paths_);
+    for (const SweepJob& job : plan_) jobs_.push_back({job});
+    check_sweep_folder(options_, paths_);
+  }
+
+  ExitCode make() {
+    if (!options_.gather) {
+      write_sweep_index(options_, plan_);
+      run_all();
+    }
+    const std::vector<SweepResult> results = collect();
+    write_reports(results);
+    return tell(results);
+  }
+
+ private:
+  std::vector<std::string> command(const Job& job) const {
+    std::vector<std::string> words{own_program().string(), "run", options_.scene.string()};
+    for (const std::string& text : job.overrides()) words.insert(words.end(), {"--set", text});
+    words.insert(words.end(), options_.passed_on.begin(), options_.passed_on.end());
+    words.insert(words.end(), {"-o", job.video().string(), "--stats", job.stats().string(), "--progress", "none"});
+    words.emplace_back(options_.overwrite ? "--overwrite" : "--resume");
+    return words;
+  }
+
+  void start(Job& job) const {
+    fs::create_directories(job.folder);
+    job.process = start_process(command(job), job.log());
+  }
+
+  void run_all() {
+    std::vector<Job*> running;
+    std::size_t next = 0, ended = 0;
+    bool told = false;
+    while (next < jobs_.size() || !running.empty()) {
+      if (stop_.requested()) {
+        next = jobs_.size();
+        // A terminal signals the whole process group. Other senders may signal this process alone, so it passes the
+        // signal on.
+        if (!std::exchange(told, true))
+          for (const Job* job : running) ::kill(job->process, SIGTERM);
+      }
+      while (next < jobs_.size() && static_cast<int>(running.size()) < options_.jobs) {
+        Job& job = jobs_[next++];
+        job.tried = true;
+        const bool done = !job.twin && !options_.overwrite && job.is_done();
+        if (job.twin || done) {
+          log::info(fmt::format("[{}/{}] {}: {}", ++ended, jobs_.size(), label_of(job.run),
+                                done ? "done already" : "the same scene as " + label_of(jobs_[*job.twin].run)));
+          continue;
+        }
+        start(job);
+        running.push_back(&job);
+      }
+      std::erase_if(running, [&](Job* job) {
+        int status = 0;
+        if (::waitpid(job->process, &status, WNOHANG) == 0) return false;
+        // A process that ended without an exit code was killed by a signal: from outside or for lack of memory.
+        job->code = WIFEXITED(status) ? static_cast<ExitCode>(WEXITSTATUS(status)) : ExitCode::internal;
+        const std::string how = job->code == ExitCode::ok
+                                    ? "done"
+                                    : fmt::format("exit code {}: {}", static_cast<int>(job->code), job->last_words());
+        log::info(fmt::format("[{}/{}] {}: {}", ++ended, jobs_.size(), label_of(job->run), how));
+        return true;
+      });
+      if (!running.empty()) ::usleep(kProcessPollPause);
+    }
+  }
+
+  std::vector<SweepResult> collect() const {
+    std::vector<SweepResult> results;
+    for (const Job& job : jobs_) {
+      const Job& made = job.twin ? jobs_[*job.twin] : job;
+      const ExitCode code = options_.gather ? made.outcome() : made.tried ? made.code : ExitCode::interrupted;
+      results.push_back({job.run, made.video(), read_json_or_null(made.stats()), code});
+    }
+    return results;
+  }
+
+  void write_reports(const std::vector<SweepResult>& results) const {
+    const fs::path& folder = options_.output;
+    const bench::Table table = sweep_table(results);
+    write_file(folder / "table.csv", bench::csv(table));
+    write_file(folder / "table.md", bench::markdown(table));
+    write_sweep_sheet(folder / "sheet.png", results, fmt::format("{}   {} runs", jobs_.front().scene, results.size()),
+                      options_.frame);
+    const auto is_shown = [](const SweepResult& r) { return r.stats.is_object() || fs::exists(r.video); };
+    if (stop_.requested() || !std::ranges::any_of(results, is_shown)) return;
+    review::write_review({.folders = {folder}, .reference = {}, .output = folder / "page", .overwrite = true});
+  }
+
+  ExitCode tell(const std::vector<SweepResult>& results) const {
+    const auto failed = std::ranges::find_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
+    const auto count = std::ranges::count_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
+    if (stop_.requested()) {
+      log::info(fmt::format("weft: interrupted: {} of {} runs are not finished; the same command continues", count,
+                            results.size()));
+      return ExitCode::interrupted;
+    }
+    std::vector<std::string> made;  // there is no sheet if no run has a picture
+    for (const char* file : {"sheet.png", "table.md", "table.csv", "page/index.html"})
+      if (fs::exists(options_.output / file)) made.emplace_back(file);
+    log::info(fmt::format("{}: {}", options_.output.string(), fmt::join(made, ", ")));
+    if (failed == results.end()) return ExitCode::ok;
+    log::info(
+        fmt::format("weft: {} of {} runs {}:", count, results.size(), options_.gather ? "are not done" : "failed"));
+    for (const SweepResult& result : results)
+      if (result.code != ExitCode::ok && options_.gather)
+        log::info(fmt::format("  {}", label_of(result.run)));
+      else if (result.code != ExitCode::ok)
+        log::info(fmt::format("  {}: exit code {}, {}", label_of(result.run), static_cast<int>(result.code),
+                              (options_.output / result.run.name / "run.log").string()));
+    return failed->code;
+  }
+
+  const SweepOptions& options_;
+  const StopSignals stop_{"ending the runs after their current frames"};
+  std::vector<SweepJob> plan_;
+  std::vector<Job> jobs_;
+  PathLedger paths_;
+};
+
+}  // namespace
+
+ExitCode sweep(const SweepOptions& options) {
+  return Sweep(options).make();
+}
+
+}  // namespace weft::cli

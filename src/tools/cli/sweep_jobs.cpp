@@ -1,0 +1,95 @@
+#include "tools/cli/sweep_jobs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/error.hpp"
+#include "core/json.hpp"
+#include "core/temporary_file.hpp"
+#include "tools/cli/scene_input.hpp"
+#include "tools/review/find_runs.hpp"
+#include "tools/review/output_folder.hpp"
+
+namespace weft::cli {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> SweepJob::overrides() const {
+  std::vector<std::string> texts;
+  for (const auto& [key, value] : run.changes) texts.push_back(fmt::format("{}={}", key, value));
+  return texts;
+}
+
+bool SweepJob::is_done() const {
+  const Json json = read_json_or_null(stats());
+  return fs::exists(video()) && value_or(json, "exit_code", -1) == 0 &&
+         value_or(json, "scene_hash", std::string()) == fmt::format("{:016x}", scene_hash);
+}
+
+std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths) {
+  const std::vector<Changes> list = options.list.empty() ? std::vector<Changes>{} : read_list(options.list);
+  std::vector<SweepJob> jobs;
+  for (SweepRun& run : plan_sweep(list, options.axes)) jobs.push_back({.run = std::move(run)});
+  std::vector<std::string> mistakes;  // each mistake once, even if several runs have it
+  std::map<std::uint64_t, std::size_t> known;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    SweepJob& job = jobs[i];
+    const scene::LoadResult loaded = scene::load(options.scene, job.overrides());
+    if (!loaded.ok()) {
+      const std::string text = mistakes_text(loaded);
+      if (std::ranges::find(mistakes, text) == mistakes.end()) mistakes.push_back(text);
+      continue;
+    }
+    job.scene_hash = loaded.scene.hash;
+    job.scene = loaded.scene.name;
+    job.frame_count = loaded.scene.frame_count();
+    const auto& cameras = loaded.scene.cameras;
+    job.may_find_camera = cameras.empty() || std::ranges::any_of(cameras, scene::is_computed, &scene::Camera::kind);
+    job.folder = options.output / job.run.name;
+    const auto [twin, fresh] = known.emplace(job.scene_hash, i);
+    if (!fresh) job.twin = twin->second;
+    if (i == 0) add_inputs(paths, loaded.scene);
+  }
+  if (!mistakes.empty()) throw Error(ExitCode::scene_invalid, "{}", fmt::join(mistakes, "\n"));
+  if (!options.list.empty()) paths.reads(options.list, "the list of runs");
+  return jobs;
+}
+
+void check_sweep_folder(const SweepOptions& options, PathLedger& paths) {
+  paths.fills("-o", options.output);
+  const fs::path& folder = options.output;
+  review::check_replaceable(folder / "page", true);
+  for (const char* name : {"table.csv", "table.md", "sheet.png", review::kSweepName})
+    if (!fs::exists(fs::symlink_status(folder / name))) keep_if_made_meanwhile(folder / name);
+  if (!fs::exists(folder) || fs::is_empty(folder)) return;
+  const Json before = read_json_or_null(folder / review::kSweepName);
+  if (!before.is_object() || !before.contains("runs") || !before.contains("options"))
+    throw Error(ExitCode::output_failed, "{}: is no folder of a sweep, and not empty; give another name",
+                folder.string());
+  std::vector<std::string> words;
+  for (const Json& word : before["options"]) words.push_back(word.is_string() ? word.get<std::string>() : word.dump());
+  if (!options.overwrite && words != options.passed_on)
+    throw Error(
+        ExitCode::output_failed,
+        "{}: holds runs with other options ({}); give the same options, --overwrite to start again, or another name",
+        folder.string(), fmt::join(words, " "));
+}
+
+void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>& jobs) {
+  Json runs = Json::array();
+  for (const SweepJob& job : jobs) {
+    Json set = Json::object();
+    for (const auto& [key, value] : job.run.changes) set[key] = value;
+    runs.push_back({{"folder", (job.twin ? jobs[*job.twin] : job).run.name},
+                    {"scene", job.scene},
+                    {"frames", job.frame_count},
+                    {"set", std::move(set)}});
+  }
+  const Json index{{"scene", options.scene.string()}, {"options", options.passed_on}, {"runs", std::move(runs)}};
+  write_file(options.output / review::kSweepName, json_text(index, 2) + "\n");
+}
+
+}  // namespace weft::cli

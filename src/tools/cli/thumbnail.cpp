@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "core/log.hpp"
+#include "core/parallel.hpp"
+#include "film/image/contact_sheet.hpp"
+#include "film/image/png.hpp"
+#include "film/production/scene_simulation.hpp"
+#include "film/render/saliency.hpp"
+#include "tools/cli/commands.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/cli/scene_input.hpp"
+#include "tools/cli/stages.hpp"
+#include "tools/cli/start_picture.hpp"
+#include "tools/cli/stills.hpp"
+
+namespace weft::cli {
+namespace {
+
+void check_frame(int frame, const Stills& stills) {
+  const std::vector<int>& frames = stills.frames();
+  if (std::binary_search(frames.begin(), frames.end(), frame)) return;
+  if (frame < stills.scene().frame_count)
+    throw Error(ExitCode::frames_missing, "frame {} is missing; weft simulate --resume simulates the missing frames",
+                frame);
+  throw Error(ExitCode::usage, "--frame: expected one of the {} frames from {} to {}, got {}", frames.size(),
+              frames.front(), frames.back(), frame);
+}
+
+struct Still {
+  frame::SnapshotPtr snapshot;
+  render::Saliency saliency;
+};
+
+/// The frame with the highest saliency; of several, the first.
+Still most_salient(Stills& stills, const std::vector<int>& frames, Progress& progress) {
+  const render::Settings& settings = stills.settings();
+  Still best;
+  frame::SnapshotPtr previous;
+  for (const int k : frames) {
+    const frame::SnapshotPtr snapshot = stills.at(k, progress);
+    const double seconds = previous ? (k - previous->frame) / stills.scene().fps : 0;
+    const render::Saliency saliency =
+        render::saliency_of(*snapshot, previous.get(), seconds, settings.camera, settings.aspect());
+    if (!best.snapshot || saliency.score() > best.saliency.score()) best = {snapshot, saliency};
+    previous = snapshot;
+  }
+  if (best.saliency.coverage == 0)
+    log::warn("no frame shows any cloth: does the camera look at the scene? The first frame is drawn");
+  return best;
+}
+
+std::string describe_choice(const render::Saliency& saliency, std::size_t count) {
+  return fmt::format(
+      ", the most informative of {}: cloth covers {:.0f} % of the picture, folding {:.2f}, motion {:.2f}", count,
+      100 * saliency.coverage, saliency.folding, saliency.motion);
+}
+
+/// File name of the picture.
+std::string picture_name(const ThumbnailOptions& options, const Stills& stills) {
+  return stills.scene().scene + (options.start ? ".start.png" : ".png");
+}
+
+/// Whether `output` is a folder: it has no extension, or there are several scenes and it is an existing folder.
+bool is_folder(const ThumbnailOptions& options) {
+  const bool may_exist = options.scenes.size() > 1 && std::filesystem::is_directory(options.output);
+  return !options.output.empty() && (!options.output.has_extension() || may_exist);
+}
+
+/// With several scenes, throws Error(interrupted) if a signal arrived while this scene was drawn.
+void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
+  if (stills.is_stopped() && options.scenes.size() > 1)
+    throw Error(ExitCode::interrupted, "interrupted after {}", options.common.scene.string());
+}
+
+// Draws the start of the scene without simulating, even if a run would refuse it.
+void draw_thumbnail_of_start(const ThumbnailOptions& options) {
+  if (options.frame || std::filesystem::is_directory(options.common.scene))
+    throw Error(ExitCode::usage, "--start: expected a scene and no --frame, got {}",
+                options.frame ? "both" : "the cache " + options.common.scene.string());
+  const std::unique_ptr<Stills> stills = open_stills(options.common);
+  const std::filesystem::path file =
+      still_file(*stills, options.output, picture_name(options, *stills), options.common.overwrite);
+  const production::StartView start = production::view_start(load_scene(options.common));
+  render::Settings settings = stills->settings();
+  if (!start.places.empty() && !options.common.size) settings.height /= 2, settings.width /= 2;
+  settings.camera.clear();  // each picture has its own camera
+  const std::unique_ptr<FramePainter> painter = make_gl_painter(settings);
+  settings.camera = stills->settings().camera;
+  const std::vector<image::SheetPicture> pictures = draw_start(start, settings, *painter);
+  const std::string said = start.places.empty() ? "nothing touches or crosses" : start.description;
+  const image::Image image = start.places.empty()
+                                 ? pictures.front().image
+                                 : image::contact_sheet(pictures, 2, said.substr(0, said.find(':')) + ", in red");
+  const Metadata about = describe_pictures(stills->scene(), settings, painter->description());
+  image::write_png(file, image, describe_still(about, start.snapshot->frame, start.snapshot->time));
+  log::info(fmt::format("{}: the start: {}", file.string(), said));
+  check_stopped(options, *stills);
+}
+
+void draw_thumbnail(const ThumbnailOptions& options) {
+  if (options.start) return draw_thumbnail_of_start(options);
+  const std::unique_ptr<Stills> stills = open_stills(options.common);
+  const std::vector<int>& frames = stills->frames();
+  if (options.frame) check_frame(*options.frame, *stills);
+  const std::filesystem::path file =
+      still_file(*stills, options.output, picture_name(options, *stills), options.common.overwrite);
+  std::string text;
+  {
+    Progress progress(options.common.progress, {stills->cost(options.frame.value_or(frames.back())), 1, 1});
+    const Still choice =
+        options.frame ? Still{stills->at(*options.frame, progress), {}} : most_salient(*stills, frames, progress);
+    const frame::FrameSnapshot& snapshot = *choice.snapshot;
+    const std::unique_ptr<FramePainter> painter = make_gl_painter(stills->settings());
+    painter->set_camera_path(stills->camera());
+    const image::Image image = painter->draw(snapshot, nullptr).image;
+    progress.advance(Stage::draw);
+    const Metadata about = describe_pictures(stills->scene(), stills->settings(), painter->description());
+    image::write_png(file, image, describe_still(about, snapshot.frame, snapshot.time));
+    text = fmt::format("{}: frame {} (t = {:.4g} s)", file.string(), snapshot.frame, snapshot.time);
+    if (!options.frame) text += describe_choice(choice.saliency, frames.size());
+  }
+  log::info(text);
+  check_stopped(options, *stills);
+}
+
+/// Draws one picture per scene into a folder; continues after a failure.
+class Batch {
+ public:
+  explicit Batch(const ThumbnailOptions& options)
+      : options_(options), folder_(options.output.empty() ? "output" : options.output) {
+    if (!options.output.empty() && !is_folder(options))
+      throw Error(ExitCode::usage, "-o: expected a folder for the pictures of {} scenes, got {}", options.scenes.size(),
+                  options.output.string());
+  }
+
+  ExitCode run() {
+    const std::vector<ThumbnailOptions> drawings = plan();
+    std::size_t drawn = 0;
+    for (const ThumbnailOptions& drawing : drawings)
+      drawn += attempt(drawing.common.scene, [&] { draw_thumbnail(drawing); });
+    log::info(fmt::format("{} of {} pictures are drawn", drawn, options_.scenes.size()));
+    return code_;
+  }
+
+ private:
+  /// Checks all scenes and output files before the first is drawn; skips scenes that cannot be read.
+  std::vector<ThumbnailOptions> plan() {
+    std::vector<ThumbnailOptions> drawings;
+    PathLedger paths;
+    for (const std::filesystem::path& scene : options_.scenes) {
+      ThumbnailOptions one = options_;
+      one.common.scene = scene;
+      attempt(scene, [&] {
+        const std::unique_ptr<Stills> stills = open_stills(one.common);
+        one.output = folder_ / picture_name(one, *stills);
+        stills->add_inputs(paths);
+        drawings.push_back(one);
+      });
+    }
+    for (const ThumbnailOptions& drawing : drawings) paths.writes("-o", drawing.output);
+    paths.check_absent(options_.common.overwrite);
+    paths.check_writable();
+    return drawings;
+  }
+
+  /// Returns whether `work` succeeded. Reports a failure and stores the first exit code; rethrows an interruption.
+  bool attempt(const std::filesystem::path& scene, const std::function<void()>& work) {
+    try {
+      work();
+      return true;
+    } catch (...) {
+      const Failure failure = describe_failure(std::current_exception());
+      if (failure.code == ExitCode::interrupted) throw;
+      report(failure);
+      log::info(fmt::format("{}: no picture, exit code {}", scene.string(), static_cast<int>(failure.code)));
+      if (code_ == ExitCode::ok) code_ = failure.code;
+      return false;
+    }
+  }
+
+  const ThumbnailOptions& options_;
+  const std::filesystem::path folder_;
+  ExitCode code_ = ExitCode::ok;
+};
+
+}  // namespace
+
+ExitCode thumbnail(const ThumbnailOptions& options) {
+  set_thread_count(options.common.threads);
+  if (options.scenes.size() > 1 || is_folder(options)) return Batch(options).run();
+  ThumbnailOptions one = options;
+  one.common.scene = options.scenes.front();
+  draw_thumbnail(one);
+  return ExitCode::ok;
+}
+
+}  // namespace weft::cli

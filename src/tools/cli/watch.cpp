@@ -1,0 +1,105 @@
+// weft watch: draws a scene again whenever one of its files changes.
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "core/error.hpp"
+#include "core/log.hpp"
+#include "tools/cli/child_process.hpp"
+#include "tools/cli/commands.hpp"
+#include "tools/cli/own_files.hpp"
+#include "tools/cli/scene_input.hpp"
+#include "tools/cli/signals.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr auto kFilePollPause = 100'000;  // for files and for the drawing process [microseconds]
+
+/// Modification times of files; the default time for missing ones.
+using Stamps = std::map<fs::path, fs::file_time_type>;
+
+Stamps stamps_of(const std::vector<fs::path>& files) {
+  Stamps stamps;
+  for (const fs::path& file : files) {
+    std::error_code none;
+    stamps[file] = fs::last_write_time(file, none);
+    if (none) stamps[file] = {};
+  }
+  return stamps;
+}
+
+class Watch {
+ public:
+  explicit Watch(const WatchOptions& options) : options_(options) {
+    // Checks that the file that drawings will replace is an earlier drawing of the scene.
+    const auto option = std::ranges::find(options.passed_on, "--output");
+    const std::string scene = options.scene.stem().string();
+    const fs::path output = option != options.passed_on.end()
+                                ? fs::path(*(option + 1))
+                                : fs::path("output") / (scene + (options.film ? ".mp4" : ".png"));
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(output, ignored)) && !is_output_of(output, scene))
+      throw Error(ExitCode::output_failed, "{}: exists already, and is no picture of {}; give another name",
+                  output.string(), scene);
+  }
+
+  ExitCode draw_repeatedly() {
+    for (int times = 0; !stop_.requested() && (options_.times == 0 || times < options_.times); ++times) {
+      // The list of files of an invalid scene is incomplete, so the scene file is always added.
+      const scene::LoadResult loaded = scene::load(options_.scene, options_.overrides);
+      files_ = {options_.scene};
+      files_.insert(files_.end(), loaded.scene.files.begin(), loaded.scene.files.end());
+      drawn_ = stamps_of(files_);
+      draw();
+      if (options_.times != 0 && times + 1 == options_.times) break;
+      while (!stop_.requested() && !changed()) ::usleep(kFilePollPause);
+    }
+    return ExitCode::ok;
+  }
+
+ private:
+  bool changed() const { return stamps_of(files_) != drawn_; }
+
+  /// Draws in a separate process, which reports its own errors; kills it if a file changes in the meantime.
+  void draw() const {
+    std::vector<std::string> words{own_program().string(),
+                                   options_.film ? "run" : "thumbnail",
+                                   options_.scene.string(),
+                                   "--overwrite",
+                                   "--progress",
+                                   "none"};
+    words.insert(words.end(), options_.passed_on.begin(), options_.passed_on.end());
+    for (const std::string& text : options_.overrides) words.insert(words.end(), {"--set", text});
+    const pid_t process = start_process(words, "");
+    bool is_killed = false;
+    int status = 0;
+    while (::waitpid(process, &status, WNOHANG) == 0) {
+      if (!is_killed && (stop_.requested() || changed())) {
+        ::kill(process, SIGKILL);  // no partial file gets a final name, as outputs are renamed when complete
+        is_killed = true;
+      }
+      ::usleep(kFilePollPause);
+    }
+  }
+
+  const WatchOptions& options_;
+  const StopSignals stop_{"ending"};
+  std::vector<fs::path> files_;
+  Stamps drawn_;
+};
+
+}  // namespace
+
+ExitCode watch(const WatchOptions& options) {
+  return Watch(options).draw_repeatedly();
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,110 @@
+#include "tools/cli/whole_output.hpp"
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "film/image/exr.hpp"
+#include "film/image/png.hpp"
+#include "film/video/decoder.hpp"
+#include "tools/cli/stages.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether an output has the expected metadata. The OpenGL implementation may differ.
+bool agrees(const Metadata& found, Metadata expected) {
+  expected.erase("gl");
+  return std::ranges::all_of(expected, [&](const auto& entry) {
+    const auto here = found.find(entry.first);
+    return here != found.end() && here->second == entry.second;
+  });
+}
+
+enum class State { absent, other, part, whole };
+
+State state_of_video(const fs::path& file, const FrameRange& frames, const render::Settings& settings,
+                     Metadata expected) {
+  video::Decoder decoder(file);
+  expected["frames"] = frames.text();
+  // Odd sizes are padded to even ones.
+  const auto near = [](int found, int wanted) { return found == wanted || found == wanted + wanted % 2; };
+  const bool fits = near(decoder.width(), settings.width) && near(decoder.height(), settings.height);
+  if (!fits || !agrees(decoder.metadata(), std::move(expected))) return State::other;
+  int count = 0;
+  while (decoder.next()) ++count;
+  return count == frames.count() ? State::whole : State::part;
+}
+
+State state_of_picture(const fs::path& file, int frame, const render::Settings& settings, Metadata expected) {
+  expected["frame"] = fmt::format("{}", frame);
+  image::ExrHeader found;
+  if (settings.layers) {
+    found = image::read_exr_header(file);
+  } else {
+    const image::Image image = image::read_png(file, &found.metadata);
+    found.width = image.width;
+    found.height = image.height;
+  }
+  const bool fits = found.width == settings.width && found.height == settings.height;
+  return fits && agrees(found.metadata, std::move(expected)) ? State::whole : State::other;
+}
+
+bool is_file(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored);
+}
+
+// State of the video, or of the picture of frames.begin.
+State state_of(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
+               const Metadata& expected) {
+  const fs::path file = target.file(frames.begin);
+  if (!is_file(file)) return State::absent;
+  try {
+    if (target.kind == OutputTarget::Kind::video) return state_of_video(file, frames, settings, expected);
+    return state_of_picture(file, frames.begin, settings, expected);
+  } catch (const Error&) {
+    return State::other;  // an unreadable file counts as one of another program
+  }
+}
+
+std::vector<fs::path> meshes_of(const FrameRange& frames, const fs::path& folder,
+                                const std::vector<std::string>& objects) {
+  std::vector<fs::path> files;
+  if (folder.empty()) return files;
+  for (const std::string& object : objects)
+    for (fs::path& file : mesh_files(folder, object).names(frames)) files.push_back(std::move(file));
+  return files;
+}
+
+}  // namespace
+
+Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
+                 const cache::Manifest& scene, const fs::path& meshes, const std::vector<std::string>& objects) {
+  const Metadata expected = describe_pictures(scene, settings, "");
+  Drawn drawn;
+  const auto look_at = [&](const FrameRange& part) {
+    const State state = state_of(target, part, settings, expected);
+    if (state != State::part && state != State::whole) return;
+    const std::vector<fs::path> with = meshes_of(part, meshes, objects);
+    drawn.own.insert(target.file(part.begin));
+    drawn.own.insert(with.begin(), with.end());
+    if (state == State::part || !std::ranges::all_of(with, is_file)) return;
+    for (int frame = part.begin; frame < part.end; frame += part.step) drawn.frames.insert(frame);
+  };
+  if (target.kind == OutputTarget::Kind::video) {
+    look_at(frames);
+  } else {
+    for (int frame = frames.begin; frame < frames.end; frame += frames.step) look_at({frame, frame + 1, 1});
+  }
+  return drawn;
+}
+
+bool is_whole(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
+              const cache::Manifest& scene, const fs::path& meshes, const std::vector<std::string>& objects) {
+  const Drawn drawn = find_drawn(target, frames, settings, scene, meshes, objects);
+  return static_cast<int>(drawn.frames.size()) == frames.count();
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,31 @@
+// Detection of complete or partial output of an earlier run.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "film/cache/manifest.hpp"
+#include "film/render/renderer.hpp"
+#include "tools/cli/output_target.hpp"
+
+namespace weft::cli {
+
+/// Whether the video or pictures contain all these frames of this scene with these settings, and all meshes exist.
+bool is_whole(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
+              const cache::Manifest& scene, const std::filesystem::path& meshes,
+              const std::vector<std::string>& objects);
+
+/// What an earlier run has drawn of the same film.
+struct Drawn {
+  std::set<int> frames;                 ///< complete frames, with their meshes
+  std::set<std::filesystem::path> own;  ///< files of this film that may be replaced
+};
+
+/// Checks pictures one by one; an incomplete video counts as no frames.
+Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
+                 const cache::Manifest& scene, const std::filesystem::path& meshes,
+                 const std::vector<std::string>& objects);
+
+}  // namespace weft::cli

@@ -1,0 +1,155 @@
+#include "tools/compare/compare.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/error.hpp"
+#include "film/image/color.hpp"
+#include "tools/compare/edges.hpp"
+#include "tools/compare/flip.hpp"
+#include "tools/compare/ssim.hpp"
+
+namespace weft::compare {
+namespace {
+
+Figures count_pixels(const image::Image& reference, const image::Image& test, int tolerance) {
+  Figures figures;
+  figures.width = reference.width;
+  figures.height = reference.height;
+  figures.pixels = static_cast<std::int64_t>(reference.width) * reference.height;
+  for (int y = 0; y < reference.height; ++y) {
+    const std::uint8_t *a = reference.pixel(0, y), *b = test.pixel(0, y);
+    for (int x = 0; x < reference.width; ++x, a += 3, b += 3) {
+      const int difference = std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+      figures.pixels_changed += difference > 0;
+      figures.pixels_over += difference > tolerance;
+      if (difference <= figures.largest) continue;
+      figures.largest = difference;
+      figures.largest_x = x;
+      figures.largest_y = y;
+    }
+  }
+  return figures;
+}
+
+double sum_of(const Plane<float>& plane) {
+  return parallel_sum(plane.values.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    double part = 0;
+    for (std::size_t i = begin; i < end; ++i) part += static_cast<double>(plane.values[i]);
+    return part;
+  });
+}
+
+// Replaces the pixels outside the mask by those of the reference.
+image::Image masked(const image::Image& reference, image::Image test, const Mask& mask) {
+  if (mask.width != reference.width || mask.height != reference.height) {
+    throw Error(ExitCode::internal, "expected a mask of {}x{} pixels, got {}x{}", reference.width, reference.height,
+                mask.width, mask.height);
+  }
+  for (std::size_t i = 0; i < mask.values.size(); ++i)
+    if (mask.values[i] == 0) std::copy_n(&reference.rgb[3 * i], 3, &test.rgb[3 * i]);
+  return test;
+}
+
+bool has_default_budget(const Limits& limits) {
+  return limits.pixel_budget == Limits{}.pixel_budget;
+}
+
+}  // namespace
+
+Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance, const Mask* mask) {
+  const bool same_size = reference.width == test.width && reference.height == test.height;
+  if (!same_size || reference.rgb.empty() || reference.rgb.size() != test.rgb.size()) {
+    throw Error(ExitCode::internal, "expected two images of one size to compare, got {}x{} and {}x{}", reference.width,
+                reference.height, test.width, test.height);
+  }
+  if (mask != nullptr) {
+    Comparison result = compare(reference, masked(reference, test, *mask), pixel_tolerance);
+    result.figures.pixels = std::ranges::count_if(mask->values, [](std::uint8_t value) { return value != 0; });
+    if (result.figures.pixels == 0) throw Error(ExitCode::internal, "expected a mask with pixels to compare");
+    // FLIP also spreads a difference to pixels outside the mask, where it must not count.
+    for (std::size_t i = 0; i < mask->values.size(); ++i)
+      if (mask->values[i] == 0) result.flip.values[i] = 0;
+    result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
+    return result;
+  }
+  Comparison result;
+  result.figures = count_pixels(reference, test, pixel_tolerance);
+  if (result.figures.pixels_changed == 0) {
+    result.flip = Plane<float>(reference.width, reference.height);
+    return result;
+  }
+  if (result.figures.pixels_over > 0) result.figures.pixels_at_edges = count_at_edges(reference, test, pixel_tolerance);
+  result.figures.ssim = structural_similarity(reference, test);
+  result.flip = flip_map(reference, test);
+  result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
+  result.figures.spot = static_cast<double>(*std::max_element(result.flip.values.begin(), result.flip.values.end()));
+  return result;
+}
+
+Limits with_encoder_noise(Limits limits) {
+  constexpr Limits kDefault;
+  if (limits.pixel_budget == kDefault.pixel_budget) limits.pixel_budget = 0.027;
+  if (limits.flip == kDefault.flip) limits.flip = 0.022;
+  if (limits.spot == kDefault.spot) limits.spot = 0.4;
+  return limits;
+}
+
+Limits for_size(Limits limits, const Figures& figures) {
+  constexpr double kArea = 640 * 360;
+  const double area = std::max(1.0, static_cast<double>(figures.width) * figures.height);
+  if (limits.flip == Limits{}.flip) limits.flip *= std::sqrt(std::max(1.0, kArea / area));
+  return limits;
+}
+
+double counted_pixels(const Figures& figures, const Limits& limits) {
+  // With this weight, the budget allows twice the largest number of edge pixels measured between CPU types: 21 of
+  // 57,600 (README, decisions).
+  constexpr double kEdgePixelWeight = 1.0 / 40;
+  const auto over = static_cast<double>(figures.pixels_over), at_edges = static_cast<double>(figures.pixels_at_edges);
+  return has_default_budget(limits) ? (over - at_edges) + kEdgePixelWeight * at_edges : over;
+}
+
+double allowed_pixels(const Figures& figures, const Limits& limits) {
+  return std::max(has_default_budget(limits) ? 1.0 : 0.0, limits.pixel_budget * static_cast<double>(figures.pixels));
+}
+
+Verdict verdict(const Figures& figures, const Limits& limits) {
+  if (figures.pixels_changed == 0) return Verdict::same;
+  const bool within = counted_pixels(figures, limits) <= allowed_pixels(figures, limits) &&
+                      figures.flip <= for_size(limits, figures).flip && figures.spot <= limits.spot;
+  return within ? Verdict::within : Verdict::differs;
+}
+
+bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits) {
+  // Measured for spill in films of 96x64 pixels, in which a square appears for one or two frames: up to 1.3 times the
+  // limits, and mean FLIP up to 0.29 of that of the changed frame.
+  constexpr std::size_t kFrames = 12;
+  constexpr double kOverLimit = 2, kMaxFlipRatio = 1.0 / 3;
+  Limits wider = limits;
+  wider.flip *= kOverLimit, wider.pixel_budget *= kOverLimit;
+  if (verdict(frames[k], wider) != Verdict::within) return false;
+  const std::size_t first = k - std::min(k, kFrames), end = std::min(k + kFrames + 1, frames.size());
+  const double largest = std::ranges::max(frames.subspan(first, end - first), {}, &Figures::flip).flip;
+  return frames[k].flip <= kMaxFlipRatio * largest;
+}
+
+image::Image heat_map(const Plane<float>& flip) {
+  const auto table = image::heat_table();
+  std::array<std::array<std::uint8_t, 3>, image::kHeatColors> colors;
+  for (int i = 0; i < image::kHeatColors; ++i) {
+    const Vec3 encoded = image::srgb_from_linear(table[i]);
+    for (int c = 0; c < 3; ++c) colors[i][c] = static_cast<std::uint8_t>(std::lround(255 * encoded[c]));
+  }
+  image::Image picture(flip.width, flip.height);
+  std::uint8_t* to = picture.rgb.data();
+  for (const float value : flip.values) {
+    const auto& color = colors[std::lround(std::sqrt(value) * (image::kHeatColors - 1))];
+    to = std::copy(color.begin(), color.end(), to);
+  }
+  return picture;
+}
+
+}  // namespace weft::compare

@@ -1,0 +1,126 @@
+#include "tools/export/blender.hpp"
+
+#include <fmt/format.h>
+
+#include "core/json.hpp"
+#include "core/version.hpp"
+#include "embedded_export.hpp"
+#include "film/image/color.hpp"
+#include "tools/export/materials.hpp"
+
+namespace weft::exporter {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json list(const Vec3& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+Json light_json(const frame::Light& light, double share) {
+  const bool sun = light.kind == frame::Light::Kind::sun;
+  return {{"name", light.name},
+          {"kind", sun ? "sun" : "spot"},
+          {"position", list(sun ? Vec3(0, 0, 0) : light.position)},
+          {"direction", list(sun ? light.direction : Vec3(light.target - light.position))},
+          {"color", list(image::linear_from_srgb(light.color))},
+          {"strength", light.intensity * share},
+          {"cone_angle", light.cone_angle},
+          {"softness", light.softness}};
+}
+
+const char* extension(const Material& material) {
+  switch (material.wrap_u) {
+    case frame::Paint::Wrap::repeat:
+      return "REPEAT";
+    case frame::Paint::Wrap::mirror:
+      return "MIRROR";
+    case frame::Paint::Wrap::clamp:
+    case frame::Paint::Wrap::once:
+      return "EXTEND";
+  }
+  return "REPEAT";
+}
+
+// Picture and mapping of each material. The script sets them, as MTL cannot express every mapping.
+Json pictures_json(const frame::Surface& surface) {
+  Json result = Json::object();
+  const Materials materials = materials_of(surface);
+  for (const MaterialGroup& group : group_by_look(surface, materials)) {
+    const Material& material = materials.all[group.material];
+    if (!material.has_picture()) continue;
+    const auto& map = material.picture_from_uv;
+    result[material.name] = {{"file", materials.pictures[material.picture].name},
+                             {"across", {map(0, 0), map(0, 1), map(0, 2)}},
+                             {"up", {map(1, 0), map(1, 1), map(1, 2)}},
+                             {"extension", extension(material)},
+                             {"cutout", material.cutout}};
+  }
+  return result;
+}
+
+// Linear colour of the back of each material of cloth, if it differs from the front.
+Json backs_json(const frame::Surface& surface) {
+  Json result = Json::object();
+  if (surface.kind != frame::ObjectKind::cloth) return result;
+  const Materials materials = materials_of(surface);
+  for (const MaterialGroup& group : group_by_look(surface, materials)) {
+    const frame::Appearance& look =
+        group.material == 0 ? surface.appearance : surface.parts[group.material - 1].appearance;
+    const bool painted = look.paint.texture && look.back_painted;
+    if (look.back_color != look.color && !painted)
+      result[materials.all[group.material].name] = list(image::linear_from_srgb(look.back_color));
+  }
+  return result;
+}
+
+}  // namespace
+
+BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const Lighting& lighting, std::string name, double fps,
+                             int width, int height) {
+  film_ = {{"name", std::move(name)},
+           {"fps", fps},
+           {"size", {width, height}},
+           {"z_up", first.stage->up.z() > 0.5},
+           {"first", first.frame},
+           {"last", first.frame},
+           {"frames", Json::array()},
+           {"objects", Json::array()},
+           {"cameras", Json::array()},
+           {"lights", Json::array()},
+           {"sky", {{"color", list(lighting.sky_color)}, {"strength", lighting.sky_share}}}};
+  for (const auto& surface : first.surfaces)
+    film_["objects"].push_back({{"name", surface->name},
+                                {"visible", surface->visible},
+                                {"pictures", pictures_json(*surface)},
+                                {"backs", backs_json(*surface)}});
+  for (const frame::Light& light : lighting.lights)
+    film_["lights"].push_back(light_json(light, 1 - lighting.sky_share));
+}
+
+void BlenderScript::add(int frame, const std::vector<View>& views) {
+  film_["last"] = frame;
+  film_["frames"].push_back(frame);
+  Json& cameras = film_["cameras"];
+  for (std::size_t c = 0; c < views.size(); ++c) {
+    if (c == cameras.size()) cameras.push_back({{"name", views[c].name}, {"frames", Json::array()}});
+    Json key{views[c].field_of_view};
+    for (int row = 0; row < 3; ++row) {
+      const Eigen::RowVector4d r = views[c].world_from_view.row(row);
+      key.push_back({r[0], r[1], r[2], r[3]});
+    }
+    cameras[c]["frames"].push_back(std::move(key));
+  }
+}
+
+std::string BlenderScript::text() const {
+  // ASCII JSON never contains three consecutive quotes, so the Python literal ends only at its end.
+  const std::string data = json_text(film_, -1, JsonLetters::ascii);
+  std::string text = fmt::format("# {}, by Weft {}.\nFILM_TEXT = r\"\"\"{}\"\"\"\n\n",
+                                 json_text(film_["name"], -1, JsonLetters::ascii), kVersion, data);
+  for (const EmbeddedFile& file : kEmbeddedExport)
+    if (file.name == "blender.py") text += file.text;
+  return text;
+}
+
+}  // namespace weft::exporter

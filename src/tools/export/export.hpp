@@ -1,0 +1,54 @@
+// Export of frames to files for other programs.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "tools/export/view.hpp"
+
+namespace weft::exporter {
+
+enum class Format {
+  ply,      ///< per object and frame: triangles, positions in double precision, weft and warp; panels are separate
+  obj,      ///< per object and frame: simulated faces, weft and warp, normals, materials (MTL) and pictures
+  pc2,      ///< per object: a point cache, and the OBJ of the first frame to which it applies; y is up
+  gltf,     ///< one file with all visible objects, their colours, pictures and motion, and cameras
+  usd,      ///< the contents of gltf as text, with the axes of the scene
+  usdz,     ///< as usd, but packed in one file
+  blender,  ///< pc2, and a script that loads all of it with cameras and lights
+};
+
+struct Request {
+  Format format = Format::gltf;
+  std::filesystem::path folder;
+  std::string name;                ///< of the scene; names files that contain all objects
+  double fps = 25;                 ///< of the scene
+  std::vector<int> frames;         ///< ascending, equally spaced, at least one
+  int width = 1280, height = 720;  ///< of the pictures
+  /// Returns the cameras of a frame, that of the pictures first. Used by gltf, usd, usdz and blender; called once per
+  /// frame, in order.
+  std::function<std::vector<View>(const frame::FrameSnapshot&)> views = nullptr;
+  Lighting lighting = {};  ///< for blender
+};
+
+/// All files that write() will write, except shared_files(). `first`: the first requested frame.
+std::vector<std::filesystem::path> files(const Request& request, const frame::FrameSnapshot& first);
+
+/// A material file or a picture, the same for all parts of a film.
+struct SharedFile {
+  std::filesystem::path file;
+  std::string content;
+};
+std::vector<SharedFile> shared_files(const Request& request, const frame::FrameSnapshot& first);
+
+/// Reads each frame once, in order, and writes it. Calls `stop` before each frame, and ends if it returns true. Returns
+/// whether all frames were written. Each file gets its name only when it is complete. Throws Error(output_failed), and
+/// what `read` throws.
+bool write(
+    const Request& request, const std::function<frame::SnapshotPtr(int)>& read,
+    const std::function<bool()>& stop = [] { return false; });
+
+}  // namespace weft::exporter

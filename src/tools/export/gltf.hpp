@@ -1,0 +1,83 @@
+// Animated glTF 2.0 as one binary file (Khronos Group, "glTF 2.0 Specification", 2021).
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+#include "tools/export/materials.hpp"
+#include "tools/export/normals.hpp"
+#include "tools/export/seams.hpp"
+#include "tools/export/view.hpp"
+
+namespace weft::exporter {
+
+/// Each object is a mesh with the vertices of the first frame, and one morph target per later frame. At the time of a
+/// later frame, the weight of its target is 1 and those of all others are 0; between frames, weights and thus positions
+/// are interpolated linearly. Morph targets are the only way of the standard to move vertices independently; assimp,
+/// Blender and three.js read them. Objects that never move have no targets.
+///
+/// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y); Blender reverses this. Normals have targets as
+/// well, since the normals of the first frame would be wrong in all others. Texture coordinates are (weft, 1 − warp)
+/// [m], as v points down in glTF; vertices on a seam occur once for each panel. Pictures are embedded. If their mapping
+/// differs from these coordinates, a second pair of coordinates maps them. Parts with their own materials are
+/// separate primitives over the same vertices.
+class GltfFile {
+ public:
+  /// Adds the visible objects of the first frame.
+  explicit GltfFile(const frame::FrameSnapshot& first);
+
+  /// Adds the next frame, at `time` [s] after the first.
+  void add(const frame::FrameSnapshot& snapshot, double time);
+
+  /// Adds the cameras of the next frame, starting with the first. glTF cameras cannot change their field of view, so
+  /// they keep that of the first frame.
+  void see(const std::vector<View>& views);
+
+  /// `aspect`: width over height of rendered pictures. Throws Error(output_failed), also if the file would exceed the
+  /// limit of the format.
+  void write(const std::filesystem::path& file, const std::string& animation_name, double aspect);
+
+ private:
+  struct Target {
+    int positions = -1, normals = -1;  // indices of accessors; −1 if the frame equals the first
+  };
+  struct Object {
+    std::size_t surface = 0;
+    NormalGroups groups = {};
+    std::vector<float> start = {};  // positions of the first frame, y up
+    std::vector<float> start_normals = {};
+    std::vector<Index> vertex_of = {};  // index in the surface, per written vertex
+    std::vector<Index> group_of = {};   // index of the normal group, per written vertex; −1: none
+    std::vector<Target> targets = {};   // one per later frame
+  };
+  struct Eye {
+    std::string name = {};
+    double field_of_view = 35;                      // vertical [degrees]
+    std::vector<float> positions = {}, turns = {};  // per frame: x, y, z; and quaternion x, y, z, w
+  };
+  int append(const void* data, std::size_t size, int target);
+  int add_vectors(const std::vector<float>& vectors);
+  int add_values(const std::vector<float>& values, const char* type, bool with_bounds = false);
+  int add_places(const std::vector<Vec2>& places);
+  nlohmann::json texture(const Materials& materials, const Material& material, std::vector<int>& images);
+  nlohmann::json primitives(const CutSurface& cut, const Object& object, const frame::Surface& surface,
+                            const Materials& materials);
+  void add_targets(Object& object, nlohmann::json& mesh);
+  nlohmann::json animation(const std::vector<int>& nodes);
+  void add_cameras(nlohmann::json& animation, double aspect);
+  std::vector<float> normals(const Object& object, const frame::FrameSnapshot& snapshot) const;
+  std::vector<float> turned(const std::vector<Vec3>& positions, const std::vector<Index>& vertices) const;
+
+  bool z_up_;
+  std::vector<Object> objects_;
+  std::vector<Eye> eyes_;
+  std::vector<float> times_{0};
+  std::vector<int> frames_;
+  nlohmann::json document_;
+  std::string bytes_;
+};
+
+}  // namespace weft::exporter

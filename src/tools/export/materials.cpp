@@ -1,0 +1,156 @@
+#include "tools/export/materials.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "film/image/color.hpp"
+#include "film/image/image.hpp"
+#include "film/image/picture.hpp"
+#include "film/image/png.hpp"
+
+namespace weft::exporter {
+namespace {
+
+using Alpha = frame::Paint::Alpha;
+using Wrap = frame::Paint::Wrap;
+
+const std::array<double, 256>& linear_of_bytes() {
+  static const auto kTable = [] {
+    std::array<double, 256> table;
+    for (std::size_t i = 0; i < table.size(); ++i) table[i] = image::linear_from_srgb(static_cast<double>(i) / 255);
+    return table;
+  }();
+  return kTable;
+}
+
+std::uint8_t byte_of(double share) {
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+}
+
+// Combines a texel with the surface's colour in linear space, as the renderer does.
+void lay_texel(const PictureFile& picture, const std::uint8_t* texel, std::uint8_t* laid) {
+  const double opacity = texel[3] / 255.0;
+  for (int c = 0; c < 3; ++c) {
+    const double light = linear_of_bytes()[texel[c]];
+    const double shown = picture.alpha == Alpha::over_color ? picture.color[c] * (1 - opacity) + light * opacity
+                                                            : picture.color[c] * light;
+    laid[c] = byte_of(image::srgb_from_linear(shown));
+  }
+  laid[3] = picture.alpha == Alpha::cutout ? texel[3] : 255;
+}
+
+bool is_same(const PictureFile& a, const PictureFile& b) {
+  const bool same_texture =
+      a.texture == b.texture || (a.texture->width == b.texture->width && a.texture->rgba == b.texture->rgba);
+  return same_texture && a.color == b.color && a.alpha == b.alpha && a.rim_u == b.rim_u && a.rim_v == b.rim_v;
+}
+
+std::size_t add_picture(std::vector<PictureFile>& pictures, PictureFile picture, const std::string& surface) {
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    if (is_same(pictures[i], picture)) return i;
+  picture.name = pictures.empty() ? surface + ".png" : fmt::format("{}_{}.png", surface, pictures.size() + 1);
+  pictures.push_back(std::move(picture));
+  return pictures.size() - 1;
+}
+
+// A picture that is laid once along this axis becomes a clamped one with a transparent rim, which looks the same.
+// `row`: the row of Material::picture_from_uv for this axis.
+void widen(Wrap& wrap, bool& rim, int pixels, Eigen::Ref<Eigen::RowVector3d> row) {
+  rim = wrap == Wrap::once;
+  if (!rim) return;
+  wrap = Wrap::clamp;
+  row *= static_cast<double>(pixels) / (pixels + 2);
+  row[2] += 1.0 / (pixels + 2);
+}
+
+Material material_of(const frame::Surface& surface, const frame::Appearance& look, Materials& materials) {
+  Material made{.name = {},
+                .color = image::linear_from_srgb(look.color),
+                .roughness = surface.appearance.roughness,
+                .metal = surface.appearance.metal};
+  const frame::Paint& paint = look.paint;
+  if (!paint.texture) return made;
+  PictureFile picture{.name = {}, .texture = paint.texture, .color = made.color, .alpha = paint.alpha};
+  const bool once = paint.wrap_u == Wrap::once || paint.wrap_v == Wrap::once;
+  if (once && picture.alpha == Alpha::ignored) picture.alpha = Alpha::over_color;
+  made.wrap_u = paint.wrap_u;
+  made.wrap_v = paint.wrap_v;
+  made.cutout = picture.alpha == Alpha::cutout;
+  made.picture_from_uv = paint.texture_from_uv;
+  Eigen::RowVector3d across = made.picture_from_uv.row(0), up = made.picture_from_uv.row(1);
+  widen(made.wrap_u, picture.rim_u, paint.texture->width, across);
+  widen(made.wrap_v, picture.rim_v, paint.texture->height, up);
+  made.picture_from_uv << across, up;
+  made.picture = add_picture(materials.pictures, std::move(picture), surface.name);
+  return made;
+}
+
+bool look_alike(const Material& a, const Material& b) {
+  return a.color == b.color && a.roughness == b.roughness && a.metal == b.metal && a.picture == b.picture &&
+         a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v && a.cutout == b.cutout && a.picture_from_uv == b.picture_from_uv;
+}
+
+}  // namespace
+
+std::string PictureFile::png() const {
+  const int rim_x = rim_u ? 1 : 0, rim_y = rim_v ? 1 : 0;
+  image::Picture laid{texture->width + 2 * rim_x, texture->height + 2 * rim_y, {}};
+  laid.rgba.resize(4 * static_cast<std::size_t>(laid.width) * static_cast<std::size_t>(laid.height));
+  constexpr std::array<std::uint8_t, 4> kNothing{};
+  for (int y = 0; y < laid.height; ++y)
+    for (int x = 0; x < laid.width; ++x) {
+      const int from_x = x - rim_x, from_y = y - rim_y;
+      const bool inside = from_x >= 0 && from_y >= 0 && from_x < texture->width && from_y < texture->height;
+      const std::size_t from = inside ? 4 * (static_cast<std::size_t>(from_y) * texture->width + from_x) : 0;
+      const std::size_t to = 4 * (static_cast<std::size_t>(y) * laid.width + x);
+      lay_texel(*this, inside ? &texture->rgba[from] : kNothing.data(), &laid.rgba[to]);
+    }
+  if (alpha == Alpha::cutout) return image::png_bytes(laid);
+  image::Image opaque(laid.width, laid.height);
+  for (std::size_t i = 0; i < opaque.rgb.size(); ++i) opaque.rgb[i] = laid.rgba[i / 3 * 4 + i % 3];
+  return image::png_bytes(opaque);
+}
+
+std::size_t Materials::of_triangle(const frame::Surface& surface, std::size_t triangle) const {
+  return surface.part_of_triangle.empty() ? 0 : 1 + static_cast<std::size_t>(surface.part_of_triangle[triangle]);
+}
+
+Materials materials_of(const frame::Surface& surface) {
+  Materials materials;
+  const std::string name = plain_name(surface.name);
+  const auto add = [&](const std::string& material, const frame::Appearance& look) {
+    Material made = material_of(surface, look, materials);
+    made.name = material;
+    const auto first =
+        std::ranges::find_if(materials.all, [&](const Material& each) { return look_alike(each, made); });
+    made.alike = static_cast<std::size_t>(first - materials.all.begin());
+    materials.all.push_back(std::move(made));
+  };
+  add(name, surface.appearance);
+  for (std::size_t p = 0; p < surface.parts.size(); ++p)
+    add(fmt::format("{}_{}_{}", name, p, plain_name(surface.parts[p].name)), surface.parts[p].appearance);
+  return materials;
+}
+
+std::vector<MaterialGroup> group_by_look(const frame::Surface& surface, const Materials& materials) {
+  std::vector<MaterialGroup> groups(materials.all.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    groups[materials.all[materials.of_triangle(surface, t)].alike].triangles.push_back(t);
+  for (std::size_t m = 0; m < groups.size(); ++m) groups[m].material = m;
+  std::erase_if(groups, [](const MaterialGroup& group) { return group.triangles.empty(); });
+  return groups;
+}
+
+std::string plain_name(const std::string& name) {
+  std::string plain;
+  for (const char c : name) plain += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ? c : '_';
+  return plain;
+}
+
+}  // namespace weft::exporter

@@ -1,0 +1,65 @@
+// Colours and pictures of surfaces, in the form that other programs use.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "film/frame/frame_snapshot.hpp"
+
+namespace weft::exporter {
+
+/// A picture beside or inside the exported files. Other programs show it unchanged, so its pixels include the surface's
+/// colour: as a factor, or where the colour is visible through and around the picture.
+struct PictureFile {
+  std::string name;  ///< file name
+  std::shared_ptr<const frame::Texture> texture;
+  Vec3 color;  ///< linear colour of the surface
+  frame::Paint::Alpha alpha = frame::Paint::Alpha::ignored;
+  bool rim_u = false, rim_v = false;  ///< whether a transparent rim of one pixel is added at both ends of
+                                      ///< this axis; readers continue the rim beyond the edges
+
+  /// The bytes of the PNG file; it has alpha only if the picture cuts holes.
+  std::string png() const;
+};
+
+struct Material {
+  static constexpr std::size_t kNoPicture = static_cast<std::size_t>(-1);
+  std::string name;  ///< letters, digits, - and _
+  Vec3 color;        ///< linear; already contained in the picture, if there is one
+  double roughness = 0, metal = 0;
+  std::size_t picture = kNoPicture;  ///< index in Materials::pictures
+  frame::Paint::Wrap wrap_u = frame::Paint::Wrap::repeat, wrap_v = frame::Paint::Wrap::repeat;  ///< never Wrap::once
+  bool cutout = false;
+  /// Maps (u, v, 1) of the surface to the picture: 0 to 1 from left to right and from bottom to top.
+  Eigen::Matrix<double, 2, 3> picture_from_uv = Eigen::Matrix<double, 2, 3>::Identity();
+  std::size_t alike = 0;  ///< index of the first material with the same look
+
+  bool has_picture() const { return picture != kNoPicture; }
+};
+
+/// Materials of a surface. Both sides of cloth have those of its front.
+struct Materials {
+  std::vector<Material> all;  ///< that of the surface itself, then one per part
+  std::vector<PictureFile> pictures;
+
+  /// Index in `all` of the material of a triangle.
+  std::size_t of_triangle(const frame::Surface& surface, std::size_t triangle) const;
+};
+
+Materials materials_of(const frame::Surface& surface);
+
+/// Triangles with the same look.
+struct MaterialGroup {
+  std::size_t material = 0;  ///< index in `all`
+  std::vector<std::size_t> triangles;
+};
+
+/// Groups all triangles by look. The groups are in the order of the materials.
+std::vector<MaterialGroup> group_by_look(const frame::Surface& surface, const Materials& materials);
+
+/// `name` with every character except letters, digits and - replaced by _.
+std::string plain_name(const std::string& name);
+
+}  // namespace weft::exporter

@@ -1,0 +1,48 @@
+// The pictures of a run: contact sheet, and comparison with its reference.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "film/image/image.hpp"
+#include "tools/compare/compare.hpp"
+#include "tools/review/find_runs.hpp"
+#include "tools/review/run_data.hpp"
+
+namespace weft::review {
+
+/// A small picture of the contact sheet.
+struct Tile {
+  long long picture = 0;  ///< index, from 0
+  image::Image image;
+};
+
+/// Result of one pass over the pictures of a run.
+struct Survey {
+  std::vector<Tile> tiles;  ///< evenly spaced: all pictures if there are few, else 8 to 15
+  long long count = 0;      ///< number of readable pictures
+  double fps = 0;           ///< of a video; 0 if the file does not state it, and for stills
+  int width = 0, height = 0;
+};
+
+/// Throws Error(asset_unreadable) if any picture cannot be read.
+Survey survey(const RunFiles& run);
+
+/// Comparison of one picture with that of the reference at the same time.
+struct PairComparison {
+  long long picture = 0, reference = 0;  ///< indices, from 0
+  compare::Figures figures;
+  compare::Verdict verdict = compare::Verdict::same;
+  image::Image heat;  ///< FLIP map; empty if the pictures are equal
+};
+
+/// Compares the pictures with the ascending indices `at`; skips indices for which the reference has no picture at the
+/// same time. Throws Error(asset_unreadable) if pictures cannot be read or differ in size.
+std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,
+                                                   const RunFiles& reference, const PictureTimes& reference_times,
+                                                   const std::vector<long long>& at);
+
+/// Index of the picture of `to` that is closest in time to picture k of `from`.
+long long same_moment(long long k, const PictureTimes& from, const PictureTimes& to);
+
+}  // namespace weft::review

@@ -1,0 +1,39 @@
+// `weft review`: writes a static folder for viewing runs, which needs no server.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "tools/review/find_runs.hpp"
+
+namespace weft::review {
+
+struct Request {
+  std::vector<std::filesystem::path> folders;  ///< folders with runs
+  std::filesystem::path reference;             ///< folder with runs to compare with; empty: none
+  std::filesystem::path output;
+  bool overwrite = false;
+  std::function<bool()> stop = [] { return false; };  ///< called between runs; true: interrupt
+};
+
+struct Outcome {
+  std::filesystem::path page;
+  int runs = 0;
+  int incomplete = 0;                  ///< number of runs with something missing
+  int approved = 0, needing_work = 0;  ///< number of runs with this decision about their current pictures
+  int differing = 0;                   ///< number of runs that exceed the default limits of weft diff
+};
+
+/// Writes the page. Throws Error: asset_unreadable for folders without runs, reference_missing if the reference is not
+/// a folder with runs, output_failed, interrupted.
+Outcome write_review(const Request& request);
+
+/// JSON that is safe inside a script element, since it contains no `<`.
+std::string script_json(const Json& data);
+
+/// Returns index.html with `data` inserted as JSON into a script element.
+std::string page_html(std::string_view page, const Json& data);
+
+}  // namespace weft::review

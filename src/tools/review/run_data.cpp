@@ -1,0 +1,174 @@
+#include "tools/review/run_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+
+#include "core/error.hpp"
+#include "core/input_file.hpp"
+#include "core/json.hpp"
+#include "core/toml.hpp"
+
+namespace weft::review {
+namespace {
+
+// Rounds a number to six digits. A plot of 1000 pixels cannot show more, and the file has half the size.
+Json rounded(const Json& value) {
+  if (!value.is_number_float()) return value.is_number() || value.is_boolean() ? value : Json(nullptr);
+  const auto number = value.get<double>();
+  if (number == 0 || !std::isfinite(number)) return number == 0 ? Json(0) : Json(nullptr);
+  // std::stod() would throw for numbers below 2.2e-308.
+  return std::strtod(fmt::format("{:.6g}", number).c_str(), nullptr);
+}
+
+// Name of a list entry, or its index if it has none, as in --set.
+std::string entry_name(const toml::node& entry, std::size_t index) {
+  const toml::table* table = entry.as_table();
+  const toml::node* name = table != nullptr ? table->get("name") : nullptr;
+  return name != nullptr && name->is_string() ? name->ref<std::string>() : fmt::format("{}", index);
+}
+
+std::string value_text(const toml::node& node) {
+  if (const auto* text = node.as_string()) return json_text(text->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  std::vector<std::string> parts;
+  if (const auto* list = node.as_array()) {
+    for (const toml::node& part : *list) parts.push_back(value_text(part));
+    return fmt::format("[{}]", fmt::join(parts, ", "));
+  }
+  return "?";  // dates, which no scene contains
+}
+
+bool has_tables(const toml::node& node) {
+  const toml::array* list = node.as_array();
+  return list != nullptr && !list->empty() && list->front().is_table();
+}
+
+void add_values(const toml::node& node, const std::string& path, Json& values) {
+  const std::string prefix = path.empty() ? "" : path + ".";
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, value] : *table) add_values(value, prefix + std::string(key.str()), values);
+  } else if (has_tables(node)) {
+    std::size_t index = 0;
+    for (const toml::node& entry : *node.as_array()) {
+      add_values(entry, prefix + entry_name(entry, index), values);
+      ++index;
+    }
+  } else {
+    values[path] = value_text(node);
+  }
+}
+
+Json effective_json(const RunFiles& run, std::vector<std::string>& problems) {
+  if (run.effective.empty()) {
+    problems.push_back("no effective scene: expected an .effective.toml of this name beside the video");
+    return nullptr;
+  }
+  Json effective{{"text", ""}, {"values", Json::object()}};
+  try {
+    effective["text"] = read_file(run.effective, kMaxTextBytes);
+    effective["values"] =
+        scene_values(effective["text"].get_ref<const std::string&>(), run.effective.filename().string());
+  } catch (const Error& error) {
+    problems.push_back(error.what());
+  }
+  return effective;
+}
+
+double number_or_zero(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? found->get<double>() : 0;
+}
+
+}  // namespace
+
+Json frame_columns(const Json& frames) {
+  constexpr std::size_t kMaxFrameColumns = 200;  // Weft writes 33
+  Json columns = Json::object();
+  for (const Json& frame : frames) {
+    for (const auto& [key, value] : frame.items())
+      if (columns.size() < kMaxFrameColumns) columns.emplace(key, Json::array());
+  }
+  for (auto& [key, column] : columns.items()) {
+    for (const Json& frame : frames) {
+      const auto value = frame.find(key);
+      column.push_back(value == frame.end() ? Json(nullptr) : rounded(*value));
+    }
+  }
+  return columns;
+}
+
+Json column_digest(const Json& columns) {
+  const auto frames = columns.find("frame");
+  Json digest = Json::object();
+  for (const auto& [name, column] : columns.items()) {
+    Json entry;
+    for (std::size_t row = 0; row < column.size(); ++row) {
+      if (!column[row].is_number()) continue;
+      const auto value = column[row].get<double>();
+      const Json frame = frames == columns.end() ? Json(nullptr) : (*frames)[row];
+      if (entry.is_null()) entry = {{"count", 0}, {"sum", 0.0}};
+      if (!entry.contains("min") || value < entry["min"]) entry["min"] = column[row], entry["min_frame"] = frame;
+      if (!entry.contains("max") || value > entry["max"]) entry["max"] = column[row], entry["max_frame"] = frame;
+      entry["count"] = entry["count"].get<int>() + 1;
+      entry["sum"] = entry["sum"].get<double>() + value;
+      entry["last"] = column[row];
+    }
+    if (!entry.is_null()) digest[name] = std::move(entry);
+  }
+  return digest;
+}
+
+PictureTimes picture_times(const RunFiles& run) {
+  std::vector<long long> shown;
+  if (!run.pictures.empty()) {
+    for (const auto& picture : run.pictures) shown.push_back(picture_number(picture));
+  } else if (!run.stats.empty()) {
+    for (const Json& frame : run.stats_json["frames"]) {
+      if (frame.value("written", Json(true)) == true) {
+        constexpr double kMaxFrameNumber = 1e9;  // limit on frame numbers
+        shown.push_back(static_cast<long long>(std::clamp(number_or_zero(frame, "frame"), 0.0, kMaxFrameNumber)));
+      }
+    }
+  }
+  PictureTimes times;
+  times.count = static_cast<long long>(shown.size());
+  if (times.count > 0) times.first = shown.front();
+  if (times.count > 1) times.step = std::max(1ll, shown[1] - shown[0]);
+  if (!run.stats.empty()) times.fps = number_or_zero(run.stats_json, "fps") / static_cast<double>(times.step);
+  return times;
+}
+
+Json scene_values(const std::string& toml, const std::string& file) {
+  try {
+    Json values = Json::object();
+    add_values(parse_toml(toml), "", values);
+    return values;
+  } catch (const toml::parse_error& error) {
+    throw Error(ExitCode::asset_unreadable, "{}:{}: not readable as TOML: {}", file, error.source().begin.line,
+                error.description());
+  }
+}
+
+Json run_data(const RunFiles& run) {
+  std::vector<std::string> problems = run.problems;
+  if (run.video.empty() && run.pictures.empty()) problems.push_back("no video or pictures beside the statistics");
+  if (run.stats.empty() && problems.empty())
+    problems.push_back("no statistics: weft run --stats FILE.json writes them, for figures and plots");
+  Json stats = run.stats_json.is_object() ? run.stats_json : Json::object();
+  Json columns = frame_columns(stats.value("frames", Json::array()));
+  Json digest = column_digest(columns);
+  stats.erase("frames");
+  Json effective = effective_json(run, problems);
+  return {{"name", run.name},
+          {"problems", problems},
+          {"stats", std::move(stats)},
+          {"digest", std::move(digest)},
+          {"columns", std::move(columns)},
+          {"effective", std::move(effective)}};
+}
+
+}  // namespace weft::review

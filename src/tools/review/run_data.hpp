@@ -1,0 +1,36 @@
+// The data of a run for the page.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/review/find_runs.hpp"
+
+namespace weft::review {
+
+/// The frames of a run's statistics as one array per quantity: {"frame": [0, 1], "max_strain": [0, 0.01]}. Missing
+/// values, and values that are neither numbers nor booleans, become null. Numbers are rounded to six digits.
+Json frame_columns(const Json& frames);
+
+/// Summary of the numbers in each column: {"count", "min", "min_frame", "max", "max_frame", "last", "sum"}. Columns
+/// without numbers are omitted.
+Json column_digest(const Json& columns);
+
+/// The frames shown by the pictures of a run: picture k shows frame first + k * step.
+struct PictureTimes {
+  long long first = 0, step = 1, count = 0;
+  double fps = 0;  ///< pictures per second; 0 if unknown
+};
+
+/// Derived from the statistics or the names of the pictures.
+PictureTimes picture_times(const RunFiles& run);
+
+/// Each value of an effective scene by its path, as in --set: {"cloth.band.material.stretch": "1000000.0"}. Throws
+/// Error(asset_unreadable) if the text is not TOML.
+Json scene_values(const std::string& toml, const std::string& file);
+
+/// All data of a run except its pictures. Missing files are named in "problems". "columns" and "effective" are large;
+/// only the run's own page needs them.
+Json run_data(const RunFiles& run);
+
+}  // namespace weft::review

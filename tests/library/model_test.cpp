@@ -1,0 +1,218 @@
+// Models made in memory, through the public interface.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+#include <weft/scene.hpp>
+#include <weft/simulation.hpp>
+
+#include "physics/mesh/quads.hpp"
+#include "physics/mesh/shapes.hpp"
+
+namespace weft::library {
+namespace {
+
+Mesh public_mesh(const mesh::Mesh& mesh) {
+  Mesh copy;
+  for (const Vec3& x : mesh.positions) copy.positions.push_back({x.x(), x.y(), x.z()});
+  for (const mesh::Triangle& t : mesh.topology.triangles) copy.triangles.push_back({t[0], t[1], t[2]});
+  return copy;
+}
+
+// A sheet of 9 by 9 particles and a side of 0.4 m in the x-y plane.
+Cloth sheet() {
+  const mesh::Grid grid{.nu = 9, .nv = 9, .lu = 0.05, .lv = 0.05};
+  return {.name = "sheet",
+          .mesh = public_mesh(mesh::make_triangle_sheet(grid, mesh::Pattern::aligned)),
+          .rest = {},
+          .material = {}};
+}
+
+Body ball() {
+  Body body;
+  body.name = "ball";
+  body.mesh = public_mesh(mesh::make_sphere(0.1, 24));
+  body.pose.position = {0.02, 0.01, -0.12};
+  return body;
+}
+
+const char* const kSameScene = R"(
+[[cloth]]
+name = "sheet"
+shape = "aligned_triangles"
+size = [0.4, 0.4]
+particles = 9
+[[obstacle]]
+name = "ball"
+shape = "sphere"
+radius = 0.1
+segments = 24
+position = [0.02, 0.01, -0.12]
+)";
+
+std::vector<Vector> positions_after(Simulation& simulation, int frames) {
+  for (int k = 0; k < frames; ++k) simulation.advance();
+  const auto span = simulation.frame().object("sheet").positions;
+  return {span.begin(), span.end()};
+}
+
+void expect_refused(const std::string& text, const Model& model, const SimulationOptions& options = {}) {
+  try {
+    Simulation{model, options};
+    FAIL() << "expected a refusal with " << text;
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+  }
+}
+
+TEST(LibraryModel, HasTheBitsOfTheSceneThatSaysTheSame) {
+  Model model;
+  model.cloths = {sheet()};
+  model.bodies = {ball()};
+  Simulation of_model(model), of_scene(Scene::parse(kSameScene));
+  EXPECT_EQ(positions_after(of_model, 12), positions_after(of_scene, 12));
+  EXPECT_LT(of_model.frame().report().min_distance, 0.01) << "the sheet has reached the ball";
+  EXPECT_EQ(of_model.frame().report().near_pairs, of_scene.frame().report().near_pairs);
+  ASSERT_EQ(of_model.frame().objects().size(), 2U);
+  EXPECT_EQ(of_model.frame().objects()[1].kind, Kind::obstacle);
+  const auto body = of_model.frame().object("ball").positions, same = of_scene.frame().object("ball").positions;
+  EXPECT_TRUE(std::ranges::equal(body, same));
+}
+
+// In free fall, nothing is stretched: a sheet whose fabric is a tenth longer than its mesh shows the strain at once.
+TEST(LibraryModel, TakesItsRestShapeFromTheFlatFabric) {
+  Model model;
+  model.cloths = {sheet()};
+  for (const Vector& x : model.cloths[0].mesh.positions) model.cloths[0].rest.push_back({x[0] / 1.1, x[1]});
+  Simulation simulation(model);
+  EXPECT_NEAR(simulation.frame().report().max_strain, 0.1, 1e-9);
+}
+
+TEST(LibraryModel, HoldsPinsWhereTheyStartAndAtBodiesUntilTheirRelease) {
+  Model model;
+  model.gravity = {0, 0, -9.81};
+  model.cloths = {sheet()};
+  Body handle = ball();
+  handle.name = "handle";
+  handle.collide = false;
+  handle.keys = {{0, {{0, 0, 0}}}, {0.4, {{0, 0, 0.2}}}};
+  model.bodies = {handle};
+  model.pins = {{.cloth = "sheet", .particles = {0, 8}, .body = "handle"},
+                {.cloth = "sheet", .particles = {72, 80}, .body = "", .release = 0.2}};
+  Simulation simulation(model);
+  const std::vector<Vector> start = positions_after(simulation, 0), middle = positions_after(simulation, 4),
+                            end = positions_after(simulation, 6);
+  EXPECT_EQ(middle[80], start[80]);
+  EXPECT_LT(end[80][2], start[80][2] - 0.05) << "released";
+  for (const std::size_t i : {std::size_t{0}, std::size_t{8}}) EXPECT_NEAR(end[i][2], start[i][2] + 0.2, 1e-12);
+}
+
+TEST(LibraryModel, MovesBodiesByForcesAndByTheCaller) {
+  Model model;
+  model.cloths = {sheet()};
+  Body thrown = ball(), hand = ball();
+  thrown.name = "thrown", thrown.mass = 0.1, thrown.velocity = {1, 0, 0};
+  hand.name = "hand", hand.pose.position = {0, 0, 3}, hand.collide = false;
+  model.bodies = {thrown, hand};
+  model.bodies[0].pose.position = {0, 3, 0};
+  Simulation simulation(model, {.driven = {"hand"}, .state = {}});
+  const auto first_of = [&](const char* name) { return simulation.frame().object(name).positions[0]; };
+  const Vector at_start = first_of("thrown"), of_hand = first_of("hand");
+  simulation.move("hand", {{0, 0, 3.5}});
+  simulation.advance();
+  EXPECT_NEAR(first_of("hand")[2], of_hand[2] + 0.5, 1e-12);
+  EXPECT_NEAR(first_of("thrown")[0], at_start[0] + 0.04, 1e-9);
+  EXPECT_LT(first_of("thrown")[2], at_start[2]);
+}
+
+TEST(LibraryModel, ContinuesFromASavedStateAndRefusesThatOfAnother) {
+  Model model;
+  model.cloths = {sheet()};
+  model.bodies = {ball()};
+  Simulation whole(model);
+  positions_after(whole, 6);
+  const std::string state = whole.save();
+  Simulation resumed(model, {.driven = {}, .state = state});
+  EXPECT_EQ(positions_after(resumed, 4), positions_after(whole, 4));
+  Model other = model;
+  other.cloths[0].mesh.positions[0][0] += 0.001;
+  expect_refused("state", other, {.driven = {}, .state = state});
+}
+
+TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
+  const auto with = [](const std::function<void(Model&)>& change) {
+    Model model;
+    model.cloths = {sheet()};
+    model.bodies = {ball()};
+    change(model);
+    return model;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  expect_refused("sheet: expected a finite position", with([&](Model& m) { m.cloths[0].mesh.positions[3][1] = nan; }));
+  expect_refused("1 triangles with an index outside of 0 to 80",
+                 with([](Model& m) { m.cloths[0].mesh.triangles[0][0] = 81; }));
+  expect_refused("edges of one or two triangles",
+                 with([](Model& m) { m.cloths[0].mesh.triangles.push_back(m.cloths[0].mesh.triangles[0]); }));
+  expect_refused("sheet: expected at least one triangle", with([](Model& m) { m.cloths[0].mesh.triangles.clear(); }));
+  expect_refused("density [kg/m²] from 1e-06", with([](Model& m) { m.cloths[0].material.density = 0; }));
+  expect_refused("a bend [N·m] from 0", with([](Model& m) { m.cloths[0].material.bend = -1; }));
+  expect_refused("as many rest points as particles (81), got 1", with([](Model& m) { m.cloths[0].rest = {{0, 0}}; }));
+  expect_refused("triangles that have an area at rest", with([](Model& m) {
+                   m.cloths[0].rest.assign(81, RestPoint{0, 0});
+                 }));
+  expect_refused("names differ", with([](Model& m) { m.bodies[0].name = "sheet"; }));
+  expect_refused("ball: expected a unit quaternion", with([](Model& m) { m.bodies[0].pose.rotation[0] = 2; }));
+  expect_refused("ball: expected keys at increasing times", with([](Model& m) {
+                   m.bodies[0].keys = {{1, {}}, {1, {}}};
+                 }));
+  expect_refused("ball: expected a mass or keys, got both", with([](Model& m) {
+                   m.bodies[0].mass = 1;
+                   m.bodies[0].keys = {{0, {}}};
+                 }));
+  expect_refused("for a body with a mass", with([](Model& m) {
+                   m.bodies[0].mass = 1;
+                   m.bodies[0].mesh.triangles.pop_back();
+                 }));
+  expect_refused("sheet: expected pinned particles from 0 to 80, got 81",
+                 with([](Model& m) { m.pins = {{.cloth = "sheet", .particles = {81}, .body = ""}}; }));
+  expect_refused("pin: expected the name of a cloth, got \"other\"",
+                 with([](Model& m) { m.pins = {{.cloth = "other", .particles = {1}, .body = ""}}; }));
+  expect_refused("model: expected a step [s]", with([](Model& m) { m.step = 0; }));
+  expect_refused("model: expected a finite gravity", with([&](Model& m) { m.gravity[2] = nan; }));
+  expect_refused("expected an obstacle of the scene (ball), got bal", with([](Model&) {}),
+                 {.driven = {"bal"}, .state = {}});
+}
+
+TEST(LibraryModel, ThatTouchesAtTheStartIsRefusedAsAScene) {
+  Model model;
+  model.cloths = {sheet()};
+  model.bodies = {ball()};
+  model.bodies[0].pose.position = {0, 0, 0};
+  try {
+    Simulation{model};
+    FAIL();
+  } catch (const SceneError& error) {
+    EXPECT_NE(std::string(error.what()).find("expected surfaces that are apart at the start"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(LibraryFabric, IsThatOfAScene) {
+  Model model;
+  model.cloths = {sheet()};
+  model.cloths[0].material = fabric("silk");
+  Simulation of_model(model);
+  Simulation of_scene(
+      Scene::parse(std::string("[[cloth]]\nname = \"sheet\"\nshape = \"aligned_triangles\"\nsize = "
+                               "[0.4, 0.4]\nparticles = 9\nmaterial.fabric = \"silk\"\n")));
+  EXPECT_EQ(positions_after(of_model, 5), positions_after(of_scene, 5));
+  EXPECT_THROW(fabric("silkk"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace weft::library
