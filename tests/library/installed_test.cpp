@@ -55,7 +55,6 @@ TEST_F(InstalledLibrary, StepsAsTheProgramDoes) {
   }
 }
 
-// Both libraries have the physics, so they compute the same bits.
 TEST_F(InstalledLibrary, OfThePhysicsStepsAModel) {
   install();
   run("cmake -S '" WEFT_SOURCE_DIR "/tests/library/example' -B example -DCMAKE_PREFIX_PATH='" +

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -66,7 +67,7 @@ void expect_refused(const std::string& text, const Model& model, const Simulatio
     Simulation{model, options};
     FAIL() << "expected a refusal with " << text;
   } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << "not " << text << ": " << error.what();
   }
 }
 
@@ -84,13 +85,121 @@ TEST(LibraryModel, HasTheBitsOfTheSceneThatSaysTheSame) {
   EXPECT_TRUE(std::ranges::equal(body, same));
 }
 
-// In free fall, nothing is stretched: a sheet whose fabric is a tenth longer than its mesh shows the strain at once.
+// Every value of a model differs from its default, and the ball, of 20 g, is struck by the sheet.
+TEST(LibraryModel, PassesOnEachOfItsValues) {
+  Model model;
+  model.fps = 50, model.step = 0.005, model.method = Method::bdf2, model.newton_tolerance = 0.2;
+  model.gravity = {0.5, 0, -8}, model.wind = {0, 1, 0}, model.air_density = 2, model.self_contact = false;
+  Cloth cloth = sheet();
+  cloth.material = {.density = 0.3,
+                    .stretch_weft = 500,
+                    .stretch_warp = 700,
+                    .shear = 60,
+                    .bend = 3e-5,
+                    .max_stretch = 0.05,
+                    .max_shear = 30,
+                    .stretch_viscosity = 0.1,
+                    .shear_viscosity = 0.2,
+                    .bend_viscosity = 2e-6,
+                    .bend_friction = 1e-4,
+                    .thickness = 0.003,
+                    .friction = 0.6,
+                    .drag = 0.5};
+  cloth.velocity = {0, 0, -1};
+  Body thrown = ball(), lid = ball();
+  thrown.mass = 0.02, thrown.velocity = {0.1, 0, 0}, thrown.friction = 0.1;
+  lid.name = "lid", lid.collide = true, lid.friction = 0.9;
+  lid.keys = {{0, {{0, 0, -0.6}, {1, 0, 0, 0}}}, {0.2, {{0.05, 0, -0.5}, {0, 0, 0, 1}}}};
+  model.cloths = {cloth};
+  model.bodies = {thrown, lid};
+  const std::string scene = R"(
+[time]
+fps = 50
+step = 0.005
+integrator = "bdf2"
+[solver]
+newton_tolerance = 0.2
+[physics]
+gravity = [0.5, 0, -8]
+wind = [0, 1, 0]
+air_density = 2
+[contact]
+self = false
+[[cloth]]
+name = "sheet"
+shape = "aligned_triangles"
+size = [0.4, 0.4]
+particles = 9
+velocity = [0, 0, -1]
+[cloth.material]
+density = 0.3
+stretch = [500, 700]
+shear = 60
+bend = 3e-5
+max_stretch = 0.05
+max_shear = 30
+stretch_viscosity = 0.1
+shear_viscosity = 0.2
+bend_viscosity = 2e-6
+bend_friction = 1e-4
+thickness = 0.003
+friction = 0.6
+drag = 0.5
+[[obstacle]]
+name = "ball"
+shape = "sphere"
+radius = 0.1
+segments = 24
+position = [0.02, 0.01, -0.12]
+mass = 0.02
+velocity = [0.1, 0, 0]
+friction = 0.1
+[[obstacle]]
+name = "lid"
+shape = "sphere"
+radius = 0.1
+segments = 24
+friction = 0.9
+keys = [{ time = 0, position = [0, 0, -0.6] }, { time = 0.2, position = [0.05, 0, -0.5], rotation = [0, 0, 180] }]
+)";
+  Simulation of_model(model), of_scene(Scene::parse(scene));
+  EXPECT_EQ(of_model.frame().report().kinetic_energy, of_scene.frame().report().kinetic_energy);
+  EXPECT_EQ(positions_after(of_model, 8), positions_after(of_scene, 8));
+  EXPECT_TRUE(std::ranges::equal(of_model.frame().object("ball").positions, of_scene.frame().object("ball").positions));
+}
+
+TEST(LibraryModel, HasCottonByDefault) {
+  const Material cotton = fabric("cotton"), given;
+  EXPECT_EQ(cotton.density, given.density);
+  EXPECT_EQ(cotton.bend, given.bend);
+  EXPECT_EQ(cotton.stretch_warp, given.stretch_warp);
+  EXPECT_EQ(cotton.friction, given.friction);
+}
+
+// A sheet whose fabric is shorter than its mesh along weft, by a factor of 1.1, begins with a strain of 0.1.
 TEST(LibraryModel, TakesItsRestShapeFromTheFlatFabric) {
   Model model;
   model.cloths = {sheet()};
   for (const Vector& x : model.cloths[0].mesh.positions) model.cloths[0].rest.push_back({x[0] / 1.1, x[1]});
   Simulation simulation(model);
   EXPECT_NEAR(simulation.frame().report().max_strain, 0.1, 1e-9);
+}
+
+// The spans of a frame are those of its own data.
+TEST(LibraryModel, HasFramesThatOutliveTheirSimulation) {
+  std::optional<Frame> kept;
+  std::vector<Vector> before;
+  {
+    Model model;
+    model.cloths = {sheet()};
+    model.bodies = {ball()};
+    Simulation simulation(model);
+    before = positions_after(simulation, 1);
+    kept = simulation.frame();
+    simulation.advance();
+  }
+  EXPECT_TRUE(std::ranges::equal(kept->object("sheet").positions, before));
+  EXPECT_EQ(kept->object("ball").triangles.size(), ball().mesh.triangles.size());
 }
 
 TEST(LibraryModel, HoldsPinsWhereTheyStartAndAtBodiesUntilTheirRelease) {
@@ -139,9 +248,15 @@ TEST(LibraryModel, ContinuesFromASavedStateAndRefusesThatOfAnother) {
   const std::string state = whole.save();
   Simulation resumed(model, {.driven = {}, .state = state});
   EXPECT_EQ(positions_after(resumed, 4), positions_after(whole, 4));
-  Model other = model;
-  other.cloths[0].mesh.positions[0][0] += 0.001;
-  expect_refused("state", other, {.driven = {}, .state = state});
+  for (const auto& change : std::vector<std::function<void(Model&)>>{
+           [](Model& m) { m.cloths[0].mesh.positions[0][0] += 0.001; },
+           [](Model& m) { m.cloths[0].material.bend *= 2; },
+           [](Model& m) { m.pins = {{.cloth = "sheet", .particles = {0}, .body = ""}}; },
+           [](Model& m) { m.bodies[0].pose.position[0] += 0.001; }, [](Model& m) { m.step = 0.02; }}) {
+    Model other = model;
+    change(other);
+    expect_refused("state", other, {.driven = {}, .state = state});
+  }
 }
 
 TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
@@ -153,24 +268,25 @@ TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
     return model;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  expect_refused("sheet: expected a finite position", with([&](Model& m) { m.cloths[0].mesh.positions[3][1] = nan; }));
-  expect_refused("1 triangles with an index outside of 0 to 80",
+  expect_refused("sheet: expected a position [m] from -100000 to 100000",
+                 with([&](Model& m) { m.cloths[0].mesh.positions[3][1] = nan; }));
+  expect_refused("got 1 triangles with a number that none of the 81 vertices has",
                  with([](Model& m) { m.cloths[0].mesh.triangles[0][0] = 81; }));
   expect_refused("edges of one or two triangles",
                  with([](Model& m) { m.cloths[0].mesh.triangles.push_back(m.cloths[0].mesh.triangles[0]); }));
   expect_refused("sheet: expected at least one triangle", with([](Model& m) { m.cloths[0].mesh.triangles.clear(); }));
-  expect_refused("density [kg/m²] from 1e-06", with([](Model& m) { m.cloths[0].material.density = 0; }));
+  expect_refused("density [kg/m²] from 1e-12", with([](Model& m) { m.cloths[0].material.density = 0; }));
   expect_refused("a bend [N·m] from 0", with([](Model& m) { m.cloths[0].material.bend = -1; }));
   expect_refused("as many rest points as particles (81), got 1", with([](Model& m) { m.cloths[0].rest = {{0, 0}}; }));
   expect_refused("triangles that have an area at rest", with([](Model& m) {
                    m.cloths[0].rest.assign(81, RestPoint{0, 0});
                  }));
-  expect_refused("names differ", with([](Model& m) { m.bodies[0].name = "sheet"; }));
+  expect_refused("names differ, got sheet twice", with([](Model& m) { m.bodies[0].name = "sheet"; }));
   expect_refused("ball: expected a unit quaternion", with([](Model& m) { m.bodies[0].pose.rotation[0] = 2; }));
   expect_refused("ball: expected keys at increasing times", with([](Model& m) {
                    m.bodies[0].keys = {{1, {}}, {1, {}}};
                  }));
-  expect_refused("ball: expected a mass or keys, got both", with([](Model& m) {
+  expect_refused("ball: expected a mass, or keys", with([](Model& m) {
                    m.bodies[0].mass = 1;
                    m.bodies[0].keys = {{0, {}}};
                  }));
@@ -180,12 +296,39 @@ TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
                  }));
   expect_refused("sheet: expected pinned particles from 0 to 80, got 81",
                  with([](Model& m) { m.pins = {{.cloth = "sheet", .particles = {81}, .body = ""}}; }));
-  expect_refused("pin: expected the name of a cloth, got \"other\"",
+  expect_refused("pin: expected a cloth (sheet), got \"other\"",
                  with([](Model& m) { m.pins = {{.cloth = "other", .particles = {1}, .body = ""}}; }));
+  expect_refused("vertices that triangles use, got number 81 alone", with([](Model& m) {
+                   m.cloths[0].mesh.positions.push_back({0, 0, 1});
+                 }));
+  expect_refused("each particle once in a pin, got 4 twice", with([](Model& m) {
+                   m.pins = {{.cloth = "sheet", .particles = {4, 4}, .body = ""}};
+                 }));
+  expect_refused("a pin with particles",
+                 with([](Model& m) { m.pins = {{.cloth = "sheet", .particles = {}, .body = ""}}; }));
+  expect_refused("forces do not move, got ball", with([](Model& m) {
+                   m.bodies[0].mass = 1;
+                   m.pins = {{.cloth = "sheet", .particles = {4}, .body = "ball"}};
+                 }));
+  expect_refused("a release of 0 s or later",
+                 with([&](Model& m) { m.pins = {{.cloth = "sheet", .particles = {4}, .body = "", .release = nan}}; }));
+  expect_refused("a rest coordinate [m]", with([&](Model& m) { m.cloths[0].rest.assign(81, RestPoint{nan, 0}); }));
+  expect_refused("counter-clockwise in the flat fabric", with([](Model& m) {
+                   for (const Vector& x : m.cloths[0].mesh.positions) m.cloths[0].rest.push_back({-x[0], x[1]});
+                 }));
+  expect_refused("a 80th as high as the longest edge", with([](Model& m) {
+                   m.cloths[0].mesh.positions[0] = {-0.15 - 1e-5, -0.2, 0};
+                 }));
+  expect_refused("ball: expected a velocity of a body with a mass", with([](Model& m) {
+                   m.bodies[0].velocity = {1, 0, 0};
+                 }));
+  expect_refused("ball: expected a key's time", with([&](Model& m) { m.bodies[0].keys = {{nan, {}}}; }));
+  expect_refused("a name in `driven`", with([](Model& m) { m.bodies[0].mass = 1; }), {.driven = {"ball"}, .state = {}});
+  expect_refused("one of the methods", with([](Model& m) { m.method = static_cast<Method>(7); }));
+  expect_refused("at most 1e+06 steps in a frame", with([](Model& m) { m.fps = 1e-3, m.step = 1e-7; }));
   expect_refused("model: expected a step [s]", with([](Model& m) { m.step = 0; }));
-  expect_refused("model: expected a finite gravity", with([&](Model& m) { m.gravity[2] = nan; }));
-  expect_refused("expected an obstacle of the scene (ball), got bal", with([](Model&) {}),
-                 {.driven = {"bal"}, .state = {}});
+  expect_refused("model: expected gravity [m/s²] from", with([&](Model& m) { m.gravity[2] = nan; }));
+  expect_refused("driven: expected bodies (ball), got bal", with([](Model&) {}), {.driven = {"bal"}, .state = {}});
 }
 
 TEST(LibraryModel, ThatTouchesAtTheStartIsRefusedAsAScene) {

@@ -96,6 +96,10 @@ class Module(unittest.TestCase):
         self.assertGreater(simulation.advance()["gate"].positions[0, 0], frame["gate"].positions[0, 0])
         with self.assertRaisesRegex(ValueError, r"positions: expected an array of n rows and 3 columns, got shape \(3\)"):
             model.add_cloth("flat", [0, 0, 0], triangles)
+        with self.assertRaisesRegex(ValueError, "triangles: expected integers, got float64"):
+            model.add_cloth("flat", corners, [[0.0, 1, 2]])
+        with self.assertRaisesRegex(ValueError, "triangles: expected numbers of vertices, got 4294967296"):
+            model.add_cloth("flat", corners, [[2**32, 1, 2]])
         with self.assertRaisesRegex(ValueError, "velvet"):
             model.add_cloth("flat", corners, triangles, material="velvet 2")
         model.add_cloth("sheet", corners, triangles)

@@ -20,7 +20,13 @@ namespace {
 scene::Scene with_driven(scene::Scene scene, const SimulationOptions& options) {
   for (const std::string& name : options.driven) {
     const auto found = std::ranges::find(scene.obstacles, name, &scene::Obstacle::name);
-    if (found == scene.obstacles.end() || found->motion.keys.size() > 1) continue;
+    if (found == scene.obstacles.end()) {
+      std::vector<std::string> names;
+      for (const scene::Obstacle& known : scene.obstacles) names.push_back(known.name);
+      throw std::invalid_argument(
+          fmt::format("driven: expected obstacles of the scene ({}), got {}", fmt::join(names, ", "), name));
+    }
+    if (found->motion.keys.size() > 1) continue;
     const scene::Pose pose = found->motion.keys.empty() ? found->pose : found->motion.keys.front().pose;
     found->motion.keys = {{0, pose}, {1 / scene.time.fps, pose}};
   }

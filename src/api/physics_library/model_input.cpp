@@ -21,9 +21,14 @@ template <class... Arguments>
   throw std::invalid_argument(object + ": expected " + fmt::format(text, std::forward<Arguments>(arguments)...));
 }
 
-Vec3 vector_of(const Vector& x, const std::string& object, const char* what) {
+// Bounds are those of scenes (src/film/scene/*_rules.cpp).
+constexpr double kFarthest = 1e5;  // [m]
+constexpr double kFastest = 1e4;   // [m/s]
+
+Vec3 vector_of(const Vector& x, double largest, const std::string& object, const char* what) {
   const Vec3 vector(x.data());
-  if (!vector.allFinite()) refuse(object, "a finite {}, got [{}]", what, fmt::join(x, ", "));
+  if (!(vector.array().abs() <= largest).all())  // false for NaN
+    refuse(object, "{} from {:g} to {:g}, got [{}]", what, -largest, largest, fmt::join(x, ", "));
   return vector;
 }
 
@@ -33,37 +38,37 @@ void check_range(double value, double low, double high, const std::string& objec
 
 mesh::Mesh mesh_of(const Mesh& given, const std::string& object) {
   mesh::Mesh mesh;
-  for (const Vector& x : given.positions) mesh.positions.push_back(vector_of(x, object, "position [m]"));
+  for (const Vector& x : given.positions) mesh.positions.push_back(vector_of(x, kFarthest, object, "a position [m]"));
   for (const Triangle& t : given.triangles) mesh.topology.triangles.push_back({t[0], t[1], t[2]});
   if (mesh.topology.triangles.empty()) refuse(object, "at least one triangle, got none");
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
   if (!report.manifold())
     refuse(
         object,
-        "edges of one or two triangles that face the same way; got {} triangles with an index outside of 0 to {}, {} "
-        "with a vertex twice, {} edges of more than two triangles, and {} whose triangles face both ways",
-        report.out_of_range.size(), mesh.positions.size() - 1, report.degenerate.size(), report.non_manifold.size(),
+        "edges of one or two triangles that face the same way; got {} triangles with a number that none of the {} "
+        "vertices has, {} with a vertex twice, {} edges of more than two triangles, and {} whose triangles face both "
+        "ways",
+        report.out_of_range.size(), mesh.positions.size(), report.degenerate.size(), report.non_manifold.size(),
         report.misoriented.size());
   return mesh;
 }
 
 model::Material material_of(const Material& given, const std::string& object) {
-  constexpr double kLargest = 1e9;
-  const auto nonnegative = [&](double value, const char* what) { check_range(value, 0, kLargest, object, what); };
-  check_range(given.density, 1e-6, kLargest, object, "a density [kg/m²]");
-  check_range(given.stretch_weft, 1e-6, kLargest, object, "a stretch_weft [N/m]");
-  check_range(given.stretch_warp, 1e-6, kLargest, object, "a stretch_warp [N/m]");
-  check_range(given.thickness, 1e-6, 1, object, "a thickness [m]");
-  check_range(given.max_shear, 0, 90, object, "a max_shear [degrees]");
-  nonnegative(given.shear, "a shear [N/m]");
-  nonnegative(given.bend, "a bend [N·m]");
-  nonnegative(given.max_stretch, "a max_stretch");
-  nonnegative(given.stretch_viscosity, "a stretch_viscosity [N·s/m]");
-  nonnegative(given.shear_viscosity, "a shear_viscosity [N·s/m]");
-  nonnegative(given.bend_viscosity, "a bend_viscosity [N·m·s]");
-  nonnegative(given.bend_friction, "a bend_friction [N]");
-  nonnegative(given.friction, "a friction");
-  nonnegative(given.drag, "a drag");
+  constexpr double kPositive = 1e-12;
+  check_range(given.density, kPositive, 1e5, object, "a density [kg/m²]");
+  check_range(given.stretch_weft, 0, 1e12, object, "a stretch_weft [N/m]");
+  check_range(given.stretch_warp, 0, 1e12, object, "a stretch_warp [N/m]");
+  check_range(given.shear, 0, 1e12, object, "a shear [N/m]");
+  check_range(given.bend, 0, 1e6, object, "a bend [N·m]");
+  check_range(given.max_stretch, 0, 10, object, "a max_stretch");
+  check_range(given.max_shear, 0, 80, object, "a max_shear [degrees]");
+  check_range(given.stretch_viscosity, 0, 1e9, object, "a stretch_viscosity [N·s/m]");
+  check_range(given.shear_viscosity, 0, 1e9, object, "a shear_viscosity [N·s/m]");
+  check_range(given.bend_viscosity, 0, 1e6, object, "a bend_viscosity [N·m·s]");
+  check_range(given.bend_friction, 0, 1e6, object, "a bend_friction [N]");
+  check_range(given.thickness, kPositive, 1, object, "a thickness [m]");
+  check_range(given.friction, 0, 10, object, "a friction");
+  check_range(given.drag, 0, 100, object, "a drag");
   model::Material material;
   material.density = given.density;
   material.stretch_weft = given.stretch_weft, material.stretch_warp = given.stretch_warp;
@@ -75,69 +80,94 @@ model::Material material_of(const Material& given, const std::string& object) {
   return material;
 }
 
+// A vertex that no triangle uses would be a particle without mass.
+void check_vertices_are_used(const mesh::Mesh& mesh, const std::string& object) {
+  std::vector<char> used(mesh.positions.size(), 0);
+  for (const mesh::Triangle& t : mesh.topology.triangles)
+    for (const Index v : t) used[static_cast<std::size_t>(v)] = 1;
+  const auto loose = std::ranges::find(used, 0);
+  if (loose != used.end()) refuse(object, "vertices that triangles use, got number {} alone", loose - used.begin());
+}
+
+// Makes the flat fabric the rest shape of a cloth, from the first step on.
+void use_rest(const std::vector<RestPoint>& rest, model::Cloth& cloth) {
+  if (rest.size() != cloth.start.size())
+    refuse(cloth.name, "as many rest points as particles ({}), got {}", cloth.start.size(), rest.size());
+  for (const RestPoint& point : rest) {
+    for (const double c : point) check_range(c, -kFarthest, kFarthest, cloth.name, "a rest coordinate [m]");
+    cloth.mesh.uv.emplace_back(point[0], point[1]);
+  }
+  cloth.sheet.sewn = true;
+  for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      cloth.sheet.material[t][k] = cloth.mesh.uv[static_cast<std::size_t>(cloth.sheet.triangles[t][k])];
+}
+
+void check_triangles(const model::Cloth& cloth) {
+  for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t)
+    if (!(mesh::rest_area(cloth.sheet, t) > 0))
+      refuse(cloth.name,
+             "triangles that have an area at rest and go counter-clockwise in the flat fabric, got number {} otherwise",
+             t);
+  if (const mesh::FlatTriangles flat = mesh::find_flat_triangles(cloth.sheet); flat.count > 0)
+    refuse(cloth.name,
+           "triangles at least a {:g}th as high as the longest edge ({:.4g} m), got number {} with {:.3g} m",
+           mesh::kMaxUnevenness, flat.longest_edge, flat.flattest, flat.least_height);
+}
+
 model::Cloth cloth_of(const Cloth& given) {
   model::Cloth cloth;
   cloth.name = cloth.source = given.name;
   cloth.mesh = mesh_of(given.mesh, given.name);
+  check_vertices_are_used(cloth.mesh, given.name);
   cloth.sheet = mesh::make_sheet_from_mesh(cloth.mesh);
   cloth.start = cloth.mesh.positions;
   if (!given.rest.empty()) {
-    if (given.rest.size() != cloth.start.size())
-      refuse(given.name, "as many rest points as particles ({}), got {}", cloth.start.size(), given.rest.size());
-    for (const RestPoint& uv : given.rest) cloth.mesh.uv.emplace_back(uv[0], uv[1]);
-    cloth.sheet.sewn = true;  // the flat fabric is the rest shape from the first step on
-    for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k)
-        cloth.sheet.material[t][k] = cloth.mesh.uv[static_cast<std::size_t>(cloth.sheet.triangles[t][k])];
+    use_rest(given.rest, cloth);
   } else {
     const Vec3 corner = mesh::bounding_box(cloth.start).min();
     for (const Vec3& x : cloth.start) cloth.mesh.uv.emplace_back((x - corner).head<2>());
   }
-  for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t)
-    if (!(mesh::rest_area(cloth.sheet, t) > 0))
-      refuse(given.name, "triangles that have an area at rest, got number {} without", t);
+  check_triangles(cloth);
   cloth.spacing = std::numbers::sqrt2 * mesh::min_height(cloth.sheet);
   cloth.material = material_of(given.material, given.name);
-  cloth.velocity = vector_of(given.velocity, given.name, "velocity [m/s]");
+  cloth.velocity = vector_of(given.velocity, kFastest, given.name, "a velocity [m/s]");
   return cloth;
 }
 
-motion::Pose pose_of(const Pose& given, const std::string& object) {
-  const auto& [w, x, y, z] = given.rotation;
-  const motion::Pose pose{vector_of(given.position, object, "position [m]"), Quat(w, x, y, z)};
-  if (!(std::abs(pose.rotation.norm() - 1) < 1e-6))
-    refuse(object, "a unit quaternion w, x, y, z, got [{}]", fmt::join(given.rotation, ", "));
-  return pose;
+motion::PoseTrack track_of(const std::vector<PoseKey>& keys, const std::string& object) {
+  constexpr double kLeastGap = 1e-7;  // the shortest time step [s]
+  motion::PoseTrack track;
+  for (const PoseKey& key : keys) {
+    check_range(key.time, -kFarthest, kFarthest, object, "a key's time [s]");
+    if (!track.keys.empty() && key.time < track.keys.back().time + kLeastGap)
+      refuse(object, "keys at increasing times, {:g} s apart or more, got one at {:g} s", kLeastGap, key.time);
+    track.keys.push_back({key.time, pose_of(key.pose, object)});
+  }
+  return track;
 }
 
-model::Body body_of(const Body& given, double fps, bool is_driven) {
+model::Body body_of(const Body& given, bool is_driven) {
   model::Body body;
   body.name = given.name;
   body.mesh = mesh_of(given.mesh, given.name);
-  motion::PoseTrack track;
-  for (const PoseKey& key : given.keys) {
-    if (!std::isfinite(key.time) || (!track.keys.empty() && key.time <= track.keys.back().time))
-      refuse(given.name, "keys at increasing times, got one at {:g} s", key.time);
-    track.keys.push_back({key.time, pose_of(key.pose, given.name)});
-  }
-  const motion::Pose rest = pose_of(given.pose, given.name);
-  if (is_driven && track.keys.size() < 2) {  // a body moves if it has two keys
-    const motion::Pose stays = track.keys.empty() ? rest : track.keys.front().pose;
-    track.keys = {{0, stays}, {1 / fps, stays}};
-  }
-  body.mover = std::make_shared<const model::Mover>(motion::Track(track, rest));
-  body.moving = track.keys.size() > 1;
+  body.mover = std::make_shared<const model::Mover>(
+      motion::Track(track_of(given.keys, given.name), pose_of(given.pose, given.name)));
+  body.moving = is_driven || given.keys.size() > 1;
   body.collide = given.collide;
-  check_range(given.friction, 0, 1e9, given.name, "a friction");
+  check_range(given.friction, 0, 10, given.name, "a friction");
   body.friction = given.friction;
-  check_range(given.mass, 0, 1e9, given.name, "a mass [kg]");
-  if (given.mass == 0) return body;
-  if (!track.keys.empty()) refuse(given.name, "a mass or keys, got both");
+  check_range(given.mass, 0, 1e6, given.name, "a mass [kg]");
+  const Vec3 velocity = vector_of(given.velocity, kFastest, given.name, "a velocity [m/s]");
+  if (given.mass == 0) {
+    if (velocity != Vec3::Zero()) refuse(given.name, "a velocity of a body with a mass, got one without");
+    return body;
+  }
+  if (!given.keys.empty() || is_driven) refuse(given.name, "a mass, or keys or a name in `driven`, got both");
   try {
     body.dynamics = std::make_shared<const model::Dynamics>(
-        model::Dynamics{mesh::RigidFrame(body.mesh.topology.triangles, body.mesh.positions), given.mass,
-                        vector_of(given.velocity, given.name, "velocity [m/s]"), Vec3::Zero(),
-                        -std::numeric_limits<double>::infinity()});
+        model::Dynamics{mesh::RigidFrame(body.mesh.topology.triangles, body.mesh.positions), given.mass, velocity,
+                        Vec3::Zero(), -std::numeric_limits<double>::infinity()});
   } catch (const std::invalid_argument& expected) {
     refuse(given.name, "{} for a body with a mass", expected.what());
   }
@@ -147,63 +177,92 @@ model::Body body_of(const Body& given, double fps, bool is_driven) {
 template <class Objects>
 std::size_t number_of(const std::string& name, const Objects& objects, const char* kind) {
   const auto found = std::ranges::find(objects, name, [](const auto& object) { return object.name; });
-  if (found == objects.end()) refuse("pin", "the name of a {}, got \"{}\"", kind, name);
-  return static_cast<std::size_t>(found - objects.begin());
+  if (found != objects.end()) return static_cast<std::size_t>(found - objects.begin());
+  std::vector<std::string> names;
+  for (const auto& object : objects) names.push_back(object.name);
+  refuse("pin", "a {} ({}), got \"{}\"", kind, fmt::join(names, ", "), name);
 }
 
 void add_pin(const Pin& given, model::Model& model) {
   model::Cloth& cloth = model.cloths[number_of(given.cloth, model.cloths, "cloth")];
   model::Pin& pin = cloth.pins.emplace_back();
   if (given.particles.empty()) refuse(cloth.name, "a pin with particles, got one without");
+  std::set<int> seen;
   Vec3 sum = Vec3::Zero();
   for (const int i : given.particles) {
     if (i < 0 || static_cast<std::size_t>(i) >= cloth.start.size())
       refuse(cloth.name, "pinned particles from 0 to {}, got {}", cloth.start.size() - 1, i);
+    if (!seen.insert(i).second) refuse(cloth.name, "each particle once in a pin, got {} twice", i);
     pin.particles.push_back({.particle = i});
     sum += cloth.start[static_cast<std::size_t>(i)];
   }
   pin.middle = sum / static_cast<double>(given.particles.size());
-  if (!given.body.empty()) pin.body = number_of(given.body, model.bodies, "body");
-  if (given.release < 0 || std::isnan(given.release))
-    refuse(cloth.name, "a release of 0 s or later, got {:g}", given.release);
+  if (!given.body.empty()) {
+    pin.body = number_of(given.body, model.bodies, "body");
+    if (model.bodies[*pin.body].dynamics)
+      refuse(cloth.name, "a pin at a body that forces do not move, got {}", given.body);
+  }
+  if (!(given.release >= 0)) refuse(cloth.name, "a release of 0 s or later, got {:g}", given.release);
   if (std::isfinite(given.release)) pin.release = given.release;
+}
+
+void check_driven(const Model& given, const std::vector<std::string>& driven) {
+  std::vector<std::string> names;
+  for (const Body& body : given.bodies) names.push_back(body.name);
+  for (const std::string& name : driven)
+    if (std::ranges::find(names, name) == names.end())
+      refuse("driven", "bodies ({}), got {}", fmt::join(names, ", "), name);
 }
 
 }  // namespace
 
+motion::Pose pose_of(const Pose& given, const std::string& object) {
+  const auto& [w, x, y, z] = given.rotation;
+  const motion::Pose pose{vector_of(given.position, kFarthest, object, "a position [m]"), Quat(w, x, y, z)};
+  if (!(std::abs(pose.rotation.norm() - 1) < 1e-6))
+    refuse(object, "a unit quaternion w, x, y, z, got [{}]", fmt::join(given.rotation, ", "));
+  return pose;
+}
+
 model::Model physics_of(const Model& given, const std::vector<std::string>& driven) {
   const std::string name = "model";
+  constexpr double kLeast = 1e-9, kMostSteps = 1e6;  // in a frame
   model::Model model;
   model.source = name;
-  check_range(given.fps, 1e-3, 1e6, name, "fps");
-  check_range(given.step, 1e-7, 10, name, "a step [s]");
-  check_range(given.newton_tolerance, 1e-8, 10, name, "a newton_tolerance");
-  check_range(given.air_density, 0, 1e5, name, "an air_density [kg/m³]");
+  check_range(given.fps, kLeast, 1000, name, "fps");
+  check_range(given.step, 1e-7, 1, name, "a step [s]");
+  if (given.fps * given.step * kMostSteps < 1)
+    refuse(name, "at most {:g} steps in a frame, got fps = {:g} and step = {:g} s", kMostSteps, given.fps, given.step);
+  check_range(given.newton_tolerance, kLeast, 1, name, "a newton_tolerance");
+  check_range(given.air_density, 0, 1000, name, "an air_density [kg/m³]");
+  if (given.method < Method::implicit_euler || given.method > Method::bdf2)
+    refuse(name, "one of the methods, got number {}", static_cast<int>(given.method));
   model.time.fps = given.fps;
   model.time.step = given.step;
-  static_assert(static_cast<int>(Method::bdf2) == static_cast<int>(integrator::Method::bdf2));
+  static_assert(static_cast<int>(Method::implicit_euler) == static_cast<int>(integrator::Method::implicit_euler) &&
+                static_cast<int>(Method::implicit_midpoint) ==
+                    static_cast<int>(integrator::Method::implicit_midpoint) &&
+                static_cast<int>(Method::bdf2) == static_cast<int>(integrator::Method::bdf2));
   model.time.integrator = static_cast<integrator::Method>(given.method);
   model.solver.newton_tolerance = given.newton_tolerance;
-  model.physics.gravity = vector_of(given.gravity, name, "gravity [m/s²]");
-  model.physics.wind = vector_of(given.wind, name, "wind [m/s]");
+  model.physics.gravity = vector_of(given.gravity, kFarthest, name, "gravity [m/s²]");
+  model.physics.wind = vector_of(given.wind, 1000, name, "wind [m/s]");
   model.physics.air_density = given.air_density;
   if (model.physics.gravity != Vec3::Zero()) model.up = -model.physics.gravity.normalized();
   model.contact.self = given.self_contact;
+  check_driven(given, driven);
   std::set<std::string> names;
   const auto check_name = [&](const std::string& object) {
-    if (object.empty() || !names.insert(object).second)
-      refuse(name, "objects whose names differ from each other, got \"{}\" twice or empty", object);
+    if (object.empty()) refuse(name, "objects with names, got one without");
+    if (!names.insert(object).second) refuse(name, "objects whose names differ, got {} twice", object);
   };
-  model::Layer& layer = model.layers.emplace_back();
   for (const Cloth& cloth : given.cloths) {
     check_name(cloth.name);
-    layer.cloths.push_back(model.cloths.size());
     model.cloths.push_back(cloth_of(cloth));
   }
-  layer.dressed = layer.cloths;
   for (const Body& body : given.bodies) {
     check_name(body.name);
-    model.bodies.push_back(body_of(body, given.fps, std::ranges::find(driven, body.name) != driven.end()));
+    model.bodies.push_back(body_of(body, std::ranges::find(driven, body.name) != driven.end()));
   }
   for (const Pin& pin : given.pins) add_pin(pin, model);
   return model;

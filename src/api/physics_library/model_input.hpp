@@ -9,6 +9,9 @@
 
 namespace weft::library {
 
+/// Throws std::invalid_argument that names the object if the position is not finite or the rotation no unit quaternion.
+motion::Pose pose_of(const Pose& given, const std::string& object);
+
 /// Throws std::invalid_argument that names the object and the value. `driven`: bodies that count as moving.
 model::Model physics_of(const Model& given, const std::vector<std::string>& driven);
 

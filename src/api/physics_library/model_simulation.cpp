@@ -1,5 +1,7 @@
 // Simulation of a model through the public interface.
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <weft/simulation.hpp>
@@ -30,62 +32,106 @@ struct Meshes {
 
 struct Positions {
   std::shared_ptr<const Meshes> meshes;
-  std::vector<std::vector<Vec3>> of_objects;
+  std::vector<Vec3> particles;               // of all cloths
+  std::vector<std::vector<Vec3>> of_bodies;  // vertices
 };
 
 Frame::Data frame_of(const simulation::Simulation& now, const std::shared_ptr<const Meshes>& meshes) {
-  auto positions = std::make_shared<Positions>(Positions{meshes, {}});
-  const std::vector<Vec3> particles = now.particles_of_all();
-  auto next = particles.begin();
-  for (const model::Cloth& cloth : now.model().cloths) {
-    const auto end = next + static_cast<std::ptrdiff_t>(cloth.start.size());
-    positions->of_objects.emplace_back(next, end);
-    next = end;
-  }
+  auto positions = std::make_shared<Positions>(Positions{meshes, now.particles_of_all(), {}});
   for (std::size_t b = 0; b < now.model().bodies.size(); ++b) {
-    std::vector<Vec3>& x = positions->of_objects.emplace_back(now.vertices_of(b));
+    std::vector<Vec3>& x = positions->of_bodies.emplace_back(now.vertices_of(b));
     if (!x.empty()) continue;
     x.resize(now.model().bodies[b].mesh.positions.size());
     now.model().place(b, now.time(), x);
   }
   Frame::Data data;
+  const std::size_t cloths = meshes->rest.size();
+  std::span<const Vector> particles = library::view_as<Vector>(positions->particles);
   for (std::size_t i = 0; i < meshes->names.size(); ++i) {
     Object& object = data.objects.emplace_back();
     object.name = meshes->names[i];
-    object.kind = i < meshes->rest.size() ? Kind::cloth : Kind::obstacle;
-    object.positions = library::view_as<Vector>(positions->of_objects[i]);
-    if (i < meshes->rest.size()) object.rest = library::view_as<RestPoint>(meshes->rest[i]);
+    object.kind = i < cloths ? Kind::cloth : Kind::obstacle;
     object.triangles = meshes->triangles[i];
+    if (i >= cloths) {
+      object.positions = library::view_as<Vector>(positions->of_bodies[i - cloths]);
+      continue;
+    }
+    object.rest = library::view_as<RestPoint>(meshes->rest[i]);
+    object.positions = particles.first(object.rest.size());
+    particles = particles.subspan(object.rest.size());
   }
   data.viewed = std::move(positions);
   return data;
 }
 
-// FNV-1a, 64 bits (Fowler, Noll & Vo), of the meshes: enough to refuse the state of another model.
-std::uint64_t hash_of(const model::Model& model) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  const auto add = [&](const void* bytes, std::size_t size) {
+// FNV-1a, 64 bits (Fowler, Noll & Vo), of all members of a model.
+class Hash {
+ public:
+  std::uint64_t value() const { return hash_; }
+
+  void add(const Model& model) {
+    add_all(model.fps, model.step, model.method, model.newton_tolerance, model.gravity, model.wind, model.air_density,
+            model.self_contact);
+    add_list(model.cloths, [&](const Cloth& cloth) {
+      const Material& m = cloth.material;
+      add_mesh(cloth.mesh);
+      add_text(cloth.name);
+      add_list(cloth.rest, [&](const RestPoint& point) { add_all(point); });
+      add_all(m.density, m.stretch_weft, m.stretch_warp, m.shear, m.bend, m.max_stretch, m.max_shear,
+              m.stretch_viscosity, m.shear_viscosity, m.bend_viscosity, m.bend_friction, m.thickness, m.friction,
+              m.drag, cloth.velocity);
+    });
+    add_list(model.bodies, [&](const Body& body) {
+      add_mesh(body.mesh);
+      add_text(body.name);
+      add_all(body.pose.position, body.pose.rotation, body.mass, body.velocity, body.friction, body.collide);
+      add_list(body.keys, [&](const PoseKey& key) { add_all(key.time, key.pose.position, key.pose.rotation); });
+    });
+    add_list(model.pins, [&](const Pin& pin) {
+      add_text(pin.cloth);
+      add_text(pin.body);
+      add_all(pin.release);
+      add_list(pin.particles, [&](int i) { add_all(i); });
+    });
+  }
+
+ private:
+  // Values without padding: numbers, and arrays of them.
+  template <class... Values>
+  void add_all(const Values&... values) {
+    (add_bytes(&values, sizeof values), ...);
+  }
+  void add_bytes(const void* bytes, std::size_t size) {
     for (const char c : std::string_view(static_cast<const char*>(bytes), size))
-      hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  };
-  const auto add_mesh = [&](const mesh::Mesh& mesh) {
-    add(mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
-    add(mesh.topology.triangles.data(), mesh.topology.triangles.size() * sizeof(mesh::Triangle));
-  };
-  for (const model::Cloth& cloth : model.cloths) add_mesh(cloth.mesh);
-  for (const model::Body& body : model.bodies) add_mesh(body.mesh);
-  return hash;
-}
+      hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  }
+  void add_text(const std::string& text) {
+    add_all(text.size());
+    add_bytes(text.data(), text.size());
+  }
+  template <class List, class Add>
+  void add_list(const List& list, const Add& add_one) {
+    add_all(list.size());
+    for (const auto& each : list) add_one(each);
+  }
+  void add_mesh(const Mesh& mesh) {
+    add_list(mesh.positions, [&](const Vector& x) { add_all(x); });
+    add_list(mesh.triangles, [&](const Triangle& t) { add_all(t); });
+  }
+
+  std::uint64_t hash_ = 0xcbf29ce484222325U;
+};
 
 }  // namespace
 
 Simulation::Simulation(const Model& given, const SimulationOptions& options)
     : impl_(library::with_public_errors([&] {
         model::Model model = library::physics_of(given, options.driven);
-        const std::uint64_t hash = hash_of(model);
+        Hash hash;
+        hash.add(given);
         const auto meshes = std::make_shared<const Meshes>(model);
         return std::make_unique<Impl>(std::make_unique<simulation::Simulation>(std::move(model)),
-                                      library::heading_of(hash, options), options,
+                                      library::heading_of(hash.value(), options), options,
                                       [meshes](const simulation::Simulation& now) { return frame_of(now, meshes); });
       })) {}
 

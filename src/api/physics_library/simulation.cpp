@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <weft/simulation.hpp>
 
 #include "api/physics_library/data.hpp"
+#include "api/physics_library/model_input.hpp"
 #include "core/version.hpp"
 
 namespace weft {
@@ -21,8 +21,7 @@ Simulation::Impl::Impl(std::unique_ptr<simulation::Simulation> of, std::string h
     return;
   }
   if (!options.state.starts_with(heading))
-    throw std::invalid_argument(
-        "state: expected one that this version saved for this scene and these driven obstacles");
+    throw std::invalid_argument("state: expected one that this version saved of the same, with the same driven bodies");
   for (const std::size_t b : driven) simulation->drive(b, {});
   try {
     simulation->restore(std::string_view(options.state).substr(heading.size()));
@@ -41,8 +40,7 @@ std::size_t Simulation::Impl::body(std::string_view name) const {
     if (bodies[b].name == name) return b;
     names.push_back(bodies[b].name);
   }
-  throw std::invalid_argument(
-      fmt::format("expected an obstacle of the scene ({}), got {}", fmt::join(names, ", "), name));
+  throw std::invalid_argument(fmt::format("driven: expected bodies ({}), got {}", fmt::join(names, ", "), name));
 }
 
 void Simulation::Impl::update_current_frame(const simulation::FrameReport& report) {
@@ -76,13 +74,7 @@ void Simulation::move(std::string_view body, const Pose& pose) {
   const std::size_t number = impl_->body(body);
   if (std::ranges::find(impl_->driven, number) == impl_->driven.end())
     throw std::invalid_argument(fmt::format("expected {} among SimulationOptions::driven", body));
-  const auto& [w, x, y, z] = pose.rotation;
-  const motion::Pose end{Vec3(pose.position.data()), Quat(w, x, y, z)};
-  if (!end.position.allFinite() || !(std::abs(end.rotation.norm() - 1) < 1e-6))
-    throw std::invalid_argument(
-        fmt::format("{}: expected a finite position [m] and a unit quaternion w, x, y, z, got [{}] and [{}]", body,
-                    fmt::join(pose.position, ", "), fmt::join(pose.rotation, ", ")));
-  impl_->simulation->drive(number, end);
+  impl_->simulation->drive(number, library::pose_of(pose, std::string(body)));
 }
 
 std::string Simulation::save() const {

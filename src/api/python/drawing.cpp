@@ -43,7 +43,7 @@ class Renderer {
   py::array_t<std::uint8_t> draw(const Frame& frame, const std::optional<Frame>& before) {
     if (std::this_thread::get_id() != thread_)
       throw std::runtime_error("expected a call from the thread that made the renderer, got one from another");
-    if (!frame.data().snapshot)
+    if (!frame.data().snapshot || (before && !before->data().snapshot))
       throw py::value_error("expected a frame of a scene, got one of a Model, which has no looks");
     auto image = std::make_unique<image::Image>();
     {

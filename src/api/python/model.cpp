@@ -2,8 +2,12 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -15,29 +19,41 @@
 namespace weft::python {
 namespace {
 
-template <class Number>
-using Array = py::array_t<Number, py::array::c_style | py::array::forcecast>;
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 // The rows of an array with as many columns as `Row` has numbers. Raises ValueError with the shape for any other.
-template <class Row, class Number = typename Row::value_type>
-std::vector<Row> rows_of(const Array<Number>& array, const char* name) {
+template <class Row, class Array>
+std::vector<Row> rows_of(const Array& array, const char* name) {
   constexpr std::size_t kColumns = std::tuple_size_v<Row>;
   if (array.ndim() != 2 || array.shape(1) != kColumns)
     throw py::value_error(fmt::format("{}: expected an array of n rows and {} columns, got shape ({})", name, kColumns,
                                       fmt::join(array.shape(), array.shape() + array.ndim(), ", ")));
+  using Number = typename Row::value_type;
   std::vector<Row> rows(static_cast<std::size_t>(array.shape(0)));
   for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t k = 0; k < kColumns; ++k) rows[i][k] = array.data()[kColumns * i + k];
+    for (std::size_t k = 0; k < kColumns; ++k) {
+      const auto value = array.data()[kColumns * i + k];
+      rows[i][k] = static_cast<Number>(value);
+      if (std::is_integral_v<Number> && static_cast<std::int64_t>(rows[i][k]) != static_cast<std::int64_t>(value))
+        throw py::value_error(fmt::format("{}: expected numbers of vertices, got {}", name, value));
+    }
   return rows;
 }
 
-Mesh mesh_of(const Array<double>& positions, const Array<std::int32_t>& triangles) {
-  return {rows_of<Vector>(positions, "positions"), rows_of<Triangle>(triangles, "triangles")};
+Mesh mesh_of(const Doubles& positions, const py::object& triangles) {
+  const py::array array = py::array::ensure(triangles);
+  if (!array) throw py::value_error("triangles: expected an array of n rows and 3 columns");
+  const char kind = array.dtype().kind();
+  if (kind != 'i' && kind != 'u')
+    throw py::value_error(
+        fmt::format("triangles: expected integers, got {}", py::str(array.dtype()).cast<std::string>()));
+  using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+  return {rows_of<Vector>(positions, "positions"), rows_of<Triangle>(Integers(array), "triangles")};
 }
 
-void add_cloth(Model& model, const std::string& name, const Array<double>& positions,
-               const Array<std::int32_t>& triangles, const std::optional<Array<double>>& rest,
-               const std::variant<std::string, Material>& material, const Vector& velocity) {
+void add_cloth(Model& model, const std::string& name, const Doubles& positions, const py::object& triangles,
+               const std::optional<Doubles>& rest, const std::variant<std::string, Material>& material,
+               const Vector& velocity) {
   Cloth cloth{.name = name, .mesh = mesh_of(positions, triangles), .rest = {}, .material = {}, .velocity = velocity};
   if (rest) cloth.rest = rows_of<RestPoint>(*rest, "rest");
   const auto* fabric_name = std::get_if<std::string>(&material);
@@ -48,9 +64,9 @@ void add_cloth(Model& model, const std::string& name, const Array<double>& posit
 using Rotation = std::array<double, 4>;
 using Key = std::tuple<double, Vector, Rotation>;
 
-void add_body(Model& model, const std::string& name, const Array<double>& positions,
-              const Array<std::int32_t>& triangles, const Vector& position, const Rotation& rotation,
-              const std::vector<Key>& keys, double mass, const Vector& velocity, double friction, bool collide) {
+void add_body(Model& model, const std::string& name, const Doubles& positions, const py::object& triangles,
+              const Vector& position, const Rotation& rotation, const std::vector<Key>& keys, double mass,
+              const Vector& velocity, double friction, bool collide) {
   Body body{.name = name,
             .mesh = mesh_of(positions, triangles),
             .pose = {position, rotation},

@@ -3,11 +3,14 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
+#include <weft/scene.hpp>
 #include <weft/settings.hpp>
 #include <weft/simulation.hpp>
 

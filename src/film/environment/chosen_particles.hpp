@@ -4,7 +4,7 @@
 #include <string>
 
 #include "film/assets/mesh_file.hpp"
-#include "film/environment/environment.hpp"
+#include "film/environment/made_cloth.hpp"
 #include "film/scene/scene.hpp"
 
 namespace weft::environment {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 #include <variant>
 
@@ -79,6 +78,16 @@ void list_colliding_triangles(model::Body& body, BodyDetails& details) {
   }
   mesh::close_cuts(body.mesh.topology.triangles, body.mesh.positions, body.colliding);
   if (body.colliding.empty()) body.collide = false;
+}
+
+/// What to do if surfaces touch at the start.
+std::string start_advice_for(const scene::Scene& scene) {
+  const bool untangles = std::ranges::any_of(scene.cloths, [](const scene::Cloth& cloth) {
+    return cloth.start == scene::ClothStart::untangle || !cloth.over.empty();
+  });
+  return untangles ? "'weft thumbnail --start' draws it as it was; move one of them"
+                   : "'weft thumbnail --start' draws it; move one of them, leave it out of contact, or give a cloth "
+                     "start = \"untangle\"";
 }
 
 /// Where something touches a character with hanging arms, which are in the way of most skirts.
@@ -161,6 +170,7 @@ Environment::Environment(const scene::Scene& scene) {
   model.solver = scene.solver;
   model.contact = scene.contact;
   model.layers = scene::list_layers(scene);
+  model.start_advice = start_advice_for(scene);
   const std::vector<Attached> attached = add_cloths(scene);
   for (const scene::Obstacle& obstacle : scene.obstacles) {
     model.bodies.push_back(make_obstacle(scene, obstacle));

@@ -1,4 +1,4 @@
-// All objects of a scene (seed, Fig. 1): topology, geometry, start of cloth, and positions of bodies at any time.
+// From a scene to its model (seed, Fig. 1), and to what is only drawn of it.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,6 @@
 #include "film/environment/acting.hpp"
 #include "film/environment/made_cloth.hpp"
 #include "film/scene/scene.hpp"
-#include "physics/mesh/mesh.hpp"
-#include "physics/mesh/sheet.hpp"
 #include "physics/model/model.hpp"
 
 namespace weft::environment {

@@ -120,11 +120,6 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
     }
 }
 
-// Largest allowed ratio of a cloth's longest edge to its smallest triangle height or quad spacing, if it may meet
-// obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin triangles, eight of
-// nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading of 50, none at 100.
-constexpr double kMaxUnevenness = 80;
-
 /// Loads the triangles of a cloth's file and mends them to a sheet. Throws Error(asset_unreadable) if that fails.
 assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
                               MadeCloth& made) {
@@ -137,7 +132,7 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
         fmt::format("{}: mesh file {}: {} of {} vertices are in no triangle that has an area; faces there cross "
                     "themselves or have all corners on a line",
                     where, cloth.file.string(), loaded.lost_vertices, mesh.positions.size()));
-  if (const assets::MendingReport mended = assets::mend_sheet(loaded, 1 / kMaxUnevenness); mended.any())
+  if (const assets::MendingReport mended = assets::mend_sheet(loaded, 1 / mesh::kMaxUnevenness); mended.any())
     made.details.warnings.push_back(
         fmt::format("{}: mesh file {}: repaired to a sheet: {}", where, cloth.file.string(), mended.describe()));
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
@@ -199,7 +194,7 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
   assets::LoadedMesh loaded = load_sheet(scene, cloth, where, made);
   garment::UvRest rest;
   if (cloth.rest != scene::ClothRest::mesh)
-    rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / kMaxUnevenness);
+    rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / mesh::kMaxUnevenness);
   if (cloth.rest == scene::ClothRest::mesh) made.details.rest_from = "the mesh: the scene says so";
   const bool panels = cloth.rest != scene::ClothRest::mesh && uses_uv(cloth, rest, where, made);
   if (panels) {
@@ -230,26 +225,16 @@ bool meets_obstacles(const scene::Scene& scene) {
 
 /// Throws Error(scene_invalid) if triangles are too flat. The message states how many, and the flattest one.
 void check_triangles(const mesh::Sheet& sheet, const std::string& where) {
-  double longest = 0;
-  for (const auto& m : sheet.material)
-    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, (m[(k + 1) % 3] - m[k]).norm());
-  const double least_allowed = longest / kMaxUnevenness;
-  std::size_t flattest = 0, flat = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
-    const double height = mesh::height(sheet, t);
-    flat += height < least_allowed;
-    if (height < least) least = height, flattest = t;
-  }
-  if (flat == 0) return;
-  const Vec3& at = sheet.rest[static_cast<std::size_t>(sheet.triangles[flattest][0])];
+  const mesh::FlatTriangles flat = mesh::find_flat_triangles(sheet);
+  if (flat.count == 0) return;
+  const Vec3& at = sheet.rest[static_cast<std::size_t>(sheet.triangles[flat.flattest][0])];
   throw Error(
       ExitCode::scene_invalid,
       "{}: expected triangles at least {:.3g} mm high, a {:g}th of the longest edge ({:.4g} mm), where cloth "
       "meets obstacles; got {} flatter, the flattest number {} at ({:.4g}, {:.4g}, {:.4g}) with {:.3g} mm; mesh "
       "it evenly or merge vertices that are closer",
-      where, 1e3 * least_allowed, kMaxUnevenness, 1e3 * longest, flat, flattest + 1, at.x(), at.y(), at.z(),
-      1e3 * least);
+      where, 1e3 * flat.longest_edge / mesh::kMaxUnevenness, mesh::kMaxUnevenness, 1e3 * flat.longest_edge, flat.count,
+      flat.flattest + 1, at.x(), at.y(), at.z(), 1e3 * flat.least_height);
 }
 
 }  // namespace
@@ -258,12 +243,12 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth) {
   if (!meets_obstacles(scene) || scene::rectangle_particles(cloth) == 0) return;
   const mesh::Grid grid = grid_of(cloth);
   const double longest = std::max({grid.du(0), grid.du(grid.nu - 2), grid.dv(0), grid.dv(grid.nv - 2)});
-  if (longest <= kMaxUnevenness * grid.min_spacing()) return;
+  if (longest <= mesh::kMaxUnevenness * grid.min_spacing()) return;
   throw Error(ExitCode::scene_invalid,
               "{}:{}:{}: cloth.{}: expected cells at least a {:g}th as long as the longest ({:.4g} mm), where cloth "
               "meets obstacles; got {:.3g} mm; choose a grading closer to 1, or particles that are as far apart along "
               "weft as along warp",
-              scene.file.string(), cloth.line, cloth.column, cloth.name, kMaxUnevenness, 1e3 * longest,
+              scene.file.string(), cloth.line, cloth.column, cloth.name, mesh::kMaxUnevenness, 1e3 * longest,
               1e3 * grid.min_spacing());
 }
 

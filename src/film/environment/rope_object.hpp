@@ -1,7 +1,7 @@
 // A rope as it starts.
 #pragma once
 
-#include "film/environment/environment.hpp"
+#include "film/environment/made_cloth.hpp"
 
 namespace weft::environment {
 

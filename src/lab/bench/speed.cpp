@@ -109,6 +109,7 @@ SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, c
     const StageTime whole = timed([&] {
       const Counting counting(setting.threads == 1 && k >= frames.begin ? &run.loops : nullptr);
       report = simulation.advance();
+      if (draw) simulation.snapshot();
     });
     if (k < frames.begin) continue;
     count(report, whole, run);

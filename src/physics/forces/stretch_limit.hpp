@@ -23,10 +23,10 @@ class Lock {
   /// Strain at which threads begin to lock, relative to the limit. Below it, the stress is exactly 0.
   static constexpr double kOnset = 0.7;
   /// Stress at the limit [N/m]; at 1.1 times the limit it is 9,500. A ball at 100 m/s pulls with ρ v² / (2 √e), 3,500
-  /// to 9,000 N/m in the fabrics of scene/fabrics.hpp (a transverse wave along a thread of strain e, with the density ρ
-  /// per area and the speed v of the ball; Smith, McCrackin & Schiefer, "Stress-Strain Relationships in Yarns Subjected
-  /// to Rapid Impact Loading", 1958). Measured with 2e4 and a stress linear from the limit on: Newton's method
-  /// oscillates at the kink, and takes 1.2 times the iterations.
+  /// to 9,000 N/m in the fabrics of film/scene/fabrics.hpp (a transverse wave along a thread of strain e, with the
+  /// density ρ per area and the speed v of the ball; Smith, McCrackin & Schiefer, "Stress-Strain Relationships in Yarns
+  /// Subjected to Rapid Impact Loading", 1958). Measured with 2e4 and a stress linear from the limit on: Newton's
+  /// method oscillates at the kink, and takes 1.2 times the iterations.
   static constexpr double kTension = 4e3;
   static constexpr double kStraight = 1.5;
 

@@ -74,4 +74,18 @@ Mesh make_triangle_sheet(const Grid& grid, Pattern pattern) {
   return sheet;
 }
 
+FlatTriangles find_flat_triangles(const Sheet& sheet) {
+  FlatTriangles found;
+  for (const auto& corners : sheet.material)
+    for (std::size_t k = 0; k < 3; ++k)
+      found.longest_edge = std::max(found.longest_edge, (corners[(k + 1) % 3] - corners[k]).norm());
+  found.least_height = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
+    const double h = height(sheet, t);
+    found.count += h < found.longest_edge / kMaxUnevenness;
+    if (h < found.least_height) found.least_height = h, found.flattest = t;
+  }
+  return found;
+}
+
 }  // namespace weft::mesh

@@ -53,6 +53,19 @@ struct Sheet {
 /// Area of a triangle at rest [m²].
 double rest_area(const Sheet& sheet, std::size_t triangle);
 
+/// Largest ratio of a cloth's longest edge to its smallest triangle height, or quad spacing, with which it may meet
+/// obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin triangles, eight of
+/// nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading of 50, none at 100.
+inline constexpr double kMaxUnevenness = 80;
+
+/// Triangles lower than the longest edge / kMaxUnevenness.
+struct FlatTriangles {
+  std::size_t count = 0, flattest = 0;  ///< number of the flattest triangle of all
+  double least_height = 0;              ///< of that one [m]
+  double longest_edge = 0;              ///< [m]
+};
+FlatTriangles find_flat_triangles(const Sheet& sheet);
+
 /// Makes a sheet whose rest shape is the mesh. In each triangle the weft runs along the projection of x; in triangles
 /// nearly perpendicular to x, along the cross product of y and the normal. A flat mesh in the x-y plane has x as weft
 /// and y as warp. Each triangle has its own coordinates; they differ from those of its neighbours by a rigid motion.

@@ -1,4 +1,4 @@
-// Environment of the cloth: gravity and air.
+// Gravity and air.
 #pragma once
 
 #include <algorithm>

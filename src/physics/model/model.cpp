@@ -30,11 +30,19 @@ bool Model::may_be_untangled() const {
 }
 
 Model Model::with_cloths(std::span<const std::size_t> numbers) const {
-  Model part = *this;
-  part.layers.clear();
-  part.cloths.clear();
+  Model part{.source = source,
+             .up = up,
+             .time = time,
+             .physics = physics,
+             .fans = fans,
+             .solver = solver,
+             .contact = contact,
+             .cloths = {},
+             .bodies = bodies,
+             .attachments = {},
+             .layers = {},
+             .start_advice = start_advice};
   for (const std::size_t number : numbers) part.cloths.push_back(cloths[number]);
-  part.attachments.clear();
   for (Attachment attachment : attachments) {
     const auto own = position_of(attachment.cloth, numbers);
     if (!own) continue;

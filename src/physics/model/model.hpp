@@ -1,5 +1,5 @@
-// What is simulated: particles with their materials, and bodies with their motion. Plain values in SI units, with every
-// name resolved; it has no files and no looks.
+// What is simulated: particles with their materials, and bodies with their motion. Plain values in SI units, without
+// files and looks.
 #pragma once
 
 #include <cstddef>
@@ -124,7 +124,7 @@ struct Body {
   std::vector<Index> limbs;                  ///< of deforming bodies: limb of each vertex, from 0; limbs may intersect
   /// Triangles of the parts that collide, with cuts closed; empty if all parts collide.
   std::vector<mesh::Triangle> colliding;
-  std::string advice;  ///< what may help if it touches something at the start, for the error message; or empty
+  std::string advice;  ///< what else may help if it touches something at the start, for the error message; or empty
 
   bool deforms() const { return std::holds_alternative<motion::KeyFrames>(*mover); }
   std::span<const mesh::Triangle> colliding_triangles() const {
@@ -163,7 +163,8 @@ struct Model {
   std::vector<Cloth> cloths;
   std::vector<Body> bodies;
   std::vector<Attachment> attachments;
-  std::vector<Layer> layers;  ///< of all cloths, from the skin outward; at least one
+  std::vector<Layer> layers;                      ///< of all cloths, from the skin outward; empty: one
+  std::string start_advice = "move one of them";  ///< what to do if surfaces touch at the start, for the error message
 
   /// Start of the run, preroll included [s].
   double start_time() const { return -time.preroll_frames / time.fps; }

@@ -7,7 +7,7 @@
 
 namespace weft::model {
 
-/// The quantity that a scene prescribes. The other one, pressure or amount of air, follows from the volume.
+/// The quantity that is prescribed. The other one, pressure or amount of air, follows from the volume.
 enum class PressureControl {
   gauge,  ///< pressure above that of the outside air [Pa]
   air,    ///< air pumped in after closing, as volume at outside pressure [m³]; negative: out

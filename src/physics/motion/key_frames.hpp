@@ -2,7 +2,6 @@
 // by Etzmuß et al. of 2001).
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 

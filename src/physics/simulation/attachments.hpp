@@ -17,7 +17,7 @@ namespace weft::simulation {
 /// When an attachment begins, it ties each of its particles to the nearest point on its target: a point of a triangle
 /// that moves with the corners, or, on a body that forces move, a weighted sum of the four particles of its frame. If
 /// the distance l of particle and point exceeds L, a spring pulls with k (l − L), k = Spring::stiffness. L is the
-/// `length` of the scene, or else the distance at which the particle was tied. A shorter distance causes no force:
+/// `length` of the model, or else the distance at which the particle was tied. A shorter distance causes no force:
 /// contact keeps surfaces apart.
 ///
 /// The spring forces follow from the positions at the end of the step, as contact forces do.
@@ -29,7 +29,7 @@ class Attachments {
 
   bool empty() const { return attachments_.empty(); }
 
-  /// Begins a step from t0 to t1 [s of the scene] with particles at x [m] of these masses [kg]: selects the attachments
+  /// Begins a step from t0 to t1 [s] with particles at x [m] of these masses [kg]: selects the attachments
   /// that hold in the step, ties new ones, and computes where their points on key-framed bodies are at t1.
   void begin_step(double t0, double t1, std::span<const Vec3> x, std::span<const double> masses);
   /// Whether the same attachments hold at t0 and t1 [s], and their triangles on key-framed bodies are at the same
@@ -95,7 +95,7 @@ class Attachments {
   void for_each_tension(std::span<const Vec3> x, const Visit& visit) const;
 
   const model::Model* model_;
-  double step_;                        // of the scene [s]
+  double step_;                        // largest time step [s]
   std::vector<Index> first_particle_;  // of each cloth
   std::vector<Attachment> attachments_;
 };

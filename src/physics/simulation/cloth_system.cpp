@@ -19,7 +19,6 @@
 #include "physics/forces/stretch_limit.hpp"
 #include "physics/forces/triangle_bend.hpp"
 #include "physics/mesh/geometry.hpp"
-#include "physics/simulation/pins.hpp"
 
 namespace weft::simulation {
 namespace {

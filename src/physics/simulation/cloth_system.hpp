@@ -39,7 +39,7 @@ class ClothSystem {
   std::size_t parts() const { return forces_.size(); }
   /// First particle of a part (cloths come first); for `parts()`, the number of all particles.
   Index first_particle(std::size_t part) const { return first_[part]; }
-  /// First frame particle of each body of the environment; −1 for a body without a frame.
+  /// First frame particle of each body of the model; −1 for a body without a frame.
   std::vector<Index> first_of_frames(const model::Model& model) const;
   /// Smallest distance between neighbouring particles of all cloths [m].
   double spacing() const { return spacing_; }
@@ -79,7 +79,7 @@ class ClothSystem {
   /// Updates rope lengths and the rest shapes of cloth that is being sewn to time t [s since the start of the run].
   void sew(double t);
 
-  /// Whether the key-framed rope lengths are equal at times t0 and t1 of the scene [s].
+  /// Whether the key-framed rope lengths are equal at times t0 and t1 [s].
   bool lengths_are_constant(double t0, double t1) const;
 
   /// Updates the enclosed air for the step that ends at time t [s since the start of the run]; call it after sew(t).
@@ -156,13 +156,13 @@ class ClothSystem {
   struct KeyedRope {
     forces::Cord* cord;
     double length;              // rest length at construction [m]
-    motion::Spline<1> lengths;  // over the time of the scene
+    motion::Spline<1> lengths;  // over time
   };
   std::vector<KeyedRope> keyed_ropes_;
   Inflation inflation_;
   std::vector<char> held_;  // per particle: whether a pin holds it
   Vec3 gravity_;
-  double begin_;  // start of the run, in the time of the scene [s]
+  double begin_;  // start of the run [s]
   double spacing_ = std::numeric_limits<double>::infinity();
   std::vector<solver::Aggregates> aggregate_levels_;  // aggregates of the preconditioner, finest first
 };

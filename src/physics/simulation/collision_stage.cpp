@@ -9,7 +9,6 @@
 #include <map>
 
 #include "core/archive.hpp"
-#include "core/error.hpp"
 #include "core/numerics.hpp"
 #include "physics/mesh/geometry.hpp"
 #include "physics/simulation/intersections.hpp"
@@ -42,7 +41,7 @@ double thickness_of(const model::Dynamics& dynamics) {
                   numerics.bodies.thickness_of_size * dynamics.frame.deviations().minCoeff());
 }
 
-// Friction of pairs that the scene names. The engine numbers the cloths first, then the colliding bodies.
+// Friction of pairs that the model names. The engine numbers the cloths first, then the colliding bodies.
 std::vector<collision::PairFriction> friction_pairs(const model::Model& model) {
   std::vector<std::string> names;
   for (const model::Cloth& cloth : model.cloths) names.push_back(cloth.name);

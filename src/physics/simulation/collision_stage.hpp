@@ -1,4 +1,4 @@
-// Connects the cloths and obstacles of a scene to the collision engine, step by step.
+// Connects the cloths and bodies of a model to the collision engine, step by step.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct SystemState : integrator::State {
 
 class CollisionStage {
  public:
-  /// Whether anything in the scene can collide. If not, no stage is made.
+  /// Whether anything in the model can collide. If not, no stage is made.
   static bool needed(const model::Model& model);
 
   /// Appends the vertices of the bodies at start.bodies_time to start.x. The environment must outlive the stage.

@@ -12,10 +12,10 @@
 
 namespace weft::simulation {
 
-/// If nothing but pins drives a scene (no moving body, no wind), its mechanical energy grows at most by the work of the
+/// If nothing but pins drives a model (no moving body, no wind), its mechanical energy grows at most by the work of the
 /// pins, and by what inexact solves add. A run that gains more warns (numerics.energy.doubtful_gain); a run that gains
 /// much more fails (failing_gain). If cloth can touch something and the method damps, the run only warns: contacts at
-/// long steps can add energy, which the method then damps away. In any scene, a run warns if the work of the solver's
+/// long steps can add energy, which the method then damps away. Any run warns if the work of the solver's
 /// residual is large: the motion stays finite but may be far off.
 class EnergyBound {
  public:

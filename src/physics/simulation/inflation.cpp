@@ -1,7 +1,5 @@
 #include "physics/simulation/inflation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

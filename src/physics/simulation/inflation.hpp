@@ -14,7 +14,7 @@
 namespace weft::simulation {
 
 /// The gauge pressure p (above the pressure outside) of an enclosed volume V pushes with the force p ∂V/∂x. If the
-/// scene gives p, the energy is −p V. If it gives an amount of air, as the volume A that the air has at the outside
+/// model gives p, the energy is −p V. If it gives an amount of air, as the volume A that the air has at the outside
 /// pressure p₀, the air is isothermal: (p₀ + p) V = p₀ A, with the energy p₀ (V − A − A ln(V / A)).
 ///
 /// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ, but not the change of ∂V/∂x, which is indefinite and small against the
@@ -30,12 +30,12 @@ class Inflation {
 
   bool empty() const { return cloths_.empty(); }
 
-  /// Begins a step that ends at time t of the scene [s]. Cloth that is still open, for which is_closed(cloth) is false,
+  /// Begins a step that ends at time t [s]. Cloth that is still open, for which is_closed(cloth) is false,
   /// has no gauge pressure. In the first step in which it is closed, the volume that it encloses at x [m] becomes the
   /// reference of its amount of air. Throws Error(scene_invalid) if the scene gives an amount of air, but the cloth
   /// encloses no volume then.
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
-  /// Whether the values of the scene are equal at t0 and t1 [s].
+  /// Whether the values of the model are equal at t0 and t1 [s].
   bool is_constant_between(double t0, double t1) const;
 
   /// `x`, `force` [N] and the rows of `system` are those of all particles.
@@ -46,7 +46,7 @@ class Inflation {
   double energy(std::span<const Vec3> x) const;
   std::vector<EnclosedAir> measure(std::span<const Vec3> x) const;
 
-  /// Copies the enclosed air from another simulation. `numbers[k]`: number in this scene of cloth k of `there`.
+  /// Copies the enclosed air from another simulation. `numbers[k]`: number in this model of cloth k of `there`.
   void copy_state_from(const Inflation& there, std::span<const std::size_t> numbers);
 
   template <class Archive>
@@ -56,8 +56,8 @@ class Inflation {
   static constexpr double kOpen = -1;
   struct Cloth {
     std::string name;
-    std::string where;   // in the scene file, for errors
-    std::size_t number;  // of the cloth in the scene
+    std::string where;   // for errors
+    std::size_t number;  // of the cloth in the model
     Index first, end;    // particles
     forces::EnclosedVolume volume;
     model::PressureControl control;

@@ -1,4 +1,4 @@
-// Places where surfaces touch or cross at the start of a scene, for error messages and pictures.
+// Places where surfaces touch or cross at the start of a run, for error messages and pictures.
 #pragma once
 
 #include <cstddef>

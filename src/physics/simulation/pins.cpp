@@ -1,7 +1,6 @@
 #include "physics/simulation/pins.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "physics/collision/proximity/surface_point.hpp"
 

@@ -1,4 +1,4 @@
-// Particles that pins of the scene hold or move.
+// Particles that pins hold or move.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace weft::simulation {
 /// Largest speed at which a pin or an attachment can move cloth without tearing it [m/s]; a hand reaches 10.
 inline constexpr double kMaxHoldSpeed = 20;
 
-/// All pins of a scene; they move particles along key frames or with a body.
+/// All pins of a model; they move particles along key frames or with a body.
 class Pins {
  public:
   /// `first_particle`: of each cloth.
@@ -23,7 +23,7 @@ class Pins {
   bool empty() const { return groups_.empty(); }
 
   struct Info {
-    std::size_t cloth = 0, number = 0;  ///< from 0: of the cloth in the scene, of the pin in its cloth
+    std::size_t cloth = 0, number = 0;  ///< from 0: of the cloth, of the pin in its cloth
     std::size_t particles = 0;
     std::optional<double> strength;  ///< stiffness of the spring to each particle [N/m]; none: the particles are held
   };
@@ -35,7 +35,7 @@ class Pins {
   double strength_fraction(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].fraction; }
 
   /// Particles of all pins with their targets at time t [s], without those of pins released before t. Each particle has
-  /// one entry. If pins overlap, the particle belongs to the first of them in the scene; but a pin with the particle in
+  /// one entry. If pins overlap, the particle belongs to the first of them in the model; but a pin with the particle in
   /// its region comes before one with the particle in its fade.
   void held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const;
   /// Whether a pin is released at a time in [t0, t1) [s].

@@ -23,7 +23,7 @@
 namespace weft::simulation {
 namespace {
 
-// Bound for frame numbers that are read from a saved state; no scene has more frames.
+// Bound for frame numbers that are read from a saved state; no run has more frames.
 constexpr int kMaxFrames = 1 << 30;
 
 // Computation times are not part of the state, because they differ between runs.
@@ -61,11 +61,7 @@ void check_start(const model::Model& model, StepLoop& steps) {
   if (places.empty()) return;
   throw Error(ExitCode::scene_invalid, "{}: expected surfaces that are apart at the start{}, got {}; {}{}",
               model.source, model.may_be_untangled() ? ", or can be untangled" : "", describe(places),
-              model.may_be_untangled()
-                  ? "'weft thumbnail --start' draws it as it was; move one of them"
-                  : "'weft thumbnail --start' draws it; move one of them, leave it out of contact, or give "
-                    "a cloth start = \"untangle\"",
-              advice_of(model, places));
+              model.start_advice, advice_of(model, places));
 }
 
 }  // namespace
@@ -101,6 +97,13 @@ struct Simulation::Impl {
 };
 
 Simulation::Impl::Impl(model::Model of) : model(std::move(of)), frame(-model.time.preroll_frames) {
+  if (model.layers.empty()) {
+    model::Layer& all = model.layers.emplace_back();
+    all.first_frame = frame;
+    all.cloths.resize(model.cloths.size());
+    std::iota(all.cloths.begin(), all.cloths.end(), std::size_t{0});
+    all.dressed = all.cloths;
+  }
   // Checks each later layer alone against the bodies where they start, so that a layer that does not fit is refused
   // before anything is simulated.
   for (std::size_t later = 1; later < model.layers.size(); ++later) {
@@ -238,8 +241,8 @@ void Simulation::Impl::serialize(Archive& archive) {
   std::uint64_t last = layer;
   archive.value(last);
   if constexpr (Archive::kReads) {
-    require(frame >= -model.time.preroll_frames && frame < kMaxFrames, "a frame of the scene");
-    require(last < model.layers.size(), "a layer of the scene");
+    require(frame >= -model.time.preroll_frames && frame < kMaxFrames, "a frame of the model");
+    require(last < model.layers.size(), "a layer of the model");
     if (last != layer) begin_layer(last);
   }
   steps->serialize(archive);
@@ -249,6 +252,7 @@ void Simulation::Impl::serialize(Archive& archive) {
 }
 
 std::vector<IntersectionPlace> find_start_intersections(const model::Model& model) {
+  if (model.layers.empty()) return StepLoop(model, model.start_time()).find_intersections();
   std::vector<IntersectionPlace> found;
   // Layers are put on one after the other, so each one is checked alone.
   for (const model::Layer& layer : model.layers) {

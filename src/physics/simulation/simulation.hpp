@@ -56,7 +56,7 @@ class Simulation {
  public:
   /// Builds only what the model needs. Throws Error(scene_invalid) if surfaces touch or cross at the start.
   explicit Simulation(model::Model model);
-  ~Simulation();
+  virtual ~Simulation();
 
   /// With the motions of driven bodies.
   const model::Model& model() const;

@@ -31,7 +31,7 @@ class StepLoop {
   /// Before the first advance(): takes over the cloths of `before`, a loop that this one replaces. `cloths[k]`: number
   /// in this loop of cloth k of `before`.
   void copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths);
-  /// Before the first advance(): untangles cloths that touch or intersect at the start, if the scene allows it.
+  /// Before the first advance(): untangles cloths that touch or intersect at the start, if the model allows it.
   /// Cloths that were taken over stay as they are.
   void untangle();
   /// Before the first advance(): lifts dynamic bodies off what they touch. Returns the largest lift [m].
@@ -48,7 +48,7 @@ class StepLoop {
   /// State from which the next step begins.
   struct Progress {
     SystemState now;
-    std::optional<integrator::StepControl> control;  // if the scene has a tolerance in place of a step
+    std::optional<integrator::StepControl> control;  // if the model has a tolerance in place of a step
     double longest;  // longest step allowed after a rejection [s]; infinite before the first one
   };
   const Progress& progress() const { return progress_; }

@@ -99,7 +99,7 @@ class StepProblem final : public integrator::System {
   void assemble_rows(const integrator::StagePoint& at);
 
   ClothSystem& cloth_;
-  const collision::ContactResponse* contacts_ = nullptr;  // nullptr if nothing in the scene can collide
+  const collision::ContactResponse* contacts_ = nullptr;  // nullptr if nothing can collide
   const RigidVertices* vertices_ = nullptr;               // nullptr if there are none
   const Attachments* attachments_ = nullptr;
   std::span<const PinSpring> pulls_;

@@ -1,4 +1,4 @@
-// How the steps of a scene begin: method, tolerances, and the state at the start.
+// How the steps of a run begin: method, tolerances, and the state at the start.
 #pragma once
 
 #include <optional>
@@ -13,13 +13,13 @@
 namespace weft::simulation {
 
 integrator::NewtonParameters newton_of(const model::Model& model);
-/// None if the scene has a fixed step instead of a tolerance.
+/// None if the model has a fixed step instead of a tolerance.
 std::optional<integrator::StepControl> step_control_of(const model::Model& model);
 
 /// First particle of each cloth.
 std::vector<Index> first_particles(const ClothSystem& cloth);
 
-/// Positions of all particles at the start, and their velocities as the scene gives them, at time t [s].
+/// Positions of all particles at the start, and their velocities as the model gives them, at time t [s].
 SystemState start_of(const model::Model& model, const ClothSystem& cloth, double t);
 
 /// For a step that ends at t [s]: appends the frame particles of bodies that keys still move then, where the keys place

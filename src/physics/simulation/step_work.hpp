@@ -13,7 +13,7 @@ struct StepWork {
   double solver = 0;  ///< by the residual of the equation of motion; 0 if it is solved exactly
 };
 
-/// Work of the last step of the stepper, from `start` to `end`. `pinned`: particles that the scene holds. Uses the
+/// Work of the last step of the stepper, from `start` to `end`. `pinned`: particles that pins hold. Uses the
 /// forces of the stage, so the work is exact to the order of the method.
 StepWork measure_work(const integrator::Stepper& stepper, std::span<const integrator::HeldParticle> pinned,
                       std::span<const double> masses, const integrator::State& start, const integrator::State& end);

@@ -155,7 +155,7 @@ void YieldingPins::serialize(Archive& archive) {
   std::vector<std::uint64_t> before(lagging_before_.begin(), lagging_before_.end());
   serialize_plain(archive, before);
   if constexpr (Archive::kReads)
-    require(std::ranges::all_of(before, [&](std::uint64_t pin) { return pin < pins_.size(); }), "pins of the scene");
+    require(std::ranges::all_of(before, [&](std::uint64_t pin) { return pin < pins_.size(); }), "pins of the model");
   lagging_before_ = {before.begin(), before.end()};
 }
 

@@ -31,7 +31,7 @@ class YieldingPins {
   /// Whether the pins hold the same particles at the same places at t0 and t1 [s], and no particle lags.
   bool are_constant_between(double t0, double t1);
 
-  /// Whether the scene releases a pin at a time in [t0, t1) [s]. See also release_particle(), which is another release.
+  /// Whether the model releases a pin at a time in [t0, t1) [s]. See also release_particle(), which is another release.
   bool release_between(double t0, double t1) const { return pins_.release_between(t0, t1); }
 
   /// Makes a held particle lag in the current step; the step must then begin again. `obstruction`: what is in its way

@@ -17,7 +17,8 @@ struct Mistake {
   std::string text;          ///< such as "expected > 0 m, got -0.001"
 };
 
-/// A scene has mistakes. what() lists all of them, one per line: "file:line:column: key: text".
+/// A scene has mistakes, or surfaces of a scene or model touch at the start. what() lists all of them, one per line:
+/// "file:line:column: key: text".
 class WEFT_API SceneError : public std::runtime_error {
  public:
   SceneError(const std::string& text, std::vector<Mistake> mistakes)

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -72,7 +71,7 @@ class WEFT_API Frame {
   int number() const;            ///< counted from 0
   double time() const;           ///< [s]
   const Report& report() const;  ///< zeros in the frame at which a simulation was restored
-  /// Cloths (with ropes), obstacles, characters, each in the order of the scene.
+  /// Cloths (with ropes), obstacles, characters, each in the order of the model or scene.
   std::span<const Object> objects() const;
   /// Throws std::out_of_range with the names of all objects if there is none of this name.
   const Object& object(std::string_view name) const;

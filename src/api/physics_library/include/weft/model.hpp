@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -64,7 +63,7 @@ struct Body {
   double mass = 0;            ///< [kg]; above 0, forces move it
   Vector velocity{0, 0, 0};   ///< at the start, if forces move it [m/s]
   double friction = 0.3;
-  bool collide = true;  ///< false: only pins and attachments see it
+  bool collide = true;  ///< false: only pins see it
 };
 
 /// Holds particles of a cloth where they start, or at a body.

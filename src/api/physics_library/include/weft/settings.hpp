@@ -13,9 +13,9 @@ WEFT_API const char* version();
 /// Sets the largest number of threads; 0: as many as there are processors. Results do not depend on it.
 WEFT_API void set_threads(int threads);
 
-/// Sends each warning and note about a scene to `handle`, instead of standard error. `handle` is called by the thread
-/// that loads or simulates. If several threads do so, calls may be concurrent. An empty function restores standard
-/// error.
+/// Sends each warning and note about a model or scene to `handle`, instead of standard error. `handle` is called by the
+/// thread that loads or simulates. If several threads do so, calls may be concurrent. An empty function restores
+/// standard error.
 WEFT_API void set_warning_handler(std::function<void(std::string_view warning)> handle);
 
 }  // namespace weft
