@@ -22,9 +22,6 @@ struct Numerics {
     /// Maximum number n of aggregates of cloth on the coarsest level (or one per cloth); its dense factorisation takes
     /// 9 n³ multiplications.
     int coarsest_aggregates = 70;
-    /// Ratio of length to width above which an aggregate grows in width only. Larger: strips of slender cells swing
-    /// with 0.8 of their energy.
-    double slender_aggregate = 2;
   } linear;
 
   /// Newton's method (src/physics/integrator).
@@ -41,18 +38,19 @@ struct Numerics {
     int line_trials = 6;
     /// Newton iterations after which the trajectory is checked for contacts that only the solve reveals.
     int check_after = 4;
-    /// Newton iterations of a step in which friction follows the normal forces. After as many, a velocity error below
-    /// the visibility threshold, and `velocity_ratio` of implicit Euler's own, are allowed; after half as many, all
-    /// diagonal blocks are solved together. Larger: friction and normal forces, or cloths that press on each other,
+    /// Newton iterations of a step in which friction follows the normal forces; also how often a solve continues from
+    /// cloth that was pushed apart (0: a ring takes four times the steps). After as many iterations, a velocity error
+    /// below the visibility threshold, and `velocity_ratio` of implicit Euler's own, are allowed; after half as many,
+    /// all diagonal blocks are solved together. Larger: friction and normal forces, or cloths that press on each other,
     /// oscillate.
     int patience = 20;
     double velocity_ratio = 0.5;
     /// Time for which a velocity error counts [s]. Shorter: the solver dominates the error; longer: more iterations.
     double lasting_time = 0.15;
-    /// Visibility thresholds of acceleration [m/s²] and velocity [m/s]; as bounds of errors, multiplied by the
-    /// tolerance.
+    /// Visibility threshold of acceleration [m/s²], and of the velocity that it leads to [m/s]; as bounds of errors,
+    /// multiplied by the tolerance.
     double unseen_acceleration = 0.01;
-    double unseen_velocity = 1e-3;
+    double unseen_velocity() const { return unseen_acceleration * lasting_time; }
     /// Friction, relative to its limit, above which a diagonal block counts as about to slide.
     double about_to_slide = 0.9;
     /// Largest motion since the rows of a cloth were assembled, in particle spacings, at which they are kept. Larger:
@@ -64,8 +62,6 @@ struct Numerics {
   struct Steps {
     /// Error that the controller aims at, relative to the tolerance. Nearer to 1: more steps are rejected.
     double aim = 0.7;
-    /// Relative change of a step size that does not justify a new matrix.
-    double kept_change = 0.1;
     /// Minimum and maximum factor between successive steps, also after a rejection. Larger: BDF2 propagates its error.
     double least_factor = 0.2;
     double largest_factor = 1.5;
@@ -80,8 +76,10 @@ struct Numerics {
   struct Contact {
     /// Detection distance, relative to the largest activation distance. Smaller: contacts are found late in a step.
     double detection = 1.5;
-    /// Verlet margin of near features, in detection distances. Candidate pairs in slow steps have twice, kept closest
-    /// points (`search.coherence`) half of it. Larger: longer lists; smaller: more searches.
+    /// Motion that the search does not see, in detection distances: the Verlet margin of near features. Candidate pairs
+    /// in slow steps have twice, kept closest points (`search.coherence`) half of it. Larger: longer lists; smaller:
+    /// more searches. Also the distance between an obstacle's arc and its chord above which a step is halved, and the
+    /// motion of an obstacle in a step below which shorter steps find no more space.
     double margin = 0.25;
     /// Maximum contact thickness, in particle spacings. Larger: a sheared sheet collides with itself.
     double thickness_of_spacing = 0.25;
@@ -121,14 +119,9 @@ struct Numerics {
     double least_gap = 1e-6;
     /// Gap that pushing apart restores [m], at most half of the gap at the start: a tenth of a fabric's thickness.
     double restored_gap = 2e-4;
-    /// Number of halvings of a trajectory in the search for planes. 0: a tenth more iterations.
-    int halvings = 3;
     /// Rounds of pushing apart. Half as many rounds of backtracking by halves follow, then as many of backtracking
     /// entirely. Fewer: particles move back farther than necessary.
     int rounds = 24;
-    /// Distance between an obstacle's arc and its chord, in detection distances, above which a step is halved; also the
-    /// motion of an obstacle in a step below which shorter steps find no more space.
-    double creep = 0.25;
   } separation;
 
   /// Velocity constraints of the seed, the paper that README names (`contact.response`).
@@ -149,11 +142,10 @@ struct Numerics {
 
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
-    /// Rejections of a step before cloth may count as pinched, and before an overstretched solve is accepted. As many
+    /// How often something is halved before another remedy: a step, before cloth may count as pinched, and before an
+    /// overstretched solve is accepted; a trajectory, in the search for planes (0: a tenth more iterations). As many
     /// attempts at a step release the particles of obstructed pins; one more may also move pinned particles.
     int halvings = 3;
-    /// How often a solve continues from cloth that was pushed apart. 0: a ring takes four times the steps.
-    int restarts = 16;
     /// Strain that pushing apart may add, and energy, as Energy::doubtful_gain. Beyond either, the solve continues; if
     /// it cannot, a step is halved only because of the energy. Larger: single frames show strain of 0.1 and more.
     double added_strain = 0.05;

@@ -21,7 +21,7 @@ namespace weft::scene {
 
 namespace {
 
-constexpr double kMaxFrames = 100000;
+constexpr double kMaxFrames = 100000, kMaxStepsInFrame = 1e6;
 constexpr double kMinKeyGap = 1e-7;        // minimum time between keys [s]: the shortest time step
 constexpr long kMaxParticles = 4'000'000;  // of all cloths together; the solver's data fit a large workstation
 
@@ -408,6 +408,10 @@ void check(const Scene& scene, Findings& findings) {
   if (const double frames = scene.time.duration * scene.time.fps; frames > kMaxFrames) {
     findings.report("time.duration",
                     fmt::format("expected at most {} frames (duration * fps), got {:.0f}", kMaxFrames, frames));
+  }
+  if (const double steps = 1 / (scene.time.fps * scene.time.step); steps > kMaxStepsInFrame) {
+    findings.report("time.step", fmt::format("expected at most {:g} steps in a frame (1 / (fps * step)), got {:.3g}",
+                                             kMaxStepsInFrame, steps));
   }
   check_times(scene.physics.keys, "physics", findings);
   for (std::size_t i = 0; i < scene.ropes.size(); ++i)

@@ -27,17 +27,13 @@ double StepControl::aim_to_error_ratio(double error) const {
 }
 
 void StepControl::record_accepted_step(double h, double error) {
-  const double ratio = aim_to_error_ratio(error), elementary_factor = std::pow(ratio, 1 / order_plus_one_);
-  if (elementary_factor > 1 - numerics.steps.kept_change && elementary_factor < 1 + numerics.steps.kept_change) {
-    wanted_ = h;
-  } else {
-    const double factor =
-        std::pow(ratio, kExponentNow / order_plus_one_) * std::pow(last_ratio_, kExponentBefore / order_plus_one_);
-    // A step may be shorter than wanted to end with its frame; growth continues from the wanted length.
-    const double max_step = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
-    // Unsolved steps may be shorter than `least`.
-    wanted_ = std::min(std::max(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least), max_step);
-  }
+  const double ratio = aim_to_error_ratio(error);
+  const double factor =
+      std::pow(ratio, kExponentNow / order_plus_one_) * std::pow(last_ratio_, kExponentBefore / order_plus_one_);
+  // A step may be shorter than wanted to end with its frame; growth continues from the wanted length.
+  const double max_step = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
+  // Unsolved steps may be shorter than `least`.
+  wanted_ = std::min(std::max(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least), max_step);
   last_ratio_ = ratio;
   after_failure_ = false;
 }
@@ -45,8 +41,7 @@ void StepControl::record_accepted_step(double h, double error) {
 // The elementary controller, without `last_ratio_`.
 void StepControl::record_rejected_step(double h, double error) {
   const double factor = std::pow(aim_to_error_ratio(error), 1 / order_plus_one_);
-  wanted_ = std::max(h * std::clamp(factor, numerics.steps.least_factor, 1 - numerics.steps.kept_change),
-                     numerics.steps.least);
+  wanted_ = std::max(h * std::clamp(factor, numerics.steps.least_factor, 1.0), numerics.steps.least);
   after_failure_ = true;
 }
 

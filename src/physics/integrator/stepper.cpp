@@ -172,7 +172,7 @@ void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) 
 
 bool Stepper::is_solved(int iterations) const {
   double unseen_speed =
-      iterations < numerics.newton.patience ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity;
+      iterations < numerics.newton.patience ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity();
   if (parameters_.position_tolerance > 0)
     unseen_speed = std::min(unseen_speed, parameters_.position_tolerance / numerics.newton.lasting_time);
   return std::ranges::all_of(

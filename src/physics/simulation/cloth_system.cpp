@@ -77,7 +77,7 @@ Lattice lattice_of(const model::Cloth& cloth) {
   return lattice;
 }
 
-// Doubles all sides of the boxes, except those longer than `slender_aggregate` times the shortest one: cloth is
+// Doubles the sides of the boxes that then differ less from the shortest one: those shorter than √2 times it. Cloth is
 // stiffest between close particles, so these are merged first.
 void coarsen(Lattice& lattice) {
   Box last{0, 0, 0};
@@ -87,7 +87,7 @@ void coarsen(Lattice& lattice) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (last[axis] > 0) least = std::min(least, lattice.sides[axis]);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (lattice.sides[axis] > numerics.linear.slender_aggregate * least) continue;
+    if (lattice.sides[axis] > std::numbers::sqrt2 * least) continue;
     lattice.sides[axis] *= 2;
     for (Box& box : lattice.boxes) box[axis] /= 2;
   }

@@ -276,7 +276,7 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
 }
 
 bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemState& now) const {
-  const double max_sagitta = numerics.separation.creep * engine_.detection_distance();
+  const double max_sagitta = numerics.contact.margin * engine_.detection_distance();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (radii_[b] == 0 || (is_dynamic(b) && t >= model_.bodies[bodies_[b]].dynamics->release)) continue;
     // The angular velocity hardly changes between keys; a body stops at its last key.
@@ -306,7 +306,7 @@ bool CollisionStage::bodies_are_constant(double t0, double t1, SystemState& now,
 }
 
 bool CollisionStage::obstacles_move_little(const SystemState& now, const SystemState& next) const {
-  const double max_motion = numerics.separation.creep * engine_.detection_distance();
+  const double max_motion = numerics.contact.margin * engine_.detection_distance();
   for (auto v = static_cast<std::size_t>(rigid_.end()); v < now.x.size(); ++v)
     if ((next.x[v] - now.x[v]).squaredNorm() > max_motion * max_motion &&
         !engine_.is_clear(engine_.bodies().body_of(static_cast<Index>(v))))

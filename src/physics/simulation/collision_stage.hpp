@@ -60,13 +60,13 @@ class CollisionStage {
                   SystemState& next);
 
   /// The search assumes straight trajectories. Returns whether an obstacle near cloth turns so far between t and t + h
-  /// [s] that its vertices deviate from them by more than `numerics.separation.creep` detection distances.
+  /// [s] that its vertices deviate from them by more than `numerics.contact.margin` detection distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
   /// Whether no body near the cloth moves between t0 and t1 [s]; t0 is the time of `now`. Places bodies in both states.
   bool bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const;
 
-  /// Whether no obstacle near cloth moves by more than `numerics.separation.creep` detection distances from `now` to
+  /// Whether no obstacle near cloth moves by more than `numerics.contact.margin` detection distances from `now` to
   /// `next`. If so, a shorter step would not find more space for cloth.
   bool obstacles_move_little(const SystemState& now, const SystemState& next) const;
 

@@ -74,7 +74,7 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
   int continuations = 0;
   bool is_separated = false;
   for (bool is_first = true;; is_first = false, start = Start::next) {
-    const bool may_continue = continuations < numerics.repair.restarts;
+    const bool may_continue = continuations < numerics.newton.patience;
     // An iterate that is separated already is solved to the end; others are checked early.
     const bool check_early = !is_separated && (is_first || may_continue);
     bool solved = false;
@@ -92,7 +92,7 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
     const double energy_before = solved ? energy(next_) : 0;
     const double strain_before = solved ? cloth_.max_strain(next_.particles()) : 0;
     if (collisions_->push_apart(attempt.h, false, false, now, next_)) {
-      continuations = numerics.repair.restarts;  // some pairs cannot be pushed apart: push_apart(attempt) decides
+      continuations = numerics.newton.patience;  // some pairs cannot be pushed apart: push_apart(attempt) decides
       continue;
     }
     if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.energy.doubtful_gain &&

@@ -103,7 +103,7 @@ void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::s
                 std::min(pull_force_[pin] / static_cast<double>(lagging_particles_[pin]),
                          numerics.pins.most_acceleration * masses_[i]),
                 numerics.pins.acceleration * masses_[i]});
-  pulls_.push_back({particle, x[i], speed, 0, max_force / std::max(numerics.newton.unseen_velocity, speed.norm())});
+  pulls_.push_back({particle, x[i], speed, 0, max_force / std::max(numerics.newton.unseen_velocity(), speed.norm())});
 }
 
 void YieldingPins::release_particle(Index particle, const std::string& obstruction) {
