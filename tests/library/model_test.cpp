@@ -325,7 +325,7 @@ TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
   expect_refused("ball: expected a key's time", with([&](Model& m) { m.bodies[0].keys = {{nan, {}}}; }));
   expect_refused("a name in `driven`", with([](Model& m) { m.bodies[0].mass = 1; }), {.driven = {"ball"}, .state = {}});
   expect_refused("one of the methods", with([](Model& m) { m.method = static_cast<Method>(7); }));
-  expect_refused("at most 1e+06 steps in a frame", with([](Model& m) { m.fps = 1e-3, m.step = 1e-7; }));
+  expect_refused("at most 1e+09 steps in a frame", with([](Model& m) { m.fps = 1e-6, m.step = 1e-7; }));
   expect_refused("model: expected a step [s]", with([](Model& m) { m.step = 0; }));
   expect_refused("model: expected gravity [m/s²] from", with([&](Model& m) { m.gravity[2] = nan; }));
   expect_refused("driven: expected bodies (ball), got bal", with([](Model&) {}), {.driven = {"bal"}, .state = {}});

@@ -191,7 +191,7 @@ const std::vector<Malformed> kMalformed = {
     {"TooManyFrames", kFloor + "[time]\nduration = 3600\nfps = 1000\n",
      "s.toml:3:12: time.duration: expected at most 100000 frames (duration * fps), got 3600000\n"},
     {"TooManyStepsInAFrame", kFloor + "[time]\nfps = 1e-6\nstep = 1e-7\nduration = 1\n",
-     "s.toml:4:8: time.step: expected at most 1e+06 steps in a frame (1 / (fps * step)), got 1e+13\n"},
+     "s.toml:4:8: time.step: expected at most 1e+09 steps in a frame (1 / (fps * step)), got 1e+13\n"},
     {"ZeroQuaternion", "[[cloth]]\nname = 'band'\nquaternion = [0, 0, 0, 0]\n",
      "s.toml:3:14: cloth.band.quaternion: expected at least one number that is not 0, got 0 in all\n"},
     {"TorusWithoutHole", "[[obstacle]]\nname = 't'\nshape = 'torus'\nradius = 0.1\ntube_radius = 0.2\n",

@@ -26,7 +26,7 @@ constexpr double kFarthest = 1e5;  // [m]
 constexpr double kFastest = 1e4;   // [m/s]
 
 Vec3 vector_of(const Vector& x, double largest, const std::string& object, const char* what) {
-  const Vec3 vector(x.data());
+  Vec3 vector(x.data());
   if (!(vector.array().abs() <= largest).all())  // false for NaN
     refuse(object, "{} from {:g} to {:g}, got [{}]", what, -largest, largest, fmt::join(x, ", "));
   return vector;
@@ -218,7 +218,7 @@ void check_driven(const Model& given, const std::vector<std::string>& driven) {
 
 motion::Pose pose_of(const Pose& given, const std::string& object) {
   const auto& [w, x, y, z] = given.rotation;
-  const motion::Pose pose{vector_of(given.position, kFarthest, object, "a position [m]"), Quat(w, x, y, z)};
+  motion::Pose pose{vector_of(given.position, kFarthest, object, "a position [m]"), Quat(w, x, y, z)};
   if (!(std::abs(pose.rotation.norm() - 1) < 1e-6))
     refuse(object, "a unit quaternion w, x, y, z, got [{}]", fmt::join(given.rotation, ", "));
   return pose;
@@ -226,7 +226,7 @@ motion::Pose pose_of(const Pose& given, const std::string& object) {
 
 model::Model physics_of(const Model& given, const std::vector<std::string>& driven) {
   const std::string name = "model";
-  constexpr double kLeast = 1e-9, kMostSteps = 1e6;  // in a frame
+  constexpr double kLeast = 1e-9, kMostSteps = 1e9;  // in a frame
   model::Model model;
   model.source = name;
   check_range(given.fps, kLeast, 1000, name, "fps");

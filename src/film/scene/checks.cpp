@@ -21,7 +21,7 @@ namespace weft::scene {
 
 namespace {
 
-constexpr double kMaxFrames = 100000, kMaxStepsInFrame = 1e6;
+constexpr double kMaxFrames = 100000, kMaxStepsInFrame = 1e9;
 constexpr double kMinKeyGap = 1e-7;        // minimum time between keys [s]: the shortest time step
 constexpr long kMaxParticles = 4'000'000;  // of all cloths together; the solver's data fit a large workstation
 
