@@ -2,7 +2,7 @@
 struct Light {
   vec4 toward_light_world;        // w: squared distance of a spot from its target; sun: 0
   vec4 position_world;            // w: cosine of half the cone angle
-  vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
+  vec4 color;                     // linear; w: 1 / width of the soft edge of the cone, as a difference of cosines
 };
 // The first LIGHTS entries are valid, at least one. Index them by constants: with a variable index, llvmpipe reads a
 // member again for each pixel.

@@ -1,13 +1,13 @@
 // Reflections of the subjects in a glossy floor (mirror.hpp); include after shading.glsl.
 layout(binding = 13) uniform sampler2D mirror;            // upside down, sRGB encoded; mip levels for blur
-layout(binding = 14) uniform sampler2D mirror_distances;  // distances eye - floor - reflected surface [m]
+layout(binding = 14) uniform sampler2D mirror_distances;  // distance from eye via floor to reflected surface [m]
 const int kMirrorTaps = 8;
 
 // sRGB to linear light, with an error below 0.3/255 (a cubic fitted to IEC 61966-2-1).
 vec3 decode(vec3 srgb) { return srgb * (srgb * (srgb * 0.305306011 + 0.682171111) + 0.012522878); }
 
-// Replaces the fraction `share` of the floor's encoded colour by the reflection. `distance_view`: distance of the floor
-// [m].
+// Replaces the fraction `share` of the floor's colour (sRGB) by the reflection; returns linear light. `distance_view`:
+// distance of the floor along the view axis [m].
 vec3 reflect_in_floor(vec3 color, vec2 uv, float distance_view, float roughness, float share) {
   vec2 at = vec2(uv.x, 1.0 - uv.y);
   // The blur radius is proportional to the distance of the mirror image behind the floor: half of the cone in which a

@@ -64,7 +64,7 @@ vec3 scattered_cosine(float cosine, float skin) {
   return rounded * rounded / max(4.0 * width, 1e-4) + max(cosine - width, 0.0);
 }
 #endif
-const float kCoat = 0.04, kCoatAlpha = 0.02;  // clear coat: reflectance at normal incidence, as of glass, and roughness squared
+const float kCoat = 0.04, kCoatAlpha = 0.02;  // clear coat (glass): reflectance at normal incidence; roughness squared
 
 void add_light(inout LightSums sums, int i, Point at, float lit) {
   float cone;
@@ -179,7 +179,7 @@ void main() {
 
   vec4 lit = texelFetch(lamps_lit, pixel, 0), from_surfaces = texelFetch(surface_light, pixel, 0);
   float open = from_surfaces.w;
-  // `from_surfaces` is negative near shaded floor and may exceed the open light, hence the lower bound.
+  // Near shaded floor, `from_surfaces` is negative and may outweigh the open light, hence the lower bound.
   vec3 around_light = irradiance(at.n) * open;
   around_light = max(around_light + from_surfaces.rgb, 0.1 * around_light);
   LightSums light = LightSums(around_light, vec3(0.0), vec3(0.0));

@@ -24,8 +24,8 @@ float on_top(float along, float width) {
   return sum * kStitch / width;
 }
 
-// Factor on the colour at a stitch line at `center`: thread on top is paler, where it is below the cloth there is a
-// dark hole, and the groove is shaded.
+// Factor on the colour at a stitch line at `center`: thread on top is paler, thread below the cloth leaves a dark hole,
+// and the groove is shaded.
 float stitches(float at, float width, float center, float shown) {
   return 1.0 - 0.16 * band(at, width, center, kGroove) + band(at, width, center, kThread) * mix(-0.5, 0.16, shown);
 }

@@ -2,7 +2,7 @@
 // slightly in tone. Every feature fades to its mean before it becomes smaller than two pixels, so that nothing
 // shimmers.
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
-const float kUneven = 0.15;  // maximum relative deviation of a yarn's tone; each threefold size has 0.7 of it
+const float kUneven = 0.15;  // maximum relative deviation of a yarn's tone; each size three times larger has 0.7 of it
 
 float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
 // Random number from -1 to 1 for a thread. Neighbouring threads have opposite contributions: there is no slow
@@ -39,7 +39,7 @@ float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.2
 
 // The yarn on top at one point.
 struct Top {
-  float height;  // minus its mean
+  float height;  // relative to its mean
   vec2 tilt;     // tilt of the normal along weft and warp
   float yarn;    // random seed, different for each thread
   bool weft;
@@ -146,8 +146,8 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   return result;
 }
 
-// Colour of denim if the fraction `weft` of what is on top is undyed weft. `cloth`: the mean colour, where this
-// fraction is a quarter.
+// Colour of denim if undyed weft is on top in the fraction `weft` of the area. `cloth`: the mean colour, at a fraction
+// of one quarter.
 vec3 denim_color(vec3 cloth, float weft) {
   const float kPaler = 2.2, kDye = 0.35;
   vec3 undyed = kPaler * mix(vec3(dot(cloth, vec3(0.2126, 0.7152, 0.0722))), cloth, kDye);

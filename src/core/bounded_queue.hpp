@@ -30,8 +30,8 @@ class BoundedQueue {
     return true;
   }
 
-  /// Waits for an item. Returns nothing after cancel() and at the end of a closed queue; if the producer failed, throws
-  /// its exception at that end.
+  /// Waits for an item. Returns nothing after cancel() and at the end of a closed queue. If the producer failed, throws
+  /// its exception at the end of the queue.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     arrived_.wait(lock, [&] { return !items_.empty() || closed_ || cancelled_; });

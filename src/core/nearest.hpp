@@ -11,8 +11,8 @@ namespace weft {
 /// technique for computer detection and correction of spelling errors", 1964; no letter edited twice).
 int edit_distance(std::string_view from, std::string_view to);
 
-/// The closest of `known`, the first of equally close ones; empty if the edits are half of the letters of the longer
-/// name or more.
+/// The closest of `known`, the first of equally close ones; empty if the number of edits is at least half the length of
+/// the longer name.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
 }  // namespace weft

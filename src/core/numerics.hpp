@@ -12,8 +12,8 @@ struct Numerics {
   /// The linear solver (src/physics/solver).
   struct Linear {
     /// Trace of a particle's 3×3 block, relative to the sum of `LinearSystem::norm_weights` over its diagonal block. If
-    /// any particle exceeds it, all aggregates move as wholes. Larger: slender cells, and a viscosity of 1e4 N·s/m, are
-    /// not solved; smaller: soft cloth takes twice as many iterations.
+    /// any particle exceeds it, levels do not interpolate (Preconditioner). Larger: slender cells, and a viscosity of
+    /// 1e4 N·s/m, are not solved; smaller: soft cloth takes twice as many iterations.
     double stiff_particle = 1e3;
     /// Number of last iterations from which the error is estimated: `least_delay`, or all so far divided by
     /// `delay_fraction` if that is more. Fewer: solves end on a plateau, and a viscosity of 1e4 N·s/m gains energy.
@@ -39,13 +39,13 @@ struct Numerics {
     /// Newton iterations after which the trajectory is checked for contacts that only the solve reveals.
     int check_after = 4;
     /// Newton iterations of a step in which friction follows the normal forces; also how often a solve continues from
-    /// cloth that was pushed apart (0: a ring takes four times the steps). After as many iterations, a velocity error
-    /// below the visibility threshold, and `velocity_ratio` of implicit Euler's own, are allowed; after half as many,
-    /// all diagonal blocks are solved together. Larger: friction and normal forces, or cloths that press on each other,
-    /// oscillate.
+    /// cloth that was pushed apart (0: a ring takes four times the steps). After as many iterations, the tolerance
+    /// allows errors below the visibility threshold and below `velocity_ratio` times implicit Euler's own; after half
+    /// as many, each linear solve includes all diagonal blocks. Larger: friction and normal forces, or cloths that
+    /// press on each other, oscillate.
     int patience = 20;
     double velocity_ratio = 0.5;
-    /// Time for which a velocity error counts [s]. Shorter: the solver dominates the error; longer: more iterations.
+    /// Time for which a velocity error lasts [s]. Shorter: the solver dominates the error; longer: more iterations.
     double lasting_time = 0.15;
     /// Visibility threshold of acceleration [m/s²], and of the velocity that it leads to [m/s]; as bounds of errors,
     /// multiplied by the tolerance.
@@ -53,8 +53,8 @@ struct Numerics {
     double unseen_velocity() const { return unseen_acceleration * lasting_time; }
     /// Friction, relative to its limit, above which a diagonal block counts as about to slide.
     double about_to_slide = 0.9;
-    /// Largest motion since the rows of a cloth were assembled, in particle spacings, at which they are kept. Larger:
-    /// more iterations.
+    /// Largest motion since the rows of a cloth were assembled, in particle spacings, at which Newton's method reuses
+    /// them. Larger: more iterations.
     double stale_motion = 0.005;
   } newton;
 
@@ -76,10 +76,10 @@ struct Numerics {
   struct Contact {
     /// Detection distance, relative to the largest activation distance. Smaller: contacts are found late in a step.
     double detection = 1.5;
-    /// Motion that the search does not see, in detection distances: the Verlet margin of near features. Candidate pairs
-    /// in slow steps have twice, kept closest points (`search.coherence`) half of it. Larger: longer lists; smaller:
-    /// more searches. Also the distance between an obstacle's arc and its chord above which a step is halved, and the
-    /// motion of an obstacle in a step below which shorter steps find no more space.
+    /// Verlet margin of near features, in detection distances: motion up to which the search reuses its lists.
+    /// Candidate pairs in slow steps have twice this margin, kept closest points (`search.coherence`) half of it.
+    /// Larger: longer lists; smaller: more searches. Also the distance between an obstacle's arc and its chord above
+    /// which a step is halved, and the motion of an obstacle in a step below which shorter steps find no more space.
     double margin = 0.25;
     /// Maximum contact thickness, in particle spacings. Larger: a sheared sheet collides with itself.
     double thickness_of_spacing = 0.25;
@@ -90,8 +90,8 @@ struct Numerics {
     /// r. 10: tips penetrate; 1000: more iterations.
     double stiffening = 100;
     /// An edge pair has full stiffness at a fold (−Σ `Proximity::outside_wedge`) of twice `fade`, none at half of it.
-    /// It fades out over this sine outside of a wedge, and over this fraction of an edge at its ends. 0: contacts
-    /// switch on and off; larger: only separating planes keep crossing creases apart.
+    /// The stiffness fades out over this sine outside of a wedge, and over this fraction of an edge at its ends. 0:
+    /// contacts switch on and off; larger: only separating planes keep crossing creases apart.
     double fade = 0.1;
     double flat_fold() const { return 0.5 * fade; }
     /// Slip velocity below which friction sticks [m/s]; for springs, in particle spacings per second if that is more.
@@ -100,14 +100,14 @@ struct Numerics {
     double stick_spacings = 0.002;
     /// Slip velocity, in stick velocities, from which friction is no longer static.
     double slide_velocity = 5;
-    /// Velocity at which a contact closes [m/s] from which it is an impact, in part below (BDF2 only). Larger: impacts
+    /// Closing velocity from which a contact is an impact [m/s]; below, it is one in part (BDF2 only). Larger: impacts
     /// in short steps rebound; 0.1: five balls that meet keep a quarter of the energy, not a fifth.
     double impact_velocity = 0.05;
-    /// How often in a step a contact may begin to slide and still stick when it slides back. 0: ribbons take 1.4 times
-    /// the iterations; 20: friction of 10 does not settle.
+    /// How often in a step a contact that has begun to slide may stick again when it slides back. 0: ribbons take 1.4
+    /// times the iterations; 20: friction of 10 does not settle.
     int returns = 2;
     /// Shortest time in which a contact opens by its activation distance [s]. 0: in steps of 1 ms and less, surfaces
-    /// that come into contact where they are close already are thrown apart, with up to eight times the energy in play.
+    /// that are close already when they come into contact rebound with up to eight times the energy in play.
     double opening_time = 5e-3;
     /// Relative stiffness of contacts that push pinched cloth out while there is no space.
     double depenetration_stiffness = 0.05;
@@ -119,7 +119,7 @@ struct Numerics {
     double least_gap = 1e-6;
     /// Gap that pushing apart restores [m], at most half of the gap at the start: a tenth of a fabric's thickness.
     double restored_gap = 2e-4;
-    /// Rounds of pushing apart. Half as many rounds of backtracking by halves follow, then as many of backtracking
+    /// Rounds of pushing apart. `rounds` / 2 rounds of backtracking by halves follow, then `rounds` of backtracking
     /// entirely. Fewer: particles move back farther than necessary.
     int rounds = 24;
   } separation;
@@ -142,12 +142,12 @@ struct Numerics {
 
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
-    /// How often something is halved before another remedy: a step, before cloth may count as pinched, and before an
-    /// overstretched solve is accepted; a trajectory, in the search for planes (0: a tenth more iterations). As many
-    /// attempts at a step release the particles of obstructed pins; one more may also move pinned particles.
+    /// Number of halvings before another remedy: of a step, before cloth may count as pinched and before an
+    /// overstretched solve is accepted; of a trajectory, in the search for planes (0: a tenth more iterations). As many
+    /// attempts at a step release obstructed pins; one more may move pinned particles.
     int halvings = 3;
-    /// Strain that pushing apart may add, and energy, as Energy::doubtful_gain. Beyond either, the solve continues; if
-    /// it cannot, a step is halved only because of the energy. Larger: single frames show strain of 0.1 and more.
+    /// Strain that pushing apart may add (energy: Energy::doubtful_gain). Above either, the solve continues; if it
+    /// cannot, only too much energy causes a halved step. Larger: single frames show strain of 0.1 and more.
     double added_strain = 0.05;
     /// Energy gain, relative to the kinetic and elastic energy at the start of the step, above which an unfinished
     /// solve starts anew with fixed normal forces.
@@ -181,8 +181,8 @@ struct Numerics {
 
   /// Energy without a source (src/physics/simulation/energy_bound.cpp), relative to the energy in play.
   struct Energy {
-    /// Gain above which a run fails, also the work of the residual above which it warns; gain above which it warns, and
-    /// which pushing apart may add to a step.
+    /// `failing_gain`: gain above which a run fails; also the work of the residual above which it warns.
+    /// `doubtful_gain`: gain above which a run warns; also the gain that pushing apart may add to a step.
     double failing_gain = 0.3;
     double doubtful_gain = 0.1;
     /// Energy that is never an error [J/kg]: lifts cloth by 1 cm.

@@ -29,7 +29,7 @@ struct LoopCounts {
   /// Wall time of these loops on each number of kThreads, if chunks take equal times and threads start at once.
   std::array<double, kThreads.size()> seconds_on{};
 };
-/// Where loops count themselves; null: nowhere. Set it only while thread_count() is 1.
+/// Counters of the loops below; null: nothing is counted. Set it only while thread_count() is 1.
 inline LoopCounts* counted_loops = nullptr;
 
 /// Counts a loop during its lifetime if it has several chunks.

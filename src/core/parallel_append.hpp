@@ -14,8 +14,8 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Calls body(begin, end, list) for consecutive chunks of [0, count) with `chunk` items each, on one thread for all of
-/// [0, count) at once. The body appends its results to `list`; `out` receives all of them in the order of items.
+/// Calls body(begin, end, list) for consecutive chunks of [0, count) with `chunk` items each; with one thread, once for
+/// all of [0, count). The body appends its results to `list`; `out` receives all of them in the order of items.
 /// append(out, list) must append one list to another.
 template <class List, class Body>
 void parallel_append(std::size_t count, std::size_t chunk, List& out, const Body& body) {

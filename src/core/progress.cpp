@@ -59,7 +59,7 @@ std::optional<double> RemainingTime::seconds() const {
   for (std::size_t stage = 0; stage < kStages; ++stage) {
     const int left = totals_[stage] - last.done[stage];
     const int advanced = last.done[stage] - first.done[stage];
-    // A stage without progress, such as drawing before the first wanted frame, shows no pace.
+    // A stage without progress, such as drawing before the first wanted frame, has no known pace.
     if (advanced <= 0 && left > 0) continue;
     slowest = std::max(slowest.value_or(0.0), left > 0 ? left * span / advanced : 0.0);
   }

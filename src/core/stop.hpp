@@ -13,7 +13,7 @@ namespace weft {
 inline std::atomic<long long> stop_requested_at{0};
 static_assert(std::atomic<long long>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-/// Time after a request within which work may still finish [ns]: most frames do, and are not lost.
+/// Time after a request within which a frame may still finish [ns]; most frames do, so that they are not lost.
 inline constexpr long long kStopGrace = 3'000'000'000;
 
 /// Time on the monotonic clock [ns]. Safe in a signal handler.

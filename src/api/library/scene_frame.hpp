@@ -1,4 +1,4 @@
-// Frames of the public interface from snapshots.
+// Converts snapshots to frames of the public interface.
 #pragma once
 
 #include "api/physics_library/data.hpp"
@@ -6,7 +6,7 @@
 
 namespace weft::library {
 
-/// Objects that are views of the snapshot, which the data keep.
+/// Returns data whose objects are views of the snapshot. The data keep the snapshot alive.
 Frame::Data view(frame::SnapshotPtr snapshot);
 
 }  // namespace weft::library

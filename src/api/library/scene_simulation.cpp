@@ -16,7 +16,7 @@
 namespace weft {
 namespace {
 
-// The scene, whose driven obstacles move: an obstacle counts as moving if it has two keys or more.
+// Adds a second key to each driven obstacle with fewer: only obstacles with two keys or more count as moving.
 scene::Scene with_driven(scene::Scene scene, const SimulationOptions& options) {
   for (const std::string& name : options.driven) {
     const auto found = std::ranges::find(scene.obstacles, name, &scene::Obstacle::name);

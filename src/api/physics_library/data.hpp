@@ -33,11 +33,10 @@ struct Frame::Data {
 };
 
 struct Simulation::Impl {
-  /// Objects of the current state with their positions, and what else belongs to where it comes from.
+  /// Makes the objects of the current state, and keeps alive the data that they view (`viewed` or `snapshot`).
   using MakeFrame = std::function<Frame::Data(const simulation::Simulation& now)>;
 
-  /// `heading`: of a saved state; it tells what it is a state of. Throws std::invalid_argument if the options do not
-  /// fit.
+  /// `heading`: first line of a saved state; see heading_of(). Throws std::invalid_argument if the options do not fit.
   Impl(std::unique_ptr<simulation::Simulation> simulation, std::string heading, const SimulationOptions& options,
        MakeFrame make_frame);
 
@@ -67,7 +66,7 @@ Report report_of(const simulation::FrameReport& report);
 /// Makes a frame. Adds views of velocities, strains and forces to its first objects, which are cloths.
 Frame make_frame(Frame::Data data);
 
-/// The first line of a state of `hash` with these driven bodies, which save() writes and the next run checks.
+/// First line of a saved state, which identifies the model or scene (`hash`) and the driven bodies.
 std::string heading_of(std::uint64_t hash, const SimulationOptions& options);
 
 /// Throws the public exception that corresponds to an error of the program.

@@ -1,4 +1,4 @@
-// The public model as the physics takes it.
+// Converts the public model to that of the physics.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@
 namespace weft {
 namespace {
 
-// What stays the same over a run, and all frames share.
+// Data that stay the same during a run and that all frames share.
 struct Meshes {
   explicit Meshes(const model::Model& model) {
     for (const model::Cloth& cloth : model.cloths) {

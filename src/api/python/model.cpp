@@ -21,7 +21,7 @@ namespace {
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// The rows of an array with as many columns as `Row` has numbers. Raises ValueError with the shape for any other.
+// The rows of an array with as many columns as `Row` has numbers. Raises ValueError with the shape of any other array.
 template <class Row, class Array>
 std::vector<Row> rows_of(const Array& array, const char* name) {
   constexpr std::size_t kColumns = std::tuple_size_v<Row>;

@@ -19,7 +19,7 @@
 namespace weft::python {
 namespace {
 
-// A value of a change as TOML text. Accepts scalars and arrays of numpy too.
+// Converts a value of a change to TOML text. Accepts scalars and arrays of numpy, too.
 std::string toml_of(const py::handle& value) {
   if (py::hasattr(value, "tolist")) return toml_of(value.attr("tolist")());
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";

@@ -26,11 +26,11 @@ using character::Affine;
 /// Maximum number of vertices of all parts with all copies, before merging: far more than collision can handle.
 constexpr std::size_t kMaxVertices = 4'000'000;
 
-/// If the skin in the rest pose of the nodes is farther than this from its bind pose, there is a warning [m].
+/// Maximum distance of the skin in the rest pose of the nodes from its bind pose without a warning [m].
 constexpr double kMaxBindError = 0.05;
 
-/// If the sum of weights differs from 1 by more than this, there is a warning. Smaller errors come from rounding, and
-/// from formats that store few bits.
+/// Maximum error of the sum of a vertex's weights, which should be 1, without a warning. Smaller errors come from
+/// rounding, and from formats that store few bits.
 constexpr double kWeightSlack = 0.02;
 
 Affine to_affine(const aiMatrix4x4& m) {
@@ -48,7 +48,7 @@ bool invertible(const Affine& map) {
 using NodeWithParent = std::pair<const aiNode*, Index>;
 
 /// All nodes, parents first, by mParent: assimp 5.2 lists the bones of Half-Life models as children of one node and
-/// stores their parents only in mParent. If mParent does not lead to all nodes, the lists of children are used.
+/// stores their parents only in mParent. If mParent does not lead to all nodes, uses the lists of children.
 std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
   using Children = std::unordered_map<const aiNode*, std::vector<const aiNode*>>;
   // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
@@ -61,7 +61,7 @@ std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
       nodes.push_back(next);
       const auto children = children_of(*next.first);
       for (std::size_t c = children.size(); c-- > 0;)
-        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);  // see soup.cpp
+        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);  // null: see soup.cpp
     }
     return nodes;
   };
@@ -145,7 +145,7 @@ class CharacterReader {
     const bool faces = std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
                                    [](const aiFace& face) { return face.mNumIndices >= 3; });
     if (!faces) return;
-    // A skinned mesh is placed by its bones. It is read only once, even if several nodes show it.
+    // Its bones place a skinned mesh. The mesh is read only once, even if several nodes show it.
     if (mesh.mNumBones > 0 && !skinned_.insert(&mesh).second) return;
     const std::size_t base = soup_.positions.size();
     if (base + mesh.mNumVertices > kMaxVertices)

@@ -13,7 +13,7 @@
 
 namespace weft::assets {
 
-/// A character in the unit and axes of its file, and what the file states about them.
+/// A character in the unit and axes of its file, and the unit and up axis that the file states.
 struct ReadCharacter {
   character::Character character;
   std::optional<double> metres_per_unit;
@@ -25,13 +25,13 @@ struct ReadCharacter {
 struct MeshChoice {
   std::vector<std::string> only;       ///< empty: all
   std::vector<std::string> without;    ///< meshes to leave out
-  std::vector<std::string> elsewhere;  ///< meshes used by cloths: left out too; names that do not exist are allowed
+  std::vector<std::string> elsewhere;  ///< meshes that cloths use, left out too; unknown names are allowed
 };
 
 /// Converts nodes, meshes with their weights and morph targets, and animations. All meshes share one list of bones. A
-/// mesh without bones is copied for each node that shows it, and bound to a bone at that node. Pictures are searched
-/// beside `file`; none are read if `file` is empty. Throws std::runtime_error that names the unusable part: indices out
-/// of range, non-finite numbers, bones without a node, key times that run backwards, unknown names in `choice`.
+/// mesh without bones is copied for each node that shows it, and bound to a bone at that node. Searches pictures
+/// beside `file`, and reads none if `file` is empty. Throws std::runtime_error that names the unusable part: indices
+/// out of range, non-finite numbers, bones without a node, key times that run backwards, unknown names in `choice`.
 ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice = {});
 
 /// Serialises a character for transfer between two processes of the same program, and back.

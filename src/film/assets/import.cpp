@@ -22,7 +22,7 @@
 namespace weft::assets {
 namespace {
 
-/// Opens only regular files, also for files that a file refers to (materials, buffers): pipes and devices may never
+/// Opens only regular files, also among those that a file refers to (materials, buffers): pipes and devices may never
 /// end.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
@@ -35,8 +35,8 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   }
 };
 
-/// If binary PLY data start with a byte of the value of a line feed, assimp 5.2 takes it for a part of the header and
-/// drops it. Returns the bytes of such a file with an additional line feed to be dropped; nullopt for all other files.
+/// If binary PLY data start with a byte that equals a line feed, assimp 5.2 drops this byte as a part of the header.
+/// Returns the bytes of such a file with an additional line feed for assimp to drop; nullopt for all other files.
 std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 1 << 16;
   constexpr std::string_view kBinary = "\nformat binary_", kEnd = "\nend_header\n";

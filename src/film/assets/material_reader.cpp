@@ -137,7 +137,7 @@ bool is_cutout(const aiMaterial& material) {
 /// Pictures that were skipped for the same reason.
 struct LeftOut {
   std::string reason;
-  std::vector<std::string> materials, pictures;  // names; those of pictures may be empty
+  std::vector<std::string> materials, pictures;  // names; pictures may have empty names
 };
 
 /// Text of the first three names, quoted, and of the number of others.

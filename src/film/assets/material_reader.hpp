@@ -11,7 +11,7 @@
 
 namespace weft::assets {
 
-/// Base colour and picture of each material. A picture is embedded, or it is a file: searched at the stored path,
+/// Base colour and picture of each material. A picture is embedded, or it is a file, searched at the stored path,
 /// beside `file`, and in picture folders (such as `textures`) beside `file` or one folder above. Unusable pictures are
 /// skipped with a warning.
 std::vector<character::Material> read_materials(const aiScene& scene, const std::filesystem::path& file,

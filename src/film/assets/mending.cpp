@@ -24,7 +24,7 @@ constexpr double kMaxSmallPieceArea = 0.02;
 constexpr double kCutGap = 0.2;
 /// Maximum length of a collapsed edge / minimum height of triangles.
 constexpr double kMaxCollapseRatio = 8;
-/// Factor on the required height of triangles: margin for the rest shape, which UVs can give and which differs.
+/// Factor on the required height of triangles: margin for rest shapes from UVs, which differ from the mesh.
 constexpr double kHeightMargin = 1.1;
 constexpr int kMaxCollapseRounds = 8;
 
@@ -208,7 +208,7 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
     areas[piece_of[at(cut_triangles[t][0])]] += area(loaded, t);
     whole += area(loaded, t);
   }
-  // Of the copies of a vertex, one stays in place: that of the largest piece or, within a piece, that with the most
+  // One copy of each vertex stays in place: the copy in the largest piece or, within a piece, the one with the most
   // corners.
   std::map<Index, std::pair<double, Index>> kept_copies;
   std::vector<int> use_count(from.size(), 0);
@@ -267,7 +267,7 @@ void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
   keep_triangles(loaded, kept);
 }
 
-/// Collapses short edges of flat triangles one by one, and flips others.
+/// Removes flat triangles one by one: collapses the shortest edge if possible, else flips the longest one.
 class EdgeCollapser {
  public:
   EdgeCollapser(LoadedMesh& loaded, double flattest)

@@ -14,7 +14,7 @@ struct MendingReport {
   std::size_t turned = 0;     ///< triangles flipped to match those around them
   std::size_t cut = 0;        ///< edges at which a third triangle, or one that cannot be oriented, was detached
   std::size_t pieces = 0;     ///< removed: small detached pieces, and third triangles that cannot be detached
-  double left_out = 0;        ///< fraction of the whole area that these have
+  double left_out = 0;        ///< area of `pieces` / whole area
   std::size_t collapsed = 0;  ///< edges of needle triangles that were collapsed or flipped
 
   bool any() const { return doubled + turned + cut + collapsed > 0; }

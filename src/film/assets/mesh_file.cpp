@@ -81,7 +81,7 @@ void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, Loade
   }
 }
 
-/// UVs of the triangles of make_topology(). `soup`: before vertices are merged, which keeps the list of triangles.
+/// UVs of the triangles of make_topology(). `soup`: with vertices not yet merged; merging keeps the list of triangles.
 std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   std::vector<std::array<Vec2, 3>> corners;
   if (std::ranges::none_of(soup.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;
@@ -91,7 +91,7 @@ std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   return corners;
 }
 
-/// A border vertex, and the distance within which others are welded to it [m].
+/// A border vertex, and the distance within which other border vertices are welded to it [m].
 struct BorderVertex {
   Index vertex;
   double weld_distance;
@@ -174,7 +174,7 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   if (up != scene::FileUp::as_file) turn = turn_up(static_cast<int>(up) - 1, axes.scene_up);
   for (Vec3& x : soup.positions) {
     x = axes.scale * (turn * x);
-    // Smaller coordinates also keep products of squared lengths finite.
+    // The bound also keeps products of squared lengths finite.
     if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
       source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(),
                               x.z()));

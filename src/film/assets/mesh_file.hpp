@@ -36,7 +36,7 @@ struct MeshAxes {
   scene::FileUp up = scene::FileUp::as_file;
   scene::UpAxis scene_up = scene::UpAxis::z;
   scene::FileUp default_up =
-      scene::FileUp::as_file;  ///< up axis of files that do not state it; as_file: that of the scene
+      scene::FileUp::as_file;  ///< up axis of files that state none; as_file: the up axis of the scene
 };
 
 /// Reads all surfaces of a file (OBJ, PLY, STL, glTF and other formats of assimp), or those named `object`, as one

@@ -109,8 +109,8 @@ std::vector<PlacedNode> placed_nodes(const aiNode& root) {
   return nodes;
 }
 
-/// Transform from mesh to world. Without bones: that of its node. With bones: (bone's node to world) × (bone offset) of
-/// the bone with the largest sum of weights; bones with a nearly singular transform are ignored. Characters use the
+/// Transform from mesh to world. Without bones: of the mesh's node. With bones: (bone's node to world) × (bone offset)
+/// of the bone with the largest sum of weights; bones with a nearly singular transform are ignored. Characters use the
 /// same rule (character_reader.cpp), because glTF places skinned meshes by their bones, whichever node refers to them.
 Transform placement_of(const aiMesh& part, const Transform& of_node,
                        const std::unordered_map<std::string, Transform>& placed) {

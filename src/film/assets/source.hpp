@@ -17,7 +17,7 @@ inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
 /// A file with a coordinate of at least this size counts as damaged [m]: no scene is a thousand kilometres wide.
 inline constexpr double kMaxCoordinate = 1e6;
 
-/// A file, with what messages about it contain.
+/// A file, and the texts that identify it in messages.
 struct Source {
   std::filesystem::path file;
   std::string where;          ///< scene entry that names it, such as "scenes/a.toml:12:8: obstacle.chair"

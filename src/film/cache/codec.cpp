@@ -37,7 +37,7 @@ void serialize_flag(Archive& archive, bool& flag) {
 // finite. For comparison, an object that falls for an hour is 6.4e7 m away.
 constexpr double kFarthest = 1e9;
 
-// Throws if a number exceeds the same limit. Used for all numbers (angles, fractions, intensities) except those of the
+// Throws if a number exceeds kFarthest. Used for all numbers (angles, fractions, intensities) except those of the
 // report.
 void check_finite(double number) {
   if (!(std::abs(number) <= kFarthest))

@@ -8,8 +8,8 @@
 //             as in frame 0, 1 positions follow (planes). Second byte: 0 no heat, 1 heat follows (planes of f32)
 //   state     bytes of Simulation::save
 //
-// The members of each part, and their order, are those of the serialize() functions in codec.cpp. An optional value is
-// stored as a byte, 0 or 1, followed by the value if the byte is 1.
+// The serialize() functions in codec.cpp define the members of each part and their order. An optional value is stored
+// as a byte, 0 or 1, followed by the value if the byte is 1.
 //
 // Planes: the first byte of every entry, then the second byte of every entry, and so on (24 planes for positions of 3 ×
 // f64, 4 for heat). Neighbours have similar signs and exponents, so that planes compress well.
@@ -45,7 +45,7 @@ std::string encode_surfaces(const Surfaces& surfaces);
 /// Throws std::runtime_error with the defect.
 Surfaces decode_surfaces(std::string_view payload);
 
-/// `surfaces` must be those of the snapshot.
+/// `surfaces` must belong to the snapshot.
 std::string encode_frame(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report,
                          const Surfaces& surfaces);
 

@@ -18,7 +18,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little && sizeof(std::size_t) == 8,
               "plain values are written as they are in memory");
 
-constexpr std::size_t kCheckedSize = 48, kHeaderSize = 56;
+constexpr std::size_t kCheckedSize = 48, kHeaderSize = 56;  // [bytes]; container.hpp has the layout
 // Compression level. The last mantissa bits of positions do not compress at any level; levels 3 and above take longer
 // without gain.
 constexpr int kLevel = 1;

@@ -25,7 +25,7 @@ enum class Looks { of_scene, any };
 /// All functions are thread-safe, and throw Error(asset_unreadable) with the file name and the defect.
 class Reader {
  public:
-  /// Reads what all frames share. A cache without frames is valid.
+  /// Reads the data that all frames share. A cache without frames is valid.
   explicit Reader(std::filesystem::path folder, Looks looks = Looks::of_scene);
 
   const std::filesystem::path& folder() const { return folder_; }

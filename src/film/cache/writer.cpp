@@ -46,8 +46,8 @@ bool begins_as_written(const fs::path& file) {
   return start == *beginning || (!start.empty() && start.find_first_not_of('\0') == std::string::npos);
 }
 
-/// Whether Weft has written the file of this name, judged by its first bytes. The scene is judged by the first bytes of
-/// the files beside it. Empty files count too, as nothing is lost with them.
+/// Whether the first bytes of a file show that Weft has written it; for the scene, the first bytes of the files beside
+/// it do. Empty files count too, as nothing is lost with them.
 bool is_ours(const fs::path& folder, const std::string& name) {
   const std::string_view kept = final_name_of(name);
   if (!kept.empty()) return is_name_of_cache(kept);

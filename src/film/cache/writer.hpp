@@ -48,7 +48,7 @@ class Writer {
   /// the writer was created is replaced. If another program has created the file since, throws Error(output_failed).
   void add(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report);
 
-  /// Replaces the stored state by that of `frame`. All frames up to it must have been added.
+  /// Replaces the stored state by the state of `frame`. All frames up to it must have been added.
   void save_state(int frame, std::string_view bytes);
 
   /// Size of all added frames and, if frame 0 is one of them, of the data that they share [bytes].

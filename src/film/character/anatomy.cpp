@@ -12,15 +12,15 @@
 namespace weft::character {
 namespace {
 
-/// Vectors shorter than this, relative to others, have no reliable direction.
+/// Vectors shorter than this, absolutely or relative to the vector they derive from, have no reliable direction.
 constexpr double kNegligibleLength = 1e-9;
 
 /// Minimum mean weight of the postures that determine the axes of a joint; a guess fills the remainder. The weight of a
 /// hinge is the squared sine of its angle, so elbows bent by 13° need no guess.
 constexpr double kMinDeterminedWeight = 0.05;
 
-/// Widths of the weights (see falloff) with which a trunk counts as standing: by its lean as a whole and by that of its
-/// single bones [radians]. People lean by 2 to 5° in walking, by more than 15° if they stoop.
+/// Widths of the Gaussian weights (see falloff) of standing postures [radians]: for the lean of the whole trunk, and
+/// for that of each of its bones. People lean by 2 to 5° in walking, by more than 15° if they stoop.
 constexpr double kStandingLean = 5 * kDegree, kStandingBoneLean = 20 * kDegree;
 
 Vec3 unit(const Vec3& v) {
@@ -52,7 +52,7 @@ Index find_below(const Character& character, Index node, std::string_view word) 
   return -1;
 }
 
-/// Finds the axes of the body parts relative to those of the joints; see find_anatomy.
+/// Finds the axes of the body parts relative to the axes of the joints; see find_anatomy.
 class AnatomyFinder {
  public:
   AnatomyFinder(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const Flat> flat, const Vec3& up)
@@ -92,7 +92,7 @@ class AnatomyFinder {
     return sum;
   }
 
-  /// Sum of the directions that the postures determine; a guess makes up for missing weight. `weight`: of one posture.
+  /// Sum of the directions `shown`, weighted; `guess` supplies the weight that is missing to kMinDeterminedWeight.
   template <class Weight, class Shown, class Guess>
   Vec3 sum(Joint joint, const Weight& weight, const Shown& shown, const Guess& guess) const {
     double weight_sum = 0;
@@ -117,7 +117,7 @@ class AnatomyFinder {
 
   Vec3 along(const Posture& posture, Joint joint) const { return unit(skeleton_.bone(posture, joint)); }
 
-  /// The chest, or the joint that replaces it in a skeleton without one.
+  /// The chest; in a skeleton without a chest, the spine or else the hips.
   Joint trunk_joint() const {
     for (const Joint joint : {Joint::chest, Joint::spine})
       if (skeleton_.has(joint)) return joint;
@@ -130,7 +130,7 @@ class AnatomyFinder {
         axes_along(sum(joint, axis_of(from, Vec3::UnitZ())), sum(joint, axis_of(from, Vec3::UnitX())));
   }
 
-  /// Aligns the axes of a joint with its bone; a joint without a bone gets those of its parent.
+  /// Aligns the axes of a joint with its bone; a joint without a bone gets the axes of its parent.
   void align_with_bone(Joint joint, Joint parent, const Vec3& across) {
     const Vec3 z = sum(joint, [&](const Posture& p, std::size_t) { return along(p, joint); });
     if (unit(z).isZero()) return copy_axes(joint, parent);
@@ -142,7 +142,7 @@ class AnatomyFinder {
       const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
       if (joint == Joint::head) return unit(p.places[place_of(joint)] - p.places[place_of(below)]);
       // Control nodes of a rig may lie above the joint that they move, so that their bone points down. The direction of
-      // the trunk then replaces it.
+      // the trunk then replaces that of the bone.
       const Vec3 up_the_bone = along(p, joint), up_the_trunk = unit(skeleton_.trunk(p));
       return up_the_bone.dot(up_the_trunk) < 0 ? up_the_trunk : up_the_bone;
     };
@@ -158,7 +158,7 @@ class AnatomyFinder {
       if (joint == Joint::hips && !hips.isZero()) return Vec3(hips);
       return shoulders.isZero() || joint == Joint::spine ? Vec3(hips + shoulders) : shoulders;
     });
-    // The hip joints belong to the hips and therefore define their rotation best.
+    // The line through the hip joints determines the rotation of the hips best: their x axis follows it exactly.
     const Vec3 line = unit(x), beside = z - z.dot(line) * line;
     own_[place_of(joint)] = axes_along(joint == Joint::hips && beside.norm() > 0.1 * z.norm() ? beside : z, x);
   }

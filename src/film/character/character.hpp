@@ -20,7 +20,7 @@ struct Node {
   Affine local = Affine::Identity();  ///< node to parent, at rest
 };
 
-/// Moves vertices. In any pose, it moves a vertex to G · offset · vertex, where G is the global transform of the node.
+/// Moves vertices: in any pose, a vertex to G · offset · vertex, where G is the global transform of the bone's node.
 struct Bone {
   Index node = 0;
   Affine offset = Affine::Identity();  ///< mesh to node, in the pose in which the skin is bound
@@ -31,7 +31,7 @@ struct Influence {
   double weight = 0;  ///< weights of one vertex sum to 1
 };
 
-/// Displacements of the mesh that are added with a weight.
+/// A blend shape: displacements of the vertices, which a pose adds times a weight.
 struct MorphTarget {
   std::string name;
   std::vector<Vec3> displacements;  ///< per vertex of the mesh as bound [m]

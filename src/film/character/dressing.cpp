@@ -14,7 +14,7 @@ namespace {
 /// Fraction of the distance from bone to skin at which a body begins to grow.
 constexpr double kInitialGrowth = 0.1;
 
-/// Length of a terminal bone, such as that of a head or a finger, relative to the distance to the mean of its vertices.
+/// Length of a terminal bone, as of head or finger, relative to the distance from its node to the mean of its vertices.
 constexpr double kTerminalBoneRatio = 1.3;
 
 using Segment = std::array<Vec3, 2>;
@@ -77,7 +77,7 @@ std::vector<std::vector<Segment>> segments_of(const Character& character, const 
   return segments;
 }
 
-/// Stores which pairs of bones lie on one chain.
+/// Stores which pairs of bones lie on one chain, in which one bone is below the other.
 class BoneChains {
  public:
   explicit BoneChains(const Character& character) : count_(character.bones.size()), on_one_chain_(count_ * count_, 0) {
@@ -108,7 +108,7 @@ class BoneChains {
   std::vector<std::uint8_t> on_one_chain_;
 };
 
-/// Rotates a node and all below it about its own position, so that `from` points along `to` in the world.
+/// Rotates a node and all nodes below it about the node's position, so that `from` points along `to` in the world.
 void point_node(const Character& character, Pose& pose, Index node, const Vec3& from, const Vec3& to) {
   const std::vector<Affine> globals = global_transforms(character, pose);
   const Vec3 place = globals[node].translation();

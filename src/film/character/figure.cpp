@@ -31,7 +31,7 @@ double inside(double depth, double edge) {
   return t * t * (3 - 2 * t);
 }
 
-/// Second coordinate of a polyline where the first one, which ascends, is `at`; constant beyond the ends.
+/// Height y of a polyline at x = `at`. The x coordinates ascend; beyond the ends, the height is constant.
 double height(std::span<const Vec2> line, double at) {
   if (at <= line.front().x()) return line.front().y();
   for (std::size_t i = 1; i < line.size(); ++i) {
@@ -62,7 +62,7 @@ Ink head_ink(double y, double z) {
   Ink ink;
   ink.add(kBlush, 0.18 * inside(1 - std::hypot((y - 1.4) / 2.6, (z - 162.4) / 3.6), 0.8));
   const double back = y - kKnot.x(), up = z - kKnot.y(), r = std::hypot(back, up), angle = std::atan2(up, back);
-  // Near the knot, strands would be finer than the picture's pixels.
+  // Strands fade toward the knot, where they would be finer than the picture's pixels.
   const double fine = 0.5 * std::sin(31 * angle + 1) * std::sin(13 * angle + 0.3 * r) +
                       0.5 * std::sin(71 * angle + 0.5 * r) * std::sin(9 * angle + 2);
   const double coiled = 0.8 * std::sin(3 * angle + 4.6 * r) * std::sin(2 * angle + 1.3 * r + 1);

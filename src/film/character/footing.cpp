@@ -25,9 +25,9 @@ constexpr double kMaxBallMotion = 0.08;
 constexpr double kMinFrequencyRatio = 0.5;
 /// Time in which feet blend from a contact into their own motion [s]; a step takes 0.4 s or more.
 constexpr double kFootBlendTime = 0.15;
-/// Time in which hips move down and up again around a key at which a leg would not reach [s].
+/// Time before and after a key in which a correction of the hips at this key fades (see plant_feet) [s].
 constexpr double kHipBlendTime = 0.25;
-/// Fraction of its length at which a leg is straight: a bend of 5°, which avoids snapping knees.
+/// Fraction of its length at which a leg counts as straight: the knee keeps a bend of 5°, so that it does not snap.
 constexpr double kStraightLegRatio = 0.999;
 /// Cosine of the angle between thigh and shin of a knee bent by 155°, the limit that calf and thigh allow.
 constexpr double kFoldedKneeCosine = 0.906;
@@ -84,7 +84,7 @@ std::vector<Contact> contacts_of(const FootTrack& ball, std::span<const double> 
   return contacts;
 }
 
-/// Height of the floor under the balls of both feet; that of the lowest ball if no ball is ever slow.
+/// Height of the floor under the balls of both feet; the height of the lowest ball if no ball is ever slow.
 double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
   std::vector<double> slow;
   double lowest = std::numeric_limits<double>::infinity();
@@ -222,7 +222,7 @@ Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> post
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up) {
   std::vector<Stance> stances(legs.size());
-  std::vector<double> up_by(legs.size(), 0), down_by(legs.size(), 0);  // of the hips
+  std::vector<double> up_by(legs.size(), 0), down_by(legs.size(), 0);  // of the hips [m]
   const auto above = [&](const Leg& leg) { return std::min(up.dot(leg.ball), up.dot(leg.heel)) - floor; };
   for (const bool right : {false, true}) {
     const std::vector<Contact>& contacts = steps.contacts[right];
@@ -259,7 +259,7 @@ LegTurns reach(const Leg& leg, const Vec3& ankle) {
   const Vec3 thigh = leg.knee - leg.hip, shin = leg.ankle - leg.knee, to_ankle = ankle - leg.hip;
   const double a = thigh.norm(), b = shin.norm();
   const double length = std::clamp(to_ankle.norm(), min_reach(leg), max_reach(leg));
-  // The plane of the leg; for a straight leg, that of its hinge.
+  // Normal of the plane in which the leg bends; for a straight leg, the axis of its hinge.
   const Vec3 normal = (thigh.cross(shin) / (a * b) + 0.02 * leg.hinge).normalized();
   const double cosine = std::clamp((length * length - a * a - b * b) / (2 * a * b), -1.0, 1.0);
   const double now = std::atan2(thigh.cross(shin).dot(normal), thigh.dot(shin));

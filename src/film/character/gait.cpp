@@ -16,11 +16,11 @@ constexpr double kShoulderSwing = 1.5;  ///< factor on the chest yaw, which is o
 constexpr double kChestNod = 0.8, kHeadNod = -0.4,
                  kHeadRoll = -0.4;           ///< factors on the pelvis pitch and the chest roll
 constexpr double kShoulderTurnRatio = 0.12;  ///< rotation of a shoulder / rotation of its arm
-// Hanging arms have bent elbows. The chest holds the upper arms off; the forearms hang more steeply, by a fraction of
-// that angle, up to a maximum. Angles in degrees.
+// Hanging arms have bent elbows. The upper arms keep an angle from the vertical; the forearms turn back by the fraction
+// kForearmTurnRatio of this angle, at most by kMaxForearmTurn. Angles in degrees.
 constexpr double kElbowAtRest = 14, kElbowRatio = 0.75, kForearmTurnRatio = 0.75, kMaxForearmTurn = 4.5;
 constexpr double kHandClearance =
-    8;  ///< from the skin of the hips to a hanging hand's middle [cm, for a height of 175]
+    8;  ///< from the skin of the hips to the middle of a hanging hand [cm], for a height of 175 cm
 // In a turn the head leads, then the chest, then the hips (Patla, Adkin & Ballard, "Online steering: coordination and
 // control of body center of mass, head and body reorientation", 1999). Lead times [s].
 constexpr double kChestLead = 0.12, kHeadLead = 0.28;
@@ -134,7 +134,7 @@ class Walker {
     const double forward = size * (walking::arm_forward.at(phase) - 0.5 * walking::arm_forward.mean);
     const double out = arms_out_ + 0.5 * size * (walking::arm_out.at(phase) - walking::arm_out.mean);
     const double bend = kElbowAtRest + size * kElbowRatio * (walking::elbow.at(phase) - kElbowAtRest);
-    // From the rest position of the arm, 45° out.
+    // Rotates the arm from its rest pose, 45° from the vertical.
     const auto hanging = [&](double from_vertical) {
       return chest * axis_rotation(-forward * kDegree, Vec3::UnitX()) *
              axis_rotation(sign * (45 - from_vertical) * kDegree, Vec3::UnitY());
@@ -161,7 +161,7 @@ class Walker {
     return Quat(Mat3(axes(along1, side1) * axes(along0, side0).transpose()));
   }
 
-  /// Two-bone inverse kinematics from hip to ankle; the knee axis is halfway between those of pelvis and foot.
+  /// Two-bone inverse kinematics from hip to ankle; the knee axis is halfway between the x axes of pelvis and foot.
   void leg(std::array<Quat, kJointCount>& global, const FootState& foot, int side, const Vec3& hip) const {
     const double sign = side == 0 ? 1 : -1;
     const Vec3 hip0 = body_.joints[place_of(of_side(Joint::left_upper_leg, side))],

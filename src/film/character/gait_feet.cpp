@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kStandingKnee = 6;        ///< [degrees]; a straighter leg looks stiff and could not reach its foothold
 constexpr double kPitchRatio = 0.79;       ///< factor on the recorded foot pitch, which is too large for a mannequin
-constexpr double kReleaseFraction = 0.17;  ///< [strides] before a strike; until then the trailing leg sets the height
-constexpr double kTakeoverFraction = 0.13;  ///< [strides] after a strike; from then on the leading leg sets it
+constexpr double kReleaseFraction = 0.17;  ///< before a strike [strides]: end of the support by the trailing leg
+constexpr double kTakeoverFraction = 0.13;  ///< after a strike [strides]: start of the support by the leading leg
 constexpr double kLateKneeRatio = 0.75;     ///< factor on the knee curve before toe-off
-constexpr double kHeelRiseLength = 0.002;   ///< length over which a heel begins to rise [m]
+constexpr double kHeelRiseLength = 0.002;   ///< smoothing length of the start of a heel's rise [m]
 constexpr double kSwingKneeShift = 13;      ///< knee bend that is moved from before toe-off into the swing [degrees]
 constexpr double kToesFlat = 22, kToesRound = 16, kToePitchRatio = 0.75;  ///< see toe_pitch [degrees]
 constexpr double kMaxToePitch = 80;      ///< maximum pitch of a foot on its toes [degrees]

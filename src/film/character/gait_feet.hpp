@@ -18,7 +18,7 @@ struct FootState {
 /// Positions of the hip joints relative to the middle of the pelvis, per key from the first key of the track.
 using HipOffsets = std::vector<std::array<Vec3, 2>>;
 
-/// Computes the paths of both feet and the height of the pelvis, such that knees bend as those of people.
+/// Computes the paths of both feet and the height of the pelvis, such that knees bend as in human walking.
 ///
 /// From shortly after its strike until shortly before the strike of the other foot, the stance leg determines the
 /// height of the pelvis: its knee follows the curve `knee`. In between, the height is interpolated. The trailing leg

@@ -9,7 +9,7 @@ namespace weft::character {
 namespace {
 
 constexpr double kKeysPerSecond = 60;
-constexpr double kHalfTrack = 0.048;     ///< ankle to midline / height; recorded: 0.038, but thighs would touch
+constexpr double kHalfTrack = 0.048;     ///< ankle to midline / height; at the recorded 0.038, thighs would touch
 constexpr double kOutwardDetour = 0.07;  ///< outward detour of a foot that turns with the body [m]
 constexpr double kFirstStepRatio = 0.65, kLastStepRatio = 0.75;  ///< first and last step / steady step
 constexpr double kWeightShiftFraction = 0.45;  ///< time to shift the weight before the first step [strides]
@@ -32,7 +32,7 @@ double step_size(const Physique& body, const Pace& pace) {
   return std::clamp(pace.step_length / recorded, 0.5, 1.2);
 }
 
-/// One step: motion of the body relative to the preceding step; the foot is placed beside it.
+/// One step: motion of the body relative to the preceding step; the foot is placed beside the body.
 struct Step {
   double forward = 0, left = 0;  ///< [m]
   double turn = 0;               ///< [rad]
@@ -86,7 +86,7 @@ class Planner {
   int next_strike_ = 0;
 };
 
-/// Adds the steps of a straight path. `left`: total sideways offset, spread over at most four steps from step `from`.
+/// Adds the steps of a straight path. `left`: total offset to the left [m], over at most four steps from step `from`.
 /// Returns the side of the next foot.
 int add_straight_steps(Planner& planner, const Physique& body, const Pace& pace, int steps, int side, double left,
                        int from) {
@@ -183,7 +183,7 @@ StepPlan plan_walk(const Physique& body, const Walk& walk) {
   Planner planner(body, pace, walk.stand);
   int side = 1;
   if (walk.turn_back) {
-    // Half of the sideways offset of the turn is walked before it, half after it.
+    // The steps before the turn take half of its sideways offset, the steps after it the other half.
     const Vec2 arc = turn_displacement(body);
     // The first step of the turn still goes forward.
     const double ahead = std::cos(kTurnAngles[0] * kDegree) * kTurnStep * body.height / 1.75;

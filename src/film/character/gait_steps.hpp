@@ -21,7 +21,7 @@ struct Physique {
   double heel_back = 0, heel_radius = 0;     ///< radius of the round heel; its centre is `heel_back` behind the ankle
   double toe_length = 0, toe_radius = 0;     ///< from the ball to the centre of the round toe tips
   double thigh = 0, shin = 0;
-  double hips_half_width = 0;  ///< of the trunk where the hands hang beside it
+  double hips_half_width = 0;  ///< of the trunk at the height of the hanging hands
   double stance_forward = 0;   ///< distance of the hips in front of the ankles when standing
 
   double leg() const { return thigh + shin; }
@@ -45,9 +45,9 @@ Pace pace_of(double speed, double height);
 int keys_of_step(const Pace& pace);
 
 inline constexpr int kFarKey = 1 << 28;   ///< a key after all others
-inline constexpr double kStance = 0.60;   ///< stance phase, as a fraction of a stride
-inline constexpr double kSwing = 0.40;    ///< swing phase, likewise
-inline constexpr double kOverlap = 0.10;  ///< double support after a strike, likewise
+inline constexpr double kStance = 0.60;   ///< stance phase [strides]
+inline constexpr double kSwing = 0.40;    ///< swing phase [strides]
+inline constexpr double kOverlap = 0.10;  ///< double support after a strike [strides]
 
 /// A foothold: a position where a foot stands for some time.
 struct Plant {

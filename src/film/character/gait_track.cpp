@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kGravity = 9.81;          // m/s²
 constexpr double kMassHeight = 0.55;       // height of the centre of mass / body height
-constexpr double kForesightStrides = 0.7;  // events farther in the future have no effect [strides]
+constexpr double kForesightStrides = 0.7;  // footholds farther in past or future have no effect [strides]
 constexpr double kRollBack = -0.01;        // backward offset of the weight at the strike [m]; < 0: forward
 constexpr double kRollForward = 0.175;     // forward offset of the weight at toe-off [m], for a height of 1.75 m
 

@@ -60,7 +60,7 @@ std::vector<std::string> words_of(const std::string& name) {
       inside = inside && i + 1 < name.size() && std::isdigit(static_cast<unsigned char>(name[i + 1])) != 0;
       continue;
     }
-    // A capital letter begins a word after a small letter, and before one: "LeftArm", "LHipJoint".
+    // A capital begins a word if it follows or precedes a lower-case letter: "LeftArm", "LHipJoint".
     const bool after_small = i > start && std::isupper(static_cast<unsigned char>(name[i - 1])) == 0;
     const bool before_small = i + 1 < name.size() && std::islower(static_cast<unsigned char>(name[i + 1])) != 0;
     if (!inside || (std::isupper(c) != 0 && (after_small || before_small))) words.emplace_back();
@@ -99,7 +99,7 @@ std::vector<Index> ancestors_of(std::span<const Node> nodes, Index node) {
   return line;
 }
 
-/// The lowest node that is an ancestor of both, or one of them; -1 if there is none.
+/// Lowest common ancestor of two nodes, which may be one of them; -1 if there is none.
 Index common_ancestor(std::span<const Node> nodes, Index a, Index b) {
   if (a < 0 || b < 0) return -1;
   const std::vector<Index> line = ancestors_of(nodes, a);
@@ -183,7 +183,7 @@ std::vector<std::string> prefixes_without_separator(const std::vector<std::strin
 struct Affixes {
   std::string prefix, end;
 
-  /// The name without both; empty if it does not have both.
+  /// The name without prefix and suffix; empty if the name lacks one of them.
   std::string strip(const std::string& name) const {
     if (name.size() <= prefix.size() + end.size() || !name.starts_with(prefix) || !name.ends_with(end)) return {};
     return name.substr(prefix.size(), name.size() - prefix.size() - end.size());
@@ -281,8 +281,8 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes) {
 namespace {
 
 /// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l knee_048"). Removes
-/// numbers only if at least kMinRigNodes names end so and almost all numbers differ, unlike those of spines and
-/// fingers.
+/// numbers only if at least kMinRigNodes names have one and almost all of them differ, unlike the numbers of spines
+/// and fingers.
 std::vector<Node> without_numbers(std::vector<Node> nodes) {
   const auto number_of = [](const std::string& name) {
     const std::size_t mark = name.rfind('_');

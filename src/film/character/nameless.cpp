@@ -36,13 +36,13 @@ constexpr double kMinRotation = 1e-4;
 /// with known feet, 2e-4 for knees that are 1 mm in front of a straight leg.
 constexpr double kMinLeftSignal = 1e-4;
 
-/// Nodes of a limb, from the trunk outward; -1 if missing.
+/// Nodes of a limb, from the trunk outward (`end`: hand or foot, `tip`: toes); -1 if missing.
 struct Chain {
   Index shoulder = -1, upper = -1, lower = -1, end = -1, tip = -1;
   double length = 0;  ///< of upper and lower bone [m]
 };
 
-/// Two chains that leave one node.
+/// Two chains that leave the node `from`, with the first nodes `a` and `b`.
 struct Pair {
   Index from = -1, a = -1, b = -1;
   double reach = 0;  ///< length of the shorter one [m]
@@ -173,8 +173,8 @@ class NamelessFinder {
     return p_above || (!q_above && p_longer) ? std::pair{p, q} : std::pair{q, p};
   }
 
-  /// `outer`: an outer pair of bones is preferred if its shorter bone is longer than this fraction of that of the best
-  /// pair so far.
+  /// `outer`: prefers an outer pair of bones if its shorter bone is longer than this fraction of the shorter bone of
+  /// the best pair so far.
   Chain chain_of(Index from, double outer) const {
     std::vector<Index> nodes;
     std::size_t last = 0, hand = 0;  // last node that may end the lower bone; node where fingers branch

@@ -10,7 +10,7 @@ namespace weft::character {
 
 /// For each of joint_names() except the trunk below the neck, the node with that role; -1 if there is none.
 /// - Legs and arms are the two pairs of longest chains that leave a common node and have equal lengths left and right.
-///   The legs are the pair whose common node is above that of the other pair, else the longer pair.
+///   The legs are the pair whose common node is an ancestor of that of the other pair, else the longer pair.
 /// - In a limb, upper and lower bone are the two longest consecutive bones before the fingers branch off.
 /// - Toes, knees and the vector from hips to shoulders determine the left side, as a mean over the first clip, or at
 ///   rest if there is none.

@@ -75,7 +75,7 @@ std::vector<Index> joints_of_part(const std::string& name) {
 }
 
 VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints) {
-  // For each node, the joint that it is or that is nearest above it; -1: none.
+  // For each node, the nearest joint at or above it; -1: none.
   std::vector<Index> joint_of(character.nodes.size(), -1);
   for (std::size_t n = 0; n < joint_of.size(); ++n) {
     const auto own = std::ranges::find(nodes, static_cast<Index>(n));

@@ -1,4 +1,4 @@
-// Playback of a clip in a scene: standing at first, then accelerating, once or in a loop.
+// Plays a clip in a scene: the body stands at first, then speeds up; the clip runs once or in a loop.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace weft::character {
 /// Timing of a clip in the scene.
 struct Timing {
   double dressing = 0;  ///< time of the scene before which the clip does not move [s]
-  double blend = 0;     ///< time in which it then accelerates to `speed` [s]
+  double blend = 0;     ///< time in which the clip then accelerates to `speed` [s]
   double start = 0;     ///< time of the clip at which it begins to play [s]
   double speed = 1;
 };
@@ -21,14 +21,14 @@ double clip_time(const Timing& timing, double t);
 
 struct Playing {
   Timing timing;
-  bool loop = false;     ///< each round continues horizontally from the end of the last
+  bool loop = false;     ///< each round continues horizontally from the end of the previous one
   double crossfade = 0;  ///< end of a round that is blended into the next one [s of the clip]; at most half of the clip
   std::optional<Pose> stance = {};  ///< initial pose of the body, in place of the clip's pose at `start`
 };
 
 class Performance {
  public:
-  /// The character and the clip must outlive it. `up`: unit vector.
+  /// The character and the clip must outlive this object. `up`: unit vector.
   Performance(const Character& character, const Clip& clip, const Playing& playing, const Vec3& up);
 
   /// The pose at time t [s] of the scene.

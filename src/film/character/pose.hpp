@@ -15,7 +15,7 @@ inline double ease(double u) {
   return u * u * (3 - 2 * u);
 }
 
-/// Node to parent, decomposed for blending of poses: the affine map x -> position + rotation · stretch · x.
+/// Transform from a node to its parent, decomposed to blend poses: x -> position + rotation · stretch · x.
 struct Placement {
   Vec3 position{0, 0, 0};           ///< [m]
   Quat rotation{1, 0, 0, 0};        ///< of unit length
@@ -32,10 +32,10 @@ struct Pose {
 /// Decomposes an affine map without loss, up to rounding errors; shear is part of the stretch.
 Placement to_placement(const Affine& map);
 
-/// The pose at rest.
+/// The pose in which all nodes and morph targets have their values at rest.
 Pose rest_pose(const Character& character);
 
-/// The pose of a clip at time t [s] after its start; outside the clip, that of the nearer end.
+/// The pose of a clip at time t [s] after its start; outside the clip, the pose at the nearer end.
 Pose pose_at(const Character& character, const Clip& clip, double t);
 
 /// Distinct times >= 0 of all rotation and position keys of a clip, ascending; always includes 0.

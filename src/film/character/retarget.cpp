@@ -36,7 +36,7 @@ constexpr double kMaxToeTurn = 150 * kDegree;
 /// Soles that are farther from the floor in a contact cause a warning [m].
 constexpr double kMaxFloorError = 0.05;
 
-/// Number of rounds that move hands to what they touch: several, since the other hand and its elbow move as well.
+/// Number of rounds that move hands to the parts they touch: each round also moves the other hand and its elbow.
 constexpr int kTouchingRounds = 3;
 /// Hands with a smaller error are not moved [m].
 constexpr double kMinPull = 1e-4;
@@ -334,7 +334,7 @@ class Retargeter {
 
   /// Keeps hands as near to other parts as in the motion.
   void keep_hands_near(std::vector<Frame>& frames) const {
-    double trunk = 0;  // length of the motion's trunk where it is most upright
+    double trunk = 0;  // greatest length of the motion's trunk [m]
     for (const Posture& posture : postures_) trunk = std::max(trunk, theirs_.trunk(posture).norm());
     const double our_arm = ours_.arm_length(rest_), their_arm = theirs_.arm_length(postures_.front());
     if (our_arm == 0 || their_arm == 0 || trunk == 0) return;
@@ -439,7 +439,7 @@ class Retargeter {
     }
   }
 
-  /// Warns if the rest pose does not stand upright: all rotations of the body refer to it.
+  /// Warns if the rest pose does not stand upright: all rotations of the body refer to this pose.
   void check_rest(std::vector<std::string>& doubts) const {
     double largest = 0;
     for (const bool right : {false, true}) {
@@ -467,9 +467,9 @@ class Retargeter {
   double ratio_ = 1;               // ratio of lengths, body / motion
   bool same_ = false;              // whether the skeletons are the same
   Footsteps steps_;
-  std::array<double, 2> toe_length_{};  // [m]
-  Quat face_ = Quat::Identity();
-  PerJoint<Quat> their_axes_, our_axes_;  // axes of body parts in those of the joints
+  std::array<double, 2> toe_length_{};    // [m]
+  Quat face_ = Quat::Identity();          // rotates the motion to the heading of the body
+  PerJoint<Quat> their_axes_, our_axes_;  // axes of body parts in the axes of the joints
   PerJoint<bool> moves_{};                // whether a joint of the body moves
   std::vector<int> joint_of_;             // joint of each node of the body, or -1
 };

@@ -24,7 +24,7 @@ struct Retargeted {
 /// with its lowest foot at the height of the body's feet at rest. `up`: unit vector.
 Retargeted retarget(const Rig& body, const Rig& motion, const Clip& clip, const Vec3& up);
 
-/// Mean over a clip of the direction from the hips to between the shoulders; zero without a trunk.
+/// Mean over a clip of the direction of Skeleton::trunk(), from the hips to the shoulders; zero without Hips.
 Vec3 mean_trunk(const Rig& motion, const Clip& clip);
 
 }  // namespace weft::character

@@ -16,13 +16,13 @@ namespace {
 /// a joint, where weights change gradually, skin folds onto itself.
 constexpr float kMinWeightDifference = 0.15F;
 
-/// Lines per task; such a task takes some hundred microseconds.
+/// Lines from bone to skin per task; such a task takes some hundred microseconds.
 constexpr std::size_t kLinesPerTask = 512;
 
 /// Number of grid cells along the longest side of the body: 3 cm for a person.
 constexpr double kCellsPerSide = 60;
 
-/// Maximum number of rounds. One suffices if both sides face each other; elsewhere each round halves the remainder.
+/// Maximum number of rounds. One suffices if both sides face each other; else each round halves the missing clearance.
 constexpr int kMaxRounds = 8;
 
 /// Tolerated missing clearance at the end, as a fraction of the clearance.
@@ -47,7 +47,7 @@ constexpr double kMaxMoveWithoutCloth = 0.004;
 /// overlap afterwards, since larger moves would be visible.
 constexpr double kMaxMoveNearCloth = 0.03;
 
-/// Skin without cloth of its own that is deeper in the other limb than this does not count as near cloth [m].
+/// Skin without cloth of its own counts as near the cloth of the other limb up to this depth in that limb [m].
 constexpr double kMaxNearClothDepth = 0.05;
 
 /// Over edges up to this length [m] skin fully follows its neighbours, over longer ones less, so that dents in coarse
@@ -141,7 +141,7 @@ Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cl
   for (std::size_t v = 0; v < missing.size(); ++v) missing_at_rest_[v] = missing[v].distance;
 }
 
-// Computes how much of the line from the bone through the skin, up to the clearance beyond it, lies in another limb.
+// Computes how much of the line from bone to skin, extended by the clearance, lies in another limb.
 // `skin` defines the lines, `x` is the current position of the skin.
 void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
                         std::vector<Missing>& missing) const {
@@ -219,7 +219,7 @@ Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
   std::vector<double> lengths;
   for (const auto& [a, b] : edges_) lengths.push_back((original[a] - original[b]).norm());
   std::vector<double> remaining(touched_.size(), 1);
-  // Largest move of each vertex on its own account [m]; smoothing may move it farther, along with its neighbours.
+  // Largest move of each vertex for its own missing clearance [m]; smoothing may move it farther, with its neighbours.
   std::vector<double> max_given(touched_.size(), 0);
   std::vector<float> near = near_;
   std::vector<Index> other(touched_.size(), -1);

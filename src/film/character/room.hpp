@@ -67,7 +67,7 @@ class Room {
   VertexMask touched_, foot_;
   std::vector<double> missing_at_rest_;  // [m]
   std::vector<std::array<Index, 2>> edges_;
-  Character bones_;  // its mesh holds, as bound, the points on the bones from which the lines of the vertices start
+  Character bones_;  // its bound mesh contains the points on the bones at which the lines of the vertices start
 };
 
 }  // namespace weft::character

@@ -15,8 +15,8 @@ constexpr double kHandsDistance = 0.12, kElbowDistance = 0.2, kHipsDistance = 0.
 // Arms bent by less than the first angle hang, by more than the second reach for something [radians].
 constexpr double kHangingBend = 40 * std::numbers::pi / 180, kReachingBend = 70 * std::numbers::pi / 180;
 
-// A hand rests on the hips if it moves less than this distance against them, in arm lengths, within kRestTime [s] to
-// either side: 5 cm in 0.2 s. Hands in walking and running move 20 to 60 cm.
+// A hand rests on the hips if it moves less than this distance relative to them, in arm lengths, within kRestTime [s]
+// to either side: 5 cm in 0.2 s. Hands in walking and running move 20 to 60 cm.
 constexpr double kMaxRestMotion = 0.09, kRestTime = 0.1;
 
 class Puller {

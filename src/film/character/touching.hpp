@@ -1,4 +1,4 @@
-// Keeps hands in touch: parts that are near a hand in a motion are as near on another body.
+// Keeps hands in contact: retargeted hands stay as near to other parts of the body as in the motion.
 #pragma once
 
 #include <array>

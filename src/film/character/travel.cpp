@@ -62,8 +62,8 @@ class Path {
     return by;
   }
 
-  /// Displacements along the path that keeps feet in place, at a mean speed of `speed`. `feet`: speed that the feet
-  /// imply.
+  /// Displacements along the path that keeps feet in place, at the mean speed `speed` [m/s]. Writes the speed that the
+  /// feet imply to `feet` [m/s].
   std::vector<Vec3> displacements_at_speed(double speed, double& feet) const {
     std::vector<Vec3> velocities = implied_velocities();
     Vec3 mean = Vec3::Zero();
@@ -140,7 +140,7 @@ class Path {
         velocities[k] -= weight / (times_[b] - times_[a]) * (heading(k).transpose() * horizontal(to - from));
       }
     }
-    // Keys without a contact are interpolated.
+    // At keys without a contact, the velocity is interpolated.
     std::size_t known = times_.size();
     for (std::size_t k = 0; k < times_.size(); ++k) {
       if (weights[k] == 0) continue;

@@ -40,7 +40,7 @@ constexpr double kDressingRate = 25;
 /// Largest size of the key frames of one character [bytes]; a larger one suggests a mistyped rate.
 constexpr std::size_t kMaxKeyFrameBytes = std::size_t{8} << 30;
 
-/// Largest distance between the ends of a clip that is not visible [m].
+/// Largest jump of a vertex from the end to the start of a clip that is not visible [m].
 constexpr double kMaxInvisibleGap = 1e-3;
 
 /// Largest relative difference of the speeds of feet and body that is not reported: 5 cm of sliding in a step of 0.7 m.
@@ -49,7 +49,7 @@ constexpr double kMaxFootSlide = 0.07;
 /// Smallest vertical component of the trunk's direction, averaged over a motion, of a body that stands.
 constexpr double kMinUprightness = 0.7;
 
-/// If the soles at rest are within this distance from the height of the file's origin, they count as at it [m].
+/// Soles at rest within this distance of the height of the file's origin count as level with it [m].
 constexpr double kMaxSoleOffset = 0.05;
 
 /// The clip that the scene names, or else the first one.
@@ -76,8 +76,8 @@ void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::v
                                  source, fmt::join(names, "\", \"")));
 }
 
-/// Loads a motion file. If neither the scene nor the format (BVH) states the up axis, it is y, or z if bodies in the
-/// file stand along z.
+/// Loads a motion file. If the scene does not state the up axis of a BVH file, the axis is z if bodies in the file
+/// stand along z, else y.
 assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acting,
                                      std::vector<std::string>& warnings) {
   const auto load = [&](scene::FileUp up) {
@@ -192,7 +192,7 @@ Body make_body(const Cast& cast, const scene::Mannequin& source) {
     body.character.clips.push_back(character::make_walk(
         body.character,
         {.speed = source.pace, .distance = source.walk, .turn_back = source.turn_back, .arms_out = source.arms_out}));
-  // The same rotation as in turned_up() of environment.cpp.
+  // The same rotation as in turned_up() of orientation.cpp.
   const Mat3 z_to_y{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
   if (cast.scene.up == scene::UpAxis::y) assets::transform(body.character, 1, z_to_y);
   return body;
@@ -218,7 +218,7 @@ Body make_playing_body(const Cast& cast, const Source& source) {
   return body;
 }
 
-/// Adds the particles of a pin to the vertices of the body. `vertices`: number of vertices that the body has itself.
+/// Adds the particles of a pin to the vertices of the body. `vertices`: their number without those of pins.
 void add_following_pin(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& parts,
                        const character::Pose& start, std::size_t vertices, character::Character& body) {
   character::VertexMask mask(vertices, 1);
@@ -302,7 +302,7 @@ void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body
 
 void check_size(const Cast&, const scene::Mannequin&, Body&) {}
 
-/// The motion that a body performs. The body and the clip must outlive it.
+/// The motion that a body performs. The body and the clip must outlive the result.
 template <class Source>
 character::Performance performance_of(const Cast& cast, const Source& source, const Body& body,
                                       const character::Clip& clip) {

@@ -35,7 +35,7 @@ struct FollowingPin {
   std::vector<Vec3> places;
 };
 
-/// A cloth when it is put on.
+/// A cloth at the time when it is put on.
 struct ClothAtStart {
   std::span<const Vec3> x;  ///< positions of its particles [m]
   std::span<const mesh::Triangle> triangles;
@@ -46,7 +46,7 @@ struct ClothAtStart {
 struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
   KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the particles of all following pins
-  std::vector<Part> parts;   ///< those of the scene, and those that pins follow
+  std::vector<Part> parts;   ///< parts that the scene lists, or that pins follow
   std::vector<Index> limbs;  ///< per vertex: number of its character::Limb; of a sequence: its connected component
   std::vector<std::string> warnings;
   std::vector<std::string> notes;                                 ///< for the summary: changes made to the body
@@ -54,9 +54,9 @@ struct Actor {
 };
 
 /// Reads the files of a character and computes its key frames. They begin when the character begins to grow or move.
-/// They end when it has grown or, if it moves, with the scene. A character that does neither has one key. Moves its
-/// skin to leave space for the `cloths` on it. Throws Error(asset_unreadable, scene_invalid) that names scene line,
-/// file and the mesh, bone or clip.
+/// They end when it has grown or, if it moves, at the end of the scene. A character that does neither has one key.
+/// Moves its skin to leave space for the `cloths` on it. Throws Error(asset_unreadable, scene_invalid) that names scene
+/// line, file and the mesh, bone or clip.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowingPin> following = {}, std::span<const ClothAtStart> cloths = {});
 

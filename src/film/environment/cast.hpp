@@ -12,7 +12,7 @@
 
 namespace weft::environment {
 
-/// A body with what is needed to sample its motion.
+/// A body, and the data for sampling its motion.
 struct Body {
   std::string source;  ///< its file, for messages
   character::Character character;
@@ -33,7 +33,7 @@ struct Cast {
   double motion_start() const { return settings.dressing - scene.preroll_frames() / scene.time.fps; }
   character::Timing timing() const { return {motion_start(), settings.blend, settings.start, settings.speed}; }
 
-  /// Throws Error(scene_invalid) for one of its keys.
+  /// Throws Error(scene_invalid) for one of the character's keys.
   [[noreturn]] void fail(const std::string& key, const std::string& why) const;
 };
 

@@ -187,9 +187,9 @@ class RestDistances {
       }
   }
 
-  /// Appends the particles that are nearer to a region, `part`, than `fade` [m]. Their fractions fall from that of the
-  /// region's nearest particle to 0 at that distance, with zero slope at both ends. Shortest paths: E. W. Dijkstra, "A
-  /// note on two problems in connexion with graphs", 1959.
+  /// Appends the particles that are nearer to a region, `part`, than `fade` [m]. Fractions fall from the fraction of
+  /// the region's nearest particle to 0 at this distance, with zero slope at both ends. Shortest paths: E. W. Dijkstra,
+  /// "A note on two problems in connexion with graphs", 1959.
   void fade(double fade, std::vector<Chosen>& part) const {
     struct FrontParticle {
       double distance;

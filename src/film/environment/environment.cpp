@@ -80,7 +80,7 @@ void list_colliding_triangles(model::Body& body, BodyDetails& details) {
   if (body.colliding.empty()) body.collide = false;
 }
 
-/// What to do if surfaces touch at the start.
+/// Advice for the message that surfaces touch at the start.
 std::string start_advice_for(const scene::Scene& scene) {
   const bool untangles = std::ranges::any_of(scene.cloths, [](const scene::Cloth& cloth) {
     return cloth.start == scene::ClothStart::untangle || !cloth.over.empty();
@@ -90,7 +90,7 @@ std::string start_advice_for(const scene::Scene& scene) {
                      "start = \"untangle\"";
 }
 
-/// Where something touches a character with hanging arms, which are in the way of most skirts.
+/// Advice for the message that a character touches another surface: hanging arms are in the way of most skirts.
 std::string advice_for(const scene::Character& character) {
   const auto* file = std::get_if<scene::CharacterFile>(&character.source);
   const bool arms_hang = file != nullptr && !file->stance_arms && character.dressing > 0;
@@ -130,7 +130,7 @@ Vec3 middle_of(std::span<const model::Chosen> particles, std::span<const Vec3> s
   Vec3 middle = Vec3::Zero();
   std::size_t count = 0;
   for (const model::Chosen& chosen : particles) {
-    if (chosen.faded) break;  // those of the fade come last
+    if (chosen.faded) break;  // faded particles come last
     middle += start[static_cast<std::size_t>(chosen.particle)];
     ++count;
   }

@@ -1,4 +1,4 @@
-// From a scene to its model (seed, Fig. 1), and to what is only drawn of it.
+// Converts a scene to its model (seed, Fig. 1) and to the data that are only drawn.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace weft::environment {
 
-/// What an obstacle or character of the scene has besides what is simulated.
+/// Data of an obstacle or character besides the simulated model.
 struct BodyDetails {
   scene::Look look;
   std::shared_ptr<const character::Coloring> coloring;  ///< from the file of a character; null if there is none
@@ -28,7 +28,7 @@ assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obs
 
 struct Followers;
 
-/// All objects of a scene: what is simulated, and what is only drawn.
+/// All objects of a scene: the simulated model, and the data that are only drawn.
 class Environment {
  public:
   /// Makes meshes and motions. Throws Error(asset_unreadable, scene_invalid) with file and scene line.

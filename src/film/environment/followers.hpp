@@ -1,4 +1,4 @@
-// What follows a character: pins of cloth, and obstacles and cameras attached to a part of it.
+// The followers of a character: pins of cloth, and obstacles and cameras attached to a part of it.
 #pragma once
 
 #include <cstddef>

@@ -187,8 +187,8 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
   return true;
 }
 
-/// Makes cloth from a file. It starts as the mesh; its rest shape is the mesh, or the flat panels given by its UVs.
-/// Moves the mesh into `made`, and returns the rest of the file's data, such as colours and vertex groups.
+/// Makes cloth from a file. The cloth starts as the mesh; its rest shape is the mesh, or the flat panels given by its
+/// UVs. Moves the mesh into `made`, and returns the rest of the file's data, such as colours and vertex groups.
 assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
                                  MadeCloth& made) {
   assets::LoadedMesh loaded = load_sheet(scene, cloth, where, made);

@@ -15,7 +15,7 @@
 
 namespace weft::environment {
 
-/// What a cloth of the scene has besides what is simulated.
+/// Data of a cloth besides the simulated model.
 struct ClothDetails {
   std::vector<Vec2> fractions;  ///< position of each particle along weft and warp, in fractions of the rest size
   std::map<std::string, std::vector<Index>> edges;  ///< of a pattern: particles by "panel.edge"
@@ -23,8 +23,8 @@ struct ClothDetails {
   std::vector<std::int32_t> panel_of;               ///< of a pattern: panel number of each triangle
   /// Of cloth sewn from panels: coordinates of the corners of each triangle in its panel (weft, warp) [m].
   std::vector<std::array<Vec2, 3>> paint_uv;
-  std::string fitted;     ///< of a pattern that was scaled to its wearer: describes how
-  std::string rest_from;  ///< of a mesh file: what gives the rest shape, and why
+  std::string fitted;     ///< of a pattern that was scaled to its wearer: description of the scaling
+  std::string rest_from;  ///< of a mesh file: source of the rest shape, and the reason
   std::vector<std::string> warnings;
 };
 

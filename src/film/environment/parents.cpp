@@ -38,7 +38,7 @@ std::shared_ptr<const motion::Track> track_of_frame(const motion::KeyFrames& key
   return std::make_shared<const motion::Track>(track);
 }
 
-// At the start, every object has the pose of its own keys, even if it follows something.
+// At the start, every object has the pose of its own keys, even if it follows another object.
 void Environment::add_parents(const scene::Scene& scene) {
   const auto parent_at_start = [&](const std::string& follow) {
     model::Parent parent = parent_of(scene, follow);

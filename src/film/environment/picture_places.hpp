@@ -1,4 +1,4 @@
-// Where a picture lies on an obstacle.
+// Coordinates of a picture on the surface of an obstacle.
 #pragma once
 
 #include <array>

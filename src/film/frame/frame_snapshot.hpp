@@ -1,4 +1,4 @@
-// What one frame shows. The renderer, the mesh writer and the frame cache get nothing else from the simulation.
+// The data of one frame. The renderer, the mesh writer and the frame cache get nothing else from the simulation.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Texture {
   std::vector<std::uint8_t> rgba;
 };
 
-/// A picture on a surface, and how it is mapped.
+/// A picture on a surface, and its mapping.
 struct Paint {
   enum class Wrap { repeat, clamp, mirror, once };  ///< once: no picture beyond the edge
   enum class Alpha { ignored, over_color, cutout };
@@ -73,7 +73,7 @@ struct SurfacePart {
   Appearance appearance;  ///< its roughness, threads and checker equal those of the surface
 };
 
-/// What stays the same for an object over a run; shared by all its snapshots.
+/// The constant data of an object over a run, shared by all snapshots.
 struct Surface {
   std::string name;
   ObjectKind kind = ObjectKind::cloth;
@@ -105,7 +105,7 @@ inline bool is_painted(const Surface& surface) {
          });
 }
 
-/// What changes for an object from frame to frame.
+/// The data of an object that change from frame to frame.
 struct SurfaceState {
   std::vector<Vec3> positions;  ///< world space [m], one per vertex
   std::vector<float> heat;      ///< per vertex, in the unit of the chosen heat quantity; empty if none is chosen
@@ -130,7 +130,7 @@ struct Camera {
   double azimuth = 33;     ///< of the camera position at this time, from the front to the right [degrees]
   double elevation = 17;   ///< of the camera position above the subjects [degrees]
   double margin = 0.14;    ///< fraction of each half of the picture that is left free around the subjects
-  double smoothing = 0.5;  ///< time over which the paths of subjects and eye are smoothed [s]
+  double smoothing = 0.5;  ///< time over which the paths of subjects and camera are smoothed [s]
 };
 
 /// A light at one time. Sun: parallel light along `direction`. Spot: from `position` toward `target`.
@@ -166,7 +166,7 @@ struct Stage {
 
 /// One frame, never changed after it is made.
 struct FrameSnapshot {
-  int frame = 0;    ///< k
+  int frame = 0;    ///< number k
   double time = 0;  ///< k / fps [s]
   std::shared_ptr<const Stage> stage;
   std::vector<std::shared_ptr<const Surface>> surfaces;

@@ -109,7 +109,7 @@ class Sewing {
     for (Index k = 0; k <= counts[edge]; ++k) points.push_back(first_point_[panel] + (begin + k) % around);
     return points;
   }
-  // Start position of a point of a panel if nothing were sewn.
+  // Start position of a point of a panel before seams join it to others [m].
   Vec2 start_position(std::size_t panel, const Vec2& p) const {
     const Panel& of = pattern_.panels[panel];
     const Eigen::Rotation2Dd turn(of.rotation * std::numbers::pi / 180);
@@ -144,7 +144,7 @@ class Sewing {
   }
 
   /// Flips inner edges of a panel that connect the same two joined vertices as another edge. If two panels are sewn
-  /// around a corner, a triangle in the corner of each has such an edge; the panel with the higher index is changed.
+  /// around a corner, a triangle in the corner of each has such an edge; this flips it in the panel of higher index.
   void flip_shared_edges() {
     constexpr int kMaxFlipRounds = 8;  // check_surface() refuses the rare edges that remain
     for (int round = 0; round < kMaxFlipRounds; ++round) {
@@ -308,7 +308,7 @@ class Sewing {
       }
   }
 
-  // A band along an edge, with the lengths that it has in the pattern.
+  // A band along an edge, with the lengths of the edge in the pattern.
   mesh::Band band_along(const std::string& edge) const {
     const auto [p, e] = pattern_.find(edge);
     const std::vector<Index> points = chain(p, e);
@@ -374,8 +374,8 @@ class Sewing {
         }
         if (seam.open) tie.open = *seam.open;
         if (seam.closed) tie.closed = *seam.closed;
-        // Edges may meet in one particle at an end; it needs no tie. If there are more buttons than particles, each
-        // particle gets one tie.
+        // Edges may meet in one particle at an end; such a particle needs no tie. If there are more buttons than
+        // particles, each particle gets one tie.
         if (tie.a != tie.b && std::exchange(last_tied, tie.a) != tie.a) garment_.sheet.ties.push_back(tie);
       }
     }

@@ -11,7 +11,7 @@
 
 namespace weft::garment {
 
-/// A seam in the mesh; both of its sides are the same vertices.
+/// A seam in the mesh. Both of its sides share its vertices.
 struct SewnSeam {
   std::vector<Index> vertices;
   double length_a = 0, length_b = 0;  ///< of the two edges in the pattern [m]

@@ -198,7 +198,7 @@ void copy_from_original(const Panel& from, Panel& panel) {
   if (!panel.position && from.position) panel.position = Vec2(-from.position->x(), from.position->y());
 }
 
-/// The outline of a panel. Reports a mistake in it to `findings`, or to `in_drawings` if it is in a drawing.
+/// The outline of a panel. Reports a mistake to `in_drawings` if the outline is in a drawing, else to `findings`.
 std::optional<DrawnPanel> read_outline(const Panel& panel, const std::string& path, Findings& findings,
                                        std::vector<std::string>& in_drawings) {
   if (panel.path.empty()) try {
@@ -231,7 +231,7 @@ void complete_mirror_image(std::vector<Panel>& panels, std::size_t i, Findings& 
                                    scene::in_quotes(panel.mirror_of), scene::suggestion(panel.mirror_of, known)));
 }
 
-/// Derives the edges of a panel from its outline, and reports mistakes in it.
+/// Derives the edges of a panel from its outline, and reports mistakes in the outline.
 void derive_edges(Panel& panel, const std::string& path, Findings& findings, std::vector<std::string>& in_drawings) {
   if (panel.path.empty() == panel.file.empty()) {
     if (!panel.mirror_of.empty()) return;  // its original has no outline or does not exist, which has been reported

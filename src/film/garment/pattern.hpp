@@ -38,7 +38,7 @@ struct Panel {
   /// part or an `angle`, all panels start in front of and behind the wearer instead.
   Around around = Around::none;
   std::optional<double> angle;   ///< of the panel's origin around the part, from front to left [degrees]
-  int layer = 0;                 ///< number of cloth layers between the panel and the same part of the wearer
+  int layer = 0;                 ///< number of panels of the same part below this panel
   std::optional<Vec2> position;  ///< start position of the panel's origin: across and up the wearer [m]
   double rotation = 0;           ///< at the start, counter-clockwise seen from in front [degrees]
   Vec2 scale{1, 1};              ///< at the start, across and up, before the rotation

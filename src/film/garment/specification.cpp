@@ -24,7 +24,7 @@ using scene::Findings;
 
 // Larger coordinates are treated as damaged data.
 constexpr double kMaxSpecCoordinate = 1e5;
-constexpr double kDefaultUnitsPerMetre = 100;  // units per metre
+constexpr double kDefaultUnitsPerMetre = 100;  // of files that state no unit: centimetres
 // Height of the origin of the predecessor's body above the floor [m]; the origin lies between pelvis and chest.
 constexpr double kPredecessorOrigin = 1.12;
 // Measures of the body that the dataset's patterns are drawn for [m].
@@ -279,7 +279,7 @@ class Reader {
       else if (mentions(panel, {"collar", "turtle"}))
         panel.around = Around::neck;
     }
-    // Number of limb panels between each limb panel and the trunk, along stitches.
+    // Counts the limb panels between each limb panel and the trunk, along stitches.
     for (int step = 0; step < static_cast<int>(panels_.size()); ++step)
       for (const SpecStitch& stitch : stitches_)
         for (const std::size_t k : {0, 1}) {
@@ -357,7 +357,7 @@ class Reader {
       const Vec3 across(std::cos(angle), 0, -std::sin(angle));
       panel.position = Vec2(across.dot(of.translation), of.translation.y() - floor);
       if (of.is_limb()) {
-        // Centre the lower end of a limb on its axis.
+        // Centres the lower end of a limb panel on the limb's axis.
         double low = std::numeric_limits<double>::infinity();
         std::vector<Vec2> points;
         for (const auto& each : of.points)
@@ -368,7 +368,7 @@ class Reader {
         map.pretranslate(Vec2(-0.5 * (left + right), 0));
         panel.position->x() = 0;
       }
-      // Along arms and at the neck, bodies differ too much from the body of the pattern to use its positions.
+      // Along arms and at the neck, bodies differ too much from the body of the pattern to use the file's positions.
       if (arm || of.around == Around::neck) panel.position.reset();
       panel.path = path_of(of, map);
       panel.turned = of.turned;

@@ -12,7 +12,7 @@
 
 namespace weft::garment {
 
-/// One side of a panel, in the coordinates of the panel [m].
+/// One edge of the outline of a panel, in the coordinates of the panel [m].
 struct SpecEdge {
   Vec2 start, end;
   std::vector<Vec2> control;          // inner control points of a Bézier curve; empty: none

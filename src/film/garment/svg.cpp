@@ -335,7 +335,7 @@ bool has_corner(const Curve& before, const Curve& after) {
   return std::abs(std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out))) > kMinCornerAngle;
 }
 
-/// Determines a name for each curve.
+/// Names each curve by the nearest label of its edge or, without labels, by the number of its edge.
 std::vector<std::string> name_edges(const Outline& outline, const std::vector<Label>& labels) {
   const std::size_t n = outline.size();
   std::vector<std::size_t> edge(n, 0);  // edge number of each curve, counted from the first corner

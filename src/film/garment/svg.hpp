@@ -9,7 +9,7 @@
 
 namespace weft::garment {
 
-/// Maximum size of a drawing; a pattern of ten pieces has some kilobytes.
+/// Maximum size of a drawing [bytes]; a pattern of ten pieces has some kilobytes.
 inline constexpr std::uintmax_t kMaxSvgBytes = std::uintmax_t{16} << 20;
 
 struct DrawnPanel {

@@ -189,7 +189,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
         axis.at(static_cast<double>(i) * kSpacing).first - axis.at(static_cast<double>(nearest) * kSpacing).first;
     sections_.push_back(section);
   }
-  // A hood closes above the head: seams that meet at its crown then start near it.
+  // A hood closes above the head, so that seams that meet at its crown start near the crown.
   if (part == Around::head)
     for (std::size_t i = 0; i < sections_.size(); ++i) {
       const double height =

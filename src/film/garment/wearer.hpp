@@ -27,9 +27,9 @@ struct Wearer {
   Eigen::Isometry3d to_world = Eigen::Isometry3d::Identity();
 };
 
-/// Part that panels are bent around. The tube of torso and neck is upright and goes around all but the arms. That of
-/// head has the widest section of the head everywhere, and narrows to a dome above it. That of body also goes around
-/// the arms and never narrows downward. That of a leg continues up to the neck, around half of the trunk.
+/// Part that panels are bent around. The tube of torso and neck is upright and goes around all but the arms. The tube
+/// of the head has the head's widest section everywhere, and narrows to a dome above. The tube of the body also goes
+/// around the arms and never narrows downward. The tube of a leg continues up to the neck, around half of the trunk.
 enum class Around { none, torso, body, neck, head, left_arm, right_arm, left_leg, right_leg };
 inline const std::vector<std::string> kAroundNames = {"",         "torso",     "body",     "neck",     "head",
                                                       "left_arm", "right_arm", "left_leg", "right_leg"};
@@ -56,7 +56,7 @@ class Tube {
   double high() const { return first_ + kSpacing * static_cast<double>(sections_.size() - 1); }
 
  private:
-  static constexpr double kSpacing = 0.01;  // distance of sections [m]; the skin bends little over it
+  static constexpr double kSpacing = 0.01;  // distance between sections [m], over which the skin bends little
   static constexpr int kDirections = 96;    // directions of a section, 10 mm apart on a chest
   /// A convex section by its support function: the extent from the centre in each direction.
   struct Section {

@@ -53,7 +53,7 @@ class PanelPlacer {
     for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
     update_eases();
     for (bool found = true; found;) {
-      // All positions of one round are found from those of the previous round, so that mirror images are treated alike.
+      // Each round derives all positions from those of the previous round, so that it treats mirror images alike.
       std::vector<std::optional<Vec2>> next = positions_;
       for (std::size_t p = 0; p < positions_.size(); ++p)
         if (!positions_[p]) next[p] = position_from_seams(p);
@@ -160,7 +160,7 @@ class PanelPlacer {
     }
   }
 
-  // Position along its part at which the seams with placed panels are shortest.
+  // Position of panel p along its part at which its seams with placed panels are shortest.
   std::optional<Vec2> position_from_seams(std::size_t p) const {
     struct Pair {
       Vec2 own;

@@ -14,7 +14,7 @@ class CameraMounts {
  public:
   CameraMounts(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// Moves each camera that follows something along with it, starting from the position that the camera's keys give.
+  /// Moves each camera that follows a body along with that body, from the position that the camera's keys give.
   /// Takes time linear in the vertices of the followed obstacles.
   void move(frame::FrameSnapshot& snapshot) const;
 

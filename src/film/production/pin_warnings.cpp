@@ -18,8 +18,8 @@ namespace {
 
 // Smallest jump of a pin at the start that is reported [m].
 constexpr double kMinJump = 1e-3;
-// Maximum distance of a pin, at the start, from the body that it follows [m]; more causes a warning. Capes are 5 cm
-// off.
+// Maximum distance of a pin, at the start, from the body that it follows without a warning [m]; pins of capes are 5 cm
+// away.
 constexpr double kMaxPinDistance = 0.1;
 // Minimum depth in an obstacle at which a particle counts as inside [m].
 constexpr double kEntryDepth = 1e-3;

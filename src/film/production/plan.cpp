@@ -69,7 +69,7 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
               "physics.gusts.speed, air_density or drag is zero"));
 }
 
-// Parts that are listed only if the scene has them.
+// Adds the parts that the plan lists only if the scene has them.
 void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
   const auto counted = [](std::size_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -106,7 +106,7 @@ void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {
   items.push_back(item_if("force: springs that fade around pins", fading > 0, groups(fading), "no pin has a fade"));
 }
 
-// The parts of the search for near surfaces that a scene can switch.
+// The parts of collision detection that a scene can switch on and off.
 void plan_search(const scene::Search& search, bool any, std::vector<PlanItem>& items) {
   constexpr std::array kBounds{"boxes", "18-DOPs", "26-DOPs"};
   constexpr std::array kTrees{"binary trees", "quadtrees", "octrees"};
@@ -213,7 +213,7 @@ void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   }
 }
 
-// Whether forces move the obstacle, and it can roll or has a spin.
+// Whether forces move the obstacle, and whether it can roll or has a spin.
 bool turns_freely(const scene::Obstacle& obstacle) {
   const bool is_round = !std::holds_alternative<scene::BoxShape>(obstacle.shape) &&
                         !std::holds_alternative<scene::HalfPipe>(obstacle.shape);

@@ -1,4 +1,4 @@
-// What a simulation of a scene consists of, and what its author may not intend.
+// Lists the parts of a simulation of a scene, and settings that the author of the scene may not intend.
 #pragma once
 
 #include <string>

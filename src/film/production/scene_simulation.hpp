@@ -32,7 +32,7 @@ class SceneSimulation : public simulation::Simulation {
   mutable std::uint64_t current_changes_ = 0;  // changes() when `current_` was made
 };
 
-/// The start of a scene before its preroll, even if a run from it would be refused.
+/// The start of a scene before its preroll, even if a run would refuse it.
 struct StartView {
   frame::SnapshotPtr snapshot;
   std::vector<simulation::IntersectionPlace> places;  ///< as of simulation::find_start_intersections()

@@ -28,10 +28,10 @@ class Pictures {
   std::map<std::filesystem::path, std::shared_ptr<const frame::Texture>> known_;
 };
 
-/// What is drawn of a scene but not simulated: colours, surroundings, cameras and lights.
+/// The data of a scene that are drawn but not simulated: colours, surroundings, cameras and lights.
 class Looks {
  public:
-  /// `environment`: that of the scene. If it is null and a camera follows something, the environment is made here.
+  /// `environment`: of the same scene. If it is null and a camera follows a body, the constructor makes one.
   explicit Looks(const scene::Scene& scene, const environment::Environment* environment = nullptr);
 
   /// A copy of the snapshot with these looks. The snapshot must have the same objects as the scene.
@@ -62,7 +62,7 @@ class Looks {
   std::optional<CameraMounts> mounts_;
 };
 
-/// Makes the snapshots of a run. What stays the same over the run is made once, and all snapshots share it.
+/// Makes the snapshots of a run. Data that stay the same over the run are made once; all snapshots share them.
 class SnapshotMaker {
  public:
   SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);

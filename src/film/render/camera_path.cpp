@@ -10,8 +10,8 @@ namespace {
 
 using Kind = frame::Camera::Kind;
 
-// Cloth is kept in view up to this distance from the subjects of the first frame, in diagonals of their box. Without a
-// limit, cloth that falls for ever would shrink everything else to a dot.
+// The camera keeps cloth in view up to this distance from the subjects of the first frame [diagonals of their bounding
+// box]. Without a limit, cloth that falls for ever would shrink everything else to a dot.
 constexpr double kClothRange = 1.5;
 
 // The Gaussian kernel ends at this number of standard deviations; 0.3 % of its weight is cut off.
@@ -140,7 +140,7 @@ void CameraPath::compute_fixed_camera() {
   for (Frame& frame : frames_) all.place(frame.camera, subject_bounds_.center());
 }
 
-/// Orbits the centre of everything seen, at the smallest distance that shows every frame.
+/// Lets the camera orbit the centre of all subjects, at the smallest distance that shows every frame.
 void CameraPath::compute_orbit() {
   const Vec3 center = subject_bounds_.center();
   double distance = kMinEyeDistance;
@@ -176,9 +176,9 @@ std::vector<Vec3> CameraPath::smooth_centers() const {
   return smooth;
 }
 
-/// The camera moves with the centre of the subjects. `follow`: its distance is the largest that any frame needs.
-/// `close`: for each frame, the maximum of the needed distances within the kernel is computed. The kernel then smooths
-/// these maxima; the result is never less than the distance that the frame itself needs.
+/// Moves the camera with the centre of the subjects. `follow`: keeps the largest distance that any frame needs.
+/// `close`: takes for each frame the maximum of the needed distances within the kernel, then smooths these maxima with
+/// the kernel, so that no frame gets less than the distance that it needs.
 void CameraPath::compute_following_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   const auto count = static_cast<std::ptrdiff_t>(frames_.size());
@@ -208,8 +208,8 @@ void CameraPath::compute_following_camera() {
   }
 }
 
-/// The camera stays in place and turns towards the centre of the subjects. If the scene gives no field of view, it is
-/// chosen so that the subjects' boxes are in view in all frames.
+/// Keeps the camera in place and turns it towards the centre of the subjects. If the scene gives no field of view,
+/// chooses one that shows the subjects' boxes in all frames.
 void CameraPath::compute_tracking_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   double tangent = 0;

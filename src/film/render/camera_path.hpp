@@ -19,11 +19,11 @@ class CameraPath {
   /// Whether the camera needs all frames before the first can be drawn. Throws as find_camera() does.
   static bool is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera);
 
-  /// Call see() with every frame of the run, in order; then find().
+  /// Call see() with every frame of the run, in order; then find(), which computes the cameras.
   void see(const frame::FrameSnapshot& snapshot);
   void find();
 
-  /// The camera of a frame. A computed camera is that of the last frame, not later than this one, that see() received;
+  /// The camera of a frame. If it is computed, returns that of the latest frame up to this one that see() received;
   /// see() must have received at least one frame.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
@@ -47,7 +47,7 @@ class CameraPath {
   std::string name_;
   double aspect_;
   std::vector<Frame> frames_;
-  std::optional<Box3> cloth_box_;  // box outside which cloth is ignored
+  std::optional<Box3> cloth_box_;  // box to which positions of cloth are clamped
   Box3 subject_bounds_;            // bounds of the subjects of all frames
   bool azimuth_changes_ = false;   // the azimuth differs between frames
 };

@@ -16,7 +16,7 @@ struct Before {
   const frame::FrameSnapshot& snapshot;
   View view;
 
-  /// Earlier positions of the surface of this name with `count` vertices; null if `snapshot` has none.
+  /// Earlier positions of `surface`, found by its name; null if `snapshot` has no such surface with `count` vertices.
   const std::vector<Vec3>* positions(const frame::Surface& surface, std::size_t count) const;
 };
 

@@ -27,11 +27,11 @@ class GeometryBuffer {
   /// 10 if something is painted; trims to unit 11 if cloth has hems.
   void draw(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, const FloorBuffers* floor,
             const Vec3& eye, double far);
-  /// Draws the nearest layer of the surfaces flagged in `left_out` over the result of draw(), with class cloth. An
-  /// earlier layer is replaced. `deeper`: draws the nearest layer behind the one of the previous call instead.
+  /// Draws the nearest layer of the surfaces flagged in `left_out` over the result of draw(), as PixelClass::cloth, and
+  /// replaces an earlier layer. `deeper`: draws instead the nearest layer behind that of the previous call.
   void draw_layer(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, bool deeper);
 
-  /// Whether a surface of the last picture has a picture on it, or parts of different colours.
+  /// Whether a surface of the last picture has a texture, or parts of different colours.
   bool painted() const { return painted_; }
   /// Whether some cloth has visible hems or seams.
   bool trimmed() const { return trimmed_; }

@@ -13,7 +13,7 @@ constexpr float kNarrow = 1.5f;      // like kWide, for shadows, whose edges may
 constexpr float kAny = 1e9f;         // value of `wide` for which the distance does not matter
 constexpr float kNoise = 0.05f;      // difference of values that halves a weight
 constexpr float kPlaneSlack = 0.5f;  // distance from the tangent plane that halves a weight [points]
-constexpr float kWide = 6;           // distance along it that halves a weight; large for floors seen obliquely [steps]
+constexpr float kWide = 6;           // distance in this plane that halves a weight; large for oblique floors [steps]
 
 /// Data of one row of points.
 struct Rows {
@@ -49,8 +49,8 @@ Values<kCount> likeness(const Rows& here, int i, const Rows& there, int k, float
   return same * agree.square() * agree.square() / ((1 + off) * (1 + along));
 }
 
-// The filters treat eight points at a time: compilers do not vectorise loops over so many rows (measured: the drape in
-// final quality takes 322 CPU ms a picture for 352).
+// The filters treat eight points at a time, because compilers do not vectorise loops over so many rows (measured for
+// the drape in final quality: 322 CPU ms per picture instead of 352).
 Lanes load(const float* from) {
   return Eigen::Map<const Lanes>(from);
 }
@@ -172,7 +172,7 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       Eigen::Vector4f sum = Eigen::Vector4f::Zero(), any = sum;
       float total = 0;
       for (int k = 0; k < 4; ++k) {
-        constexpr float kLeast = 0.01f;  // least weight: the only point of the surface counts at any distance
+        constexpr float kLeast = 0.01f;  // lower bound: if only one point shows the surface, it counts at any distance
         const float weight = (plain[k] + kLeast) *
                              likeness<1>(here, x, there[k >> 1], (k & 1) != 0 ? column.high : column.low, kAny).value();
         sum += weight * *corners[k], total += weight;

@@ -14,8 +14,8 @@ namespace weft::render {
 /// `scratch`: as many planes as `planes`; their content is overwritten.
 void smooth(std::span<Plane> planes, std::span<Plane> scratch, const PixelPoints& points, int step);
 
-/// Does the same for one plane, but only at points whose `wanted` is above 0. Neighbours count if their `known` is
-/// above 0.
+/// Averages one plane in the same way, but over shorter distances, and only at points whose `wanted` is above 0.
+/// Neighbours count if their `known` is above 0.
 void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane& known, const PixelPoints& points,
                   int step);
 

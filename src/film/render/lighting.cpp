@@ -30,8 +30,8 @@ std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot,
   std::vector<frame::Light> lights = snapshot.lights;
   if (lights.size() > kMaxLights) lights.resize(kMaxLights);
   if (!lights.empty()) return lights;
-  // The key light is low, behind the left shoulder of the viewer. Shadows fall to the right and slightly away, and
-  // folds show relief.
+  // The key light comes from behind the left shoulder of the viewer, 40 degrees above the horizon. Shadows fall to the
+  // right and slightly away, and folds show relief.
   const Vec3 level_forward = view_axes(camera.right.cross(-up), up).forward;
   frame::Light key;
   key.name = "key";

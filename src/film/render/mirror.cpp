@@ -21,7 +21,7 @@ View mirrored(const View& view, const Floor& floor) {
   const auto turned = [&](const Vec3& v) -> Vec3 { return v - 2 * n.dot(v) * n; };
   View mirror = view;
   mirror.eye = floor.point + turned(view.eye - floor.point);
-  // A reflection is left-handed. Flipping up and down too makes the axes right-handed; the picture is upside down.
+  // A reflection makes the axes left-handed. Negating `up` makes them right-handed, but turns the picture upside down.
   mirror.axes = {turned(view.axes.right), -turned(view.axes.up), turned(view.axes.forward)};
   mirror.view_from_world = look_along(mirror.eye, mirror.axes);
   mirror.clip_from_world =
@@ -49,7 +49,7 @@ Mirror::Mirror(const Gl& gl, const QualitySettings& quality, int width, int heig
 void Mirror::draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights) {
   gl_->NamedBufferData(frame_block_.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl_->BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block_.name());
-  // Clips what is below the floor, which is not reflected.
+  // Clips everything below the floor, since the floor does not reflect it.
   gl_->Enable(GL_CLIP_DISTANCE0);
   geometry_.draw(subjects.surfaces, {}, nullptr, view.eye, view.far);
   gl_->Disable(GL_CLIP_DISTANCE0);

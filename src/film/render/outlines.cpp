@@ -48,7 +48,7 @@ struct Edge {
   float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
 };
 
-// Opacity threshold of each sample, in sixteenths; those of consecutive samples differ much.
+// Opacity threshold of each sample [sixteenths]; the thresholds of consecutive samples differ much.
 constexpr int kThresholdOrder[] = {0, 8, 12, 4, 10, 2, 6, 14, 9, 1, 5, 13, 3, 11, 15, 7};
 
 /// The opacity of a triangle at points of the picture. If an attribute is linear over the triangle, then attribute /
@@ -259,7 +259,8 @@ void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const Vie
 void Outlines::sample_floor(const Floor& floor, const View& view) {
   const double height = floor.normal.dot(view.eye - floor.point);
   if (height <= 0) return;
-  // How far the ray through a point of the picture descends towards the floor, per metre along the view axis.
+  // The ray through point (i, j) of the picture [pixels] descends towards the floor by corner + x i + y j, per metre
+  // along the view axis.
   const double x = -2 * view.tan_half_width / width_ * floor.normal.dot(view.axes.right);
   const double y = -2 * view.tan_half_height / height_ * floor.normal.dot(view.axes.up);
   const double corner = -floor.normal.dot(view.axes.forward) - 0.5 * (x * width_ + y * height_);
@@ -306,8 +307,8 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
     // Most samples belong to the same triangle as the one before.
     if (s == 0 || surface != samples.surface[s - 1] || slope_x != samples.slope_x[s - 1] ||
         slope_y != samples.slope_y[s - 1]) {
-      // Distance of what a pixel shows from the sample's plane, relative to its distance from the eye; very large if
-      // the pixel shows another surface.
+      // Distance of the point that pixel (i, j) shows from the sample's plane, relative to its distance from the eye;
+      // very large if the pixel shows another surface.
       const auto off_plane = [&](int i, int j) {
         const Seen& there = seen[index(i, j)];
         if (there.surface != surface) return 1e9f;

@@ -79,7 +79,7 @@ const PaintTexture& Paints::of(const frame::Paint& paint) {
   gl_->TextureParameteri(name, GL_TEXTURE_WRAP_S, gl_wrap(paint.wrap_u));
   gl_->TextureParameteri(name, GL_TEXTURE_WRAP_T, gl_wrap(paint.wrap_v));
   gl_->TextureParameterf(name, kMaxAnisotropy, kAnisotropy);
-  gl_->GetError();  // clears the error of an OpenGL without anisotropy, which is then not used
+  gl_->GetError();  // clears the error of an OpenGL that has no anisotropic filtering
   if (paint.alpha == Alpha::cutout) made.opacity.emplace(std::move(levels), paint.wrap_u, paint.wrap_v);
   return known_.emplace(key, std::move(made)).first->second;
 }

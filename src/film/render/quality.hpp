@@ -9,7 +9,7 @@ struct QualitySettings {
   bool smooth_outlines;
   int shadow_divisor;   ///< ratio of picture size to that of the shadows
   int ambient_divisor;  ///< ratio of picture size to that of the light from surroundings and surfaces
-  int shadow_rays;      ///< rays per lamp for each shadow point in a penumbra; not a multiple of 5
+  int shadow_rays;      ///< rays per lamp for each shadow point in a penumbra; no multiple of 5, see trace_lamp()
   int ambient_rays;     ///< rays per point for the light from surroundings and surfaces
   int instants;         ///< sharp pictures averaged for motion blur or depth of field
   bool refines;         ///< draws cloth that has few triangles with four times as many

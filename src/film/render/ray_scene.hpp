@@ -19,8 +19,8 @@ inline Mask mask(const Eigen::Array<bool, kLanes, 1>& conditions) {
   return -conditions.cast<int>();
 }
 
-/// Rays that leave a surface start at this distance from it [m]: more than rounding errors, less than the distance of
-/// layers.
+/// Rays that leave a surface start at this distance from it [m]: more than rounding errors, less than the gap between
+/// layers of cloth.
 inline constexpr float kRayStart = 3e-4f;
 
 /// Eight vectors.
@@ -40,7 +40,7 @@ struct Rays {
   Lanes3 origin, direction;            ///< [m]
   Lanes end = Lanes::Constant(1e30f);  ///< largest distance, in lengths of `direction`
   Mask wanted = Mask::Zero();          ///< rays to trace; the others meet nothing
-  unsigned seed = 0;                   ///< seed of the random choice which rays pass through translucent cloth
+  unsigned seed = 0;                   ///< seed of the random choice of rays that pass through translucent cloth
 };
 
 struct Hits {

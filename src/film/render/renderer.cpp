@@ -30,7 +30,7 @@ namespace {
 constexpr std::size_t kMaxRefinedTriangles = 20000;
 constexpr std::size_t kMaxPeeledLayers = 4;  // overlapping layers of translucent cloth
 constexpr double kMaxMotionPerPicture =
-    5;  // motion blur averages so many sharp pictures that the motion during each is at most this [pixels]
+    5;  // limit on the motion during each of the sharp pictures that are averaged for motion blur [pixels]
 constexpr double kFloorSizeRatio = 60;  // half side of the drawn floor, relative to subject radius plus eye distance
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {

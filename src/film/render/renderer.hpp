@@ -57,7 +57,7 @@ class Renderer {
   image::Image16 deep();
   DrawTimes last_times() const;
 
-  /// Vendor, renderer and version of OpenGL, the backend loaded and the reason for it.
+  /// The loaded backend, and its vendor, renderer and version of OpenGL.
   std::string description() const;
 
  private:

@@ -48,7 +48,7 @@ struct DrawnMesh {
 struct ShadedMesh {
   std::vector<Index> source;        ///< per drawn vertex: its vertex of the surface
   std::vector<Vec3> normals;        ///< per drawn vertex, unit length
-  std::vector<Triangle> triangles;  ///< indices of drawn vertices; same order as the surface's
+  std::vector<Triangle> triangles;  ///< of drawn vertices; in the surface's order or, if painted, sorted by part
 };
 
 /// Each corner averages, weighted by area, the triangles of its vertex star whose normals differ from its own

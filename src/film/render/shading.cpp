@@ -15,8 +15,7 @@ std::vector<std::string> shading_defines(const LightSet& lights, const std::vect
   return defines;
 }
 
-// Cloth thicker than kTopstitchedThickness has topstitching on both sides of a seam, at distance kTopstitchDistance
-// [m].
+// Cloth thicker than kTopstitchedThickness has topstitching on both sides of a seam, kTopstitchDistance from it [m].
 constexpr double kTopstitchedThickness = 0.7e-3, kTopstitchDistance = 4e-3;
 
 // Gloss of cotton: up to this value, the highlights of threads are below half a level of 255 and are not computed.

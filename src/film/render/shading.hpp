@@ -98,7 +98,7 @@ bool is_skin(const frame::Surface& surface);
 /// `plain`: clay, in place of the surface's own colours.
 Shading::Material material_of(const frame::Surface& surface, bool plain);
 
-/// The heat that a stage shows for a frame: none for clay, strain for the look `strain`.
+/// The heat that a stage shows for a frame: none for the looks `clay` and `wire`, strain for the look `strain`.
 frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
 
 /// 1 / value at the hot end of the scale; 0 if no heat is drawn.

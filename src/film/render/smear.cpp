@@ -15,7 +15,7 @@ constexpr int kTile =
 constexpr float kMaxMotion = 2 * kTile;
 constexpr float kMinMotion = 1.2f;  // [pixels]; shorter motions are no wider than an antialiased edge
 
-/// Position in the picture [pixels], lowest row first; z: 1 / distance, 0 behind the near plane.
+/// Position in the picture [pixels], lowest row first; z: 1 / distance, 0 if it is nearer than the near plane.
 Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int height) {
   const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
   if (clip.w() < view.near) return Eigen::Vector3f::Zero();

@@ -131,7 +131,7 @@ void SurfaceBuffers::add_midpoints(std::vector<Vertex>& vertices) {
 
 /// Appends the strips along borders after all other vertices and triangles.
 void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
-  // One drawn vertex for each surface vertex, and the midpoints of curved rims.
+  // Takes one drawn vertex for each surface vertex, and if the surface is refined, adds the midpoints of the rims.
   std::vector<Index> drawn(vertex_count_);
   for (std::size_t i = 0; i < mesh_.source.size(); ++i) drawn[mesh_.source[i]] = static_cast<Index>(i);
   std::vector<Vec3> places = state_.positions, normals(vertex_count_);
@@ -196,7 +196,7 @@ void SurfaceBuffers::upload_trims() {
   for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
   if (refinement_)
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
-  // Strips get a distance from the border between the hem's fold and its stitches, so that they show neither.
+  // The strips' distance from the border lies between the hem's fold and its stitches, so that they show neither.
   constexpr float kPlain = 0.3f;
   Trim plain;
   plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);

@@ -31,7 +31,7 @@ Style style_of(const frame::Stage& stage);
 struct Surroundings {
   struct Box {
     Vec3 axis = Vec3::UnitZ();
-    double sharpness = 1;  ///< the light falls to 1/e at a cosine to the axis of 1 - 1/sharpness
+    double sharpness = 1;  ///< the light falls to 1/e if the cosine to the axis is 1 - 1/sharpness
     Vec3 light = Vec3::Zero();
   };
   static constexpr int kBoxes = 3;

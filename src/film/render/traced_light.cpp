@@ -15,8 +15,8 @@ using Kind = PixelPoints::Kind;
 
 constexpr float kGoldenAngle = 2.39996323f;
 constexpr std::size_t kRowsAtOnce = 8;
-constexpr int kTurns = 64;        // rotations of the points on a lamp
-constexpr int kFirstRays = 1;     // rays of each point, to find penumbrae
+constexpr int kTurns = 64;        // number of rotations of the sample points on a lamp
+constexpr int kFirstRays = 1;     // rays per point of the first pass, which finds penumbrae
 constexpr int kFloorTile = 16;    // side of a tile of shaded floor [pixels]
 constexpr int kPenumbraTile = 8;  // side of a tile in which penumbrae are searched [points]
 constexpr int kMirrorRays = 4;
@@ -73,10 +73,10 @@ void across<Lanes, Lanes3>(const Lanes3& n, Lanes3& first, Lanes3& second) {
 
 /// A pair of numbers in [0, 1) for each point. The 25 pairs of a block of 5 x 5 points are evenly spread. 64 kinds of
 /// blocks have different shifts of these pairs, by the R2 sequence (Roberts, "The Unreasonable Effectiveness of
-/// Quasirandom Sequences", 2018). Otherwise, the same few directions would cause the same error everywhere.
+/// Quasirandom Sequences", 2018). Without shifts, the same few directions would cause the same error everywhere.
 constexpr int kSpreads = 25 * 64;
 int spread_number(int x, int y) {
-  const int block = (x / 5 + 19 * (y / 5)) % 64;  // 19 steps of the sequence change both numbers much
+  const int block = (x / 5 + 19 * (y / 5)) % 64;  // 19 steps of the sequence: a large change of both numbers
   return block * 25 + (x + 2 * y) % 5 + 5 * ((y + 2 * x) % 5);
 }
 Vector2f spread(int number) {
@@ -101,7 +101,7 @@ std::vector<Vector3f> cosine_directions(int rays) {
 }
 
 /// Marks the tiles that may contain penumbrae: those in which two values differ or one lies between 0 and 1, and their
-/// neighbours. At the rim of a penumbra only few rays have another result, but likely one of a whole tile.
+/// neighbours. At the rim of a penumbra, few rays differ from the rest, but likely at least one of a whole tile.
 void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted) {
   const int width = points.width(), height = points.height();
   const int columns = (width + kPenumbraTile - 1) / kPenumbraTile, rows = (height + kPenumbraTile - 1) / kPenumbraTile;
@@ -219,8 +219,8 @@ void TracedLight::trace_shadows(const ReflectedLight& light) {
   upload(lit_, points, lit_texture_, 0, Eigen::Vector4f::Ones());
 }
 
-/// Traces one ray from each point to the lamp. Points that may lie in a penumbra get half of all rays, and those of
-/// them that do lie in one get all rays.
+/// Traces rays from each point to the lamp: one ray to find penumbrae, half of all rays if the point may lie in one,
+/// and all rays if it does.
 void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plane& lit) {
   const PixelPoints& points = lit_points();
   const int width = points.width(), height = points.height(), rays = quality_.shadow_rays;
@@ -255,8 +255,8 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
           Rays packet;
           packet.wanted = mask(kinds * asked > 0 && to.intensity > 0 && (kinds == kClothKind || side > least));
           if ((packet.wanted == 0).all()) continue;
-          // Rays start on the side that faces the lamp, at the smooth surface: from the flat triangles, neighbouring
-          // triangles would block them.
+          // Rays start on the side that faces the lamp, at the smooth surface. If they started at the flat triangles,
+          // neighbouring triangles would block them.
           const Lanes facing = (side < 0).select(Lanes::Constant(-1), Lanes::Constant(1));
           const Lanes lift = facing * (kRayStart + (facing * points.rises(x, y)).max(0.0f));
           packet.origin = points.positions(x, y) + lift * normal;

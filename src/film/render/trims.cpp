@@ -36,8 +36,8 @@ void assign_border_kinds(std::vector<Segment>& segments, std::span<const std::si
   }
 }
 
-/// Chains consecutive edges and stores the arc length at the start of each edge. A seam is measured along the side that
-/// is met first; both sides get the same arc lengths.
+/// Chains consecutive edges and stores the arc length at the start of each edge. Each seam is measured once, along its
+/// first side; both sides get the same arc lengths.
 template <class Segment>
 void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> places) {
   std::unordered_multimap<Index, std::size_t> by_start;
@@ -61,8 +61,8 @@ void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> p
         std::swap(twin.a, twin.b);
         twin.start = segments[i].start;
       }
-      // If several edges continue the chain, prefers one in the same panel, then the lowest index. Thus the order of
-      // the map has no influence.
+      // If several edges continue the chain, prefers one in the same panel, then the lowest index, so that the result
+      // does not depend on the order of the map.
       std::size_t next = segments.size();
       const auto [from, to] = by_start.equal_range(segments[i].to);
       const auto rank = [&](std::size_t k) { return std::pair(segments[k].a != segments[i].b, k); };

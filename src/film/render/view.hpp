@@ -16,7 +16,7 @@ namespace weft::render {
 struct Floor {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
   frame::Appearance look;
-  /// Maps world (x, y, z, 1) to coordinates of the appearance's picture; unused without one.
+  /// Maps world (x, y, z, 1) to coordinates of the appearance's picture, if there is one.
   Eigen::Matrix<double, 2, 4> picture_from_world = Eigen::Matrix<double, 2, 4>::Zero();
 };
 

@@ -11,7 +11,7 @@
 namespace weft::scene {
 
 struct CameraKey {
-  double time = 0;
+  double time = 0;                          ///< [s]
   Vec3 position{0, 0, 0}, target{0, 0, 0};  ///< [m]
   double field_of_view = 35;                ///< vertical [degrees]
   double focal_length = 0;                  ///< [mm]; replaces the field of view; 0: none
@@ -24,16 +24,16 @@ inline bool is_computed(CameraKind kind) {
   return kind != CameraKind::placed && kind != CameraKind::file;
 }
 
-/// Vertical field of view of computed cameras [degrees]: that of a portrait lens, with little distortion.
+/// Vertical field of view of computed cameras [degrees]: a portrait lens, with little distortion.
 inline constexpr double kComputedFieldOfView = 30;
 
 struct Camera {
   std::string name;
   CameraKind kind = CameraKind::placed;
-  std::vector<CameraKey> keys;  ///< at least one; one: still. Computed cameras have one that gives the field of view
+  std::vector<CameraKey> keys;  ///< at least one; with one, placed cameras stand still and computed ones use its lens
   motion::Interpolation interpolation = motion::Interpolation::cubic;
   std::vector<std::string> subjects =
-      {};                  ///< names; empty: `whole`: all but infinite floors; else the characters or, without, cloths
+      {};                  ///< names; if empty: all but infinite floors (`whole`), else the characters, else the cloths
   double azimuth = 33;     ///< of the camera position, from the front to the right [degrees]
   double elevation = 17;   ///< of the camera position above the subject [degrees]
   double orbit = 0;        ///< rate at which the azimuth grows [degrees/s]
@@ -41,14 +41,14 @@ struct Camera {
   double smoothing = 0.5;  ///< time over which the paths of subject and camera are smoothed [s]
   double aperture = 0;     ///< f-number for 24 mm film; 0: everything is sharp
   double focus = 0;        ///< focus distance [m]; 0: that of the target
-  std::filesystem::path file = {};  ///< file with its path and lens
-  std::string object = {};          ///< name of its node in the file; empty: the only camera in it
+  std::filesystem::path file = {};  ///< file with the path and the lens of the camera
+  std::string object = {};          ///< name of the camera's node in the file; empty: the only camera
   double start = 0;                 ///< scene time at which the time of the file begins [s]
   double scale = 1;                 ///< factor on lengths of the file
-  int line = 0, column = 0;         ///< where the scene names it, for errors in its file
+  int line = 0, column = 0;         ///< place of the camera in the scene file, for error messages
   double sensor_width = 36;         ///< sensor size along the longer side of the picture [mm]; used with a focal length
-  std::string follow = {};      ///< placed cameras: obstacle or "<character>.<part>" that it moves with; empty: none
-  bool follow_rotation = true;  ///< false: the camera follows only the translation
+  std::string follow = {};          ///< placed cameras: obstacle or "<character>.<part>" to move with; empty: none
+  bool follow_rotation = true;      ///< false: the camera follows only the translation
 };
 
 /// Whether the scene gives the lens of the camera as a focal length.

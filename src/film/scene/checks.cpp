@@ -77,7 +77,7 @@ void check_rotation_changes(const std::vector<Key>& keys, const std::string& pat
   }
 }
 
-/// Decodes the picture already here, so that its defects are reported together with all other mistakes.
+/// Decodes the picture before any run, so that its defects are reported together with all other mistakes.
 void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
   if (!image || !findings.has(key) || findings.has_mistake(key)) return;
   try {
@@ -114,8 +114,8 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                       "expected none for a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
   if (rectangle_particles(cloth) == 0) return;  // the number of particles is known only after the file is read
-  // A part between two rows of particles holds no particle, which must be reported. Returns the place of the nearest
-  // row if no row is inside, else nothing.
+  // A part between two rows of particles holds no particle, which is a mistake. The lambda returns the place of the
+  // nearest row if the part contains no row, else nothing.
   const auto nearest_missed_row = [](double low, double high, int count, double grading) {
     std::optional<double> nearest;
     const auto distance = [&](double at) { return std::max({low - at, at - high, 0.0}); };
@@ -352,7 +352,7 @@ void check_characters(const Scene& scene, Findings& findings) {
   }
 }
 
-/// All keys of a camera must give the field of view in the same way, so that it can be interpolated.
+/// All keys of a camera must give the lens in the same way, by angle or focal length, since keys are interpolated.
 void check_lens(const Camera& camera, const std::string& path, Findings& findings) {
   const bool by_focal_length = has_focal_length(camera);
   if (!by_focal_length && findings.has(path + ".sensor_width"))

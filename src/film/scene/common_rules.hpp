@@ -30,7 +30,7 @@ inline Look rope_look() {
   return look;
 }
 
-/// Rotations about the fixed x, then y, then z axis.
+/// Rotation about the fixed x, then y, then z axis by the given angles [degrees].
 Quat from_angles(const Vec3& degrees);
 
 /// Rows for the rotation of a pose.

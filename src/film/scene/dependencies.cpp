@@ -89,7 +89,7 @@ class DependencyWalk {
  public:
   explicit DependencyWalk(const DependencyVisitor& each) : each_(each) {}
 
-  /// Visits a file, and those that it names.
+  /// Visits a file and all files that it names, directly or through others.
   void visit(const fs::path& file, FileUse use = FileUse::simulation) {
     const std::optional<std::string> content = visit_alone(file, use);
     if (!content) return;

@@ -9,7 +9,7 @@
 
 namespace weft::scene {
 
-/// What a file affects. A file that affects both simulation and pictures counts as `simulation`.
+/// Results that a file affects. A file that affects both simulation and pictures counts as `simulation`.
 enum class FileUse { simulation, pictures };
 
 using DependencyVisitor = std::function<void(const std::filesystem::path& file, std::string_view content, FileUse use)>;

@@ -1,4 +1,4 @@
-// Builds one TOML document from a file and overrides, before its meaning is known.
+// Builds one TOML document from a scene file and overrides. Reader checks the keys and values of the document later.
 #pragma once
 
 #include <toml++/toml.h>

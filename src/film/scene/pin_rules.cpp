@@ -6,7 +6,7 @@
 namespace weft::scene {
 namespace {
 
-/// Rows low and high of a part of a cloth.
+/// Rows that select the particles of a part of a cloth, and give each of them a fraction.
 template <class S>
 void part_rows(TableBuilder<S>& rows) {
   rows.plain(Type::text, "panel", &S::panel,

@@ -17,7 +17,7 @@ std::string join_path(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// Place of a key. toml++ stores it for keys of files; for a key of an override, the place of its value is used.
+/// Place of a key. toml++ stores it for keys of files; a key of an override has the place of its value.
 Place place_of_key(const toml::key& key, const toml::node& node) {
   return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
 }

@@ -9,7 +9,7 @@
 namespace weft::scene {
 namespace {
 
-constexpr double kStandardGravity = 9.81;  // [m/s²]; bending lengths are measured under it
+constexpr double kStandardGravity = 9.81;  // [m/s²]; bending lengths refer to it
 constexpr int kMinRopePieces = 4;
 constexpr int kSplinePieces = 16;  // pieces of a spline between two points
 constexpr int kCatenaryPieces = 512;

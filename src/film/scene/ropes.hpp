@@ -19,7 +19,7 @@ struct RopeMaterial {
 };
 const std::vector<RopeMaterial>& rope_materials();
 
-/// Mass and stiffness of one rope. What the scene does not give is derived from the material.
+/// Mass and stiffness of one rope. Values that the scene does not give follow from the material.
 struct RopeNumbers {
   double mass;     ///< [kg/m]
   double stretch;  ///< stiffness EA: force per strain [N]

@@ -10,7 +10,7 @@
 
 namespace weft::scene {
 
-/// A value on its way between TOML and a struct: absent, flag, text, numbers (one, or one per component of the rule),
+/// A value that is read from or written to TOML: absent, flag, text, numbers (one, or one per component of the rule),
 /// or texts.
 using Value = std::variant<std::monostate, bool, std::string, std::vector<double>, std::vector<std::string>>;
 
@@ -98,7 +98,7 @@ struct Table {
   const Variant* variant_of(void* target) const;
 };
 
-/// The whole format.
+/// The rules of all keys of a scene.
 const Table& scene_rules();
 
 /// Text of the values that a rule accepts: "a number > 0 m", "[x, y, z] in m, each from -1 to 1", "linear or cubic".

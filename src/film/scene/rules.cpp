@@ -214,7 +214,7 @@ const Table& cloth_rules() {
               [](Cloth& c) { return static_cast<std::size_t>(c.shape); },
               [](Cloth& c, std::size_t index) {
                 c.shape = static_cast<ClothShape>(index);
-                if (c.shape == ClothShape::mesh) c.sewing = 0;  // its file is already sewn
+                if (c.shape == ClothShape::mesh) c.sewing = 0;  // the file contains the sewn shape
               })
           .selects()
           .with(cloth_shape_rows)

@@ -26,7 +26,7 @@
 
 namespace weft::scene {
 
-// Values that the physics takes as a scene gives them.
+// Types of the physics that a scene contains unchanged.
 using Integrator = integrator::Method;
 using model::Bounds;
 using model::Contact;
@@ -125,7 +125,7 @@ enum class VertexColor { none, red, green, blue, brightness };
 struct ClothPart {
   std::string panel;  ///< of a pattern: only this panel, with fractions of its size; empty: all
   Vec2 low{0, 0}, high{1, 1};
-  std::optional<Vec2> at = {};                ///< of a rope: first and last fraction of its length, replace low, high
+  std::optional<Vec2> at = {};                ///< of a rope, replaces low, high: first and last fraction of its length
   std::string edge;                           ///< of a pattern, as "panel.edge": only this edge; empty: all
   std::optional<std::filesystem::path> mask;  ///< picture whose grey values are weights; absolute after checking
   VertexColor vertex_color = VertexColor::none;  ///< of a mesh file: colour channel that gives weights
@@ -181,25 +181,25 @@ struct Cloth {
   std::string name;
   ClothShape shape = ClothShape::quads;
   Vec2 size{1, 1};                               ///< weft, warp [m]; for rectangles
-  int particles_weft = 41, particles_warp = 41;  ///< for rectangles; crossed triangles have another one in each cell
+  int particles_weft = 41, particles_warp = 41;  ///< for rectangles; crossed triangles add one per cell
   Vec2 grading{1, 1};                            ///< for rectangles: last spacing of particles / first spacing
   std::filesystem::path file;                    ///< mesh or sewing pattern; absolute after checking
   double scale = 1;                              ///< mesh: metres per unit of the file; pattern: factor on its lengths
   FileUp up = FileUp::as_file;                   ///< mesh: up axis of the file
   std::string object;                            ///< mesh: name of the object in the file; empty: all objects
   ClothRest rest = ClothRest::automatic;         ///< mesh: source of the rest shape
-  std::optional<Vec2> uv_scale;                  ///< metres per unit of the UVs; absent: so that they fit the mesh
+  std::optional<Vec2> uv_scale;                  ///< metres per unit of the UVs; absent: measured against the mesh
   double edge_length = 0.02;                     ///< edge length of the mesh of a pattern [m]
   std::string wearer;                            ///< character that wears a pattern; empty: the only one
   bool fit = false;                              ///< scale a pattern to the wearer's measures
   double sewing = 1;         ///< time in which the rest shape changes from the sewn start to flat panels [s]
-  int line = 0, column = 0;  ///< where the scene names it, for errors in its file
+  int line = 0, column = 0;  ///< place in the scene file, for error messages
   Pose pose;                 ///< pose of the middle of a sheet (weft along x, warp along y), or of a file's origin
   Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
   Vec3 spin{0, 0, 0};        ///< at the start, about the centre of mass: vector along the axis [degrees/s]
   Vec2 start_scale{1, 1};    ///< start lengths along weft and warp / rest lengths
-  ClothStart start = ClothStart::as_given;  ///< what happens if the cloth touches or crosses something at the start
-  std::vector<std::string> over;            ///< cloths that are put on before it and stay inside it
+  ClothStart start = ClothStart::as_given;  ///< reaction to surfaces that touch or cross at the start
+  std::vector<std::string> over;            ///< cloths that are put on before this one and stay inside
   double start_noise = 0;                   ///< maximum random offset of a particle at the start, along each axis [m]
   Material material;
   Pressure pressure;
@@ -248,14 +248,14 @@ struct Obstacle {
   double mass = 0;         ///< [kg]; 0: from the density
   double density = 0;      ///< [kg/m³]; if mass and density are 0, forces do not move the obstacle
   Vec3 velocity{0, 0, 0};  ///< at the start, if forces but no keys move it [m/s]
-  Vec3 spin{0, 0, 0};      ///< at the start, as `velocity`; about its centre of mass [degrees/s]
+  Vec3 spin{0, 0, 0};      ///< likewise, angular velocity about the centre of mass [degrees/s]
   double release = 0;      ///< time from which forces move it [s]; until then, its keys do
   /// Obstacle, or "<character>.<part>", whose rigid motion since the start of the run is added to its own; empty: none.
   std::string follow = {};
   double friction = 0.3;
   bool collide = true;
   Look look;
-  int line = 0, column = 0;  ///< where the scene names it, for errors in its file
+  int line = 0, column = 0;  ///< place in the scene file, for error messages
 };
 
 /// Whether forces move the obstacle.
@@ -289,14 +289,14 @@ struct Acting {
   Stance stance = Stance::first;      ///< pose while dressing
   std::optional<double> stance_arms;  ///< angle between straight arms and the vertical [degrees]; absent: unchanged
   bool loop = false;                  ///< repeats the clip; each round starts where the previous one ended
-  double crossfade = 0;               ///< the end of a round, for this clip time, is blended into the next round [s]
+  double crossfade = 0;               ///< clip time at the end of each round that is blended into the next round [s]
 };
 
 /// A skinned and animated character from a file.
 struct CharacterFile : Acting {
   std::filesystem::path path;        ///< absolute after checking
   std::vector<std::string> meshes;   ///< meshes to use, by names of meshes or their nodes; empty: all
-  std::vector<std::string> without;  ///< meshes to leave out, by the same names
+  std::vector<std::string> without;  ///< meshes to leave out, named likewise
 };
 
 /// The built-in mannequin; see character::MannequinBuild. In scenes with z up it faces and walks along −y.
@@ -342,13 +342,13 @@ struct Character {
   double start = 0;            ///< time of the clip at which the motion begins [s]
   double speed = 1;            ///< factor on the speed of the clip
   std::optional<double> room;  ///< clearance between limbs for cloth [m]; absent: from cloth thickness
-  std::optional<double> keys_per_second;  ///< absent: that of the clip
+  std::optional<double> keys_per_second;  ///< key frames per second [Hz]; absent: those of the clip
   Interpolation interpolation = Interpolation::cubic;
   double friction = 0.3;
   bool collide = true;
   std::vector<BodyPart> parts;
   Look look;
-  int line = 0, column = 0;  ///< where the scene names it, for errors in its file
+  int line = 0, column = 0;  ///< place in the scene file, for error messages
 };
 
 /// The acting of a character that has joints; nullptr for others.
@@ -361,18 +361,18 @@ inline Acting* acting_of(Character& character) {
 }
 
 struct LightKey {
-  double time = 0;
-  Vec3 direction{-0.4, -0.5, -1}, position{0, 0, 5}, target{0, 0, 0};
+  double time = 0;                                                     ///< [s]
+  Vec3 direction{-0.4, -0.5, -1}, position{0, 0, 5}, target{0, 0, 0};  ///< position, target: [m]
   double intensity = 1;
 };
 
 struct Light {
   std::string name;
   bool spot = false;
-  double cone_angle = 45;
+  double cone_angle = 45;  ///< full opening angle [degrees]
   Vec3 color{1, 1, 1};
-  double softness = 2;
-  std::vector<LightKey> keys;  ///< at least one; one: still
+  double softness = 2;         ///< angular width of the source [degrees]
+  std::vector<LightKey> keys;  ///< at least one; with one, the light stands still
   Interpolation interpolation = Interpolation::cubic;
 };
 
@@ -387,7 +387,7 @@ struct Render {
   double exposure = 0;     ///< stops
   double motion_blur = 0;  ///< shutter angle [degrees]
   HeatQuantity heat = HeatQuantity::none;
-  double heat_max = 0;
+  double heat_max = 0;  ///< strain, or speed [m/s]; 0: the largest value of each frame
 };
 
 struct Scene {
@@ -403,7 +403,7 @@ struct Scene {
   std::vector<Fan> fans;
   Solver solver;
   Contact contact;
-  std::vector<Cloth> cloths;  ///< those of ropes come last
+  std::vector<Cloth> cloths;  ///< cloths of ropes come last
   std::vector<Rope> ropes;    ///< as the scene gives them
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;

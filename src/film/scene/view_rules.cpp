@@ -7,7 +7,7 @@ namespace weft::scene {
 namespace {
 
 // The values in the table of a camera or light itself are stored as its first key. If the table has `keys`, the
-// defaults of the first key are these values, and the defaults of each later key are those of the key before.
+// defaults of the first key are these values, and each later key takes its defaults from the key before.
 template <class S>
 void copy_key_before(S& owner, std::size_t i) {
   if (i == 0) return;
@@ -32,7 +32,7 @@ const Range kFieldOfView = within(1, 170);    // [degrees]
 const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
 
-/// Row of the focal length; follows that of the field of view. `stands` (S&): whether the value in the table itself is
+/// Row of the focal length, after the row of the field of view. `stands` (S&): whether the value in the table itself is
 /// written.
 template <class S, class Member, class Stands>
 void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& otherwise, Stands stands) {

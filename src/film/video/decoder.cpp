@@ -43,7 +43,7 @@ ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   return scaler;
 }
 
-/// Matroska stores keys in capitals; Weft's are lower case.
+/// Matroska stores metadata keys in capitals; Weft's keys are lower case.
 std::string lower_case(std::string key) {
   std::ranges::transform(key, key.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return key;
@@ -135,7 +135,7 @@ bool Decoder::lossy() const {
   const AVCodecDescriptor* codec = avcodec_descriptor_get(impl_->codec->codec_id);
   const bool lossless = codec && codec->props & AV_CODEC_PROP_LOSSLESS;
   if (!lossless || !(codec->props & AV_CODEC_PROP_LOSSY)) return !lossless;
-  // H.264 can be both; Weft writes RGB only for lossless video.
+  // H.264 can be lossy or lossless; Weft writes RGB only for lossless video.
   const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(impl_->codec->pix_fmt);
   return !(format && format->flags & AV_PIX_FMT_FLAG_RGB);
 }

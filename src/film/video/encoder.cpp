@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kCodecName = "libx264";
 
-/// Names of a codec and its encoder, and the extensions that may contain it, the default one first.
+/// Names of a codec and its encoder, and the file extensions for the codec, the default one first.
 struct CodecKind {
   Codec codec;
   const char *name, *encoder;
@@ -98,8 +98,8 @@ CodecPtr open_codec(const std::filesystem::path& file, const Settings& settings,
     case Codec::h264:
       check(av_opt_set_double(context->priv_data, "crf", settings.crf, 0), file, "choose the quality");
       // The macroblock tree of x264 (build 164) reads uninitialised memory at most sizes, so that equal pictures give
-      // different bits. (Measured without it: at the same crf, a film of 1280x720 is 38 % larger and 0.5 dB closer to
-      // its pictures.)
+      // different bits. (Measured without the tree: at the same crf, a film of 1280x720 is 38 % larger and 0.5 dB
+      // closer to its pictures.)
       check(av_opt_set_int(context->priv_data, "mbtree", 0, 0), file, "choose the rate control");
       break;
     case Codec::h264_lossless:
@@ -123,14 +123,14 @@ struct Encoder::Impl {
   std::filesystem::path file;
   Settings settings;
   AVRational rate;
-  std::optional<TemporaryFile> fragments;  // until the finished file is made from them
+  std::optional<TemporaryFile> fragments;  // kept until publish() makes the finished file from them
   FrameConverter converter;
   FramePtr frame;
   PacketPtr packet;
   CodecPtr codec;
   std::unique_ptr<Mp4Writer> writer;
   int frames = 0;   // sent to the encoder
-  int packets = 0;  // received from it
+  int packets = 0;  // received from the encoder
   bool finished = false;
 
   Impl(const std::filesystem::path& f, const Settings& s);

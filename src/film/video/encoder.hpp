@@ -41,8 +41,8 @@ class Encoder {
   void add(const image::Image& image);
 
   /// Flushes the encoder, moves the index to the front, verifies by reading that each frame has its time, and renames
-  /// the file to its final name. At least one frame must have been added. Throws Error(output_failed); if all frames
-  /// are encoded but the finished file cannot be made, they are kept as partial_name(file), which the error names.
+  /// the file to its final name. At least one frame must have been added. Throws Error(output_failed). If all frames
+  /// are encoded but the finished file cannot be made, partial_name(file) keeps them, which the error names.
   void finish();
 
   int frames() const;

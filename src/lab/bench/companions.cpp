@@ -17,8 +17,8 @@ constexpr double kChaosRatio = 0.3;
 // It is also chaotic if the displacement grows more than a thousandfold, however large those errors are.
 constexpr double kMaxAmplification = 1e3;
 constexpr double kCompanionToleranceRatio = 0.1;  // newton_tolerance of the companion, relative to the run's
-// Observed orders are clamped to between this fraction of the expected order and the expected order. Stiff waves and
-// borders lower the order; below the range, differences hardly fall with step or spacing.
+// Lower bound of observed orders, relative to the expected order, which is the upper bound. Stiff waves and borders
+// lower the order; below the bound, differences hardly fall with step or spacing.
 constexpr double kMinOrderRatio = 0.5;
 // Fraction of the expected order that is assumed if there is only one companion.
 constexpr double kAssumedOrderRatio = 0.75;

@@ -24,8 +24,8 @@ struct ErrorPart {
 
 struct ErrorEstimate {
   /// The motion is chaotic: random offsets of the particles at the start, of up to 1 µm, change positions by more than
-  /// 0.3 of the step and solver errors. This limit is clamped to 10 µm to 1 mm. Also true if the run with these offsets
-  /// fails.
+  /// 0.3 of the step and solver errors. This limit is at least 10 µm and at most 1 mm. Also true if the run with these
+  /// offsets fails.
   bool start_matters = false;
   /// The error does not follow the order of the method: the run with twice the step fails, or differs too little from
   /// the run, compared with the run with half the step.

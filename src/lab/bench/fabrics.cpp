@@ -11,7 +11,7 @@
 namespace weft::bench {
 namespace {
 
-// "12.3", or "~12.3" if the value is estimated.
+// The value as text: "12.3", or "~12.3" if it is estimated.
 std::string text_of(const scene::Figure& figure, double unit) {
   return fmt::format("{}{:.3g}", figure.estimated ? "~" : "", figure.value * unit);
 }

@@ -18,7 +18,7 @@ constexpr const char* kStyle =
     "th:first-child,td:first-child{text-align:left}th{background:#f4f4f2}svg{max-width:100%;height:auto}"
     "code{background:#f4f4f2}";
 
-// `code` and **strong**.
+// Converts `code` and **strong** to HTML.
 std::string inline_html(const std::string& text) {
   static const std::regex kStrong(R"(\*\*([^*]+)\*\*)"), kCode("`([^`]+)`");
   return std::regex_replace(std::regex_replace(markup_text(text), kCode, "<code>$1</code>"), kStrong,

@@ -59,7 +59,7 @@ bool scale_mesh(scene::Scene& scene, double factor) {
   return true;
 }
 
-// Whether the factor changes the simulation. It does not if the scene's values of this parameter are 0 or have no use.
+// Whether the factor changes the simulation. It does not if the scene's values of this parameter are 0 or unused.
 bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   scene::Scene varied = scene;
   Factors factors{1, 1, 1, 1, 1, 1};
@@ -90,7 +90,7 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   return true;
 }
 
-// Adds everything that counts as broken in a frame.
+// Adds the faults of a frame; for a list see TrialVerdict.
 void find_broken(const simulation::FrameReport& report, std::set<std::string>& broken) {
   if (report.min_distance <= 0 && report.frame > 0) broken.insert("surfaces touch or pass through each other");
   if (report.stretch_ratio > simulation::kMaxStretchRatio) broken.insert("cloth is stretched beyond its max_stretch");
@@ -137,7 +137,7 @@ void run(const scene::Scene& scene, double max_cpu_s, const std::function<bool()
   if (!in_time) trial.verdict = TrialVerdict::too_slow;
 }
 
-// `known`: what already breaks in the unchanged scene.
+// `known`: faults of the unchanged scene, which do not count against a trial.
 Trial try_factors(const scene::Scene& scene, const Factors& factors, double max_cpu_s,
                   const std::vector<std::string>& known, const std::function<bool()>& stop) {
   Trial trial{factors};

@@ -28,8 +28,8 @@ using Factors = std::array<double, kVariedValues>;
 /// A trial breaks if surfaces pass through each other, cloth exceeds `max_stretch` or is pinched by an obstacle, pinned
 /// particles lag behind their targets, energy appears from nothing, or the solver leaves unbalanced forces.
 enum class TrialVerdict {
-  holds,       ///< ran to the end, and nothing broke except what breaks in the unchanged scene too
-  warned,      ///< ran to the end, but something broke on the way
+  holds,       ///< ran to the end, without faults that the unchanged scene does not have
+  warned,      ///< ran to the end, with faults that the unchanged scene does not have
   refused,     ///< the simulation ended with an error
   not_finite,  ///< a position is not finite
   too_slow,    ///< aborted: it takes many times as long as the unchanged scene
@@ -41,9 +41,9 @@ std::string_view describe(TrialVerdict verdict);
 struct Trial {
   Factors factors{1, 1, 1, 1, 1, 1};
   TrialVerdict verdict = TrialVerdict::holds;
-  /// What broke here but not in the unchanged scene; for the unchanged scene: everything that broke.
+  /// Faults of this trial that the unchanged scene does not have; for the unchanged scene: all of its faults.
   std::vector<std::string> broken = {};
-  bool mends = false;       ///< nothing breaks in this trial, not even what breaks in the unchanged scene
+  bool mends = false;       ///< ran to the end without any fault, not even one of the unchanged scene
   std::string reason = {};  ///< error message if refused or impossible
   double step = 0;          ///< time step [s]; 0 if time.tolerance chooses it
   int frames = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
@@ -78,7 +78,7 @@ SceneStability measure_scene_stability(
 /// The range of a parameter, on one side of the scene's own value, in which the scene holds.
 struct Margin {
   VariedParameter axis;
-  double holds = 1;               ///< last factor, going away from 1, before the first that breaks; 1: none holds
+  double holds = 1;               ///< factor farthest from 1 before the first that breaks; 1: none holds
   const Trial* breaks = nullptr;  ///< the trial at that first factor; nullptr if no trial breaks
 };
 /// One margin below and one above 1 for each parameter that could be varied.

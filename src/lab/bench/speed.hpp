@@ -55,7 +55,7 @@ struct SpeedRun {
   /// Fraction of the wall time in which further threads would have nothing to do. Only for runs with one thread, as is
   /// largest_gain().
   double serial_fraction() const;
-  /// How many times as fast the run would be on LoopCounts::kThreads[number] threads, if threads cost nothing.
+  /// Speed-up that LoopCounts::kThreads[number] threads would give if threads cost nothing.
   double largest_gain(std::size_t number) const;
 };
 

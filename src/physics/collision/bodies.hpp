@@ -15,11 +15,11 @@ namespace weft::collision {
 /// How a surface collides.
 struct BodyTraits {
   bool deformable = false;  ///< its vertices are particles, which the solve moves
-  double thickness = 0;     ///< of cloth, and of bodies that forces move [m]; 0 for obstacles
+  double thickness = 0;     ///< half of it adds to the activation distance of a pair [m]; 0 for obstacles
   double friction = 0;      ///< Coulomb coefficient; a pair uses the geometric mean
   bool moving = true;       ///< false: its vertices never leave their start positions
   bool rigid = false;       ///< its vertices keep their distances from each other
-  Index frame = -1;  ///< if deformable and rigid: first of the four particles that carry its vertices; −1: none
+  Index frame = -1;         ///< if deformable and rigid: first of its four frame particles; −1: none
 };
 
 /// Some vertices of a body, with a thickness and friction of their own.
@@ -35,8 +35,8 @@ struct ContactMaterial {
   double thickness = 0, friction = 0;
 };
 
-/// Owns the triangles that the other parts of the engine view. The vertices of all bodies share the numbering of the
-/// position arrays. Particles come first, so deformable bodies are added before obstacles, cloth before rigid ones.
+/// Owns the triangles; the rest of the engine holds spans of them. The vertices of all bodies share the numbering of
+/// the position arrays. These list particles first, so add cloth first, then rigid deformable bodies, then obstacles.
 class Bodies {
  public:
   Bodies() = default;
@@ -44,8 +44,8 @@ class Bodies {
   Bodies& operator=(Bodies&&) = default;
 
   /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`: number of positions
-  /// before these vertices that belong to the body but to no triangle; patches and `limbs` count them too. If patches
-  /// share a vertex, the last one counts. `limbs`: limb number of each vertex, from 0; empty: the body is one limb.
+  /// before these vertices that belong to the body but to no triangle; patches and `limbs` include them. If patches
+  /// share a vertex, the last one counts. `limbs`: limb number of each vertex, from 0; empty: one limb.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
            std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
 

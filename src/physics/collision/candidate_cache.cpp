@@ -104,7 +104,7 @@ void CandidateCache::find_clear_bodies(const Motion& motion) {
   }
 }
 
-// The bounds of an obstacle that does not move are not refitted.
+// Refits the bounds of all bodies except obstacles that stay where they are.
 void CandidateCache::refit(const Motion& motion, double margin) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto stays = [&](std::span<const Vec3> x) {
@@ -131,8 +131,8 @@ bool CandidateCache::is_kept_clear(std::size_t vertex, const Vec3& x) const {
 // Whether x is within the margin of the box of the vertex's collected end, or in the half-space of its obstacle.
 bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin) const {
   const Vec3 beyond = (x - high_end()[vertex]).cwiseMax(low_[vertex] - x);
-  // Boxes grow by the margin along each axis; bounds with more directions are sure to contain only points within that
-  // distance.
+  // A box contains all points within the margin along each axis. Bounds with more directions are only sure to contain
+  // the points within the margin in Euclidean distance.
   const bool boxes = parameters_.broad_phase.directions == 6;
   const double distance = boxes ? beyond.maxCoeff() : beyond.cwiseMax(0).norm();
   return distance <= margin || is_kept_clear(vertex, x);

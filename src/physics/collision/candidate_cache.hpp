@@ -24,8 +24,8 @@ struct SearchParameters {
 /// Collects candidate pairs for the trajectories of all vertices from x_t0 to x_t1, with bounds enlarged by a margin at
 /// both ends. The pairs stay valid for all trajectories whose ends lie inside these bounds. The margin is half the
 /// detection distance. In a slow step, a Verlet margin is added; a step is slow if no vertex moves farther than the
-/// Verlet margin along an axis. While each vertex is within the Verlet margin of where it was when the pairs were
-/// collected, all features that are near now were within radius() of each other then. Cloth at rest is searched once.
+/// Verlet margin along an axis. As long as no vertex has moved farther than that since the pairs were collected, all
+/// features that are near now were within radius() of each other at that time. Cloth at rest is searched once.
 ///
 /// An obstacle that an axis-aligned plane separates from all cloth may move on its side of that plane without
 /// invalidating the pairs.
@@ -60,10 +60,10 @@ class CandidateCache {
   /// Whether each vertex is within the Verlet margin of its collected start (see radius()), or is_kept_clear().
   bool covers_start(std::span<const Vec3> x) const;
   /// Whether each vertex at x is inside the bounds of its end, or is_kept_clear(). If so, the pairs include all that
-  /// can meet on the way from a covered start.
+  /// can meet on the trajectory from a covered start to x.
   bool covers_end(std::span<const Vec3> x) const;
 
-  /// True only if all features within the detection distance at x, an end of the trajectory, are listed.
+  /// True only if the pairs contain all features that are near each other at x, an end of the trajectory.
   bool lists_near(std::span<const Vec3> x) const;
 
   /// Whether a vertex at x lies in the half-space that contains its obstacle and no cloth.

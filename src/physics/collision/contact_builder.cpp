@@ -18,8 +18,8 @@ double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
 
-// Reduces the activation distance, so that in a step over h the contact opens from `gap` [m] by no more than its
-// opening time allows.
+// Reduces the activation distance, so that a step over h [s] opens the contact from `gap` [m] by at most the fraction h
+// / Numerics::Contact::opening_time of its full range.
 void limit_opening(Contact& contact, double gap, double h) {
   const double range = std::min(contact.range, gap + contact.full_range * h / numerics.contact.opening_time);
   contact.depth -= contact.range - range;

@@ -27,7 +27,7 @@ struct PairFriction {
 
 struct ContactParameters {
   double stiffness = 100;                   ///< minimum stiffness, which stiffness_fraction() then multiplies [N/m]
-  double step = 0.01;                       ///< time step for which contacts must be stiff enough [s]
+  double step = 0.01;                       ///< h in Numerics::Contact::inertial_stiffness [s]
   std::vector<PairFriction> friction = {};  ///< pairs with coefficients of their own
 };
 
@@ -60,9 +60,9 @@ class ContactBuilder {
   void add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
            ContactResponse& response);
 
-  /// Adds the contact that pushes pinched cloth back to its own side of the obstacle, without friction and no faster
-  /// than contacts open (`Contact::opening_time`). If the exit is blocked, the stiffness is reduced, so that two
-  /// obstacles do not clamp the cloth.
+  /// Adds the contact that pushes pinched cloth back to its own side of the obstacle, without friction. It opens no
+  /// faster than other contacts (Numerics::Contact::opening_time). If the exit is blocked, the stiffness is reduced, so
+  /// that two obstacles do not clamp the cloth.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts for a failing pair: two triangles without a separating plane. `features`: their closest features at

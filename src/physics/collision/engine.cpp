@@ -127,7 +127,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
   pushed_pairs_.clear();
   // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here,
-  // because pairs that need others come near each other.
+  // because pairs that only turning planes separate come near each other.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
   find_failing(x_t0, x_t1, PlaneKinds::constant);
   if (response_.form() == ResponseForm::springs)
@@ -144,9 +144,9 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
 }
 
 // Pushes an estimate with intersections apart. Contacts found at intersecting positions would have meaningless
-// directions, and of several layers that push each other, only one would be found per iteration. An estimate exempts
-// nothing. For pairs of cloth, it seeks no planes for parts of the step (measured in falling_band: two thirds of the
-// searches were for parts, mostly in vain).
+// directions, and of several layers that push each other, only one would be found per iteration. Exempts no pinched
+// cloth, because x_t1 is only an estimate. Between cloths, seeks only planes for the whole step (measured in
+// falling_band: two thirds of the searches were for parts of it, mostly in vain).
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || !find_failing(x_t0, x_t1, PlaneKinds::turning))
     return false;
@@ -254,8 +254,8 @@ std::span<const CornerPair> Engine::find_intersections(std::span<const Vec3> x) 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                     std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_move_pins,
                                     PlaneKinds which) {
-  // Corrections can move vertices out of the bounds of the candidate pairs. Then the pairs are collected again; after
-  // kTightCollections times, for every trajectory between start and end.
+  // If corrections move vertices out of the bounds of the candidate pairs, collect the pairs again. After
+  // kTightCollections times, enlarge the bounds of all vertices to contain their starts and ends.
   constexpr int kCollections = 8, kTightCollections = 3;
   SeparationReport report;
   pushed_pairs_.insert(pushed_pairs_.end(), failing_.begin(), failing_.end());

@@ -44,9 +44,8 @@ class Engine {
 
   /// Finds the contacts of a step over h [s] from x_t0. x_t1: expected end; exact for obstacles, an estimate for
   /// particles. `motions`: per body, its rigid motion, or the identity if it deforms; empty: no body moves rigidly.
-  /// x_t0 and x_t1 must outlive the step. With springs, pairs without a separating plane on the way to x_t1 are pushed
-  /// apart there, which changes x_t1. `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns
-  /// whether x_t1 has changed.
+  /// x_t0 and x_t1 must outlive the step. With springs, changes x_t1 so that every pair has a separating plane, if that
+  /// succeeds. `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns whether x_t1 has changed.
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {});
 
@@ -78,10 +77,10 @@ class Engine {
   /// Call when the step is accepted; see ContactResponse::accept().
   void accept() { response_.accept(); }
 
-  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a pair is forced together,
-  /// pinched cloth may be exempted from the obstacle. Unless `may_pinch`, this applies only to cloth that this obstacle
-  /// pinches already. If `may_move_pins` is false and a pinned particle had to move, the result is not separated and
-  /// nothing is exempted. Only planes of the kinds `which` count.
+  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a pair of cloth and
+  /// obstacle cannot be separated, exempts the cloth from the obstacle; unless `may_pinch`, only cloth that this
+  /// obstacle pinches already. If `may_move_pins` is false and a pinned particle had to move, the result is not
+  /// separated and nothing is exempted. Only planes of the kinds `which` count.
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                               bool may_pinch = false, bool may_move_pins = true, PlaneKinds which = PlaneKinds::all);
 

@@ -59,7 +59,7 @@ void Bands::add(const Evaluation& at) const {
     const auto a = piece.particles[0], b = piece.particles[1];
     const Vec3 along = solver::vec3_of(at.x[b] - at.x[a]);
     const double length = along.norm();
-    if (length == 0) continue;  // no direction
+    if (length == 0) continue;  // coinciding particles define no direction
     const auto pull = solver::padded<double>(piece.stiffness * (1 / piece.rest - 1 / length) * along);
     at.force.add(piece.particles[0], pull);
     at.force.subtract(piece.particles[1], pull);
@@ -72,8 +72,8 @@ void Bands::add(const Evaluation& at) const {
   }
 }
 
-// Stiffness of a piece whose second particle is at `along` from the first. `lateral`: 1 − rest / length; at least 0 for
-// a positive semidefinite matrix.
+// Stiffness of a piece [N/m]. `along`: vector from its first particle to its second [m]. `lateral`: 1 − rest / length,
+// or at least 0, so that the matrix is positive semidefinite.
 Mat3 Bands::stiffness(const Piece& piece, const Vec3& along, double lateral) {
   const Vec3 n = along.normalized();
   return piece.stiffness / piece.rest * ((1 - lateral) * n * n.transpose() + lateral * Mat3::Identity());

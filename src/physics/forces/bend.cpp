@@ -3,7 +3,7 @@
 namespace weft::forces {
 namespace {
 
-// Inlined, as a call would return its twelve numbers through memory.
+// Inlined, because a call would return the twelve numbers of the result through memory.
 template <class Differences, class Points>
 [[gnu::always_inline]] inline VecLanes weighted_sum(const Differences& d, Points x) {
   VecLanes sum = d.weights[0] * gather(x, d.particles[0]);
@@ -11,7 +11,7 @@ template <class Differences, class Points>
   return sum;
 }
 
-// Adds size × weights[a] × weights[b] for all pairs.
+// Adds size × weights[a] × weights[b] to the scalar of each pair of particles a < b.
 template <class Differences>
 void add_pairs(const Differences& d, const Lanes& size, const solver::AssemblyRows& assembly) {
   for (std::size_t a = 0, pair = 0; a < d.particles.size(); ++a) {
@@ -32,8 +32,8 @@ void Bend::hold(std::span<const char> held) {
   create_differences(held);
 }
 
-// Creates differences of the same particles in the same order, whatever is held. Only weights and areas depend on
-// `held`.
+// Only weights and areas depend on `held`. Every call creates differences of the same particles in the same order, so
+// that the pattern of the Jacobian does not change.
 void Bend::create_differences(std::span<const char> held) {
   lines_.size = cells_.size = 0;
   const mesh::Grid& grid = grid_;
@@ -66,9 +66,9 @@ void Bend::List<Count>::add(const std::array<Index, Count>& particles, const std
   }
 }
 
-// Adds the second derivative at the middle of three particles, from their spacings; exact for parabolas. It is the turn
-// of the line divided by the length that contains it: half of both spacings, or half of the free one. The weights sum
-// to exactly zero, so that a translation adds no rounding.
+// Adds the second derivative at the middle one of three particles; exact for parabolas. It is the change of slope over
+// the length along which the slope changes: the mean of both spacings, or at a clamp half of the free spacing (Bend).
+// The weights sum to exactly zero, so that a translation adds no rounding.
 void Bend::add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                     std::span<const char> held) {
   const auto is_held = [&](std::size_t k) { return !held.empty() && held[particles[k]]; };

@@ -9,9 +9,9 @@
 
 namespace weft::forces {
 
-/// Bending as in the seed ("Elastic Model"), f = −B Δ² s along the normal N (a restoring force): that of a plate with
-/// rigidity B, ν = 0 and energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), by central differences on lines and in
-/// cells. The energy also determines the forces at free edges.
+/// The bending force of the seed ("Elastic Model"), f = −B Δ² s along the normal N, is the restoring force of a plate
+/// with rigidity B, ν = 0 and energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), here by central differences on lines
+/// and in cells. The energy also determines the forces at free edges.
 ///
 /// The full second differences are used, not their component along N. On an inextensible sheet both are equal, and the
 /// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,
@@ -40,7 +40,7 @@ class Bend final : public Force {
   void hold(std::span<const char> held) override;
 
  private:
-  /// Four second differences Σ weights[k] x_k [1/m], each with the area that it covers, twice for s_uv.
+  /// Four second differences Σ weights[k] x_k [1/m], each with the area that it covers (for s_uv: twice this area).
   template <std::size_t Count>
   struct Differences {
     std::array<Four, Count> particles{};

@@ -13,11 +13,11 @@ struct BendParameters {
   double friction = 0;   ///< τ, moment per width against a change of curvature [N]; half of 2HB of Kawabata's KES
 };
 
-/// Viscosity and friction act on the curvature κ, each of the second derivatives s_uu, s_uv and s_vv of the surface
-/// s(u, v). Only the part of the rate κ̇ along the curvature counts, so that a curved piece turns rigidly without loss.
-/// Friction models Kawabata's bending hysteresis ("The Standardization and Analysis of Hand Evaluation", 1980): a
-/// moment of constant magnitude against the change, smoothed below a rate of kStickRate. It brings cloth to rest:
-/// without friction the hem of a draped sheet keeps tipping at centimetres per second.
+/// Viscosity and friction act on each curvature κ: the second derivatives s_uu, s_uv and s_vv of the surface s(u, v).
+/// Only the part of the rate κ̇ along the curvature counts, so that a curved piece turns rigidly without loss. Friction
+/// models Kawabata's bending hysteresis ("The Standardization and Analysis of Hand Evaluation", 1980): a moment of
+/// constant magnitude against the change, smoothed below a rate of kStickRate. It brings cloth to rest: without
+/// friction the hem of a draped sheet keeps tipping at centimetres per second.
 ///
 /// Moment per width [N]:
 ///
@@ -34,7 +34,7 @@ struct BendParameters {
 /// and the curvature τ / B that friction can hold against bending. A full moment about an axis that turns with every
 /// ripple would be stiffer than the bending itself.
 class BendDamping {
-  // Curvature below which its direction is too uncertain for damping [1/m]: a sheet of radius 10 m looks flat.
+  // Curvature below which the direction of κ is too uncertain for damping [1/m]: a sheet of radius 10 m looks flat.
   static constexpr double kFlatCurvature = 0.1;
   // Rate of curvature at which friction has 0.7 of its magnitude [1/(m·s)]: the end of a flap 10 cm long then moves at
   // 2.5 mm/s. Smaller values hold better and make the system stiffer: friction / kStickRate acts like a viscosity.
@@ -55,7 +55,7 @@ class BendDamping {
     const Scalar smooth_sq = rate * rate + kStickRate * kStickRate * residual_sq;
     return viscosity_ / (c_sq + kFlatCurvature * kFlatCurvature) + friction_ / sqrt(residual_sq * smooth_sq);
   }
-  /// The derivative of the moment with respect to κ̇ is this times c cᵀ.
+  /// The derivative of the moment with respect to κ̇ is tangent(‖c‖², c·κ̇) c cᵀ.
   double tangent(double c_sq, double rate) const;
 
  private:

@@ -112,7 +112,7 @@ void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
   at.force.add(a, pull);
   at.force.subtract(b, pull);
   if (!at.assembly) return;
-  // See Stretch.
+  // Compression does not reduce the stiffness across the piece; see Stretch.
   const double lateral = piece.elasticity * std::max(1 - piece.rest / length, 0.0);
   const double along = piece.elasticity + at.rate * piece.viscosity;
   at.assembly.add(piece.block, Mat3((lateral - along) * n * n.transpose() - lateral * Mat3::Identity()));
@@ -128,7 +128,7 @@ void Cord::add_air(const Piece& piece, const Evaluation& at) const {
   const Vec3 n = d / length, across = v - n.dot(v) * n;
   const double speed = across.norm();
   if (!(speed > 0)) return;
-  // per end [kg/m]
+  // for one end [kg/m]
   const double coefficient = 0.25 * parameters_.air_density * parameters_.drag * parameters_.diameter * length;
   const auto drag = solver::padded<double>(coefficient * speed * across);
   at.force.subtract(a, drag);

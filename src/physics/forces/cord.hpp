@@ -23,7 +23,7 @@ struct CordParameters {
 ///
 /// Stretch: a piece of length l and rest length r has the energy ½ EA r (l / r − 1)² and the viscous tension η d/dt (l
 /// / r). Bending: energy ½ EI L ‖s''‖² at each particle between two pieces, where s'' is the second difference of the
-/// positions by initial rest lengths and L the mean of both (as Bend on the lines of a sheet, clamps included);
+/// positions for the initial rest lengths, and L is the mean of both lengths (as in Bend on lines, clamps included);
 /// straight at rest. For viscosity of bending see BendDamping. Air: −½ ρ c d l ‖v_n‖ v_n on a piece, half at either
 /// end, where v_n is the part across the piece of its velocity relative to the air.
 class Cord final : public Membrane {
@@ -33,7 +33,7 @@ class Cord final : public Membrane {
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> /*bounds*/) override {}  // few elements
+  void cut(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -41,7 +41,7 @@ class Cord final : public Membrane {
   void add_constant_stiffness(solver::Assembly& assembly) const override;
   void hold(std::span<const char> held) override;
 
-  /// Sets the rest lengths of stretch to this ratio of the initial ones.
+  /// Sets the rest lengths of stretch, not those of bending, to `ratio` times the initial ones.
   void set_length_ratio(double ratio);
 
   double max_strain(std::span<const Vec3> x) const override;

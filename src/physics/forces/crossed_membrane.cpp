@@ -13,14 +13,13 @@ namespace {
 
 // Smallest relative length, as kMinStretch of TriangleMembrane.
 constexpr double kCollapsed = 1e-12;
-// θ: fraction of ⟨g²⟩ that counts. At 1, a cell that bends along one direction becomes narrower along the other, while
-// its neighbours and clamps do not (measured: errors of a cantilever of 16 cells at 1e4, 1e5 and 1e6 N/m are −0.7, −3.5
-// and −8.1 % at 1; 0.1, −0.5 and −2.8 % at a quarter; 0.2, 0.1 and −0.8 % at a tenth). Smaller values flatten cells
-// less under tension.
+// θ: fraction of ⟨g²⟩ that enters the lengths. At 1, a cell that bends along one direction becomes narrower along the
+// other, while its neighbours and clamps do not (measured: errors of a cantilever of 16 cells at 1e4, 1e5 and 1e6 N/m
+// are −0.7, −3.5 and −8.1 % at 1; 0.1, −0.5 and −2.8 % at a quarter; 0.2, 0.1 and −0.8 % at a tenth). Smaller values
+// flatten cells less under tension.
 constexpr double kHeightFraction = 0.1;
-// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. If the product is smaller, the normal turns too fast to be a reference
-// for the middle: by 1 / ‖D₁ × D₂‖ (measured: with S₀ at a tenth, a corner of leather pulled by a pin reduced steps to
-// 1 µs).
+// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. The normal turns in proportion to 1 / ‖D₁ × D₂‖, below S₀ too fast to
+// be a reference for the middle (measured: with S₀ at a tenth, a pin that pulls leather reduces steps to 1 µs).
 constexpr double kFoldedSize = 0.5;
 
 // Indices of the corners of triangle k among the five particles of a cell.
@@ -31,7 +30,7 @@ std::array<std::size_t, 3> corners_of(std::size_t k) {
 // Weights of the corners in the twist; the middle has none.
 constexpr std::array<double, 5> kTwist{1, -1, 1, -1, 0};
 
-// Stiffness across a thread by tension: exact, and at least 0 for a positive semidefinite matrix; see Stretch.
+// Stiffness across a thread due to tension: exact; clamped to at least 0 for a positive semidefinite matrix (Stretch).
 double exact_lateral(double length) {
   return 1 - 1 / length;
 }
@@ -91,7 +90,7 @@ CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const Five& p
   state.flat = positions;
   const auto& [a, b, c, d, middle] = state.flat;
   state.diagonals = {c - a, d - b};
-  // Computed from differences, so that only these are rounded, not the coordinates.
+  // Differences of positions keep the rounding error independent of the distance from the origin.
   state.middle_offset = (middle - a) - 0.25 * ((b - a) + (c - a) + (d - a));
   const Vec3 product = state.diagonals[0].cross(state.diagonals[1]);
   const double size = product.norm(), min_size = cell.min_size;

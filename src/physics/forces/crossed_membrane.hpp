@@ -63,7 +63,7 @@ class CrossedMembrane final : public TriangleMembrane {
   static Vec3 normal_change(const State& state, const Vec3& product);
   static Five vectors_of(const Cell& cell, std::span<const Vec3> of);
   static Five vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of);
-  /// Stiffness across a thread by tension, relative to its stretch stiffness, as a function of its relative length.
+  /// Stiffness across a thread due to tension, relative to its stretch stiffness, as a function of its relative length.
   using Lateral = double (*)(double length);
   using Blocks = std::array<solver::PackedBlock, 25>;  // row-major over pairs of particles
   static Gradient gradient_of(const Element& element, const Five& flat, std::size_t k);

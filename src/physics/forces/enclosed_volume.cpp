@@ -17,7 +17,7 @@ std::size_t index_of(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-// Loops of border edges, each in the reverse of its direction in its triangle.
+// Loops of border edges. Each edge has the direction opposite to that in its triangle.
 std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> triangles) {
   // A border edge is one whose reverse is in no triangle.
   std::map<std::array<Index, 2>, int> runs;
@@ -34,7 +34,7 @@ std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> tri
       loop.push_back(edge->second);
       next.erase(edge);
     }
-    loop.pop_back();  // repeats the first
+    loop.pop_back();  // it repeats the first vertex
   }
   return loops;
 }

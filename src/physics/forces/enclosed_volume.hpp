@@ -32,7 +32,7 @@ class EnclosedVolume {
   std::size_t openings() const { return borders_.size(); }
 
  private:
-  std::vector<Index> star_begin_;            // per vertex, and the end
+  std::vector<Index> star_begin_;            // per vertex: its first entry of star_; then the end
   std::vector<std::array<Index, 2>> star_;   // the two other corners of each triangle of the vertex star
   std::vector<std::vector<Index>> borders_;  // particles of each border; their mean is a further vertex
   double sign_ = 1;

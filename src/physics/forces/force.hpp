@@ -56,10 +56,10 @@ struct Evaluation {
   /// Linearisation points of the locks of the threads; null: linearise at x.
   const LockLinearisation* locks = nullptr;
 
-  /// Rate of a quantity q of the positions. `now`: q(x); of_places(earlier positions): q there; by_velocity(): ∂q/∂x v,
-  /// used without past. With ∂q/∂x v and implicit Euler, an edge that turns by θ in a step would seem to lengthen by
-  /// the fraction 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step, and create
-  /// energy.
+  /// Rate of a quantity q of the positions. `now`: q(x); of_places(y): q at earlier positions y; by_velocity(): ∂q/∂x
+  /// v, used if `past` is empty. With ∂q/∂x v and implicit Euler, an edge that turns by θ in a step would seem to
+  /// lengthen by the fraction 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step,
+  /// and create energy.
   template <class Quantity, class OfPlaces, class ByVelocity>
   Quantity rate_of(const Quantity& now, const OfPlaces& of_places, const ByVelocity& by_velocity) const {
     if (past.empty()) return by_velocity();
@@ -98,7 +98,7 @@ class Force {
                             solver::BlockMatrix& /*jacobian*/) const {}
 
   /// Sets which particles of all cloths are held or moved from now on: a clamp changes the stiffness of the free
-  /// particles beside it. The pattern of the Jacobian stays.
+  /// particles beside it. The pattern of the Jacobian does not change.
   virtual void hold(std::span<const char> /*held*/) {}
 };
 

@@ -58,7 +58,7 @@ inline VecLanes lanes_of(const Vec3& a) {
   return {lanes_of(a.x()), lanes_of(a.y()), lanes_of(a.z())};
 }
 
-/// The entries of four particles in `of`.
+/// The vectors of four particles in `of`, transposed: one register per coordinate.
 inline VecLanes gather(std::span<const solver::PaddedVec3<double>> of, const Four& i) {
   const Lanes &a = of[i[0]], &b = of[i[1]], &c = of[i[2]], &d = of[i[3]];
   const Lanes xz_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), xz_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);

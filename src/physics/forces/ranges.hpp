@@ -1,4 +1,4 @@
-// Elements by the ranges of particles that they act on, so that threads can add forces to ranges at the same time.
+// Which elements act on which range of particles, so that threads can add forces to different ranges at the same time.
 #pragma once
 
 #include <algorithm>

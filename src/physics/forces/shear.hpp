@@ -17,9 +17,9 @@ struct ShearParameters {
 ///
 /// s_u and s_v are central differences in the middle of each cell, each the mean over two opposite edges, with an error
 /// of O(l²) for spacing l. The seed uses central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), also
-/// with four particles per term. Those do not see a pattern that repeats at every second particle in one direction; the
-/// differences here miss only the checkerboard, which stretches the edges. The seed prints O(l³) for its difference; a
-/// test measures order 2 for this one.
+/// with four particles per term. Those vanish for any pattern that repeats at every second particle in one direction;
+/// the differences here vanish only for the checkerboard, which stretches the edges. The seed prints O(l³) for its
+/// difference; a test measures order 2 for this one.
 class Shear final : public Force {
  public:
   Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters);

@@ -17,8 +17,8 @@ struct StretchParameters {
 /// Tension along the grid lines: seed Eq. (1), entries 11 and 22, with the spring formula of "Elastic Model".
 ///
 /// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)², k = k1 or k2. The
-/// seed's force density, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force here.
-/// Viscosity has the same form in the rate of strain: dissipation ½ η A (d/dt (‖d‖/l))².
+/// seed's force density, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force of an
+/// edge. Viscosity has the same form in the rate of strain: dissipation ½ η A (d/dt (‖d‖/l))².
 class Stretch final : public Membrane {
  public:
   Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);

@@ -105,7 +105,7 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights,
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
                                  const Body& body) const {
-  // For nearly all pieces the squared length suffices to see that they are below the onset.
+  // For nearly all pieces, the squared length suffices to show that they are below the onset.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
   ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
     const Vec3 s = derivative(threads_[t], threads_[t].along, x);
@@ -216,7 +216,7 @@ void StretchLimit::add_lag(std::span<const Vec3> x, const LockLinearisation& lag
   }
 }
 
-// The second derivative of |sine| is exact, or only its positive square is kept, as in Shear.
+// If `exact`, uses the whole second derivative of |sine|; else only its positive square, as Shear does.
 template <class Body>
 void StretchLimit::lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const {
   const Lock lock(shear_);
@@ -248,7 +248,7 @@ double StretchLimit::energy(std::span<const Vec3> x) const {
 }
 
 StretchLimit::Worst StretchLimit::worst(std::span<const Vec3> x) const {
-  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², and minus the index: the first of equal ones counts
+  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², −index: of equally long threads the first counts
   const Longest none{1, 1},
       longest = parallel_max(threads_.size(), kGrainSize, none, [&](std::size_t begin, std::size_t end) {
         Longest longest_in_range = none;

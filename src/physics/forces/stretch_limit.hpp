@@ -50,9 +50,9 @@ class Lock {
   double onset_, span_;
 };
 
-/// Extensions at which Newton's method linearises the locks of a cloth's threads: those at which a piece has the
-/// tension that the last linearisation predicted (a dual unknown, as for contacts). If a piece were linearised at the
-/// iterate, it would lose only a third of its excess over the onset per iteration.
+/// Extensions at which Newton's method linearises the locks of a cloth's threads. At its extension, a piece has the
+/// tension that the last linearisation predicted: the tension is a dual unknown, as for contacts. If Newton's method
+/// linearised at the iterate, a piece would lose only a third of its excess over the onset per iteration.
 struct LockLinearisation {
   std::vector<double> extensions;   ///< per piece of a thread
   std::vector<std::uint32_t> near;  ///< pieces beyond the onset by this extension or by that of the iterate
@@ -85,7 +85,7 @@ class StretchLimit final : public Force {
   /// Adds the force linearised at `lag` minus the exact force, at any x.
   void add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
 
-  /// Copies the current rest shape of the membrane. It must be the one that the constructor was given.
+  /// Copies the current rest shape of the membrane, which must be that of the constructor.
   void follow(const TriangleMembrane& membrane);
 
   /// The piece with the largest extension; zero if none is extended.

@@ -11,7 +11,7 @@ namespace weft::forces {
 /// The ties of a sheet. Both particles of a tie, at a distance l, pull each other with F min(l / r − 1, 1) if l > r =
 /// kRest. At smaller distances they do not pull; contact keeps them apart. F is the strength [N]. It grows from zero
 /// during sewing, and after a tie closes. A tie of a tearable seam holds once it has full strength and pulls with less
-/// than F. If it pulls with F after that, it tears for good.
+/// than F. If it pulls with F after that, it tears permanently.
 class Ties final : public Force {
  public:
   /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press.
@@ -26,7 +26,7 @@ class Ties final : public Force {
 
   /// Accepts the end of a step, with particles at x [m]: ties of tearable seams begin to hold, or tear.
   void accept(std::span<const Vec3> x);
-  /// Pull of a tearable seam [N], and whether any of its ties has a strength now: it is neither torn nor open.
+  /// Pull of a tearable seam [N], and whether any of its ties has a strength now, being neither torn nor open.
   struct SeamLoad {
     double load = 0;
     bool holds = false;
@@ -39,7 +39,7 @@ class Ties final : public Force {
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> /*bounds*/) override {}  // few elements
+  void cut(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;

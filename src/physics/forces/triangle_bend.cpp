@@ -11,7 +11,7 @@ namespace {
 
 // 2 ‖s_uv‖²: the mixed derivative counts twice.
 const Vec3 kMultiplicity(1, 1, 2);
-// Smallest rest curvature, times the root of the triangle's area; smaller values are rounding.
+// Smallest rest curvature, times √area of the triangle. Smaller values are rounding errors and become 0.
 constexpr double kMinRestCurvature = 1e-9;
 
 /// The plane of a triangle: its unit normal, and the gradients of the corners' linear weights.
@@ -80,7 +80,7 @@ void TriangleBend::hold(std::span<const char> held) {
   rebuild_elements();
 }
 
-// Creates elements with the same particles in the same order, whatever is held.
+// Every call creates elements with the same particles in the same order, so the Jacobian keeps its pattern.
 void TriangleBend::rebuild_elements() {
   elements_.clear(), particles_.clear(), weights_.clear();
   std::size_t pairs = 0;

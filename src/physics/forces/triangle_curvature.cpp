@@ -17,7 +17,7 @@ using Point = std::complex<double>;
 // near a border, or if the vertices are nearly on a conic, two or three are necessary.
 constexpr int kMaxRings = 3;
 // Largest norm of the corrections of a slope's weights, relative to that of the uncorrected ones (across_opposite). A
-// larger one would make the slope a small difference of large numbers; another ring is better.
+// larger correction makes the slope a small difference of large numbers; the fit then adds a ring.
 constexpr double kMaxCorrection = 1;
 // Tolerance for rounding of the moments of a stencil whose coordinates are about one.
 constexpr double kMomentTolerance = 1e-9;
@@ -25,7 +25,7 @@ constexpr double kMomentTolerance = 1e-9;
 /// Derivative of a function at the middle of an edge, along the outward normal of the edge's first triangle [1/m].
 struct Slope {
   std::vector<std::pair<Index, double>> weights;
-  bool near_pin = false;  ///< pins may change it
+  bool near_pin = false;  ///< a pinned triangle is near, so that held_ may change the weights
 };
 
 class Slopes {
@@ -53,7 +53,7 @@ class Slopes {
     }
   };
   static double cross(const Point& a, const Point& b) { return (std::conj(a) * b).imag(); }
-  /// Whether all corners of a triangle are marked.
+  /// Whether `marked` is set for all corners of a triangle.
   bool all_corners_marked(std::span<const char> marked, Index triangle) const {
     return !marked.empty() &&
            std::ranges::all_of(sheet_.triangles[at(triangle)], [&](Index v) { return marked[at(v)] != 0; });
@@ -87,7 +87,7 @@ void Slopes::add_neighbour(Patch& patch, std::size_t member, std::size_t side) c
   const mesh::Edge& edge = edges_.edges[at(edges_.of_triangle[at(triangle)][side])];
   const Index next = edge.triangles[0] == triangle ? edge.triangles[1] : edge.triangles[0];
   if (next < 0 || std::ranges::any_of(patch.triangles, [&](const auto& t) { return t.first == next; })) return;
-  // Both triangles are counter-clockwise, so the neighbour has the side in reverse.
+  // Both triangles are counter-clockwise, so the side has the opposite direction in the neighbour.
   const std::size_t m = side_of(next, edge);
   const Point from = corners[(side + 1) % 3], to = corners[side];
   Point turn = (to - from) / (material(next, m + 1) - material(next, m));
@@ -147,7 +147,7 @@ Eigen::VectorXd Slopes::fit_quadratic(Patch& patch, const Axes& axes) const {
   return across_opposite(patch.vertices.size());
 }
 
-// Slope of a patch with held triangles; empty if no triangle is held, or too few vertices are beside them.
+// Slope of a patch with held triangles; empty if no triangle is held, or if correct_weights() finds no weights.
 Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const {
   // At its edge, the slope of a held triangle is that of the linear function through its corners.
   for (std::size_t member : {0, 1}) {
@@ -286,7 +286,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
       stencils[t].weights.push_back(weight);
     };
     for (Index corner : corners) append(corner, weights.at(corner));
-    // Weights that cancel by symmetry are only rounding, and are dropped unless pins may change them.
+    // Omits weights that cancel by symmetry, of which only rounding remains, unless pins may change them.
     for (const auto& [vertex, weight] : weights)
       if (std::find(corners.begin(), corners.end(), vertex) == corners.end() &&
           (near_pin || weight.norm() * area > kMomentTolerance))

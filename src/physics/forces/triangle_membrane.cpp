@@ -68,7 +68,7 @@ Eigen::Matrix2d TriangleMembrane::stretch_of(const Gradient& s) {
   return (metric + area * Eigen::Matrix2d::Identity()) / std::sqrt(metric.trace() + 2 * area);
 }
 
-// `inverse`: of the matrix whose columns are the sides from the first corner.
+// `inverse`: inverse of the matrix whose columns are the triangle's sides from its first corner.
 void TriangleMembrane::set_rest_shape(const Eigen::Matrix2d& inverse, Element& element) {
   element.gradients[1] = inverse.row(0);
   element.gradients[2] = inverse.row(1);
@@ -98,8 +98,8 @@ void TriangleMembrane::attach(const solver::Assembly& assembly) {
     }
 }
 
-// Computed from differences to the first corner, so that rounding errors are relative to the size of the triangle, not
-// to its distance from the world's origin.
+// Differences to the first corner keep rounding errors relative to the size of the triangle, not to its distance from
+// the world's origin.
 TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
   const auto& [a, b, c] = element.particles;
   const Vec3& origin = x[a];
@@ -152,10 +152,10 @@ void TriangleMembrane::add(const Evaluation& at) const {
   });
 }
 
-// Blocks of the pairs (a, b): gradients[a] gradients[b] times the second derivatives of the energy by s_u and s_v.
-// The stretch terms are those of Stretch for an edge of rest length 1. The shear terms are those of Shear: the second
-// derivative of ⟨s_u, s_v⟩ is 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). Times the stress, one of these two
-// squares is positive and one is negative; the matrix keeps only the positive one.
+// Blocks of the pairs (a, b): gradients[a] gradients[b] times the second derivatives of the energy in s_u and s_v. The
+// stretch terms are those of Stretch for an edge of rest length 1. The shear terms are those of Shear: the second
+// derivative of ⟨s_u, s_v⟩ is 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). Times the stress, one of these
+// squares is positive and one negative; the matrix keeps only the positive one.
 void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s, const Lanes& length_u,
                                      const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
   const auto lateral_of = [](const Lanes& length) { return max(1 - 1 / length, lanes_of(0.0)); };

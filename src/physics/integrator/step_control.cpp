@@ -21,7 +21,7 @@ bool StepControl::accepts(double h, double error) const {
   return meets(error) || (h <= numerics.steps.least && std::isfinite(error));
 }
 
-// The aimed error over this error.
+// Ratio of the aimed error to this error; finite even if the error is 0.
 double StepControl::aim_to_error_ratio(double error) const {
   return numerics.steps.aim * tolerance_ / std::max(error, kRoundoff * tolerance_);
 }

@@ -13,7 +13,7 @@
 namespace weft::integrator {
 namespace {
 
-// Smallest error that is asked of the solver, in roundings of the largest coordinate of a block.
+// Smallest position error that the solver must reach, in rounding errors of the largest coordinate of a block.
 constexpr double kMinRoundings = 32;
 
 // The largest coordinate of a block, as absolute value [m].
@@ -124,7 +124,7 @@ double Stepper::root_mean_square(const BlockState& part, std::span<const double>
   return std::sqrt(sum / part.mass);
 }
 
-// Velocities of the blocks, root mean square, that belong to these displacements [m/s].
+// Velocity of each block, root mean square, that these displacements of the stage cause [m/s].
 void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
                                  std::vector<double>& speeds) const {
   speeds.clear();
@@ -133,8 +133,8 @@ void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<
 
 // Estimates the velocity error of each block after a linear solve and a line search. The linear solver reports its own
 // error. The nonlinear error is known only as a residual, which the preconditioner converts to a displacement that is
-// too small. The result is corrected by the ratio of the last solution to its preconditioned right hand side, if that
-// is above 1.
+// too small. The ratio of the last solution to its preconditioned right hand side, if above 1, corrects this
+// displacement.
 void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, double fraction,
                                             std::span<const double> masses) {
   const bool is_full_step = fraction == 1 && solved.definite;
@@ -152,7 +152,7 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
       blocks_[p].left = std::hypot(blocks_[p].left, solved.errors[p] / std::sqrt(blocks_[p].mass));
 }
 
-// Estimates the velocities by which whole blocks slide wrongly; only for blocks that otherwise count as solved.
+// Estimates the velocity error of whole blocks due to wrong friction; only for blocks that otherwise count as solved.
 // Friction can at most stop a block, so the error is bounded by the velocity that the block has or gains in the step,
 // however large the force of a stiff contact is.
 void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) {
@@ -192,8 +192,8 @@ void Stepper::select_unsolved(int iterations) {
 // Returns the factor of delta_, or a slope that is not finite.
 double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
   // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
-  // of the energy: positive before the minimum along delta, negative behind it. It becomes strongly negative if
-  // contacts or compressed edges become active on the way; full steps would then oscillate. It hardly decreases if
+  // of the energy: positive before the minimum along delta, negative behind it. The product becomes strongly negative
+  // if contacts or compressed edges become active on the way; full steps would then oscillate. It hardly decreases if
   // friction and compression make the matrix too stiff.
   const std::size_t n = x_.size();
   const double start_slope = dot(residual_, delta_);
@@ -215,7 +215,7 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
       if (trial == numerics.newton.line_trials / 2) break;
       fraction *= 2;
     } else {
-      // Regula falsi, at a distance from the ends.
+      // Regula falsi, kept away from the ends of the bracket.
       const double guess = low + (high - low) * low_slope / (low_slope - high_slope);
       fraction = std::clamp(guess, low + 0.1 * (high - low), high - 0.1 * (high - low));
     }
@@ -233,8 +233,8 @@ void Stepper::prepare_guess(const System& system, const State& now, const Stage&
   system.constant_forces(constant_force_);
 }
 
-// Direction in which velocities are expected to change: as in the last step; without a history, as by constant forces.
-// Cloth that falls, slides or drifts uniformly is then exact at any linear tolerance, and flat sheets stay flat.
+// Expected direction of velocity changes: that of the last step or, without a history, of constant forces. Cloth that
+// falls, slides or drifts uniformly is then exact at any linear tolerance, and flat sheets stay flat.
 std::span<const Vec3> Stepper::predict_velocity_change(std::span<const double> masses, const State& now) {
   for_each_particle(masses.size(), [&](std::size_t i) {
     scratch_[i] = history_.h > 0 ? Vec3(now.v[i] - history_.before.v[i]) : Vec3(constant_force_[i] / masses[i]);
@@ -242,7 +242,7 @@ std::span<const Vec3> Stepper::predict_velocity_change(std::span<const double> m
   return scratch_;
 }
 
-// Held directions start at their target and stay there.
+// Moves held particles to their target along the held directions; the constraints keep them there.
 void Stepper::apply_constraints(const State& now, const Stage& stage, std::span<const HeldParticle> held,
                                 std::vector<solver::ParticleConstraint>& constraints) {
   constraints.clear();
@@ -278,7 +278,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   do {
     end_if_stopped();
     linearise(system, now, stage, previous_iterations + report.newton_iterations);
-    // Aggregates represent long waves, whose stiffness hardly changes within a step.
+    // Later iterations reuse the sums: aggregates represent long waves, whose stiffness hardly changes in a step.
     {
       const Stopwatch watch(times_.preconditioner);
       cg_.prepare(linear,
@@ -385,7 +385,7 @@ void Stepper::report_worst(StepReport& report) const {
   }
 }
 
-// Replaces the velocity changes that impacts cause; see the class.
+// Replaces the velocity changes δ/β that impacts cause by δ/h; see the class.
 void Stepper::split_impacts(System& system, const State& now, const Stage& stage, double h) {
   std::vector<Vec3>& right_side = scratch_;
   std::ranges::fill(right_side, Vec3::Zero());
@@ -449,7 +449,7 @@ Vec3 Stepper::constraint_force(Index particle, double mass) const {
   return mass / beta_ * (v_[i] - v_hat_[i]) - force_[i] - constant_force_[i];
 }
 
-// Whether a step over h is Euler's, or its error is estimated as Euler's.
+// Whether a step over h is an Euler step, or its error is estimated as that of one.
 bool Stepper::is_first_order(double h) const {
   return method_ == Method::implicit_euler || history_.h == 0 ||
          (method_ == Method::bdf2 && h > (1 + 1e-9) * kMaxStepRatio * history_.h);

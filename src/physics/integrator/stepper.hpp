@@ -63,9 +63,9 @@ struct StepReport {
 /// BDF2 assumes a smooth trajectory. Without further measures, cloth rebounds from obstacles with up to half of its
 /// energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's method,
 /// and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls, Int. J. Numer.
-/// Meth. Engng 96, 2013). Impacts move particles by δ. A δ = F, where F are the forces of impacts and A is the matrix
-/// of the step. Its only terms are those of friction in impacts and of contacts that pass impacts on. Positions stay as
-/// they are; velocities change by δ/h instead of δ/β. The start velocity in the history also changes by δ/h, so that
+/// Meth. Engng 96, 2013). Impacts move particles by δ with A δ = F, where F are the forces of impacts, and A is the
+/// matrix of the step with only the terms of friction in impacts and of contacts that transmit impacts. Positions do
+/// not change; velocities change by δ/h instead of δ/β. The start velocity in the history also changes by δ/h, so that
 /// the next step starts from a smooth trajectory. Changes of velocity by corrections after a solve count as impacts,
 /// too.
 ///
@@ -81,7 +81,7 @@ struct StepReport {
 /// Euler's estimate (BDF2: 3/2 of it, as its first step is Euler's; midpoint: an upper bound). Errors of velocity are
 /// not included; they affect positions only in later steps. The error is the root mean square over the mass of each
 /// diagonal block (a cloth or a rigid body), so that it depends neither on the mesh resolution nor on a single particle
-/// in contact; the block with the largest error counts. Held directions have no error.
+/// in contact; the error of a step is the largest of all blocks. Held directions have no error.
 class Stepper {
  public:
   /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I, III.5). At
@@ -145,7 +145,7 @@ class Stepper {
     solver::DiagonalBlock rows;
     double mass = 0;             // [kg]
     double local_error = 0;      // of the method, at the current iterate [m]
-    double velocity_error = 0;   // of implicit Euler, if there is a history; else 0 [m/s]
+    double velocity_error = 0;   // local error of implicit Euler [m/s]; 0: no history
     double allowed = 0;          // bound of the remaining velocity error [m/s]
     double left = 0;             // remaining velocity error [m/s]
     double rounding = 0;         // velocity that corresponds to rounding of its positions [m/s]

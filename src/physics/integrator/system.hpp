@@ -11,7 +11,7 @@
 namespace weft::integrator {
 
 /// Positions [m] and velocities [m/s] of all particles. x may have more entries behind those of the particles, for
-/// points that are not integrated; the integrator leaves them alone.
+/// points that the integrator does not change.
 struct State {
   std::vector<Vec3> x, v;
 };
@@ -44,9 +44,9 @@ class System {
   /// search along the solution of that linear system must use these.
   virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
 
-  /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. Forces
-  /// that lag behind the positions are updated first. `iteration`: Newton iteration, from 0 in each solve. If a paused
-  /// solve is continued, the count goes on.
+  /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. First
+  /// updates the forces that lag behind the positions. `iteration`: Newton iteration, from 0 in each solve. If a paused
+  /// solve continues, so does the count.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
   /// Whether translating a diagonal block changes no force except through terms, constraints, and air.

@@ -13,7 +13,7 @@
 namespace weft::mesh {
 namespace {
 
-// Numbers are copied with their memory layout.
+// write_ply() copies numbers byte by byte into a little-endian file.
 static_assert(std::endian::native == std::endian::little);
 
 /// Bytes of a face (the number of its corners as a byte, then their indices) and of an edge.

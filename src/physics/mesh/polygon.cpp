@@ -32,7 +32,7 @@ std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> 
 constexpr std::array<double, 3> kMinEarHeightRatios = {1e-3, 1e-6, 0};
 
 /// Whether corner k of the ring turns left and its triangle, sides included, holds no other corner. Corners nearer to a
-/// side than `flatness` times the longest side count as on it; triangles less high than that are no ears.
+/// side than `flatness` times the longest side count as on it; triangles with a smaller height are no ears.
 bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vector<Vec2>& flat, double flatness) {
   const std::size_t n = ring.size();
   const Vec2 &a = flat[ring[(k + n - 1) % n]], &b = flat[ring[k]], &c = flat[ring[(k + 1) % n]];

@@ -33,7 +33,7 @@ double angle_at(const Vec3& corner, const Vec3& a, const Vec3& b) {
   return std::atan2((a - corner).cross(b - corner).norm(), (a - corner).dot(b - corner));
 }
 
-/// A triangle mesh that is being changed, with the list of triangles around each vertex kept up to date.
+/// Changes a triangle mesh, and keeps the list of triangles around each vertex up to date.
 class Remesher {
  public:
   Remesher(Mesh& mesh, const Field& field, const Sizing& edge_length)
@@ -144,7 +144,7 @@ class Remesher {
            std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
   }
 
-  /// Whether the triangles around `v` without `other` turn by at most 60° and need no split if `v` moves to p.
+  /// Whether, if `v` moves to p, its triangles without `other` turn by at most 60° and get no edge that is too long.
   bool shape_allows(Index v, Index other, const Vec3& p) const {
     for (const Index t : around_[z(v)]) {
       Triangle corner = triangles_[z(t)];

@@ -27,7 +27,7 @@ struct Band {
 struct Tie {
   Index a = 0, b = 0;
   double strength = 0;  ///< maximum force [N]
-  int tearing = -1;     ///< number of the seam in Sheet::tearing_seams that it belongs to; −1: it never tears
+  int tearing = -1;     ///< index of its seam in Sheet::tearing_seams; −1: the tie never tears
   double open = std::numeric_limits<double>::infinity(), closed = std::numeric_limits<double>::infinity();
 };
 
@@ -53,15 +53,15 @@ struct Sheet {
 /// Area of a triangle at rest [m²].
 double rest_area(const Sheet& sheet, std::size_t triangle);
 
-/// Largest ratio of a cloth's longest edge to its smallest triangle height, or quad spacing, with which it may meet
+/// Largest ratio of a cloth's longest edge to its smallest triangle height, or quad spacing, with which it may touch
 /// obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin triangles, eight of
 /// nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading of 50, none at 100.
 inline constexpr double kMaxUnevenness = 80;
 
 /// Triangles lower than the longest edge / kMaxUnevenness.
 struct FlatTriangles {
-  std::size_t count = 0, flattest = 0;  ///< number of the flattest triangle of all
-  double least_height = 0;              ///< of that one [m]
+  std::size_t count = 0, flattest = 0;  ///< `flattest`: index of the lowest of all triangles of the sheet
+  double least_height = 0;              ///< height of that triangle [m]
   double longest_edge = 0;              ///< [m]
 };
 FlatTriangles find_flat_triangles(const Sheet& sheet);

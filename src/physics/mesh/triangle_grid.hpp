@@ -59,7 +59,7 @@ class TriangleGrid {
 template <class Visit>
 void TriangleGrid::walk(const Vec3& from, const Vec3& to, const Visit& visit) const {
   std::array<int, 3> at{}, step{};
-  Vec3 next, stride;  // fraction of the path: at the next cell boundary of each axis, and between two
+  Vec3 next, stride;  // fractions of the path: to the next cell boundary along each axis; between two boundaries
   const Vec3 path = to - from;
   for (int k = 0; k < 3; ++k) {
     const double place = (from[k] - low_[k]) / cell_;

@@ -1,4 +1,4 @@
-// How contact is found and answered.
+// How the program detects contact and responds to it.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ struct Search {
   Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
   TreeKind tree = TreeKind::oct;  ///< two, four or eight children per node
   int leaf = 8;                   ///< maximum number of triangles per leaf
-  bool open_longer_side = false;  ///< of two nodes, open only the longer one
+  bool open_longer_side = false;  ///< of two overlapping nodes, descend only into the longer one
   bool separation_lists = false;  ///< start each traversal where the previous one stopped
   bool velocity_cones = false;    ///< keep the bounds of slow nodes while their vertices stay inside
   bool normal_cones = false;      ///< skip regions that are provably too flat to touch themselves

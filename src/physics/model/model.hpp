@@ -1,5 +1,5 @@
-// What is simulated: particles with their materials, and bodies with their motion. Plain values in SI units, without
-// files and looks.
+// The simulated model: particles with their materials, and bodies with their motion. Plain values in SI units; neither
+// files nor appearance.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@
 
 namespace weft::model {
 
-/// A particle of a region of a cloth; numbered within the cloth.
+/// A particle of a region of a cloth; `particle` is its index within the cloth.
 struct Chosen {
   Index particle = 0;
   double share = 1;    ///< in (0, 1]: factor on the strength; the mass of a weight is distributed in proportion to it
@@ -37,7 +37,7 @@ struct Chosen {
 struct Pin {
   std::vector<Chosen> particles;    ///< first its region, then its fade
   Vec3 middle{0, 0, 0};             ///< mean start position of its region [m]
-  motion::PoseTrack motion;         ///< of `middle`, in the world, if it follows nothing
+  motion::PoseTrack motion;         ///< of `middle`, in the world, if the pin follows nothing
   std::optional<std::size_t> body;  ///< number of the body whose motion the particles share
   /// Index, for Model::vertex(), of the point of that body that moves as the first particle; the points of the others
   /// come next. Absent: the particles follow the nearest triangles of the body, or its pose.
@@ -52,13 +52,13 @@ struct Weight {
   double mass = 0;  ///< [kg]
 };
 
-/// A cloth as it starts: a deformable sheet of quads or triangles, or a rope.
+/// A cloth at the start: a deformable sheet of quads or triangles, or a rope.
 struct Cloth {
   std::string name;
   std::string source;    ///< names the cloth in error messages, such as "napkin.toml:3:1: cloth.napkin"
   mesh::Grid grid;       ///< of quads; of a rope: one row
   mesh::Sheet sheet;     ///< if it is made of triangles, in its own coordinates; else empty
-  bool crossed = false;  ///< triangles in fours around the middle of a rectangle, which would lock as they bend
+  bool crossed = false;  ///< cells of four triangles around a middle vertex, which need CrossedMembrane against locking
   mesh::Mesh mesh;       ///< rest shape in the world, posed as at the start; uv: along weft and warp from a corner [m]
   /// Smallest distance between neighbouring particles of a grid or rope [m]. For triangles, √2 times the smallest
   /// height, which gives the same value for the two halves of a square.
@@ -71,12 +71,12 @@ struct Cloth {
   double put_on = 0;              ///< time since the start of the run, preroll included, at which it is put on [s]
   double sewing = 0;              ///< time in which the rest shape changes from the sewn start to flat panels [s]
   std::vector<std::string> over;  ///< names of all cloths that are put on before it and stay inside it
-  bool untangle = false;          ///< whether it is moved off what it touches or crosses at the start
+  bool untangle = false;          ///< whether the start moves it off surfaces that it touches or crosses
   Pressure pressure;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
 
-  /// Whether the start may move it: because it says so, or as it is worn over other cloth.
+  /// Whether the start may move the cloth: if `untangle` is set, or if it is worn over other cloth.
   bool may_be_untangled() const { return untangle || !over.empty(); }
 };
 
@@ -96,7 +96,7 @@ struct Patch {
   double friction = 0;                 ///< Coulomb coefficient
 };
 
-/// What a body or camera follows: another body, or a part of a deforming one.
+/// The object that a body or camera follows: another body, or a part of a deforming body.
 struct Parent {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::size_t body = kNone;                             ///< number of the body
@@ -109,7 +109,7 @@ struct Parent {
 /// A rigid body moves along a track, a deforming one by key frames of its vertices.
 using Mover = std::variant<motion::Track, motion::KeyFrames>;
 
-/// What cloth meets: a rigid obstacle (still, moved by keys or moved by forces), or a body that deforms.
+/// A body that cloth may touch: a rigid obstacle (still, moved by keys or moved by forces), or a body that deforms.
 struct Body {
   std::string name;
   mesh::Mesh mesh;  ///< rigid: in its own coordinates; deforming: in the world at time 0
@@ -124,7 +124,7 @@ struct Body {
   std::vector<Index> limbs;                  ///< of deforming bodies: limb of each vertex, from 0; limbs may intersect
   /// Triangles of the parts that collide, with cuts closed; empty if all parts collide.
   std::vector<mesh::Triangle> colliding;
-  std::string advice;  ///< what else may help if it touches something at the start, for the error message; or empty
+  std::string advice;  ///< further advice for the error message if it touches a surface at the start; or empty
 
   bool deforms() const { return std::holds_alternative<motion::KeyFrames>(*mover); }
   std::span<const mesh::Triangle> colliding_triangles() const {
@@ -151,7 +151,7 @@ struct Layer {
   std::vector<std::size_t> dressed;  ///< numbers of the cloths of this and all lower layers, ascending
 };
 
-/// Only set_motion() changes the motion of a body, so results for one time stay valid.
+/// Only set_motion() changes the motion of a body, so a pose computed for a given time stays valid.
 struct Model {
   std::string source;  ///< names the scene in error messages: its file
   Vec3 up{0, 0, 1};
@@ -173,7 +173,7 @@ struct Model {
   /// Whether the start may move any cloth.
   bool may_be_untangled() const;
 
-  /// A copy with these cloths alone (ascending numbers); motions are shared. It has no layers.
+  /// A copy with these cloths alone (ascending numbers). It shares the motions and has no layers.
   Model with_cloths(std::span<const std::size_t> numbers) const;
 
   /// Writes the positions of all vertices of a body at time t [s]; `positions` has the size of its mesh. Takes time

@@ -16,7 +16,7 @@ struct RopeKey {
   double length = 1;  ///< rest length [m]
 };
 
-/// What makes a cloth a rope: a chain of particles instead of a sheet.
+/// Properties of a rope: a cloth that is a chain of particles instead of a sheet.
 struct Rope {
   std::vector<double> lengths;  ///< rest lengths of its pieces [m]; a closed rope has as many pieces as particles
   bool closed = false;          ///< its end joins its beginning

@@ -20,7 +20,7 @@ Quat exp(const Vec3& w) {
   return Quat(std::cos(0.5 * angle), factor * w.x(), factor * w.y(), factor * w.z());
 }
 
-/// Rotation vector of the shortest turn, angle in [0, pi].
+/// Rotation vector of q with an angle in [0, π].
 Vec3 log(const Quat& q) {
   const Vec3 v = q.w() < 0 ? Vec3(-q.vec()) : Vec3(q.vec());
   const double sine = v.norm();

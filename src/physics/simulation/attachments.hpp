@@ -76,7 +76,7 @@ class Attachments {
     std::vector<Spring> springs;
     State state = State::open;
     bool holds = false;  // in the current step
-    double speed = 0;    // at which it pulls its particles, until a step has been accepted since it was tied [m/s]
+    double speed = 0;    // at which it pulls newly tied particles [m/s]; accept() sets it to 0
     double load = 0;     // sum of the spring forces at the end of the last accepted step [N]
   };
   struct Tension {

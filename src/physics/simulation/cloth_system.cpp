@@ -77,7 +77,7 @@ Lattice lattice_of(const model::Cloth& cloth) {
   return lattice;
 }
 
-// Doubles the sides of the boxes that then differ less from the shortest one: those shorter than √2 times it. Cloth is
+// Doubles each side of the boxes that is at most √2 times the shortest one, so that sides become more equal. Cloth is
 // stiffest between close particles, so these are merged first.
 void coarsen(Lattice& lattice) {
   Box last{0, 0, 0};

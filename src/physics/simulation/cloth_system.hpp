@@ -27,8 +27,8 @@ struct LockLinearisation;
 namespace weft::simulation {
 
 /// Numbers the particles of all cloths consecutively, in the order of the model. After them come four particles for
-/// each body that forces move: its frame. A part is a cloth or such a frame. Forces depend on their arguments, and
-/// besides only on what changes with time: rest shapes of cloth that is being sewn, rope lengths, enclosed air, and
+/// each body that forces move: its frame. A part is a cloth or such a frame. Besides their arguments, forces depend
+/// only on quantities that change with time: rest shapes of cloth that is being sewn, rope lengths, enclosed air, and
 /// which particles are held.
 class ClothSystem {
  public:

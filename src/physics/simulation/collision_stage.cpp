@@ -264,7 +264,7 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
   for (std::size_t b = 0; b < bodies_.size() && is_dynamic(b); ++b) {
     const collision::BodyTraits& traits = engine_.bodies()[model_.cloths.size() + b];
     if (movable_[static_cast<std::size_t>(traits.frame)] != collision::kPinned) continue;
-    // Not released yet: keys move it, as they move other obstacles.
+    // The body is not released yet: keys move it, as they move other obstacles.
     std::fill_n(movable_.begin() + traits.frame, mesh::RigidFrame::kParticles, std::uint8_t{collision::kFixed});
     std::ranges::fill(engine_.bodies()
                           .part(model_.cloths.size() + b, std::span(movable_))
@@ -340,7 +340,7 @@ bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, doub
   });
 }
 
-// Rigid motion of a body from t to t + h; none for characters, which deform, and for bodies that forces move.
+// Rigid motion of a body from t to t + h; the identity for characters, which deform, and for bodies that forces move.
 collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, double h) const {
   collision::RigidMotion motion;
   const model::Body& object = model_.bodies[body];

@@ -55,7 +55,7 @@ class CollisionStage {
 
   /// Begins a step, before its solve. Places bodies at t in `now` and at t + h in `next`. Predicts the particles of
   /// `next`: held ones at their targets, others with unchanged velocity. Finds contacts for `now` and this prediction.
-  /// If predicted particles would meet on the way, moves them apart. Returns whether it moved any.
+  /// If the predicted trajectories would meet, moves their ends apart. Returns whether it moved any.
   bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, SystemState& now,
                   SystemState& next);
 
@@ -101,8 +101,8 @@ class CollisionStage {
                                         SystemState& next);
   /// Restarts the trajectory of the step from `next`, as push_apart() has corrected it, and finds contacts there.
   void continue_from(const SystemState& next);
-  /// Whether pins hold particles of two cloth triangles that is_separated() found to meet. obstructed_pins() then lists
-  /// those particles.
+  /// Whether pins hold particles of cloth triangles between which is_separated() found no plane. obstructed_pins() then
+  /// lists those particles.
   bool find_pins_between_cloths();
   /// The pinned particles that the last push_apart() or find_pins_between_cloths() found.
   std::span<const collision::ObstructedPin> obstructed_pins() const { return obstructed_pins_; }

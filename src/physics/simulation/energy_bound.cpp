@@ -17,7 +17,7 @@ bool is_driven_by_pins_alone(const model::Model& model) {
   const auto moves = [](const auto& track) { return track.keys.size() > 1; };
   for (const model::Cloth& cloth : model.cloths) {
     if (cloth.sewing > 0) return false;                // sewing does work
-    if (!cloth.over.empty()) return false;             // this cloth is added later
+    if (!cloth.over.empty()) return false;             // this cloth, with its energy, is added later
     if (cloth.pressure.keys.size() > 1) return false;  // pumping does work
     if (cloth.rope && cloth.rope->keys.size() > 1) return false;
     // A pin with a strength is a spring, whose work is not counted.

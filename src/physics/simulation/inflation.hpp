@@ -35,7 +35,7 @@ class Inflation {
   /// reference of its amount of air. Throws Error(scene_invalid) if the scene gives an amount of air, but the cloth
   /// encloses no volume then.
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
-  /// Whether the values of the model are equal at t0 and t1 [s].
+  /// Whether the model gives the same pressures or amounts of air at t0 and t1 [s].
   bool is_constant_between(double t0, double t1) const;
 
   /// `x`, `force` [N] and the rows of `system` are those of all particles.

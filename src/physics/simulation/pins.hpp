@@ -11,7 +11,7 @@
 
 namespace weft::simulation {
 
-/// Largest speed at which a pin or an attachment can move cloth without tearing it [m/s]; a hand reaches 10.
+/// Largest speed of a pin or an attachment that cloth can follow [m/s]; a hand reaches 10.
 inline constexpr double kMaxHoldSpeed = 20;
 
 /// All pins of a model; they move particles along key frames or with a body.

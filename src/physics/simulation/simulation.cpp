@@ -45,7 +45,7 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
-// What may help where something touches a body at the start; empty if no body knows.
+// Advice of the first body that has any and touches something at the start; empty if there is none.
 std::string advice_of(const model::Model& model, const std::vector<IntersectionPlace>& places) {
   for (const model::Body& body : model.bodies)
     if (!body.advice.empty() && std::ranges::any_of(places, [&](const IntersectionPlace& place) {
@@ -130,7 +130,7 @@ void Simulation::Impl::begin_layer(std::size_t number) {
   steps = std::make_unique<StepLoop>(dressed(), time());
 }
 
-// Puts on the cloths whose time has come, outside of those that are already dressed.
+// Puts on each layer whose first frame has come, outside of the cloths that are already dressed.
 void Simulation::Impl::put_on_next() {
   while (!all_dressed() && model.layers[layer + 1].first_frame <= frame) {
     const std::unique_ptr<model::Model> inner_part = std::move(dressed_part);  // the step loop refers to it

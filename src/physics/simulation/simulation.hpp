@@ -36,14 +36,14 @@ struct IntersectionPlace {
   std::size_t pairs = 0;                       ///< number of pairs of triangles
   Vec3 centre = Vec3::Zero();                  ///< [m]
   double size = 0;                             ///< longest side of the bounding box [m]
-  std::vector<std::array<Vec3, 3>> triangles;  ///< those that meet there [m]
+  std::vector<std::array<Vec3, 3>> triangles;  ///< corners of the triangles that meet there [m]
 };
 
 /// "12 pairs of triangles that touch or cross in 2 places: 'sheet' and 'ball' (8 pairs) around (0, 0, 1) m, ...".
 std::string describe(std::span<const IntersectionPlace> places);
 
-/// Places where surfaces touch or cross at the start, before its preroll and without untangling; largest number of
-/// pairs first; empty if a run may begin. Layers are not checked against each other.
+/// Places where surfaces touch or cross at the start of the preroll, without untangling, layer by layer; in each layer,
+/// largest number of pairs first; empty if a run may begin. Layers are not checked against each other.
 std::vector<IntersectionPlace> find_start_intersections(const model::Model& model);
 
 /// Size of the matrix of one Newton iteration, without contacts.
@@ -58,7 +58,7 @@ class Simulation {
   explicit Simulation(model::Model model);
   virtual ~Simulation();
 
-  /// With the motions of driven bodies.
+  /// The model, with the motions that drive() has given to bodies.
   const model::Model& model() const;
   /// Number of the current frame, negative in the preroll, and its time [s].
   int frame() const;
@@ -96,8 +96,8 @@ class Simulation {
   /// motion; it then stays there. The body must be `moving`.
   void drive(std::size_t body, const motion::Pose& end);
 
-  /// Appends everything that later frames depend on. Only machines of one kind and one version of the program can read
-  /// it. Not allowed after a failed advance().
+  /// Appends everything that later frames depend on. Only the same version of the program on a machine of the same kind
+  /// can read it. Not allowed after a failed advance().
   void save(std::string& bytes) const;
   /// Restores what a simulation of the same model has saved; the frames that follow have the same bits. Only allowed
   /// before the first advance(). If bodies were driven, first call drive() once for each of them, to any pose.

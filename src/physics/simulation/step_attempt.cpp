@@ -37,7 +37,7 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   const double t = attempt.t, h = attempt.h;
   held_ = pins_.held();
   hold_frames(model_, cloth_, t + h, held_);
-  // What is released changes its acceleration at once: the stepper's history does not predict the motion that follows.
+  // The acceleration of released particles jumps, so the stepper's history does not predict the motion that follows.
   const bool releases = release_frames(model_, cloth_, t, h, progress_.now.v) || pins_.release_between(t, t + h);
   if (releases) stepper_.restart();
   pinned_ = held_.size();
@@ -67,8 +67,8 @@ void StepLoop::update_weather(double t, double h) {
   problem_.set_air_velocity(std::move(air));
 }
 
-// Solves, checks, pushes particles apart and continues the solve from there, with the contacts there, until every
-// candidate pair has a separating plane.
+// Solves the step and checks it. If pairs would meet, pushes particles apart and continues the solve from the corrected
+// positions, with contacts found anew, until every candidate pair has a separating plane.
 StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
   const SystemState& now = progress_.now;
   int continuations = 0;
@@ -178,7 +178,7 @@ integrator::Method StepLoop::method() const {
   return needs_damping ? integrator::Method::bdf2 : chosen;
 }
 
-// Pushes particles of `next_` apart without solving again. Asks for a shorter step if this adds much energy.
+// Pushes particles of `next_` apart without solving again. Rejects the step if this adds much energy.
 StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
   const double energy_before = energy(next_);
   const bool may_pinch = is_short_enough(attempt);
@@ -202,7 +202,7 @@ bool StepLoop::is_short_enough(const Attempt& attempt) const {
          (attempt.rejections >= numerics.repair.halvings && collisions_->obstacles_move_little(progress_.now, next_));
 }
 
-// Asks for a shorter step if this one stretches threads far beyond their limit.
+// Rejects a step that stretches threads far beyond their limit.
 StepLoop::Rejection StepLoop::check_overstretch(double h) {
   const double ratio = cloth_.overstretch(next_.particles()).ratio;
   const double most = numerics.repair.overstretch;

@@ -106,8 +106,8 @@ void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
   progress_.control ? advance_controlled(t_t0, t_t1, report) : advance_equally(t_t0, report);
 }
 
-// Divides the frame into equal steps, or takes one step if everything rests. Computes times from the number of steps
-// before, so that they have the same bits at any frame rate.
+// Divides the frame into equal steps, or takes one step if everything rests. Computes times from the number of
+// preceding steps, so that they have the same bits at any frame rate.
 void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   const double fps = model_.time.fps;
   const int steps = std::max(1, static_cast<int>(std::ceil(1 / (fps * model_.time.step) - 1e-9)));
@@ -118,8 +118,8 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
 }
 
 // Whether one long step may replace the next `steps` steps of length h [s]: all cloth is slow and has settled in its
-// last step, and everything that keys move is, at the end of each of these steps, where it is at t. If something moves,
-// the long step is not even tried: contacts that it alone needs would remain for the steps that follow.
+// last step, and everything that keys move is in the same place at t and at the end of each of these steps. If
+// something moves, the long step is not even tried: contacts that only the long step needs would remain in later steps.
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints release and stick again from step to step.
@@ -165,10 +165,10 @@ bool StepLoop::rest(double t, double h, FrameReport& report) {
   return true;
 }
 
-// Advances from t to t + h. Takes two halves if the step is rejected, or if it is too long after the last step or for
-// obstacles that turn. `rejections`: number of rejected steps that contain this one. Earlier rejections count, too,
-// while steps are still short because of them (measured without this rule: pinched cloth takes 75,202 steps instead of
-// 160).
+// Advances from t to t + h. Takes two halves if the step is rejected or too long to follow the last one, or if an
+// obstacle turns too far in it. `rejections`: number of rejected steps that contain this one. Earlier rejections count,
+// too, while steps are still short because of them (measured without this rule: pinched cloth takes 75,202 steps
+// instead of 160).
 void StepLoop::advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report) {
   const bool after_rejection = h > (1 + 1e-9) * progress_.longest;
   const bool too_long = after_rejection || h > (1 + 1e-9) * stepper_.longest_step() || obstacle_turns_too_far(t, h);

@@ -1,4 +1,5 @@
-// The equation of one step as the integrator sees it: forces of cloth, contacts and attachments, and what they keep.
+// The equation of one step for the integrator: forces of cloth, contacts and attachments, and their state between
+// evaluations.
 #pragma once
 
 #include <algorithm>
@@ -63,13 +64,13 @@ class StepProblem final : public integrator::System {
   /// Sets the air velocity at each particle in the step that begins [m/s]. Without it, the air velocity is uniform.
   void set_air_velocity(SolveMemory::PaddedVec3s air);
 
-  /// Call it within a step if contacts have changed. Friction then follows the normal forces for those of the step's
-  /// numerics.newton.patience updates that are left, but at least for half of that number.
+  /// Call it within a step if contacts have changed. Friction then follows the normal forces for the rest of the step's
+  /// numerics.newton.patience updates, but for at least half of that number.
   void limit_friction_updates() {
     memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.patience / 2)};
   }
 
-  /// Before a step is solved again: friction uses the normal forces at its start, even if they change.
+  /// Call before a step is solved again: friction then uses the normal forces at the start of the step throughout.
   void fix_normal_forces() { memory_.contacts = {{}, {}, {}, numerics.newton.patience}; }
 
   const SolveMemory& memory() const { return memory_; }

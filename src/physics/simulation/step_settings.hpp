@@ -22,8 +22,8 @@ std::vector<Index> first_particles(const ClothSystem& cloth);
 /// Positions of all particles at the start, and their velocities as the model gives them, at time t [s].
 SystemState start_of(const model::Model& model, const ClothSystem& cloth, double t);
 
-/// For a step that ends at t [s]: appends the frame particles of bodies that keys still move then, where the keys place
-/// them.
+/// For a step that ends at t [s]: appends the frame particles of bodies that keys still move at t, with the positions
+/// and velocities that the keys give.
 void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
                  std::vector<integrator::HeldParticle>& held);
 
@@ -31,7 +31,7 @@ void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
 /// body's own velocity and spin. Returns whether there are any.
 bool release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v);
 
-/// Whether, of the bodies not yet released at t0, none is released or moved by its keys between t0 and t1 [s].
+/// Whether keys neither move nor release, between t0 and t1 [s], any body that they hold at t0.
 bool frames_are_constant(const model::Model& model, double t0, double t1);
 
 }  // namespace weft::simulation

@@ -9,7 +9,7 @@ namespace weft::simulation {
 
 /// Work in one step [J].
 struct StepWork {
-  double pins = 0;    ///< by held particles; includes the change of their own kinetic energy
+  double pins = 0;    ///< by pins; includes the change of the kinetic energy of held particles
   double solver = 0;  ///< by the residual of the equation of motion; 0 if it is solved exactly
 };
 

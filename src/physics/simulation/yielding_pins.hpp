@@ -1,4 +1,4 @@
-// Pins as the step sees them: held exactly, or pulled along if something obstructs them.
+// Pins in one step: they hold particles exactly, or pull those that something obstructs.
 #pragma once
 
 #include <cstdint>

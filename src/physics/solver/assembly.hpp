@@ -13,7 +13,7 @@ namespace weft::solver {
 /// A symmetric matrix of forces that do not change if all particles translate together. It stores block (i, j) for each
 /// pair of particles i < j, and the own block of each particle (its mass, drag of air). Block (j, i) is the transpose.
 /// The diagonal block follows from the condition that each row sums to its particle's own block, so forces between
-/// particles add nothing there. For this reason, forces add a third of the blocks that a full matrix needs.
+/// particles add nothing there: they add only a third of the blocks that a full matrix needs.
 ///
 /// Bending adds scalar multiples of the identity; each pair stores that scalar, part of which is constant.
 class Assembly {
@@ -31,8 +31,8 @@ class Assembly {
   void clear();
   /// Makes the scalars added so far the constant part.
   void keep_constant();
-  /// Resets the own blocks of the rows [begin, end) except for their constant part, and the pairs whose smaller index
-  /// is there: scalars to the constant part, blocks to zero.
+  /// Resets the rows [begin, end) to the constant part: their own blocks, and the scalars and blocks of all pairs whose
+  /// smaller index is in this range.
   void start(Index begin, Index end);
 
   void add_constant_to_own(Index row, double value) { constant_own_[static_cast<std::size_t>(row)] += value; }
@@ -68,9 +68,9 @@ class Assembly {
   std::vector<Index> block_of_, scalar_of_full_, scalar_of_isotropic_;
 };
 
-/// The rows [begin, end) of an assembly, and the pairs whose smaller index is there; values added elsewhere are
-/// ignored. If each thread owns a range of rows and adds all elements in the same order, the sums have the same bits as
-/// with one thread. A default-constructed object holds no rows.
+/// The rows [begin, end) of an assembly, and the pairs whose smaller index is in this range. Ignores values added to
+/// other rows. If each thread owns a range of rows and adds all elements in the same order, the sums have the same bits
+/// as with one thread. A default-constructed object holds no rows.
 class AssemblyRows {
  public:
   AssemblyRows() = default;

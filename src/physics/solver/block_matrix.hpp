@@ -25,7 +25,7 @@ inline void store_lanes(double* p, const Lanes& lanes) {
 
 /// A 3×3 block in registers, column by column as the matrix stores it: entries 0 to 3, 4 to 7, and 8.
 struct PackedBlock {
-  Lanes low, high, last;  // of `last` only lane 0 counts
+  Lanes low, high, last;  // `last` uses only lane 0
 
   friend PackedBlock operator+(const PackedBlock& a, const PackedBlock& b) {
     return {a.low + b.low, a.high + b.high, a.last + b.last};

@@ -19,8 +19,8 @@ struct ParticleConstraint {
   Mat3 free = Mat3::Zero();  ///< a projection: symmetric, free² = free
 };
 
-/// Contribution of a contact to the matrix, w wᵀ ⊗ stiffness: a spring that resists displacements by their weighted
-/// sum. Contacts change with every step, so they are not part of the fixed pattern.
+/// Contribution of a contact to the matrix, w wᵀ ⊗ stiffness: a spring that resists the weighted sum of the
+/// displacements. Contacts change with every step, so they are not part of the fixed pattern.
 struct StencilTerm {
   std::array<Index, 4> particles{0, 0, 0, 0};
   std::array<double, 4> weights{0, 0, 0, 0};  ///< zero for unused entries

@@ -18,7 +18,7 @@ constexpr std::size_t kMaxLevels = 16;
 // fraction of the block's own trace makes the block definite. The fraction must be below the ratio of masses to stiff
 // threads (measured: with 1e-9 of the mean trace, cells of 0.1 m by 1e-5 m took twenty times the iterations).
 constexpr double kMinRelativeShift = 1e-13;
-// Fraction of a member's motion that comes from neighbouring aggregates. Above 1/2, it reverses the shortest waves.
+// Fraction of a member's motion that comes from neighbouring aggregates. Values above 1/2 reverse the shortest waves.
 constexpr double kInterpolation = 0.5;
 constexpr double kLevelStiffness = 0.5;  // factor per level; see Preconditioner
 
@@ -255,7 +255,7 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
     if (coarse_i > coarse_j)
       coarse_matrix_without_terms_.block<3, 3>(3 * coarse_i, 3 * coarse_j) += stiffness_fraction * block;
   };
-  // Aggregates are nested, so each coarsest aggregate can be summed by one thread.
+  // Aggregates are nested, so threads can sum different coarsest aggregates at the same time.
   const auto sum_row = [&](Index i) {
     std::array<Mat3, kMaxLevels> own;
     std::array<double, kMaxLevels> own_scalars{};
@@ -307,7 +307,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
     const Mat3 free = constraints_[at(constraint_of_[i])].free, held = Mat3::Identity() - free;
     return free * unscaled * free + held * own_block(i) * held;
   };
-  std::vector<Mat3> unscaled;  // per member, if members are aggregates; from the first one of this diagonal block on
+  std::vector<Mat3> unscaled;  // on coarser levels: per member, from the first one of this diagonal block on
   double stiffness_fraction = 1;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
@@ -330,7 +330,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
         coarsest.of_matrix[g];
 }
 
-// Returns zero blocks. Terms act on only few particles of a large cloth.
+// Returns zero blocks, for touched particles only: terms act on few particles of a large cloth.
 template <class Real>
 typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::make_touched_blocks() const {
   TouchedBlocks all{std::vector<Index>(touched_.size(), -1), {}};
@@ -364,7 +364,7 @@ typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lump_terms() 
 template <class Real>
 void Preconditioner<Real>::invert_aggregates() {
   const TouchedBlocks of_particles = lump_terms();
-  std::vector<Mat3> of_members;  // per member, if members are aggregates
+  std::vector<Mat3> of_members;  // on coarser levels: per member
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     Level& level = levels_[l];
     // Aggregates of changed diagonal blocks, and those with terms now or at the last call.

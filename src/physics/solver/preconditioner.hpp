@@ -34,14 +34,14 @@ enum class AggregateSums { recompute, reuse };
 ///
 /// If threads are so stiff that the trace of a particle's block exceeds `stiff_particle` times the sum of
 /// `norm_weights` over its diagonal block, levels do not interpolate: T_l = R_lᵀ, and the factor per level is 1.
-/// Interpolated motion would stretch threads across folds. Sums over boundaries of aggregates do not contain the
-/// threads inside of the aggregates.
+/// Interpolated motion would stretch threads across folds, and R_l A R_lᵀ, which contains only the boundaries of
+/// aggregates, lacks the threads inside of them.
 ///
 /// Set up in double, applied in `Real`.
 template <class Real>
 class Preconditioner {
  public:
-  /// Reads `system`, which must outlive the following calls. Keeps what has not changed since the last call.
+  /// Reads `system`, which must outlive the following calls. Recomputes only what has changed since the last call.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
   /// z = P⁻¹ r on the rows of these diagonal blocks of the system, as if r were zero on all others. r must obey the

@@ -77,7 +77,7 @@ void DifferenceMatrix::multiply(std::span<const PaddedVec3<float>> x, std::span<
                                 std::size_t end) const {
   for (std::size_t row = begin; row < end; ++row) {
     const PaddedVec3<float> own = x[row];
-    // Products with the three columns, side by side; in `ninth` only lane 2 counts.
+    // Products with the three columns, side by side; only lane 2 of `ninth` is used.
     Octet sum = octets_of_sum_[row] * repeat_per_column(own);
     PaddedVec3<float> ninth = ninths_of_sum_[row] * own, isotropic{};
     for (Index s = full_.start[row]; s < full_.start[row + 1]; ++s) {

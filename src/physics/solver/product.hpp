@@ -11,7 +11,7 @@ namespace weft::solver {
 
 /// A block matrix A in single precision, which halves the memory to read. Its product is y_i = D_i x_i + Σ_j A_ij (x_j
 /// − x_i). The sum D_i of a row's blocks is made in double. Thus rounding affects only the stiffness of relative
-/// motion. Common motion keeps its mass, although mass is small beside stiffness.
+/// motion; the much smaller mass is not lost.
 class DifferenceMatrix {
  public:
   void copy_pattern(const BlockMatrix& matrix);

@@ -10,9 +10,9 @@
 
 namespace weft::solver {
 
-/// Extends a preconditioner P of the matrix without outer products to all of it by the formula of Sherman and Morrison,
-/// for one outer product k d dᵀ after the other: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P
-/// bounds the rest of the matrix, P + k d dᵀ bounds the whole matrix with the same constants, however large k is.
+/// Extends a preconditioner P of the matrix without outer products to the whole matrix, by the formula of Sherman and
+/// Morrison for one outer product k d dᵀ at a time: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P
+/// bounds the rest of the matrix, P + k d dᵀ bounds all of it with the same constants for any k.
 template <class Real>
 class RankOneTerms {
  public:
@@ -23,7 +23,7 @@ class RankOneTerms {
 
   /// Restricts the following calls to vectors that are zero outside of these diagonal blocks.
   void select(std::span<const std::size_t> parts);
-  /// Computes w with `apply`, the preconditioner of the rest of the matrix on the selected blocks.
+  /// Computes w of the selected terms with `apply`, the preconditioner of the rest of the matrix on their blocks.
   void use(const Apply& apply);
 
   /// Adds k d dᵀ p of each selected term to q, where d is filtered; returns the increase of p·q.

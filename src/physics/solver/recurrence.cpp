@@ -25,8 +25,7 @@ void convert_to_padded(std::span<const Vec3> from, std::span<PaddedVec3<Real>> t
 
 }  // namespace
 
-// Gains are summed as absolute values: terms and the coarsest level couple diagonal blocks, so the gain of one may be
-// negative.
+// Sums absolute values: terms and the coarsest level couple diagonal blocks, so the gain of one block may be negative.
 double Progress::OfPart::error_energy() const {
   return std::accumulate(gains.end() - count_recent(), gains.end(), 0.0,
                          [](double sum, double gain) { return sum + std::abs(gain); });
@@ -136,7 +135,7 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
   }
 }
 
-// Takes a step along `start`. It is kept apart from x_, in double, as start_multiple_ times start_.
+// Takes a step along `start`. Keeps it apart from x_, in double, as start_multiple_ times start_.
 template <class Real>
 void Recurrence<Real>::step_along_start(std::span<const Vec3> start) {
   start_.assign(start.begin(), start.end());

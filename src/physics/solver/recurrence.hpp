@@ -13,12 +13,12 @@
 
 namespace weft::solver {
 
-/// Relative residual that single precision can still tell from rounding: in the energy norm 6e-8 times the root of the
-/// largest stiffness for which single precision is used (kMaxSingleStiffness), times a safety factor of five.
+/// Smallest relative residual that single precision distinguishes from rounding: in the energy norm, 6e-8
+/// √kMaxSingleStiffness, times a safety factor of five.
 inline constexpr double kSmallestSingleGoal = 1e-3;
 
-/// Allowed error of the solution, per diagonal block. One of two bounds must be met: in the energy norm `relative`
-/// times the norm of what the iteration adds to its start, or an absolute bound in the mass-weighted norm.
+/// Allowed error of the solution, per diagonal block. It must meet one of two bounds: in the energy norm, `relative`
+/// times the norm of the sum of all iterations; or, in the mass-weighted norm, `absolute`.
 struct LinearGoal {
   double relative = 0;
   std::span<const double> absolute = {};  ///< per diagonal block; empty: none
@@ -26,8 +26,8 @@ struct LinearGoal {
 
 /// Known directions of the solution; each may be empty.
 struct Directions {
-  /// The first step of a solve is along this direction, of the length that is best in the energy norm. Costs one
-  /// product.
+  /// The first step of a solve is along this direction, of the length that is best in the energy norm. It costs one
+  /// product with the matrix.
   std::span<const Vec3> start = {};
   /// Motion to which the solution is added. At the end, the residual does no work along the sum of both, and the
   /// residual sums to zero over each diagonal block that no constraint holds (Galerkin's condition for these directions
@@ -41,7 +41,7 @@ struct Directions {
 struct Progress {
   /// Error data of one diagonal block.
   struct OfPart {
-    double energy = 0;  ///< ‖x‖²_A of what the iteration has added to its start, x
+    double energy = 0;  ///< ‖x‖²_A of x, the sum of all iterations after the start
     std::vector<double> gains,
         norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step, relative to it
     double error_energy() const;  ///< estimate of ‖e‖²_A

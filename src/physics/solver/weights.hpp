@@ -23,7 +23,7 @@ struct Weights {
     return result;
   }
   /// Interpolation from aggregates to their members. The aggregates of a member's neighbours together have the weight
-  /// `smoothing`, its own has the rest. `neighbours`: neighbours of each member; replaced by those of the aggregates.
+  /// `smoothing`, its own has the rest. Replaces `neighbours`, those of each member, by those of each aggregate.
   static Weights make_interpolation(const Aggregates& grouping, double smoothing,
                                     std::vector<std::vector<Index>>& neighbours);
   /// The transpose, with `rows` rows: the number of columns of this matrix.

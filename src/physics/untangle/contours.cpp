@@ -50,7 +50,7 @@ struct Island {
   std::set<Index> beside;  // particles of other islands across the line
   std::vector<CutPoint> line;
   std::set<Index> through;           // corners of the triangles that cut it off
-  std::optional<std::size_t> other;  // the body of `through`, if there is only one and not its own
+  std::optional<std::size_t> other;  // the body of `through`, if that is a single one, other than the island's
 };
 
 const CutPoint& nearest(std::span<const CutPoint> line, const Vec3& p) {

@@ -18,8 +18,7 @@ struct CrossedPair {
   friend auto operator<=>(const CrossedPair&, const CrossedPair&) = default;
 };
 
-/// The pairs of surfaces that cross each other in these crossings, except those with solids and those whose edge is not
-/// of cloth.
+/// Each cloth whose edges are in these crossings, paired with each surface that they cross, except solids.
 std::vector<CrossedPair> list_crossed_pairs(const Fabric& fabric, std::span<const Crossing> crossings);
 
 /// Lines of crossing cut islands off from the largest island of a mesh. Returns moves for each of these islands, the

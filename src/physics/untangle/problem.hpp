@@ -23,8 +23,8 @@ enum class Kind : std::uint8_t {
 
 /// Connectivity of surfaces and allowed lengths of threads (links between neighbours); constant.
 struct Fabric {
-  /// `x`: all vertices as given by the scene; `rest`: stress-free particles [m]. `may_move`: per vertex. `of_bodies`
-  /// and `may_move` must outlive it.
+  /// `x`: positions of all vertices as given; `rest`: stress-free positions of particles [m]. `may_move`: per vertex.
+  /// `of_bodies` and `may_move` must outlive it.
   Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, std::span<const Vec3> x,
          std::span<const Vec3> rest, std::span<const std::uint8_t> may_move);
 
@@ -32,7 +32,7 @@ struct Fabric {
   struct Link {
     Index i, j;
     double min_length, max_length;
-    bool is_bend;  ///< between opposite corners of two triangles; corrected less
+    bool is_bend;  ///< joins opposite corners of two adjacent triangles; relax() corrects it only in part
   };
 
   const collision::Bodies& bodies;

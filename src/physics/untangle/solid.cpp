@@ -144,7 +144,7 @@ double Solid::distance_out(const Vec3& p, const Vec3& d) const {
     return std::numeric_limits<double>::infinity();
   }
   for (const Hit& hit : found) shells -= hit.winding;
-  depth = shells;  // shells around p: the ray leaves them more often than it enters
+  depth = shells;  // number of shells around p: the ray leaves that many more than it enters
   for (const Hit& hit : found) {
     depth += hit.winding;
     if (depth <= 0) return length * hit.fraction;

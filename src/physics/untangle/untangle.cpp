@@ -12,7 +12,7 @@
 namespace weft::untangle {
 namespace {
 
-// Height of cloth over an obstacle, and over cloth that it is moved to, in thicknesses.
+// Height to which cloth is moved over an obstacle or over other cloth, in thicknesses.
 constexpr double kHeightInThicknesses = 0.75;
 // Minimum gap between surfaces, in thicknesses: far above Numerics::Separation::least_gap.
 constexpr double kGapInThicknesses = 0.1;
@@ -29,14 +29,14 @@ constexpr int kSweepsAfterMove = 120, kSweeps = 8;
 constexpr double kMaxDisplacementRatio = 1.5;
 // Maximum number of passes: a region that leaves one body may enter another.
 constexpr int kMaxPasses = 3;
-// If the particles of a region move by less than this, its way out is always tried: it is locked only by strain after
-// the move. In heights over the obstacle (kHeightInThicknesses).
+// If the particles of a region move by less than this, its way out is always tried: only strain after the move locks
+// the region. In heights over the obstacle (kHeightInThicknesses).
 constexpr double kShallowDepth = 4;
 // Maximum strain of a thread after the move; beyond it the body goes through the cloth and the region is locked
 // (measured: 0.44 for a tube 4 cm too small, the largest of the valid starts; 4.9 for trousers with a leg through the
 // seat).
 constexpr double kMaxStrain = 1.5;
-// Maximum fraction of the threads of a region that the body may still block: those at its border recover.
+// Maximum fraction of a region's threads that the body may still block: those at the region's border recover.
 constexpr double kMaxBlockedFraction = 0.2;
 // Step along the gradients of contours, in mean lengths of the threads.
 constexpr double kStep = 0.12;
@@ -120,8 +120,8 @@ class Untangling {
     return any;
   }
 
-  // Separates coincident cloths, which are not on any side of each other: moves one to the front of the other; the
-  // later cloth, if it is movable.
+  // Separates coincident cloths, of which neither is on a side of the other: moves the later cloth to the front of the
+  // earlier one, or the earlier one if the later is not movable.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
     for (const collision::TrianglePair& pair : finder_.near(x_, kTouchDistance)) {
@@ -140,7 +140,7 @@ class Untangling {
         x_[i] += 1.1 * kGapInThicknesses * fabric_.thickness[fabric_.bodies.body_of(i)] * normals[i].stableNormalized();
   }
 
-  // Repeats until nothing crosses, or nothing improves.
+  // Moves islands, shortens contours and smooths until nothing crosses or improves; then restores the best state.
   void reduce_crossings() {
     find();
     best_x_.assign(x_.begin(), x_.end());
@@ -217,7 +217,7 @@ class Untangling {
   }
   void return_to_best() { std::ranges::copy(best_x_, x_.begin()); }
 
-  // Nothing crosses any more, but surfaces may touch: pushes close pairs apart until none is left or some would cross.
+  // Call if nothing crosses, but surfaces may touch: pushes close pairs apart until none is left or some would cross.
   void restore_gaps() {
     std::vector<Vec3> good(x_.begin(), x_.end());
     double max_gap = 0;

@@ -1,7 +1,7 @@
 // Separates surfaces that touch or cross at the start, before the simulation.
 //
 //   Solid             the inside of an obstacle, and exits from it
-//   find_inside       regions of cloth inside it, and a common way out for each
+//   find_inside       regions of cloth inside an obstacle, and one way out for each
 //   CrossingFinder    edges that cross triangles
 //   contours          cloth through cloth: islands change sides, lines of crossing are shortened
 //   relax             the rest of the cloth follows

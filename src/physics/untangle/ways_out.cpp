@@ -13,10 +13,10 @@ constexpr double kBlockedCost = 25;
 // Depth of a thread's midpoint in the body, relative to the length of the thread. Above kBlockedDepth, the thread goes
 // through the body and does not just cut a corner. Below kFreeDepth, it certainly does not go through.
 constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
-// Cost of a way as long as the region, so that the shorter of two ways with equal stretch is chosen.
+// Cost of a displacement as long as the region, so that the shorter of two ways with equal stretch is chosen.
 constexpr double kDisplacementCost = 0.05;
-// Cost of moving a whole cloth, so that it stays if the region can leave alone; and the longest such move, in sizes of
-// the region.
+// Cost of moving a whole mesh, high enough that it stays if the region can leave alone; and the longest such move, in
+// sizes of the region.
 constexpr double kWholeMeshCost = 0.3, kMaxWholeMeshRatio = 1.1;
 // Maximum fraction of the particles that may pass through the body in such a move: more would pull cloth off a body
 // that wears it.

@@ -17,7 +17,7 @@ struct InsideRegion {
   Vec3 centre = Vec3::Zero();  ///< [m]
   double size = 0;             ///< longest side of its box, extended half-way to neighbours [m]
   double farthest = 0;         ///< largest displacement of a particle [m]
-  double shortest = std::numeric_limits<double>::infinity();  ///< likewise, on the shortest unblocked way [m]
+  double shortest = std::numeric_limits<double>::infinity();  ///< as `farthest`, on the shortest unblocked way [m]
   double cost = 0;                                            ///< see stretch_cost; 0 if the whole mesh moves
   double blocked = 0;       ///< fraction of its threads that would still go through the body
   std::vector<Move> moves;  ///< out of the body, to the height `above` over its surface

@@ -28,7 +28,7 @@ bool is_blank(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; });
 }
 
-// Lists references without a counterpart. They are never removed.
+// Reports references that have no counterpart in `test`. The command never removes a reference.
 void report_unmatched_references(const fs::path& references, const fs::path& test,
                                  const std::vector<std::string>& names) {
   if (!fs::is_directory(references)) return;

@@ -13,7 +13,7 @@ namespace weft::cli {
 /// are none. Throws Error(usage) for a selection without frames.
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial);
 
-/// Passes all frames of the cache that have the scene's current looks to the camera.
+/// Passes to the camera all frames of the cache that have the scene's current looks.
 void show_frames(const cache::Reader& reader, render::CameraPath& camera);
 
 }  // namespace weft::cli

@@ -9,7 +9,7 @@
 namespace weft::cli {
 
 /// Writes one JSON object per line: `event`, then its fields. The file has its final name from the start, so that other
-/// programs can read along; each line is a complete object. Thread-safe.
+/// programs can read it during the run; each line is a complete object. Thread-safe.
 class EventLog {
  public:
   /// `destination`: a file, which is replaced; "-" for standard output; empty for none. Throws Error(output_failed).

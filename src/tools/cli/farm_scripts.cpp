@@ -103,7 +103,7 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
     return words;
   };
   const std::string threads = std::to_string(options.threads);
-  // Simulating gets size and camera too, as the cache stores them.
+  // The simulation task gets size and camera too, since the cache stores them.
   define("simulate", with({"simulate", fs::absolute(sweep.scene).string(), "--threads", threads},
                           chosen(passed_on, {"--size", "--camera", "--error"})));
   define("draw", with({"render", "--threads", threads}, chosen(passed_on, {"--size", "--camera", "--quality"})));

@@ -8,7 +8,7 @@
 
 namespace weft::cli {
 
-/// As typed: half-open. A missing begin is 0, a missing end that of the scene.
+/// The half-open range as typed. A missing `begin` means frame 0; a missing `end` means the end of the scene.
 struct FrameSelection {
   std::optional<int> begin, end;
   int step = 1;

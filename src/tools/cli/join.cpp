@@ -210,7 +210,7 @@ Metadata describe(const Film& film, const FrameRange& frames) {
   return metadata;
 }
 
-/// Returns false if interrupted; no file is left then.
+/// Encodes the pictures as one video. If interrupted, leaves no file and returns false.
 bool encode(const std::vector<fs::path>& pictures, const fs::path& file, const video::Settings& settings) {
   const StopSignals signals;
   video::Encoder encoder(file, settings);

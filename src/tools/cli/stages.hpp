@@ -1,4 +1,4 @@
-// The stages of the pipeline in a real run.
+// The stages of the pipeline that draw and write frames: interfaces, and the implementations that commands use.
 #pragma once
 
 #include <filesystem>
@@ -29,7 +29,7 @@ struct Picture {
 class FramePainter {
  public:
   virtual ~FramePainter() = default;
-  /// Sets the camera path. Without it, cameras that the scene does not place are found from the first drawn frame.
+  /// Sets the camera path. Without one, a computed camera is derived from the first drawn frame alone.
   virtual void set_camera_path(render::CameraPath) {}
   /// `before`: the previous frame if motion blur is on and there is one; else null.
   virtual Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) = 0;

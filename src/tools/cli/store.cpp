@@ -13,8 +13,8 @@
 namespace weft::cli {
 namespace {
 
-// Limit on the time that a save takes, relative to the time since the last save. A state is several times as large as a
-// frame, and most states are never read.
+// A state is saved again only if the last save took at most this fraction of the time since then, because a state is
+// several times as large as a frame, and most states are never read.
 constexpr double kMaxSaveTimeRatio = 0.01;
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace weft::cli {
 struct MadeFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  bool fresh = false;                                       ///< not yet in the cache, or there with former looks
+  bool fresh = false;                                       ///< not yet in the cache, or cached with former looks
   const production::SceneSimulation* simulation = nullptr;  ///< in the state of this frame; null if the frame was read
 };
 
@@ -28,7 +28,7 @@ class Store {
  public:
   enum class Need {
     required,  ///< a storage failure ends the run
-    helpful,   ///< if storing fails or the disk is nearly full, the store is given up with a warning
+    helpful,   ///< if storing fails or the disk is nearly full, storing ends with a warning; the run continues
   };
 
   /// Locks `folder` against other writers. Throws Error(output_failed).
@@ -55,7 +55,7 @@ class Store {
   /// Adds to outputs().
   void note_outputs(std::set<std::string> outputs) const;
 
-  /// The cache of the earlier run; only if resumes().
+  /// The cache of the earlier run; call it only if resumes().
   const cache::Reader& earlier() const { return *reader_; }
   /// Whether the cache has this frame and all earlier ones, with the current looks; call it only if resumes().
   bool holds(int frame) const;
@@ -70,7 +70,7 @@ class Store {
   frame::SnapshotPtr stored(int frame);
   /// Saves the state of the last frame. If this fails, an earlier state remains.
   void keep_last_state();
-  /// Saves the state if the last save took at most 1 % of the simulation time since then.
+  /// Saves the state if the last save took at most 1 % of the wall time since then.
   void save_if_cheap(const production::SceneSimulation& simulation, int frame);
   void save(const production::SceneSimulation& simulation, int frame);
 

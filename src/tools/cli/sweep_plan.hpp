@@ -38,7 +38,7 @@ struct SweepRun {
   Changes difference;  ///< the changes that differ between runs, with the shortest unique suffixes of their keys
 };
 
-/// Combines each row of the list with each combination of the axes; the last axis changes first. Duplicate runs are
+/// Combines each row of the list with each combination of the axes; the last axis varies fastest. Duplicate runs are
 /// removed. Throws Error(usage) if a key is given twice or there are more than kMaxRuns runs.
 std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::vector<Axis>& axes);
 

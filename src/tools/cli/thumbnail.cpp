@@ -34,7 +34,7 @@ struct Still {
   render::Saliency saliency;
 };
 
-/// The frame with the highest saliency; of several, the first.
+/// The frame with the highest saliency; if several are equal, the first of them.
 Still most_salient(Stills& stills, const std::vector<int>& frames, Progress& progress) {
   const render::Settings& settings = stills.settings();
   Still best;

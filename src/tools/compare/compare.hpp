@@ -16,8 +16,7 @@ namespace weft::compare {
 struct Limits {
   int pixel_tolerance = 4;  ///< largest tolerated difference of a channel [levels of 255]
   /// Fraction of the pixels that may differ by more than pixel_tolerance. If it has its default value, a pixel at an
-  /// edge
-  /// (`Figures::pixels_at_edges`) counts as 1/40, and at least one pixel is allowed.
+  /// edge (`Figures::pixels_at_edges`) counts as 1/40, and at least one pixel is allowed.
   double pixel_budget = 2e-5;
   /// Limit on the mean of the FLIP map, for small differences everywhere. The default corresponds to one level on 2 %
   /// of the pixels; it is wider for small pictures, see `for_size`.

@@ -1,5 +1,5 @@
-// Counts differing pixels at edges: on another CPU type or Mesa version, a sample there can be on the other side of the
-// edge.
+// Counts differing pixels at edges. With another CPU type or Mesa version, a sample near an edge can fall on the other
+// side of it.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,9 @@
 
 namespace weft::compare {
 
-/// Counts the pixels over the tolerance that are in groups of at most 4 pixels and whose values fit to their
-/// surroundings in the other image: each channel of the test lies, within the tolerance, between the smallest and the
-/// largest value of the 3x3 pixels of the reference around it, and vice versa. A speck does not fit in one of the
-/// images; a moved edge makes a larger group.
+/// Counts the pixels over the tolerance that are in groups of at most 4 pixels and fit into both images. A pixel of one
+/// image fits into the other if each channel lies, within the tolerance, between the smallest and the largest value of
+/// the 3x3 pixels around the same place. A speck fits only into its own image; a moved edge makes a larger group.
 std::int64_t count_at_edges(const image::Image& reference, const image::Image& test, int tolerance);
 
 }  // namespace weft::compare

@@ -22,7 +22,7 @@ std::vector<fs::path> places(const fs::path& folder, const std::string& machine)
   return found;
 }
 
-// Whether the name lies in the folder of a class rather than in a subfolder of pictures.
+// Whether the name lies in the folder of a machine class or in `default`, rather than in a subfolder of pictures.
 bool is_of_class(const std::string& name) {
   static const std::regex kClass(R"((default|mesa-\d+\.\d+(-\d+bit)?)/.*)");
   return std::regex_match(name, kClass);

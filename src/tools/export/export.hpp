@@ -28,8 +28,8 @@ struct Request {
   double fps = 25;                 ///< of the scene
   std::vector<int> frames;         ///< ascending, equally spaced, at least one
   int width = 1280, height = 720;  ///< of the pictures
-  /// Returns the cameras of a frame, that of the pictures first. Used by gltf, usd, usdz and blender; called once per
-  /// frame, in order.
+  /// Returns the cameras of a frame; the first is the camera of the pictures. Used by gltf, usd, usdz and blender;
+  /// called once per frame, in order.
   std::function<std::vector<View>(const frame::FrameSnapshot&)> views = nullptr;
   Lighting lighting = {};  ///< for blender
 };

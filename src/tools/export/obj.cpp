@@ -33,7 +33,7 @@ std::vector<Face> triangles_of(const frame::Surface& surface) {
   return faces;
 }
 
-// Each corner of a quad is a corner of the triangle that contains the edge of the quad from this corner to the next.
+// Takes each corner of a quad from the triangle that contains the quad's edge from this corner to the next.
 std::vector<Face> quads_of(const frame::Surface& surface) {
   std::map<std::pair<Index, Index>, std::size_t> triangles;  // by directed edge
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)

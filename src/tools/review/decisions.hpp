@@ -19,8 +19,8 @@ namespace weft::review {
 
 class Decisions {
  public:
-  /// The entry of a run. It comes from the file in the nearest folder, from that of the run upward, that has such an
-  /// entry; null if there is none. Adds unusable files and entries to `run.problems`.
+  /// The entry of a run: the first valid one in the files from the folder of the run up to the searched folder; null if
+  /// there is none. Adds unusable files and entries to `run.problems`.
   Json of(RunFiles& run);
 
  private:

@@ -72,8 +72,8 @@ bool is_object_entry(const Json& entry) {
   return entry.is_object() && text("name") && text("kind") && count("vertices") && count("faces");
 }
 
-/// Removes values of the statistics that do not have the form that the page expects, and names them, so that the rest
-/// can still be shown.
+/// Removes values of the statistics that the page cannot show, and adds them to `problems`, so that the page can show
+/// the rest.
 void drop_invalid_values(Json& stats, const std::string& file, std::vector<std::string>& problems) {
   const auto drop = [&](const char* key, const char* expected, const auto& fits) {
     const auto found = stats.find(key);

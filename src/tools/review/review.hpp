@@ -21,7 +21,7 @@ struct Request {
 struct Outcome {
   std::filesystem::path page;
   int runs = 0;
-  int incomplete = 0;                  ///< number of runs with something missing
+  int incomplete = 0;                  ///< number of runs with problems, such as unreadable files
   int approved = 0, needing_work = 0;  ///< number of runs with this decision about their current pictures
   int differing = 0;                   ///< number of runs that exceed the default limits of weft diff
 };

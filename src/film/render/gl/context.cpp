@@ -18,7 +18,7 @@ const char* text(const Gl& gl, GLenum name) {
 }
 
 /// If the program runs from its unpacked archive (`ninja bundle`), makes EGL use the Mesa driver in that archive.
-/// Otherwise libEGL and Mesa search system folders for each other's files.
+/// Without this call, libEGL and Mesa would search system folders for each other's files.
 void use_own_mesa() {
   const std::filesystem::path libraries = own_installation().libraries, vendor = libraries / "egl_vendor.json";
   std::error_code none;

@@ -24,7 +24,7 @@ class Context {
   virtual void release() = 0;
 
   const Gl& gl() const { return gl_; }
-  /// "OSMesa 8 (libOSMesa.so.8)" and the reason for the choice, then the strings of the driver.
+  /// The backend, such as "OSMesa (libOSMesa.so.8)"; then the driver's vendor, renderer and version of OpenGL.
   const std::string& description() const { return description_; }
 
  protected:

@@ -13,7 +13,7 @@ class Program {
  public:
   Program() = default;
   /// `vertex` and `fragment`: file names in shaders/; `fragment` may be empty if only depth is drawn. `defines`
-  /// ("CLOTH", "TAPS 16") precede the sources. Throws Error(internal) with the compiler's message.
+  /// ("CLOTH", "LIGHTS 2") precede the sources. Throws Error(internal) with the compiler's message.
   Program(const Gl& gl, const std::string& vertex, const std::string& fragment,
           const std::vector<std::string>& defines = {});
 

@@ -1,6 +1,6 @@
 // Broad phase of a run: one hierarchy per surface. Run-time options select how to refit and traverse.
 //
-//   BroadPhase broad_phase(surfaces, x, options);      // once; surfaces are then named by their place in the span
+//   BroadPhase broad_phase(surfaces, x, options);      // once; surfaces are numbered as in the span
 //   broad_phase.refit(s, x_t0, x_t1, margin);          // each step, each surface that moved
 //   broad_phase.self_pairs(s, candidates);             // appends, as often as needed
 //   broad_phase.pairs(a, b, candidates);
@@ -84,7 +84,7 @@ class BroadPhase {
 
   /// Whether bounds or the order of the pairs depend on earlier steps.
   static bool remembers(const BroadPhaseOptions& options) { return options.separation_list || options.velocity_cones; }
-  /// Makes both independent of earlier steps.
+  /// Makes bounds and order independent of earlier steps.
   void forget();
 
   /// Interface that hides the number of directions, a template parameter of the trees.

@@ -20,7 +20,7 @@ namespace weft::collision {
 template <int K>
 inline constexpr int kRows = (K + 7) / 8 * 8;
 
-/// The directions of a k-DOP by component. Not normalised: projections stay short sums. Rows past K are zero.
+/// The directions of a k-DOP by component, 0 or ±1, so that projections are short sums. Rows past K are zero.
 template <int K>
 struct Directions {
   static_assert(K == 6 || K == 18 || K == 26, "box; with edges; with corners and edges");

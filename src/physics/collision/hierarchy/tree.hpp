@@ -19,7 +19,7 @@ struct Motion {
 
   Motion(std::span<const Vec3> start, std::span<const Vec3> low, std::span<const Vec3> high)
       : x_t0(start), low_t1(low), high_t1(high) {}
-  /// Motion to one end position each. For a still surface pass the same positions twice.
+  /// Motion of each vertex to one end position. For a surface at rest, pass the same positions twice.
   Motion(std::span<const Vec3> start, std::span<const Vec3> end) : Motion(start, end, end) {}
 };
 

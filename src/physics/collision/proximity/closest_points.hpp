@@ -18,8 +18,8 @@ struct ClosestPoints {
   Vec3 difference;                ///< x_a - x_b [m]
   double distance_sq;             ///< [m²]
 
-  /// Bit i is set if vertex i has a non-zero weight. On its side, a closest point inside the face has three bits, one
-  /// on an edge two, one at a vertex one. Weights outside the feature are exactly zero.
+  /// Bit i is set if vertex i has a non-zero weight. A closest point inside a face sets three bits, inside an edge two,
+  /// at a vertex one. Weights outside the feature are exactly zero.
   unsigned support() const {
     unsigned bits = 0;
     for (unsigned i = 0; i < 4; ++i) bits |= static_cast<unsigned>(weights[i] != 0) << i;

@@ -9,8 +9,7 @@ namespace weft::collision {
 
 namespace {
 
-/// The search ends if the distance is known to this fraction of the size of the two sets. This is a few rounding
-/// errors.
+/// The search ends if the distance is known to this fraction of the size of the two sets: a few rounding errors.
 constexpr double kTolerance = 1e-14;
 /// Polygons of a few corners need 3 to 8 rounds. For needles, rounding can prevent the search from ending by itself.
 constexpr int kMaxRounds = 40;

@@ -110,7 +110,7 @@ class ProximityFinder::Gathering {
   }
 
   /// The radius for the box tests in float. Rounding changes a coordinate by 2^-24 of itself, so a gap between two
-  /// changes by at most four times that. Only coordinates of the pair count: other bodies have no influence.
+  /// changes by at most four times that. Only coordinates of the pair enter, so other bodies change nothing.
   Lanes8 rounded_radius(const Boxes& a, const Boxes& b) const {
     Lanes8 largest = a.high.axis[0];
     for (const Boxes* box : {&a, &b})

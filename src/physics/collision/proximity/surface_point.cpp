@@ -14,7 +14,7 @@ namespace {
 constexpr double kMinDirectionLength = 1e-10;
 // Minimum cosine between a face normal and a given direction for the face to count as facing that way.
 constexpr double kMinFacingCosine = 0.5;
-// Scale of the offset of the start of a ray from its point, and length of the ray [m].
+// Scale of the offset between a point and the start of its ray [m], and length of the ray [m].
 constexpr double kRayOffset = 1e-7;
 constexpr double kRayLength = 1e3;
 
@@ -22,7 +22,7 @@ ClosestPoints closest(const Vec3& p, const Triangle& t, std::span<const Vec3> x)
   return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]);
 }
 
-// Angle of a face at the feature that holds the weighted point: at a corner its angle, on an edge π, inside 2 π.
+// Angle [rad] that a face spans around its point with these weights: its own at a corner, π on an edge, 2π inside.
 double angle_at(const Triangle& t, const std::array<double, 3>& weights, std::span<const Vec3> x) {
   const auto on = [&](std::size_t c) { return weights[c] > kRoundoff; };
   const int support = on(0) + on(1) + on(2);

@@ -10,7 +10,7 @@
 
 namespace weft::collision {
 
-/// Motion of a body that keeps its shape over one step: x at the start is turn · x + shift at the end.
+/// Motion of a body that keeps its shape over one step: takes a point from x to turn · x + shift.
 struct RigidMotion {
   Mat3 turn = Mat3::Identity();
   Vec3 shift = Vec3::Zero();  ///< [m]
@@ -19,10 +19,10 @@ struct RigidMotion {
 };
 
 /// An obstacle that turns moves on arcs, but separating planes are found for straight trajectories (see `separates`).
-/// In the obstacle's own frame it stands still. So the starts of cloth are carried along to the obstacle's place at the
-/// end of the step: relative trajectories are then straight, and a plane fixed to the obstacle can separate them for
-/// the whole step. Cloth that is carried along keeps its exact distance to the obstacle, so a single obstacle never
-/// meets it.
+/// In its own frame, the obstacle stands still. So this class applies the motion of the obstacle to the start positions
+/// of all particles. Relative trajectories are then straight, and a plane fixed to the obstacle can separate them for
+/// the whole step. A particle that ends at its carried start keeps its exact distance to the obstacle, so a single
+/// obstacle never meets it.
 class CarriedStarts {
  public:
   CarriedStarts() = default;
@@ -36,7 +36,7 @@ class CarriedStarts {
 
   /// Whether a body moves rigidly in this step.
   bool carries(std::size_t body) const { return body < motions_.size() && motions_[body].moves(); }
-  /// Starts of particles, carried along by such a body [m]. The own vertices of the body are at their end, those of
+  /// Starts of the particles after the motion of this body [m]. The body's own vertices are at their end, those of
   /// other obstacles at their start.
   std::span<const Vec3> by(std::size_t body) const;
   /// Computes all starts that of() can return, so that threads can call of() at the same time.

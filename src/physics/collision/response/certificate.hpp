@@ -36,7 +36,7 @@ enum class PlaneKinds { constant, turning, all };
 ///   1. constant directions: face normals (for layers) and the line between the centres (for neighbours in one plane);
 ///   2. the same directions, turning with the pair;
 ///   3. the line between the closest points, constant, then turning;
-///   4. all again in each half of the trajectory, which is halved at most Numerics::Separation::halvings times.
+///   4. all again in each half of the trajectory, which is halved at most Numerics::Repair::halvings times.
 ///
 /// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, t from 0 to 1. For two linearly moving corners with the
 /// difference δ(t), n·δ is quadratic in time, with Bernstein coefficients n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and n₁·δ₁; it is

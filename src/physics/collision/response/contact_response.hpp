@@ -15,12 +15,12 @@ namespace weft::collision {
 
 enum class ResponseForm { springs, velocity_constraints };
 
-/// The contacts of one step as the solver sees them. With velocity constraints, a contact of a single particle with an
-/// obstacle is a wall (see VelocityConstraints), which is set and released between the solves of a step. All other
-/// contacts are springs.
+/// The contacts of one step in the form that the solver uses. With velocity constraints, a contact of a single particle
+/// with an obstacle is a wall (see VelocityConstraints), which is set and released between the solves of a step. All
+/// other contacts are springs.
 class ContactResponse {
  public:
-  /// `masses`: of the particles [kg]. `stick_speed`: of the springs [m/s].
+  /// `masses`: of the particles [kg]. `stick_speed`: as in ContactSet::set_step() [m/s].
   ContactResponse(ResponseForm form, std::vector<double> masses, double stick_speed = numerics.contact.stick_velocity);
 
   ResponseForm form() const { return walls_ ? ResponseForm::velocity_constraints : ResponseForm::springs; }

@@ -15,8 +15,8 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
-// Limits of depth_for_force(): iterations, and relative tolerance of the force. The force of the tangent contains the
-// square of the error of the depth, which is below rounding (measured: with 1e-3 the solver misses newton_tolerance
+// Limits of depth_for_force(): iterations, and relative tolerance of the force. An error of the depth changes the
+// tangent force only by its square, which is below rounding (measured: with 1e-3 the solver misses newton_tolerance
 // 1e-6).
 constexpr int kDepthIterations = 30;
 constexpr double kDepthTolerance = 1e-8;
@@ -35,7 +35,7 @@ NormalForce normal_force_at(const Contact& contact, double depth) {
   return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
 }
 
-// Force at `depth` by the tangent `at` depth `depth_at`, never negative [N].
+// Extrapolates the force `at` depth `depth_at` along the tangent to `depth`; never negative [N].
 double tangent_force(const NormalForce& at, double depth_at, double depth) {
   return std::max(0.0, at.force + at.slope * (depth - depth_at));
 }
@@ -59,7 +59,7 @@ Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
 }
 
 // Friction / (normal force · slip), for a slip in units of the stick slip: μ (2 − slip) below 1, μ / slip above, where
-// the coefficient μ falls from static to sliding beyond 1. If both coefficients are equal, it is continuously
+// the coefficient μ falls from static to sliding beyond 1. If both coefficients are equal, friction is continuously
 // differentiable.
 double friction_over_slip(const Contact& contact, double slip) {
   if (slip < 1) return contact.static_friction * (2 - slip);
@@ -86,7 +86,7 @@ Vec3 sticking_slip(const Contact& contact, const Vec3& w) {
   return w / friction_over_slip(contact, slip);
 }
 
-// ∂w/∂u for a slip in units of the stick slip. Exact if w belongs to the slip, else a definite approximation.
+// ∂w/∂u for a slip in units of the stick slip. Exact if w belongs to the slip, else a semidefinite approximation.
 Mat3 friction_slope(const Contact& contact, const Vec3& slip, const Vec3& w) {
   const double size = slip.norm();
   return friction_over_slip(contact, size) *

@@ -38,7 +38,7 @@ struct FrictionLag {
   int slide_starts = 0;                   ///< how often it began to slide in this step
 };
 
-/// State of the contacts of a step, one entry for each, between Newton iterations.
+/// State of the contacts of a step between Newton iterations, with one entry per contact.
 struct ContactLag {
   std::vector<double> depths;          ///< depth at which each law is linearised [m]
   std::vector<double> normal_forces;   ///< normal forces that limit friction [N]; they lag behind the positions
@@ -53,9 +53,9 @@ Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w);
 
 /// The normal force of a contact is f(d) = k d (1 + Numerics::Contact::stiffening (d / r)⁴) at depth d = `range` − n·(a
 /// − b) > 0. Beyond d = r = `full_range` it continues linearly. n = `normal` is constant, so f is convex and its
-/// Jacobian has rank one. A linear spring is too weak under sharp tips: cotton gives 0.1 N before the gap is closed,
-/// and a sheet on the tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane. Its
-/// maximum is the friction coefficient times the normal force, to which it grows smoothly within a slip of
+/// Jacobian has rank one. A linear spring is too weak under sharp tips: on cotton it reaches 0.1 N before the gap is
+/// closed, but a sheet on the tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane.
+/// Its maximum is the friction coefficient times the normal force, to which it grows smoothly within a slip of
 /// `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
 class ContactSet {
  public:
@@ -69,7 +69,7 @@ class ContactSet {
   /// own besides the depth d, with f⁻¹(λ) = d at the solution (a primal–dual method; λ starts from `depth`). The linear
   /// system contains the tangent of the law at f⁻¹(λ), and λ follows that tangent, but never below zero. (Measured with
   /// the tangent at the depth of the iterate instead: 1.25 times the iterations in sphere_drape.) Friction uses this λ.
-  /// Because λ is constant within one iteration, and after Numerics::Newton::patience updates, friction has a potential
+  /// This λ is constant within an iteration, and after Numerics::Newton::patience updates, so friction has a potential,
   /// too.
   ///
   /// Sticking friction on an obstacle follows its tangent likewise. The contact starts to slide if the tangent exceeds
@@ -106,8 +106,8 @@ class ContactSet {
   /// linearised with w as an unknown of its own (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total
   /// Variation-Based Image Restoration", 1999). If the contact sticks, the result is the tangent at the slip that
   /// belongs to w. If it slides, w is that of unchanged velocity, or the one with which sliding began. The result is
-  /// then the exact tangent while cloth keeps sliding. Where cloth starts to slide or changes direction, it is force
-  /// over slip or stiffer (measured: 1.05 iterations per step on an incline; with force over slip everywhere 2.3).
+  /// then the exact tangent while cloth keeps sliding. Where cloth starts to slide or changes direction, the result is
+  /// the secant, force over slip, or stiffer (measured on an incline: 1.05 iterations per step; with secants 2.3).
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 

@@ -9,7 +9,7 @@
 namespace weft::collision {
 namespace {
 
-// Present normal of the face nearest to p, of those that reached the cloth.
+// Normal, at x, of the face nearest to p among `faces`, those that reached the cloth.
 Vec3 outward(const Vec3& p, std::span<const Triangle> faces, std::span<const Vec3> x) {
   return face_normal(nearest_point(p, faces, x).face, x);
 }

@@ -1,4 +1,4 @@
-// Pinched cloth, squeezed between obstacles: which triangles are exempt against which obstacle, and how they return.
+// Pinched cloth, squeezed between obstacles: which triangles may intersect which obstacle, and how they return.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@
 
 namespace weft::collision {
 
-/// Set of cloth triangles, each exempt against one limb of an obstacle: the triangle may intersect the limb, and no
+/// Set of cloth triangles, each exempt from one limb of an obstacle: the triangle may intersect the limb, and no
 /// separating plane is required. A triangle is removed once it is apart from the limb and back on its original side.
 /// Triangles that share a particle with an exempted one are exempt too, so that a limb moving along the cloth does not
 /// drag the cloth with it. Of these, renew() adds to the set those that the limb meets. If two limbs overlap, the cloth
-/// is exempt against the limb that reached it and rests on the other. When that limb retreats, the cloth comes out on
-/// the side where it went in.
+/// is exempt from the limb that reached it and rests on the other. When the former retreats, the cloth comes out on the
+/// side where it went in.
 class PinchedPairs {
  public:
   struct Key {
@@ -58,7 +58,7 @@ class PinchedPairs {
       return particles_.contains({particle, body_of(pair.b[0]), limb_of_[pair.b[0]]});
     });
   }
-  /// Whether two features with these vertices belong to pinched cloth and its limb.
+  /// Whether two features with these vertices belong to pinched cloth and to the limb that pinches it.
   bool are_pinched(const std::array<Index, 4>& vertices) const;
   void add(const CornerPair& pair);
   /// Adds a triangle whose origin is known.

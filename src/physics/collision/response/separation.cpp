@@ -95,7 +95,7 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
 // target / 2, without moving their common centre of mass (measured: a plane midway lost 1e-4 of the momentum).
 double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const {
   struct Corner {
-    double limit, mass;  // pushed if c is above (corner of a) or below (of b) this limit [m]; [kg]
+    double limit, mass;  // limit of c above which a corner of a is pushed, or below which one of b is [m]; [kg]
     bool is_of_a;
   };
   std::array<Corner, 6> all;
@@ -197,9 +197,9 @@ const Vec3& Separation::backtrack_target(Index v, const Step& step) const {
   return carriers_[v] >= 0 ? step.carried->by(static_cast<std::size_t>(carriers_[v]))[v] : step.x_t0[v];
 }
 
-// Chooses where the vertices of a failing pair are backtracked to. Vertices that fail with an obstacle are carried by
-// it, and so are those that then fail with them. Vertices between two obstacles that would carry them to different
-// places stay at their start. Returns true if something changed; each vertex changes at most twice.
+// Chooses where the vertices of a failing pair are backtracked to. Vertices that fail with an obstacle go where it
+// carries them, and so do vertices that then fail with these. Vertices between two obstacles that would carry them to
+// different places stay at their start. Returns true if something changed; each vertex changes at most twice.
 bool Separation::choose_backtrack_targets(const CornerPair& pair, const Step& step) {
   if (step.carried == nullptr) return false;
   bool changed = false;
@@ -240,8 +240,8 @@ bool Separation::has_carried_vertex(const CornerPair& pair) const {
 }
 
 // Backtracks a pair, entirely or half of the way, each vertex once per round. A pair with a carried vertex is always
-// backtracked entirely, because half of the way keeps no distance. Returns false if every free vertex is at its target
-// and no target changed.
+// backtracked entirely, because half of the way guarantees no distance. Returns false if every free vertex is at its
+// target and no target changed.
 bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step) {
   bool changed = choose_backtrack_targets(pair, step);
   const double fraction = all_the_way || has_carried_vertex(pair) ? 1 : 0.5;

@@ -34,8 +34,8 @@ struct SeparationReport {
 
 /// Vertices that only move together: those of a rigid body and its frame particles.
 struct RigidGroup {
-  Index first, count;        ///< of its vertices
-  Index frame, frame_count;  ///< of the particles that carry them
+  Index first, count;        ///< its surface vertices: the first, and their number
+  Index frame, frame_count;  ///< its frame particles: the first, and their number
   double mass;               ///< [kg]
 };
 
@@ -76,8 +76,8 @@ class Separation {
   /// Appends the watched pairs that may be closer than `radius` at x [m].
   void append_closer(double radius, std::span<const Vec3> x, PairList& out) const;
 
-  /// Per triangle, 1 if at x [m] no feature of it is within `distance` [m] of a feature of a triangle that shares a
-  /// vertex with it, except features with a common vertex.
+  /// Returns 1 for a triangle only if, at x [m], its features are farther than `distance` [m] from those of all
+  /// triangles that share a vertex with it. Pairs of features with a common vertex do not count.
   std::vector<std::uint8_t> find_clear_triangles(double distance, std::span<const Vec3> x) const;
 
   /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1; changes no positions. x_t0 must
@@ -89,8 +89,8 @@ class Separation {
                                            const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
 
   /// Changes x_t1 of movable vertices until every pair has a separating plane. If that fails, adds pairs of cloth and
-  /// obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last call. It is
-  /// then kept which obstacle carries which vertex.
+  /// obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last call; vertices
+  /// then keep the obstacles that carry them.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                            PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
                            bool is_continued = false, PlaneKinds which = PlaneKinds::all);
@@ -141,7 +141,7 @@ class Separation {
   std::vector<int> backtracked_in_;          // per vertex: round in which it was last backtracked; 0: never
   std::vector<RigidGroup> groups_;
   std::vector<int> group_of_;  // per vertex; −1: none; empty if there are no groups
-  std::vector<int> carriers_;  // per vertex: obstacle that carries it when backtracked, or a value below
+  std::vector<int> carriers_;  // per vertex: obstacle that carries it when backtracked, or a constant below
   static constexpr int kAtStart = -1, kAlwaysAtStart = -2;
   int round_ = 0;
   std::vector<CornerPair> failing_;

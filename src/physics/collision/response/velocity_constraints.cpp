@@ -259,8 +259,8 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
 }
 
 void VelocityConstraints::accept() {
-  // If an overloaded particle was released, nothing sticks anew, because it may have held its slow neighbours. Without
-  // this rule the halves of a patch could stick in turn, and hold the whole patch on any incline.
+  // If an overloaded particle was released, no particle begins to stick: the released one may have held its slow
+  // neighbours. Without this rule the halves of a patch could stick in turn, and hold the whole patch on any incline.
   const bool any_overloaded =
       std::ranges::any_of(touched_, [](const TouchingParticle& particle) { return particle.overloaded; });
   for (Index particle : remembered_) memory_[particle] = {};

@@ -63,7 +63,7 @@ class VelocityConstraints {
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const;
 
   /// Chooses the walls that hold in the first solve: those that held at the end of the last step, and those that the
-  /// particle would pass on the way from x_t0 to x_t1.
+  /// particle would pass on the trajectory from x_t0 to x_t1.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// After a solve that led to x_end: adds walls that were passed, releases walls that pull, and lets particles slide
@@ -82,8 +82,8 @@ class VelocityConstraints {
   /// Adds, for the sliding particles: normal forces (`push`), friction, and the maximum friction (`limit`) [N].
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
                                       std::span<double> limit) const;
-  /// As add_forces; also adds −∂f/∂x to the matrix, in the definite form of ContactSet::linearise. `end_rate`: change
-  /// of x_end per change of the unknown.
+  /// As add_forces; also adds −∂f/∂x to the matrix, positive semidefinite as in ContactSet::linearise. `end_rate`:
+  /// change of x_end per change of the unknown.
   void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
@@ -110,11 +110,11 @@ class VelocityConstraints {
     bool same_walls(const ActiveWalls& other) const { return count == other.count && walls == other.walls; }
     double multiplier_sum() const { return multipliers[0] + multipliers[1] + multipliers[2]; }
   };
-  /// State of a particle: during a step if it has walls, and kept from the last step.
+  /// State of a particle with walls: in the current step, or at the end of the last accepted one.
   struct Memory {
     State state = State::away;
     Vec3 push = Vec3::Zero();  // normal part of the force of the walls [N]
-    double normal_force = 0;   // sum of its parts along the walls [N]
+    double normal_force = 0;   // sum of the components of `push` along the normals of the walls [N]
   };
   struct TouchingParticle {
     Index particle;
@@ -124,10 +124,10 @@ class VelocityConstraints {
     Vec3 x_t0 = Vec3::Zero();
     Vec3 u_held = Vec3::Zero();        // prescribed displacement, in the held directions [m]
     double friction_normal_force = 0;  // normal force that limits friction in this solve [N]
-    Vec3 drag = Vec3::Zero();          // relative friction at unchanged velocity, the initial guess
+    Vec3 drag = Vec3::Zero();          // friction / maximum friction at unchanged velocity: the initial guess
     int constraint_changes = 0;        // how often its constraint changed in this step
     bool slow = false;                 // slides so slowly that it may stick
-    bool overloaded = false;           // stuck in this step with much more than static friction
+    bool overloaded = false;           // stuck in this step although that took much more than static friction
   };
 
   Vec3 project(const TouchingParticle& particle, const Vec3& u, bool of_force, ActiveWalls& held) const;
@@ -137,7 +137,7 @@ class VelocityConstraints {
   Mat3 free_directions(const TouchingParticle& particle) const;
   struct Friction {
     Vec3 force;
-    Mat3 stiffness;  // −∂f/∂x, definite [N/m]
+    Mat3 stiffness;  // −∂f/∂x, positive semidefinite [N/m]
   };
   Friction friction(const TouchingParticle& particle, const Vec3& x_end) const;
   Vec3 slip(const TouchingParticle& particle, const Vec3& x_end) const;

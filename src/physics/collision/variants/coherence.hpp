@@ -4,11 +4,11 @@
 //   each step:  if (detection.update(broad_phase, finder, x_t0, x_t1) > 0) … detection.candidates() have changed
 //               detection.proximities()
 //
-// Each surface is divided into groups of triangles. Each group has a velocity cone: its motion since a common
-// reference. For two groups, let R be how far a point of one can have moved relative to a point of the other since
-// their pair of surfaces was searched, by these cones. Distances, and gaps of bounds along any direction, have then
-// changed by at most R. Let D be the detection distance. A result is valid while for each two groups R ≤ budget, or
-// their boxes were more than D + R apart at that search. While a result is valid:
+// Each surface is divided into groups of triangles. A velocity cone bounds the motion of each group since a common
+// reference. For two groups, let R be the bound, by these cones, of how far a point of one has moved relative to a
+// point of the other since their pair of surfaces was searched. Distances, and gaps of bounds along any direction, have
+// then changed by at most R. Let D be the detection distance. A result is valid while for each two groups R ≤ budget,
+// or their boxes were more than D + R apart at that search. While a result is valid:
 //   - every two triangles whose bounds with margin D / 2 overlap now are among the candidates;
 //   - the kept closest points of two features, with unchanged weights, are at most 2 R farther apart than the features,
 //     and never closer;

@@ -1,4 +1,4 @@
-// A scene: what is simulated, read from TOML and checked.
+// A scene: all objects to simulate, read from TOML and checked.
 #pragma once
 
 #include <filesystem>

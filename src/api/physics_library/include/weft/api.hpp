@@ -1,4 +1,4 @@
-// Marks what the shared library exports.
+// Marks the symbols that the shared library exports.
 #pragma once
 
 #define WEFT_API __attribute__((visibility("default")))

@@ -1,4 +1,4 @@
-// One frame of a simulation: where everything is, and what it cost.
+// One frame of a simulation: the state of all objects, measured values, and cost.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ struct Object {
 struct EnclosedAir {
   std::string cloth;
   double volume = 0;    ///< [m³]
-  double pressure = 0;  ///< gauge pressure: above that outside [Pa]
+  double pressure = 0;  ///< gauge pressure, relative to the outside air [Pa]
 };
 
 /// Cost and measured values of a frame. In frame 0, the energies are those of the start.
@@ -59,8 +59,8 @@ struct Report {
   double pin_work = 0;          ///< work of pins on the cloth in this frame [J]
   double error_estimate = 0;    ///< estimated sum, over the steps, of the local errors of positions [m]
   double solver_error = 0;      ///< the same sum of the errors due to the solver [m]
-  int pinched_pairs = 0;        ///< largest number of cloth triangles at once that bodies pinch, per obstacle limb
-  int lagging_particles = 0;    ///< largest number of particles at once that something keeps from their pins' targets
+  int pinched_pairs = 0;        ///< largest simultaneous number of cloth triangles that bodies pinch, per obstacle limb
+  int lagging_particles = 0;    ///< largest simultaneous number of pinned particles that lag behind their targets
   std::vector<EnclosedAir> enclosed_air;  ///< of each cloth with pressure
   std::vector<std::string> warnings;
 };

@@ -1,4 +1,4 @@
-// What is simulated, made in memory: cloths and bodies as meshes, with materials and motion.
+// A model to simulate, made in memory: cloths and bodies as meshes, with materials and motion.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct Material {
 /// A sheet of triangles. Its particles are the vertices.
 struct Cloth {
   std::string name;
-  Mesh mesh;  ///< as it starts
+  Mesh mesh;  ///< shape at the start
   /// Per particle: its place in the flat fabric, along weft and warp [m]. If empty, the mesh is the rest shape, and the
   /// weft of each triangle runs along the projection of x.
   std::vector<RestPoint> rest;
@@ -54,7 +54,7 @@ struct PoseKey {
   Pose pose;
 };
 
-/// A rigid body that cloth meets.
+/// A rigid body that cloth may touch.
 struct Body {
   std::string name;
   Mesh mesh;                  ///< in its own coordinates; closed if forces move it
@@ -63,14 +63,14 @@ struct Body {
   double mass = 0;            ///< [kg]; above 0, forces move it
   Vector velocity{0, 0, 0};   ///< at the start, if forces move it [m/s]
   double friction = 0.3;
-  bool collide = true;  ///< false: only pins see it
+  bool collide = true;  ///< false: no contact; pins can still follow the body
 };
 
 /// Holds particles of a cloth where they start, or at a body.
 struct Pin {
   std::string cloth;
   std::vector<int> particles;
-  std::string body;                                          ///< whose motion they share; empty: they stay
+  std::string body;                                          ///< body that they follow; empty: they stay
   double release = std::numeric_limits<double>::infinity();  ///< time from which they are free [s]
 };
 

@@ -16,19 +16,19 @@ class Scene;
 
 struct SimulationOptions {
   std::vector<std::string> driven;  ///< names of the bodies that Simulation::move() moves
-  std::string state;                ///< what save() returned, to continue from there; empty: begin at frame 0
+  std::string state;                ///< result of save(), from which to continue; empty: begin at frame 0
 };
 
 /// A simulation at one frame. One thread at a time may use it; different simulations may run in different threads.
 /// The same model or scene gives the same bits on any number of threads.
 class WEFT_API Simulation {
  public:
-  /// Builds the simulation. Throws std::invalid_argument if the model has a value that cannot be, or the options do not
-  /// fit it; SceneError if surfaces touch at the start.
+  /// Builds the simulation. Throws std::invalid_argument if a value of the model is out of range, or the options do not
+  /// fit the model; SceneError if surfaces touch at the start.
   explicit Simulation(const Model& model, const SimulationOptions& options = {});
-  /// Of the library with scenes (weft/scene.hpp). Builds the simulation and computes `time.preroll`, if the scene has
-  /// one. Throws SceneError if surfaces touch at the start, FileError, SimulationError; std::invalid_argument if the
-  /// options do not fit the scene.
+  /// Only in the library with scenes (weft/scene.hpp). Builds the simulation and computes `time.preroll`, if the scene
+  /// has one. Throws SceneError if surfaces touch at the start, FileError, SimulationError; std::invalid_argument if
+  /// the options do not fit the scene.
   explicit Simulation(const Scene& scene, const SimulationOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
