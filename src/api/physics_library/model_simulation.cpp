@@ -124,13 +124,13 @@ class Hash {
 
 }  // namespace
 
-Simulation::Simulation(const Model& given, const SimulationOptions& options)
+Simulation::Simulation(const Model& model, const SimulationOptions& options)
     : impl_(library::with_public_errors([&] {
-        model::Model model = library::physics_of(given, options.driven);
+        model::Model physics = library::physics_of(model, options.driven);
         Hash hash;
-        hash.add(given);
-        const auto meshes = std::make_shared<const Meshes>(model);
-        return std::make_unique<Impl>(std::make_unique<simulation::Simulation>(std::move(model)),
+        hash.add(model);
+        const auto meshes = std::make_shared<const Meshes>(physics);
+        return std::make_unique<Impl>(std::make_unique<simulation::Simulation>(std::move(physics)),
                                       library::heading_of(hash.value(), options), options,
                                       [meshes](const simulation::Simulation& now) { return frame_of(now, meshes); });
       })) {}

@@ -71,7 +71,7 @@ struct Simulation::Impl {
 
   void begin_layer(std::size_t number);
   void put_on_next();
-  void make_start();
+  void make_start() const;
   bool all_dressed() const { return layer + 1 == model.layers.size(); }
   const model::Model& dressed() const { return dressed_part ? *dressed_part : model; }
   FrameReport advance();
@@ -147,7 +147,7 @@ void Simulation::Impl::put_on_next() {
 
 // Lifts bodies and untangles cloth at the start of a layer. Throws Error(scene_invalid) if surfaces still touch or
 // cross.
-void Simulation::Impl::make_start() {
+void Simulation::Impl::make_start() const {
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)
     log::info(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));
   if (dressed().may_be_untangled()) steps->untangle();
