@@ -5,6 +5,7 @@
 #include <weft/scene.hpp>
 
 #include "api/library/scene_data.hpp"
+#include "api/physics_library/material_members.hpp"
 #include "film/scene/fabrics.hpp"
 #include "film/scene/loader.hpp"
 
@@ -80,21 +81,10 @@ Material fabric(std::string_view name) {
   if (found == nullptr)
     throw std::invalid_argument(
         fmt::format("expected one of the fabrics {}, got {}", fmt::join(scene::fabric_names(), ", "), name));
-  const scene::Material& of = found->material;
-  return {.density = of.density,
-          .stretch_weft = of.stretch_weft,
-          .stretch_warp = of.stretch_warp,
-          .shear = of.shear,
-          .bend = of.bend,
-          .max_stretch = of.max_stretch,
-          .max_shear = of.max_shear,
-          .stretch_viscosity = of.stretch_viscosity,
-          .shear_viscosity = of.shear_viscosity,
-          .bend_viscosity = of.bend_viscosity,
-          .bend_friction = of.bend_friction,
-          .thickness = of.thickness,
-          .friction = of.friction,
-          .drag = of.drag};
+  Material material;
+  for (const library::MaterialMember& member : library::kMaterialMembers)
+    material.*member.given = found->material.*member.physics;
+  return material;
 }
 
 }  // namespace weft

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "api/physics_library/material_members.hpp"
 #include "physics/mesh/geometry.hpp"
 
 namespace weft::library {
@@ -36,47 +37,36 @@ void check_range(double value, double low, double high, const std::string& objec
   if (!(value >= low && value <= high)) refuse(object, "{} from {:g} to {:g}, got {:g}", what, low, high, value);
 }
 
-mesh::Mesh mesh_of(const Mesh& given, const std::string& object) {
+// Bodies may have edges of any number of triangles, as meshes of others often do.
+enum class Edges { any, of_a_sheet };
+
+mesh::Mesh mesh_of(const Mesh& given, Edges edges, const std::string& object) {
   mesh::Mesh mesh;
   for (const Vector& x : given.positions) mesh.positions.push_back(vector_of(x, kFarthest, object, "a position [m]"));
   for (const Triangle& t : given.triangles) mesh.topology.triangles.push_back({t[0], t[1], t[2]});
   if (mesh.topology.triangles.empty()) refuse(object, "at least one triangle, got none");
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
-  if (!report.manifold())
+  if (!report.out_of_range.empty() || !report.degenerate.empty())
     refuse(
         object,
-        "edges of one or two triangles that face the same way; got {} triangles with a number that none of the {} "
-        "vertices has, {} with a vertex twice, {} edges of more than two triangles, and {} whose triangles face both "
-        "ways",
-        report.out_of_range.size(), mesh.positions.size(), report.degenerate.size(), report.non_manifold.size(),
-        report.misoriented.size());
+        "triangles of three different vertices; got {} with a number that none of the {} vertices has, and {} with a "
+        "vertex twice",
+        report.out_of_range.size(), mesh.positions.size(), report.degenerate.size());
+  if (edges == Edges::of_a_sheet && !report.manifold())
+    refuse(
+        object,
+        "edges of one or two triangles that face the same way; got {} edges of more than two triangles, and {} whose "
+        "triangles face both ways",
+        report.non_manifold.size(), report.misoriented.size());
   return mesh;
 }
 
 model::Material material_of(const Material& given, const std::string& object) {
-  constexpr double kPositive = 1e-12;
-  check_range(given.density, kPositive, 1e5, object, "a density [kg/m²]");
-  check_range(given.stretch_weft, 0, 1e12, object, "a stretch_weft [N/m]");
-  check_range(given.stretch_warp, 0, 1e12, object, "a stretch_warp [N/m]");
-  check_range(given.shear, 0, 1e12, object, "a shear [N/m]");
-  check_range(given.bend, 0, 1e6, object, "a bend [N·m]");
-  check_range(given.max_stretch, 0, 10, object, "a max_stretch");
-  check_range(given.max_shear, 0, 80, object, "a max_shear [degrees]");
-  check_range(given.stretch_viscosity, 0, 1e9, object, "a stretch_viscosity [N·s/m]");
-  check_range(given.shear_viscosity, 0, 1e9, object, "a shear_viscosity [N·s/m]");
-  check_range(given.bend_viscosity, 0, 1e6, object, "a bend_viscosity [N·m·s]");
-  check_range(given.bend_friction, 0, 1e6, object, "a bend_friction [N]");
-  check_range(given.thickness, kPositive, 1, object, "a thickness [m]");
-  check_range(given.friction, 0, 10, object, "a friction");
-  check_range(given.drag, 0, 100, object, "a drag");
   model::Material material;
-  material.density = given.density;
-  material.stretch_weft = given.stretch_weft, material.stretch_warp = given.stretch_warp;
-  material.shear = given.shear, material.bend = given.bend;
-  material.max_stretch = given.max_stretch, material.max_shear = given.max_shear;
-  material.stretch_viscosity = given.stretch_viscosity, material.shear_viscosity = given.shear_viscosity;
-  material.bend_viscosity = given.bend_viscosity, material.bend_friction = given.bend_friction;
-  material.thickness = given.thickness, material.friction = given.friction, material.drag = given.drag;
+  for (const MaterialMember& member : kMaterialMembers) {
+    check_range(given.*member.given, member.low, member.high, object, member.what);
+    material.*member.physics = given.*member.given;
+  }
   return material;
 }
 
@@ -118,7 +108,7 @@ void check_triangles(const model::Cloth& cloth) {
 model::Cloth cloth_of(const Cloth& given) {
   model::Cloth cloth;
   cloth.name = cloth.source = given.name;
-  cloth.mesh = mesh_of(given.mesh, given.name);
+  cloth.mesh = mesh_of(given.mesh, Edges::of_a_sheet, given.name);
   check_vertices_are_used(cloth.mesh, given.name);
   cloth.sheet = mesh::make_sheet_from_mesh(cloth.mesh);
   cloth.start = cloth.mesh.positions;
@@ -136,12 +126,11 @@ model::Cloth cloth_of(const Cloth& given) {
 }
 
 motion::PoseTrack track_of(const std::vector<PoseKey>& keys, const std::string& object) {
-  constexpr double kLeastGap = 1e-7;  // the shortest time step [s]
   motion::PoseTrack track;
   for (const PoseKey& key : keys) {
     check_range(key.time, -kFarthest, kFarthest, object, "a key's time [s]");
-    if (!track.keys.empty() && key.time < track.keys.back().time + kLeastGap)
-      refuse(object, "keys at increasing times, {:g} s apart or more, got one at {:g} s", kLeastGap, key.time);
+    if (!track.keys.empty() && key.time < track.keys.back().time + model::kMinStep)
+      refuse(object, "keys at increasing times, {:g} s apart or more, got one at {:g} s", model::kMinStep, key.time);
     track.keys.push_back({key.time, pose_of(key.pose, object)});
   }
   return track;
@@ -150,7 +139,7 @@ motion::PoseTrack track_of(const std::vector<PoseKey>& keys, const std::string& 
 model::Body body_of(const Body& given, bool is_driven) {
   model::Body body;
   body.name = given.name;
-  body.mesh = mesh_of(given.mesh, given.name);
+  body.mesh = mesh_of(given.mesh, Edges::any, given.name);
   body.mover = std::make_shared<const model::Mover>(
       motion::Track(track_of(given.keys, given.name), pose_of(given.pose, given.name)));
   body.moving = is_driven || given.keys.size() > 1;
@@ -226,14 +215,14 @@ motion::Pose pose_of(const Pose& given, const std::string& object) {
 
 model::Model physics_of(const Model& given, const std::vector<std::string>& driven) {
   const std::string name = "model";
-  constexpr double kLeast = 1e-9, kMostSteps = 1e9;  // in a frame
   model::Model model;
   model.source = name;
-  check_range(given.fps, kLeast, 1000, name, "fps");
-  check_range(given.step, 1e-7, 1, name, "a step [s]");
-  if (given.fps * given.step * kMostSteps < 1)
-    refuse(name, "at most {:g} steps in a frame, got fps = {:g} and step = {:g} s", kMostSteps, given.fps, given.step);
-  check_range(given.newton_tolerance, kLeast, 1, name, "a newton_tolerance");
+  check_range(given.fps, kAboveZero, 1000, name, "fps");
+  check_range(given.step, model::kMinStep, 1, name, "a step [s]");
+  if (given.fps * given.step * model::kMaxStepsInFrame < 1)
+    refuse(name, "at most {:g} steps in a frame, got fps = {:g} and step = {:g} s", model::kMaxStepsInFrame, given.fps,
+           given.step);
+  check_range(given.newton_tolerance, kAboveZero, 1, name, "a newton_tolerance");
   check_range(given.air_density, 0, 1000, name, "an air_density [kg/m³]");
   if (given.method < Method::implicit_euler || given.method > Method::bdf2)
     refuse(name, "one of the methods, got number {}", static_cast<int>(given.method));

@@ -7,6 +7,7 @@
 #include <weft/simulation.hpp>
 
 #include "api/physics_library/data.hpp"
+#include "api/physics_library/material_members.hpp"
 #include "api/physics_library/model_input.hpp"
 
 namespace weft {
@@ -73,13 +74,11 @@ class Hash {
     add_all(model.fps, model.step, model.method, model.newton_tolerance, model.gravity, model.wind, model.air_density,
             model.self_contact);
     add_list(model.cloths, [&](const Cloth& cloth) {
-      const Material& m = cloth.material;
       add_mesh(cloth.mesh);
       add_text(cloth.name);
       add_list(cloth.rest, [&](const RestPoint& point) { add_all(point); });
-      add_all(m.density, m.stretch_weft, m.stretch_warp, m.shear, m.bend, m.max_stretch, m.max_shear,
-              m.stretch_viscosity, m.shear_viscosity, m.bend_viscosity, m.bend_friction, m.thickness, m.friction,
-              m.drag, cloth.velocity);
+      for (const library::MaterialMember& member : library::kMaterialMembers) add_all(cloth.material.*member.given);
+      add_all(cloth.velocity);
     });
     add_list(model.bodies, [&](const Body& body) {
       add_mesh(body.mesh);

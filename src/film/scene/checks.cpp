@@ -21,8 +21,7 @@ namespace weft::scene {
 
 namespace {
 
-constexpr double kMaxFrames = 100000, kMaxStepsInFrame = 1e9;
-constexpr double kMinKeyGap = 1e-7;        // minimum time between keys [s]: the shortest time step
+constexpr double kMaxFrames = 100000;
 constexpr long kMaxParticles = 4'000'000;  // of all cloths together; the solver's data fit a large workstation
 
 template <class Entries>
@@ -55,9 +54,9 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
     if (!findings.has(key) || findings.has_mistake(key)) continue;
     if (keys[i].time <= latest) {
       findings.report(key, fmt::format("expected > {} s, later than the keys before, got {}", latest, keys[i].time));
-    } else if (keys[i].time - latest < kMinKeyGap) {
-      findings.report(key, fmt::format("expected at least {:g} s after the key before, at {} s, got {}", kMinKeyGap,
-                                       latest, keys[i].time));
+    } else if (keys[i].time - latest < model::kMinStep) {
+      findings.report(key, fmt::format("expected at least {:g} s after the key before, at {} s, got {}",
+                                       model::kMinStep, latest, keys[i].time));
     }
     latest = std::max(latest, keys[i].time);
   }
@@ -409,9 +408,9 @@ void check(const Scene& scene, Findings& findings) {
     findings.report("time.duration",
                     fmt::format("expected at most {} frames (duration * fps), got {:.0f}", kMaxFrames, frames));
   }
-  if (const double steps = 1 / (scene.time.fps * scene.time.step); steps > kMaxStepsInFrame) {
+  if (const double steps = 1 / (scene.time.fps * scene.time.step); steps > model::kMaxStepsInFrame) {
     findings.report("time.step", fmt::format("expected at most {:g} steps in a frame (1 / (fps * step)), got {:.3g}",
-                                             kMaxStepsInFrame, steps));
+                                             model::kMaxStepsInFrame, steps));
   }
   check_times(scene.physics.keys, "physics", findings);
   for (std::size_t i = 0; i < scene.ropes.size(); ++i)

@@ -34,7 +34,7 @@ const Table& time_rules() {
           .number("preroll", &Time::preroll, within(0, 3600), "s",
                   "time simulated before frame 0 and not shown, for example to dress a character; keys with negative "
                   "times act in it")
-          .number("step", &Time::step, within(1e-7, 1), "s",
+          .number("step", &Time::step, within(model::kMinStep, 1), "s",
                   "maximum time step; each frame is divided into equal steps no longer than this; with implicit_euler, "
                   "a frame in which all cloth rests can be one step")
           .excludes("tolerance")

@@ -7,6 +7,9 @@
 
 namespace weft::model {
 
+/// Smallest time step, and smallest time between two keys [s]; largest number of steps in a frame, which an int counts.
+inline constexpr double kMinStep = 1e-7, kMaxStepsInFrame = 1e9;
+
 struct Time {
   double fps = 25;         ///< frames per second; frame k is at the time k / fps
   int preroll_frames = 0;  ///< frames before frame 0; the run begins with them

@@ -11,7 +11,7 @@ namespace weft {
 
 struct Mesh {
   std::vector<Vector> positions;    ///< per vertex [m]
-  std::vector<Triangle> triangles;  ///< counter-clockwise seen from the front; each edge belongs to one or two of them
+  std::vector<Triangle> triangles;  ///< counter-clockwise seen from the front; of cloth, one or two at each edge
 };
 
 /// A fabric in continuum units; the defaults are cotton.
