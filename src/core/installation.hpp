@@ -15,7 +15,8 @@ struct Installation {
 /// Location of this process. All paths are empty if /proc is not mounted.
 Installation own_installation();
 
-/// Overrides the result of own_installation(). For tests, which fork to run the program; not thread-safe.
+/// Overrides the result of own_installation(). For tests that fork and run the program's code in the child, where
+/// /proc/self/exe is the test's executable. Not thread-safe.
 void set_own_installation(const Installation& installation);
 
 }  // namespace weft

@@ -24,7 +24,7 @@
 namespace weft {
 namespace {
 
-/// First byte of the answer: the bytes of `work` follow, or the text of its exception.
+/// First byte of the answer. kDone: the bytes that `work` returned follow; kFailed: an error message follows.
 constexpr char kDone = 'D', kFailed = 'F';
 
 [[noreturn]] void fail(const char* what) {

@@ -1,4 +1,4 @@
-// Runs code in a child process: code that damaged input may crash, or that is measured separately.
+// Runs code in a child process: code that may crash on damaged input, or code whose memory use is measured alone.
 #pragma once
 
 #include <atomic>
@@ -16,10 +16,10 @@ struct Isolation {
   const std::atomic<bool>* stop = nullptr;  ///< if it becomes true, the child is killed; nullptr: never
 };
 
-/// Calls `work` in a child process and returns its bytes. This process survives whatever happens to the child (a crash,
-/// an endless loop, a runaway allocation). run_isolated() then throws std::runtime_error with the reason, or with the
-/// text of the exception that `work` threw; Error(interrupted) if `stop` became true. Other threads of this process do
-/// not exist in the child: `work` must not wait for them.
+/// Calls `work` in a child process and returns the bytes that `work` returned. This process survives whatever happens
+/// to the child (a crash, an endless loop, a runaway allocation). Then run_isolated() throws std::runtime_error with
+/// the reason, or with the text of the exception that `work` threw; Error(interrupted) if `stop` became true. Other
+/// threads of this process do not exist in the child: `work` must not wait for them.
 std::string run_isolated(const std::function<std::string()>& work, const Isolation& isolation);
 
 }  // namespace weft

@@ -10,15 +10,17 @@
 
 #include "cli/subprocess.hpp"
 #include "film/production/scene_simulation.hpp"
+#include "film/run_error/shadow.hpp"
+#include "film/run_error/trajectory.hpp"
 #include "lab/bench/accuracy_report.hpp"
 #include "lab/bench/plot.hpp"
-#include "lab/bench/shadow.hpp"
-#include "lab/bench/trajectory.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::bench {
 namespace {
+
+using namespace run_error;
 
 using scene::Integrator;
 using Triangles = std::vector<mesh::Triangle>;
@@ -78,7 +80,7 @@ Trajectory made_up(const Vec3& shift, const Vec3& velocity, double energy) {
 
 TEST(Trajectories, AreComparedByMassAndByTheWorstFrame) {
   const Trajectory exact = made_up(Vec3::Zero(), Vec3::Zero(), 5);
-  const Errors errors = compare(made_up({0.1, 0, 0}, {0, 2, 0}, 5.5), exact);
+  const Errors errors = run_error::compare(made_up({0.1, 0, 0}, {0, 2, 0}, 5.5), exact);
   const auto error = [&](Quantity q) { return at(errors, q); };
   EXPECT_NEAR(error(Quantity::position), 0.1 * std::sqrt(0.75), 1e-15);
   EXPECT_NEAR(error(Quantity::velocity), 2 * std::sqrt(0.25), 1e-15);
@@ -91,7 +93,7 @@ TEST(Trajectories, AreComparedByMassAndByTheWorstFrame) {
 TEST(Trajectories, WithoutVelocitiesAreComparedByPositions) {
   Trajectory pictures = made_up({0.1, 0, 0}, {0, 2, 0}, 5);
   for (Trajectory::Frame& frame : pictures.frames) frame.v.clear();
-  const Errors errors = compare(pictures, made_up(Vec3::Zero(), Vec3::Zero(), 5));
+  const Errors errors = run_error::compare(pictures, made_up(Vec3::Zero(), Vec3::Zero(), 5));
   EXPECT_EQ(at(errors, Quantity::velocity), 0);
   EXPECT_NEAR(at(errors, Quantity::position), 0.1 * std::sqrt(0.75), 1e-15);
 }

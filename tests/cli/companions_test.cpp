@@ -1,5 +1,5 @@
 // The reported error estimate of runs, compared with their true error.
-#include "lab/bench/companions.hpp"
+#include "film/run_error/companions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +14,8 @@
 
 namespace weft::bench {
 namespace {
+
+using namespace run_error;
 
 scene::Scene swinging(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"cloth.sheet.particles=9", "time.duration=0.4"};

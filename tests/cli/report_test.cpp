@@ -91,7 +91,7 @@ TEST(StatsJson, EachKeyIsDocumented) {
   RunReport report;
   report.frames = two_frames();
   report.objects.push_back({"sheet", frame::ObjectKind::cloth, 4, 1});
-  report.error.emplace().parts.push_back({bench::ErrorSource::steps});
+  report.error.emplace().parts.push_back({run_error::ErrorSource::steps});
   const auto stats = stats_json(report);
   EXPECT_EQ(documented_keys(page, "## Keys of `--stats`"), keys_of(stats));
   EXPECT_EQ(documented_keys(page, "Keys of one of `objects`"), keys_of(stats.at("objects").at(0)));
@@ -143,10 +143,10 @@ TEST(Summary, SaysWhatCompanionsHaveMeasured) {
   RunReport report;
   report.frames = two_frames();
   report.cloth_size = 2;
-  bench::ErrorPart steps{bench::ErrorSource::steps}, start{bench::ErrorSource::start};
-  steps.errors[static_cast<std::size_t>(bench::Quantity::position)] = 0.008;
-  start.errors[static_cast<std::size_t>(bench::Quantity::position)] = 1e-6;
-  report.error = bench::ErrorEstimate{.parts = {steps, start}, .all = steps.errors};
+  run_error::ErrorPart steps{run_error::ErrorSource::steps}, start{run_error::ErrorSource::start};
+  steps.errors[static_cast<std::size_t>(run_error::Quantity::position)] = 0.008;
+  start.errors[static_cast<std::size_t>(run_error::Quantity::position)] = 1e-6;
+  report.error = run_error::ErrorEstimate{.parts = {steps, start}, .all = steps.errors};
   EXPECT_NE(summary(report).find("positions may be off by 8 mm (0.4 % of the cloth's size), most of it due to the time "
                                  "steps; a smaller time.step or time.tolerance reduces it\n"),
             std::string::npos)

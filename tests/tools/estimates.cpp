@@ -11,15 +11,17 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "core/temporary_file.hpp"
+#include "film/run_error/companions.hpp"
 #include "film/scene/loader.hpp"
 #include "lab/bench/accuracy.hpp"
-#include "lab/bench/companions.hpp"
 #include "lab/bench/plot.hpp"
 #include "lab/bench/report.hpp"
 #include "physics/simulation/collision_stage.hpp"
 
 namespace weft::bench {
 namespace {
+
+using namespace run_error;
 
 constexpr double kSteps[] = {0.04, 0.02, 0.01, 0.005, 0.0025};  // [s]
 // Reference runs use an eighth of the shortest step, and a tenth of newton_tolerance.

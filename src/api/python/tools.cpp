@@ -14,7 +14,7 @@
 #include "api/library/scene_frame.hpp"
 #include "api/python/bindings.hpp"
 #include "film/cache/reader.hpp"
-#include "lab/bench/companions.hpp"
+#include "film/run_error/companions.hpp"
 #include "tools/compare/files.hpp"
 
 namespace weft::python {
@@ -25,10 +25,10 @@ using library::with_public_errors;
 /// Errors by name of the quantity.
 using Errors = std::map<std::string, double>;
 
-Errors errors_of(const bench::Errors& errors) {
+Errors errors_of(const run_error::Errors& errors) {
   Errors result;
-  for (std::size_t q = 0; q < bench::kQuantities; ++q)
-    result[std::string(bench::name_of(static_cast<bench::Quantity>(q)))] = errors[q];
+  for (std::size_t q = 0; q < run_error::kQuantities; ++q)
+    result[std::string(run_error::name_of(static_cast<run_error::Quantity>(q)))] = errors[q];
   return result;
 }
 
@@ -42,9 +42,10 @@ struct ErrorOfRun {
 ErrorOfRun estimate_error(const Scene& public_scene, bool mesh) {
   return with_public_errors([&] {
     const scene::Scene& scene = public_scene.data().scene;
-    const bench::ErrorEstimate estimate = bench::estimate_error(scene, bench::follow(scene), {.mesh = mesh});
+    const run_error::ErrorEstimate estimate =
+        run_error::estimate_error(scene, run_error::follow(scene), {.mesh = mesh});
     ErrorOfRun result{errors_of(estimate.all), {}, estimate.start_matters, estimate.cpu_s};
-    for (const bench::ErrorPart& part : estimate.parts)
+    for (const run_error::ErrorPart& part : estimate.parts)
       result.parts[std::string(name_of(part.source))] =
           part.missing.empty() ? std::optional(errors_of(part.errors)) : std::nullopt;
     return result;

@@ -14,8 +14,9 @@ struct Instant {
   Vec2 lens{0, 0};  ///< point on the lens [radii of the lens]
 };
 
-/// `count` instants, evenly spread over the lens and over the time in which the shutter is open: `shutter` degrees (360
-/// per frame), ending at the frame. Empty if `shutter` is 0 and `lens` is false.
+/// `count` instants, evenly spread over the time in which the shutter is open: `shutter` degrees (360: the time between
+/// two frames) that end at the drawn frame. If `lens`, they are also spread over the lens, else all are at its centre.
+/// Empty without blur, if `shutter` is 0 and `lens` is false.
 std::vector<Instant> instants(double shutter, bool lens, int count);
 
 /// Interpolates positions and lights linearly between a frame (back = 0) and the one before (back = 1). What `before`

@@ -46,12 +46,12 @@ class Renderer {
 
   /// Sets the camera of a run. If this is not called, a computed camera is derived from the first drawn frame alone.
   void set_camera_path(CameraPath path);
-  /// `before`: the frame from which layers() computes motion.
+  /// `before`: the previous frame, for motion blur and for the motion in layers(); null: there is neither.
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
   /// The last picture as linear layers for compositors. Channels R, G, B and A hold the surfaces alone, premultiplied.
-  /// Channels picture.R, picture.G and picture.B hold the picture with floor and backdrop. If there is a floor, channel
-  /// caught.A holds the alpha of the surfaces together with the shadow on the floor, as black. All layers of DataPasses
-  /// follow.
+  /// Channels picture.R, picture.G and picture.B hold the picture with floor and backdrop. If there is a floor and no
+  /// translucent cloth, channel caught.A holds the alpha of the surfaces composited over the floor's shadow, which is
+  /// black, with the fraction of blocked light as its alpha. All layers of DataPasses follow.
   image::Layers layers();
   /// The last picture with 16 bits per channel.
   image::Image16 deep();

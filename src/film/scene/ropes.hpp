@@ -33,15 +33,15 @@ struct RopeShape {
   std::vector<Vec3> places;
   std::vector<double> lengths;
 };
-/// Start shape of a rope. A slack rope without points hangs as a catenary. `up`: of the scene.
+/// Start shape of a rope. A slack rope that is given only by its ends hangs as a catenary. `up`: up axis of the scene.
 RopeShape start_shape(const Rope& rope, UpAxis up);
 
 /// Default length of a piece [diameters].
 inline constexpr double kRopePiece = 3;
 using model::kMinRopePiece;
-/// Minimum horizontal distance between the ends of a slack rope without points [diameters].
+/// Minimum horizontal distance between the ends of a slack rope that is given only by its ends [diameters].
 inline constexpr double kMinRopeSpan = 4;
-/// Whether a rope has no points and is longer than the distance of its ends.
+/// Whether a rope is given only by its ends and is longer than the distance between them.
 bool hangs_slack(const Rope& rope);
 
 /// Rest length at the start [m]; empty: length of the path through its points or between its ends.

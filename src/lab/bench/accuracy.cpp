@@ -134,12 +134,12 @@ Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const Accurac
     throw Error(ExitCode::usage, "--starts: expected at least {}, as surfaces may touch in this scene, got {}",
                 kMinStartsWithContact, result_.starts);
   for (const double refinement : plan.meshes.value_or(std::vector<double>{}))
-    if (!can_refine(scene, refinement) || !can_refine(scene, 2 * refinement))
+    if (!run_error::can_refine(scene, refinement) || !run_error::can_refine(scene, 2 * refinement))
       throw Error(ExitCode::usage,
                   "--meshes: expected factors that give whole numbers of cells along each side, got {:g}", refinement);
   result_.frames = scene.frame_count() - 1;
   result_.duration = result_.frames / scene.time.fps;
-  result_.cloth_size = cloth_size(*production::SceneSimulation(scene).snapshot());
+  result_.cloth_size = run_error::cloth_size(*production::SceneSimulation(scene).snapshot());
   best_ = result_.contact ? Integrator::bdf2 : Integrator::implicit_midpoint;
   other_ = result_.contact ? Integrator::implicit_euler : Integrator::bdf2;
   integrators_ = plan.integrators.value_or(std::vector<Integrator>(std::begin(kIntegrators), std::end(kIntegrators)));
@@ -161,7 +161,7 @@ scene::Scene Campaign::scene_with(const Setting& setting) const {
   scene.time.tolerance = setting.tolerance;
   scene.solver.newton_tolerance = setting.newton_tolerance;
   scene.solver.linear_tolerance = setting.linear_tolerance;
-  if (setting.refinement != 1) refine(scene, setting.refinement);
+  if (setting.refinement != 1) run_error::refine(scene, setting.refinement);
   return scene;
 }
 
@@ -177,15 +177,15 @@ double Campaign::work_of(const Setting& setting) const {
 
 // Runs a setting from all starts. Throws if one of the runs fails.
 Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
-  const FollowLimits limits{.steps = setting.tolerance
-                                         ? std::min(kMaxStepRatio, reference_step_divisor()) * steps_of(finest_)
-                                         : kMaxStepRatio * std::max(steps_of(finest_), steps_of(setting.step))};
+  const run_error::FollowLimits limits{
+      .steps = setting.tolerance ? std::min(kMaxStepRatio, reference_step_divisor()) * steps_of(finest_)
+                                 : kMaxStepRatio * std::max(steps_of(finest_), steps_of(setting.step))};
   auto sample = std::make_shared<Sample>();
   sample->contact = result_.contact;
   std::vector<Functionals> functionals;
   scene::Scene scene = scene_with(setting);
   for (int start = 0; start < result_.starts; ++start) {
-    sample->starts.push_back(follow(scene, limits));
+    sample->starts.push_back(run_error::follow(scene, limits));
     functionals.push_back(sample->starts.back().functionals);
     for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += kStartShift;
   }
@@ -194,7 +194,7 @@ Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
   sample->spread = spread_of(*sample);
   for (const Trajectory& start : sample->starts) sample->work.cpu_s = std::min(sample->work.cpu_s, start.work.cpu_s);
   if (result_.starts == 1 && sample->work.cpu_s < kShortRun)
-    sample->work.cpu_s = std::min(sample->work.cpu_s, follow(scene, limits).work.cpu_s);
+    sample->work.cpu_s = std::min(sample->work.cpu_s, run_error::follow(scene, limits).work.cpu_s);
   return sample;
 }
 
@@ -392,7 +392,7 @@ void Campaign::measure_meshes() {
     for (const double refinement : asked) all.insert(2 * refinement);
   }
   for (const double refinement : all) {
-    if (!can_refine(scene_, refinement)) continue;
+    if (!run_error::can_refine(scene_, refinement)) continue;
     Run tried{.axis = Axis::mesh, .setting = as_in_scene(result_.reference.setting.integrator, 0.5 * scene_step_)};
     tried.setting.newton_tolerance = std::max(kMinNewtonTolerance, kMeshNewtonRatio * tried.setting.newton_tolerance);
     tried.setting.refinement = refinement;
@@ -400,7 +400,7 @@ void Campaign::measure_meshes() {
     const SamplePtr against = twice == by_refinement.end() ? nullptr : twice->second;
     by_refinement[refinement] =
         run(tried, against,
-            against ? matching_particles_in_refined(scene_with(tried.setting)) : std::vector<std::size_t>{});
+            against ? run_error::matching_particles_in_refined(scene_with(tried.setting)) : std::vector<std::size_t>{});
     // Meshes that serve only as a comparison are not listed.
     const bool extra = plan_.meshes ? !asked.contains(refinement) : refinement == kRefinements[0];
     if (extra && !tried.failed()) continue;

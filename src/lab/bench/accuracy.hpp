@@ -7,11 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "film/run_error/trajectory.hpp"
 #include "film/scene/scene.hpp"
 #include "lab/bench/accuracy_plan.hpp"
-#include "lab/bench/trajectory.hpp"
 
 namespace weft::bench {
+
+using run_error::Errors, run_error::Functionals, run_error::Quantity, run_error::Trajectory, run_error::Work;
+using run_error::kQuantities;
 
 inline constexpr scene::Integrator kIntegrators[] = {scene::Integrator::implicit_euler,
                                                      scene::Integrator::implicit_midpoint, scene::Integrator::bdf2};

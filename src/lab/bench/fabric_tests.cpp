@@ -8,7 +8,7 @@
 
 #include "core/temporary_file.hpp"
 #include "film/production/scene_simulation.hpp"
-#include "lab/bench/shadow.hpp"
+#include "film/run_error/shadow.hpp"
 
 namespace weft::bench {
 namespace {
@@ -115,7 +115,8 @@ Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, So
   if (solved == Solved::exactly) scene.solver.newton_tolerance = kExact;
   production::SceneSimulation simulation(scene);
   const auto overhang = [&] {
-    return shadow_area(triangles, positions_of(simulation), Vec3::UnitZ()) - kPi * kPlateRadius * kPlateRadius;
+    return run_error::shadow_area(triangles, positions_of(simulation), Vec3::UnitZ()) -
+           kPi * kPlateRadius * kPlateRadius;
   };
   const double whole = overhang();
   Drape result;

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "core/timer.hpp"
 #include "film/production/scene_simulation.hpp"
-#include "lab/bench/trajectory.hpp"
+#include "film/run_error/trajectory.hpp"
 
 namespace weft::bench {
 namespace {
@@ -53,8 +53,8 @@ bool scale_mesh(scene::Scene& scene, double factor) {
   if (factor == 1) return true;
   const bool all_patterns = std::ranges::all_of(
       scene.cloths, [](const scene::Cloth& cloth) { return cloth.shape == scene::ClothShape::pattern; });
-  if (!all_patterns && !can_refine(scene, factor)) return false;
-  refine(scene, factor);
+  if (!all_patterns && !run_error::can_refine(scene, factor)) return false;
+  run_error::refine(scene, factor);
   for (scene::Cloth& cloth : scene.cloths) cloth.edge_length /= factor;
   return true;
 }

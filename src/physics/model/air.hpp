@@ -23,7 +23,7 @@ struct PhysicsKey {
 };
 
 struct Physics {
-  Vec3 gravity{0, 0, -9.81};  ///< [m/s²]; the default follows the up axis
+  Vec3 gravity{0, 0, -9.81};  ///< [m/s²]; the default is for z up
   double air_density = 1.2;   ///< [kg/m³]; 0: no air
   Vec3 wind{0, 0, 0};         ///< velocity of the air [m/s]
   Gusts gusts;
@@ -47,7 +47,7 @@ struct FanKey {
 /// A cone of wind, as of a fan; see Weather.
 struct Fan {
   std::string name;
-  std::vector<FanKey> keys{FanKey{}};  ///< at least one; one: still
+  std::vector<FanKey> keys{FanKey{}};  ///< at least one; a fan with a single key never changes
   motion::Interpolation interpolation = motion::Interpolation::cubic;
   double radius = 0.25;  ///< of the outlet disc [m]
   double angle = 24;     ///< full opening angle of the cone [degrees]

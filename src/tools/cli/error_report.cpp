@@ -9,7 +9,7 @@
 namespace weft::cli {
 namespace {
 
-using bench::ErrorEstimate, bench::ErrorPart, bench::ErrorSource, bench::Quantity;
+using run_error::ErrorEstimate, run_error::ErrorPart, run_error::ErrorSource, run_error::Quantity;
 
 // A reported quantity with its column and key.
 struct Figure {
@@ -48,14 +48,14 @@ std::string start_text(const ErrorEstimate& estimate) {
   return "?";
 }
 
-std::vector<std::string> row(const std::string& name, const bench::Errors& errors) {
+std::vector<std::string> row(const std::string& name, const run_error::Errors& errors) {
   std::vector<std::string> row{name};
   for (const Figure& figure : kFigures)
     row.push_back(fmt::format(fmt::runtime(figure.format), figure.scale * at(errors, figure.quantity)));
   return row;
 }
 
-nlohmann::ordered_json errors_json(const bench::Errors& errors) {
+nlohmann::ordered_json errors_json(const run_error::Errors& errors) {
   nlohmann::ordered_json json;
   for (const Figure& figure : kFigures) json[figure.key] = at(errors, figure.quantity);
   return json;

@@ -4,22 +4,22 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "lab/bench/companions.hpp"
+#include "film/run_error/companions.hpp"
 
 namespace weft::cli {
 
 /// One line per source of error, one for all of them (root of the sum of squares), and one with the CPU time of the
 /// companion runs; no line feed at the end.
-std::string error_summary(const bench::ErrorEstimate& estimate);
+std::string error_summary(const run_error::ErrorEstimate& estimate);
 
 /// One sentence: the error of positions, its main source, and how to reduce it. `cloth_size` [m]; 0: not known.
-std::string error_sentence(const bench::ErrorEstimate& estimate, double cloth_size);
+std::string error_sentence(const run_error::ErrorEstimate& estimate, double cloth_size);
 
 /// A length [m] in mm and relative to the size of the cloth [m]: "1.2 mm (0.12 % of the cloth's size)".
 std::string relative_length(double length, double cloth_size);
 
 /// The estimate in SI units: {"comparable", "parts": {"time_steps": {"position_m", ...}, ...}, "all", "advice",
 /// "cpu_s"}.
-nlohmann::ordered_json error_json(const bench::ErrorEstimate& estimate);
+nlohmann::ordered_json error_json(const run_error::ErrorEstimate& estimate);
 
 }  // namespace weft::cli

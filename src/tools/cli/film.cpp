@@ -8,7 +8,7 @@
 #include "core/bounded_queue.hpp"
 #include "core/log.hpp"
 #include "core/timer.hpp"
-#include "lab/bench/trajectory.hpp"
+#include "film/run_error/trajectory.hpp"
 #include "tools/cli/stats.hpp"
 
 namespace weft::cli {
@@ -86,7 +86,7 @@ class Film {
         break;
       }
       MadeFrame made = source.next();  // simulated or read
-      if (frame == made_.begin) result_.cloth_size = bench::cloth_size(*made.snapshot);
+      if (frame == made_.begin) result_.cloth_size = run_error::cloth_size(*made.snapshot);
       if (parts_.on_frame) parts_.on_frame(made);
       if (parts_.store) parts_.store->keep(made);  // so that it need not be simulated again
       for (const std::string& warning : made.report.warnings) log::warn(warning);

@@ -165,7 +165,7 @@ class Session {
   void begin(const FilmPlan& plan);
   void make(const FilmPlan& plan, FilmParts parts);
   /// If the run is complete, simulates companion runs, from which the error is estimated.
-  void estimate_error(const scene::Scene& scene, bench::Recorder& recorder);
+  void estimate_error(const scene::Scene& scene, run_error::Recorder& recorder);
   /// Writes all reports; after an early end, also prints how to continue. Returns the exit code.
   ExitCode end(const FilmPlan& plan, const Store* store);
 
@@ -224,13 +224,13 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
   sum_up(plan, std::move(result));
 }
 
-void Session::estimate_error(const scene::Scene& scene, bench::Recorder& recorder) {
+void Session::estimate_error(const scene::Scene& scene, run_error::Recorder& recorder) {
   if (report_.exit_code != ExitCode::ok) return;
   log::info("simulating comparison runs to estimate the error");
   const production::SceneSimulation particles(scene);
-  const bench::CompanionOptions options{.mesh = options_.mesh_error, .proceed = [this] { return !stop(); }};
+  const run_error::CompanionOptions options{.mesh = options_.mesh_error, .proceed = [this] { return !stop(); }};
   try {
-    report_.error = bench::estimate_error(scene, recorder.finish(particles.state().masses), options);
+    report_.error = run_error::estimate_error(scene, recorder.finish(particles.state().masses), options);
   } catch (const Error& error) {
     report_.exit_code = error.code();
     report_.message = fmt::format("the error is not known: {}", error.what());
@@ -349,7 +349,7 @@ ExitCode make_from_scene(Session& session, const scene::Scene& scene, const Film
   FilmParts parts;
   parts.open_source = [&] { return std::make_unique<SceneSource>(scene, store, session.stop(), session.progress()); };
   parts.store = &store;
-  std::optional<bench::Recorder> recorder;
+  std::optional<run_error::Recorder> recorder;
   if (session.wants_error())
     parts.on_frame = [&](const MadeFrame& made) {
       if (recorder)

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "core/timer.hpp"
 #include "film/production/scene_simulation.hpp"
-#include "lab/bench/companions.hpp"
+#include "film/run_error/companions.hpp"
 #include "tools/cli/frame_range.hpp"
 
 namespace weft::cli {
@@ -49,8 +49,8 @@ struct RunReport {
   std::vector<std::string> warnings;
   std::vector<std::string> notes;  ///< remarks that are not problems, such as skin moved to make space for cloth
   ExitCode exit_code = ExitCode::ok;
-  std::string message;                        ///< why the run ended early; empty if it did not
-  std::optional<bench::ErrorEstimate> error;  ///< if requested
+  std::string message;                            ///< why the run ended early; empty if it did not
+  std::optional<run_error::ErrorEstimate> error;  ///< if requested
 };
 
 struct StageTotals {

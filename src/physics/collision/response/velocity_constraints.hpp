@@ -1,5 +1,5 @@
-// The seed's contact response of cloth against obstacles: velocities prescribed in the filtered CG (Eq. 4), with
-// stiction, Coulomb friction, and release by the residual.
+// Contact response of cloth against obstacles as in the seed (the paper of Etzmuß et al., see README.md): velocities
+// prescribed in the filtered CG (Eq. 4), stiction, Coulomb friction, and release where the residual shows a pull.
 #pragma once
 
 #include <array>
@@ -25,10 +25,10 @@ struct PrescribedParticle {
 ///
 ///     v_n = (γ d_min − d) / h + n·v_r,   seed Eq. (4),
 ///
-/// with the arguments of add(): n = `normal`, d = `distance`, v_r = `motion` / h, the velocity of the obstacle there. γ
-/// is illegible in our copy; reading chosen: γ = 1 if d >= d_min, so that arriving particles stop at d_min and resting
-/// ones stay; if d < d_min, a fraction c = Numerics::Walls::correction of the missing distance is restored: γ d_min = d
-/// + c (d_min − d).
+/// with the arguments of add(): n = `normal`, d = `distance`, v_r = `motion` / h, the velocity of the obstacle there.
+/// The factor γ is illegible in our copy of the paper. We choose γ = 1 if d >= d_min, so that arriving particles stop
+/// at d_min and resting ones stay. If d < d_min, a fraction c = Numerics::Walls::correction of the missing distance is
+/// restored: γ d_min = d + c (d_min − d).
 ///
 /// A wall holds its particle while it has to push: the inequality is then an equality, and the CG has one direction
 /// less. The wall releases the particle if the residual shows that the wall would pull. Up to three walls hold a
@@ -56,18 +56,20 @@ class VelocityConstraints {
   void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction,
            double static_friction = 0);
 
-  /// Whether some particles were held by walls at the end of the last step and have no wall now. These are corners of
-  /// triangles, whose walls are found only where the triangle would meet an obstacle; without a prediction, the first
-  /// solve of every step would release them. `predicted`: x_t1, but with these particles moved by `by` [m] towards
-  /// their former wall.
+  /// Finds the particles that walls held at the end of the last step and that have no wall yet in this one. Until now,
+  /// a wall was found only for corners of triangles that would meet an obstacle on the way to x_t1, the expected end of
+  /// the step. Without a wall, the first solve would release these particles. If there are any, returns true and sets
+  /// `predicted` to x_t1, but with them moved by `by` [m] towards their former walls, so that a second search finds
+  /// these walls.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const;
 
-  /// Chooses the walls that hold in the first solve: those that held at the end of the last step, and those that the
-  /// particle would pass on the trajectory from x_t0 to x_t1.
+  /// Chooses the walls that hold in the first solve: those that a particle would pass on the way from x_t0, the start
+  /// of the step, to x_t1, its expected end, moved slightly towards the walls that held it at the end of the last step.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// After a solve that led to x_end: adds walls that were passed, releases walls that pull, and lets particles slide
-  /// or stick. Returns how many particles need another solve; 0: the solve is final.
+  /// After a solve that led to x_end: lets walls that were passed hold, releases walls that pull, and lets sticking
+  /// particles slide if static friction is exceeded. Returns how many particles need another solve; 0: the solve is
+  /// final.
   int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const ForceOn& force_on);
 
   /// Keeps for the next step which particles are held and which of them stick or slide.
@@ -83,11 +85,11 @@ class VelocityConstraints {
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
                                       std::span<double> limit) const;
   /// As add_forces; also adds −∂f/∂x to the matrix, positive semidefinite as in ContactSet::linearise. `end_rate`:
-  /// change of x_end per change of the unknown.
+  /// dx_end/dx for the stage positions x (see integrator::StagePoint): 1, or 2 for the midpoint rule.
   void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
-  /// Saves what accept() has kept. Throws std::runtime_error if it does not fit these particles.
+  /// Saves or restores what accept() keeps. Throws std::runtime_error if restored data does not fit these particles.
   template <class Archive>
   void serialize(Archive& archive);
 
@@ -102,7 +104,7 @@ class VelocityConstraints {
     double static_friction;
     int next;  // next wall of the same particle, or −1
   };
-  /// Walls that hold a particle, by number, in ascending order.
+  /// Walls that hold a particle, as indices into walls_; −1: none. The order is that in which project() tries them.
   struct ActiveWalls {
     std::array<int, 3> walls{-1, -1, -1};
     std::array<double, 3> multipliers{0, 0, 0};
@@ -124,10 +126,10 @@ class VelocityConstraints {
     Vec3 x_t0 = Vec3::Zero();
     Vec3 u_held = Vec3::Zero();        // prescribed displacement, in the held directions [m]
     double friction_normal_force = 0;  // normal force that limits friction in this solve [N]
-    Vec3 drag = Vec3::Zero();          // friction / maximum friction at unchanged velocity: the initial guess
+    Vec3 drag = Vec3::Zero();          // −friction / maximum friction for the motion from x_t0 to x_t1
     int constraint_changes = 0;        // how often its constraint changed in this step
     bool slow = false;                 // slides so slowly that it may stick
-    bool overloaded = false;           // stuck in this step although that took much more than static friction
+    bool overloaded = false;           // began to slide: sticking took clearly more than static friction
   };
 
   Vec3 project(const TouchingParticle& particle, const Vec3& u, bool of_force, ActiveWalls& held) const;

@@ -1,4 +1,4 @@
-#include "lab/bench/shadow.hpp"
+#include "film/run_error/shadow.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace weft::bench {
+namespace weft::run_error {
 namespace {
 
 // Number of scan lines. With 1000 lines, the relative error of the area of a disc is 1e-5.
@@ -66,4 +66,4 @@ double shadow_area(std::span<const mesh::Triangle> triangles, std::span<const Ve
   return area;
 }
 
-}  // namespace weft::bench
+}  // namespace weft::run_error

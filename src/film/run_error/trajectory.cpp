@@ -1,4 +1,4 @@
-#include "lab/bench/trajectory.hpp"
+#include "film/run_error/trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include "core/error.hpp"
 #include "core/timer.hpp"
 #include "film/production/scene_simulation.hpp"
-#include "lab/bench/shadow.hpp"
+#include "film/run_error/shadow.hpp"
 #include "physics/mesh/geometry.hpp"
 
-namespace weft::bench {
+namespace weft::run_error {
 namespace {
 
 constexpr int kFinestCut = 8;  // refinements are multiples of an eighth; exact in binary
@@ -222,4 +222,4 @@ std::vector<std::size_t> matching_particles_in_refined(const scene::Scene& scene
   return same;
 }
 
-}  // namespace weft::bench
+}  // namespace weft::run_error

@@ -11,7 +11,7 @@
 #include "film/scene/scene.hpp"
 #include "physics/simulation/frame_report.hpp"
 
-namespace weft::bench {
+namespace weft::run_error {
 
 /// The quantity in which an error is measured. Position and velocity compare trajectories, which diverge chaotically
 /// with contact. The others are functionals, which converge even then.
@@ -115,4 +115,4 @@ void refine(scene::Scene& scene, double refinement);
 /// For each particle of the scene, the particle at the same place in the scene with twice the cells along each side.
 std::vector<std::size_t> matching_particles_in_refined(const scene::Scene& scene);
 
-}  // namespace weft::bench
+}  // namespace weft::run_error

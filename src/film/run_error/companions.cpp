@@ -1,4 +1,4 @@
-#include "lab/bench/companions.hpp"
+#include "film/run_error/companions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-namespace weft::bench {
+namespace weft::run_error {
 namespace {
 
 // Displacement of the start that should not affect the result [m].
@@ -96,7 +96,7 @@ class Companions {
 
 Trajectory Companions::follow(const scene::Scene& scene) {
   FollowLimits limits{.last_frame = static_cast<int>(run_.frames.size()), .proceed = options_.proceed};
-  Trajectory trajectory = bench::follow(scene, limits);
+  Trajectory trajectory = run_error::follow(scene, limits);
   result_.cpu_s += trajectory.work.cpu_s;
   return trajectory;
 }
@@ -221,4 +221,4 @@ ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const Co
   return Companions(scene, std::move(run), options).estimate();
 }
 
-}  // namespace weft::bench
+}  // namespace weft::run_error

@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "film/run_error/trajectory.hpp"
 #include "film/scene/scene.hpp"
-#include "lab/bench/trajectory.hpp"
 
-namespace weft::bench {
+namespace weft::run_error {
 
 /// The cause of an error.
 enum class ErrorSource { steps, solver, mesh, start };
@@ -54,4 +54,4 @@ struct CompanionOptions {
 /// Throws Error(interrupted) if options.proceed returns false.
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options = {});
 
-}  // namespace weft::bench
+}  // namespace weft::run_error
