@@ -11,9 +11,9 @@ namespace weft {
 struct Numerics {
   /// The linear solver (src/physics/solver).
   struct Linear {
-    /// Trace of a particle's 3×3 block, relative to the sum of `LinearSystem::norm_weights` over its diagonal block. If
-    /// any particle exceeds it, levels do not interpolate (Preconditioner). Larger: slender cells, and a viscosity of
-    /// 1e4 N·s/m, are not solved; smaller: soft cloth takes twice as many iterations.
+    /// Trace of a particle's 3×3 block of the matrix, relative to the sum of `LinearSystem::norm_weights` over the rows
+    /// of its cloth. If any particle exceeds it, the multigrid levels do not interpolate (Preconditioner). Larger:
+    /// slender cells, and a viscosity of 1e4 N·s/m, are not solved; smaller: soft cloth takes twice as many iterations.
     double stiff_particle = 1e3;
     /// Number of last iterations from which the error is estimated: `least_delay`, or all so far divided by
     /// `delay_fraction` if that is more. Fewer: solves end on a plateau, and a viscosity of 1e4 N·s/m gains energy.
@@ -26,29 +26,30 @@ struct Numerics {
 
   /// Newton's method (src/physics/integrator).
   struct Newton {
-    /// Allowed linear error, relative to the allowed Newton error; a diagonal block whose error is below it is not
-    /// solved again. 1: fewer iterations, but more strain.
+    /// Allowed linear error, relative to the allowed Newton error. A diagonal block (a cloth or rigid body) whose error
+    /// is below it is not solved again. 1: fewer iterations, but more strain.
     double linear_fraction = 0.8;
     /// Factor on `linear_fraction` and on the linear tolerance for the midpoint rule, which damps nothing. Larger: flat
     /// sheets fold in free fall.
     double undamped = 0.1;
-    /// Slope at which a line search ends, relative to that at its start; maximum number of evaluations. Smaller: more
-    /// evaluations; 0.7: eight sheets that settle take a fifth more iterations.
+    /// `slope_left`: slope at which a line search ends, relative to that at its start (smaller: more evaluations; 0.7:
+    /// eight sheets that settle take a fifth more iterations). `line_trials`: maximum number of evaluations.
     double slope_left = 0.5;
     int line_trials = 6;
     /// Newton iterations after which the trajectory is checked for contacts that only the solve reveals.
     int check_after = 4;
-    /// Newton iterations of a step in which friction follows the normal forces; also how often a solve continues from
-    /// cloth that was pushed apart (0: a ring takes four times the steps). After as many iterations, the tolerance
-    /// allows errors below the visibility threshold and below `velocity_ratio` times implicit Euler's own; after half
-    /// as many, each linear solve includes all diagonal blocks. Larger: friction and normal forces, or cloths that
-    /// press on each other, oscillate.
+    /// Number of Newton iterations of a step in which friction follows the normal forces. Also the number of times that
+    /// a solve may continue from cloth that was pushed apart (0: a ring takes four times the steps). After this number
+    /// of iterations, errors below the visibility threshold, and below `velocity_ratio` times the local velocity error
+    /// of implicit Euler, are allowed; after half of it, each linear solve includes all diagonal blocks. Larger:
+    /// friction and normal forces, or cloths that press on each other, oscillate.
     int patience = 20;
     double velocity_ratio = 0.5;
-    /// Time for which a velocity error lasts [s]. Shorter: the solver dominates the error; longer: more iterations.
+    /// Time for which a velocity error is assumed to displace cloth [s]. Shorter: the solver dominates the error;
+    /// longer: more iterations.
     double lasting_time = 0.15;
-    /// Visibility threshold of acceleration [m/s²], and of the velocity that it leads to [m/s]; as bounds of errors,
-    /// multiplied by the tolerance.
+    /// Visibility threshold of acceleration [m/s²], and of the velocity that it leads to in `lasting_time` [m/s]. As
+    /// bounds of errors, both are multiplied by the tolerance.
     double unseen_acceleration = 0.01;
     double unseen_velocity() const { return unseen_acceleration * lasting_time; }
     /// Friction, relative to its limit, above which a diagonal block counts as about to slide.
@@ -65,8 +66,8 @@ struct Numerics {
     /// Minimum and maximum factor between successive steps, also after a rejection. Larger: BDF2 propagates its error.
     double least_factor = 0.2;
     double largest_factor = 1.5;
-    /// Minimum step size [s], 1e-4 m at 10 m/s: errors do not reduce a step below it, and unsolved steps below it end
-    /// the run.
+    /// Minimum step size [s]: at 10 m/s, cloth moves 1e-4 m in it. Errors do not reduce a step below it, and a step
+    /// below it that is not solved ends the run.
     double least = 1e-5;
     /// Maximum speed of cloth at rest [m/s]; see StepLoop::may_rest(). A frame at rest is one step.
     double rest_velocity = 0.02;
@@ -83,25 +84,27 @@ struct Numerics {
     double margin = 0.25;
     /// Maximum contact thickness, in particle spacings. Larger: a sheared sheet collides with itself.
     double thickness_of_spacing = 0.25;
-    /// Minimum contact stiffness in m/h² (m: mean particle mass, h: `time.step`): impacts stop within a hundredth of a
-    /// step's trajectory.
+    /// Minimum contact stiffness in m/h² (m: mean particle mass, h: `time.step`). A particle then stops within a
+    /// hundredth of the distance that it would cover in a step.
     double inertial_stiffness = 100;
     /// Stiffening of the normal force k d (1 + stiffening (d/r)⁴) at depth d, with stiffness k and activation distance
     /// r. 10: tips penetrate; 1000: more iterations.
     double stiffening = 100;
-    /// An edge pair has full stiffness at a fold (−Σ `Proximity::outside_wedge`) of twice `fade`, none at half of it.
-    /// The stiffness fades out over this sine outside of a wedge, and over this fraction of an edge at its ends. 0:
-    /// contacts switch on and off; larger: only separating planes keep crossing creases apart.
+    /// Where the stiffness of an edge pair falls from full to zero: from a fold (−Σ `Proximity::outside_wedge`) of
+    /// twice `fade` to one of half of it; from the border of a wedge to the sine `fade` outside of it; and along an
+    /// edge, from the fraction `fade` to its end. 0: contacts switch on and off; larger: only separating planes keep
+    /// crossing creases apart.
     double fade = 0.1;
     double flat_fold() const { return 0.5 * fade; }
-    /// Slip velocity below which friction sticks [m/s]; for springs, in particle spacings per second if that is more.
-    /// Larger: cloth creeps down slopes; smaller: a stiffer system.
+    /// Slip velocity below which friction sticks [m/s]; for springs, `stick_spacings` particle spacings per second if
+    /// that is more. Larger: cloth creeps down slopes; smaller: a stiffer system.
     double stick_velocity = 2e-4;
     double stick_spacings = 0.002;
-    /// Slip velocity, in stick velocities, from which friction is no longer static.
+    /// Slip velocity, in stick velocities, at which the coefficient has fallen from static to sliding friction.
     double slide_velocity = 5;
-    /// Closing velocity from which a contact is an impact [m/s]; below, it is one in part (BDF2 only). Larger: impacts
-    /// in short steps rebound; 0.1: five balls that meet keep a quarter of the energy, not a fifth.
+    /// Closing velocity from which a contact is an impact [m/s]; a slower contact counts as one in proportion (BDF2
+    /// only). Larger: impacts in short steps rebound; 0.1: five balls that meet keep a quarter of the energy, not a
+    /// fifth.
     double impact_velocity = 0.05;
     /// How often in a step a contact that has begun to slide may stick again when it slides back. 0: ribbons take 1.4
     /// times the iterations; 20: friction of 10 does not settle.
@@ -115,9 +118,11 @@ struct Numerics {
 
   /// Separating planes, which guarantee that nothing intersects (src/physics/collision/response).
   struct Separation {
-    /// Minimum gap along a plane at the end of a step [m]. Smaller: rounding decides; larger: thin cloth fails.
+    /// Minimum gap between two triangles along the normal of their separating plane, at the end of a step [m]. Smaller:
+    /// rounding decides; larger: thin cloth fails.
     double least_gap = 1e-6;
-    /// Gap that pushing apart restores [m], at most half of the gap at the start: a tenth of a fabric's thickness.
+    /// Gap that pushing apart restores [m], a tenth of the default thickness of a fabric; at most half of the gap at
+    /// the start.
     double restored_gap = 2e-4;
     /// Rounds of pushing apart. `rounds` / 2 rounds of backtracking by halves follow, then `rounds` of backtracking
     /// entirely. Fewer: particles move back farther than necessary.
@@ -130,7 +135,8 @@ struct Numerics {
     double correction = 0.2;
     /// Sine of the angle between two walls below which the second one holds no direction of its own.
     double same_direction = 0.05;
-    /// Maximum number of: changes of a particle's constraints in a step; solves in a step; walls per particle.
+    /// Maximum number of changes of a particle's constraints in a step (`flips`), of solves in a step (`solves`), and
+    /// of walls per particle (`most`).
     int flips = 3;
     int solves = 6;
     int most = 8;
@@ -142,9 +148,10 @@ struct Numerics {
 
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
-    /// Number of halvings before another remedy: of a step, before cloth may count as pinched and before an
-    /// overstretched solve is accepted; of a trajectory, in the search for planes (0: a tenth more iterations). As many
-    /// attempts at a step release obstructed pins; one more may move pinned particles.
+    /// Number of halvings before another remedy. Of a step: before cloth may count as pinched, and before an
+    /// overstretched solve is accepted. Of a trajectory: in the search for separating planes (0: a tenth more
+    /// iterations). Also the number of attempts at a step that release obstructed pins; the next attempt may move
+    /// pinned particles.
     int halvings = 3;
     /// Strain that pushing apart may add (energy: Energy::doubtful_gain). Above either, the solve continues; if it
     /// cannot, only too much energy causes a halved step. Larger: single frames show strain of 0.1 and more.
@@ -173,8 +180,8 @@ struct Numerics {
     /// Squared angular frequency of their stretching [1/`time.step`²]. Smaller: an impact of 1 m/s compresses them by
     /// more than 1e-6 m; larger: rounding in single precision.
     double rigidity = 1e4;
-    /// Contact thickness [m]; its maximum, relative to the smallest standard deviation of the mass. Smaller: bodies at
-    /// rest on each other rattle; larger: gaps are visible.
+    /// Contact thickness [m], but at most `thickness_of_size` times the smallest standard deviation of the body's mass.
+    /// Smaller: bodies at rest on each other rattle; larger: gaps are visible.
     double thickness = 5e-4;
     double thickness_of_size = 0.1;
   } bodies;
@@ -185,7 +192,7 @@ struct Numerics {
     /// `doubtful_gain`: gain above which a run warns; also the gain that pushing apart may add to a step.
     double failing_gain = 0.3;
     double doubtful_gain = 0.1;
-    /// Energy that is never an error [J/kg]: lifts cloth by 1 cm.
+    /// Energy that is never an error [J/kg]: enough to lift cloth by 1 cm.
     double negligible = 0.1;
   } energy;
 };

@@ -8,8 +8,8 @@
 namespace weft {
 
 /// Positions at an earlier time, and their weight. For entries k with positions xₖ and weights wₖ, v = rate (x − Σ wₖ
-/// xₖ), and the rate of any quantity q of the positions is rate (q(x) − Σ wₖ q(xₖ)). If a body turns rigidly, this rate
-/// of a length is zero, however large the angle per step; ∂q/∂x v is not.
+/// xₖ), where `rate` [1/s] is dv/dx of the method. The rate of any quantity q of the positions is rate (q(x) − Σ wₖ
+/// q(xₖ)). If a body turns rigidly, this rate of a length is zero, however large the angle per step; ∂q/∂x v is not.
 struct Past {
   std::span<const Vec3> x;
   double weight = 0;

@@ -1,6 +1,6 @@
 #include "support/exact_motion.hpp"
 
-// GCC 12 warns of a use after free when a shared number is released.
+// GCC 12 warns of a use after free where CGAL releases a reference-counted number.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wuse-after-free"
@@ -19,10 +19,11 @@
 #include <stdexcept>
 #include <vector>
 
-// If two simplices are apart at t = 0, their first contact is of a vertex with a face, an edge with an edge, or, for
-// degenerate faces or edges or parallel edges, a vertex with an edge or a vertex. Each contact is a set of conditions
-// e(t) = 0, g(t) ≥ 0, h(t) > 0 on polynomials of at most fourth degree. Interval arithmetic tries them first; integers
-// decide the rest. If the simplices cross from the start, the contact is found at t = 0.
+// If two simplices are apart at t = 0, their first contact is between a vertex and a face or between two edges. If
+// faces or edges are degenerate, or edges are parallel, it may be between a vertex and an edge or between two vertices.
+// Each contact is a set of conditions e(t) = 0, g(t) ≥ 0, h(t) > 0 on polynomials of at most fourth degree. Interval
+// arithmetic tests them first; integer arithmetic decides those that remain uncertain. If the simplices cross from the
+// start, the contact is found at t = 0.
 namespace weft::support {
 namespace {
 
@@ -33,8 +34,9 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t kMaxDegree = 4;
 
-/// Σ c[i] t^i (1 − t)^(degree − i). If all c have one sign, that is the sign in all of [0, 1]; products are
-/// convolutions; for z = t / (1 − t) the zeros are those of Σ c[i] z^i.
+/// The polynomial Σ c[i] t^i (1 − t)^(degree − i), a Bernstein form without binomial factors. If all c have one sign,
+/// the polynomial has this sign in all of [0, 1]. The coefficients of a product are the convolution of those of the
+/// factors. With z = t / (1 − t), the zeros are those of Σ c[i] z^i.
 template <class N>
 struct Polynomial {
   std::size_t degree = 0;
@@ -167,7 +169,7 @@ Conditions<N> vertex_vertex(const Path<N>& p, const Path<N>& a) {
   return k;
 }
 
-/// Corners of one simplex against corners of the other, by their index in the list of all points.
+/// A feature of each simplex: corners of one and corners of the other, as indices in the list of all points.
 struct Feature {
   enum Kind { kVertexFace, kEdgeEdge, kVertexEdge, kVertexVertex } kind;
   std::vector<std::size_t> a, b;
@@ -193,7 +195,8 @@ std::vector<std::vector<std::size_t>> edges_of(std::size_t first, std::size_t co
   return {{first, first + 1}, {first + 1, first + 2}, {first + 2, first}};
 }
 
-// All pairs of features of points 0 .. na − 1 with points na .. na + nb − 1; those that most often decide come first.
+// All pairs of a feature of the points 0 .. na − 1 and one of the points na .. na + nb − 1. Pairs that most often
+// decide come first.
 std::vector<Feature> make_features(std::size_t na, std::size_t nb) {
   std::vector<Feature> list;
   for (std::size_t i = 0; i < na && nb == 3; ++i) list.push_back({Feature::kVertexFace, {i}, {na, na + 1, na + 2}});
@@ -220,7 +223,8 @@ const std::vector<Feature>& features(int na, int nb) {
 
 enum class Answer { apart, touch, unknown };
 
-/// The conditions on a part of [0, 1]; coefficients are over the binomial ones, as de Casteljau's algorithm needs.
+/// The conditions on a part of [0, 1], in Bernstein form: coefficients are divided by the binomial coefficients, as de
+/// Casteljau's algorithm needs.
 struct Subinterval {
   Conditions<Interval> conditions;
   double begin, width;
@@ -274,7 +278,7 @@ bool surely_touching(const Conditions<Interval>& k) {
          std::all_of(k.not_negative.begin(), k.not_negative.end(), throughout) && throughout(k.positive);
 }
 
-// A time of contact in a subinterval that has one, to rounding.
+// A time of contact, up to rounding, in a subinterval that certainly has one.
 double bisect_to_contact(Subinterval part) {
   while (part.width > 1e-16 && sure_sign(part.conditions.zero[0].at_start()) != 0) {
     const Subinterval first = half_of(part, false);
@@ -323,8 +327,9 @@ Roots::Polynomial_1 in_z(const Polynomial<Integer>& p) {
   return {p.c.begin(), p.c.begin() + static_cast<std::ptrdiff_t>(p.degree) + 1};
 }
 
-// A time at which all conditions hold. If `zero` vanishes identically, contact exists at t = 0, or it begins where
-// another condition reaches zero. The latter is a contact of simpler features, which are tested as well.
+// A time at which all conditions hold. If all of `zero` vanish identically, contact exists at t = 0, or it begins where
+// another condition reaches zero. The latter is a contact of simpler features, which are tested as well, so it is not
+// sought here.
 std::optional<double> decide(const Conditions<Integer>& k) {
   if (k.impossible) return {};
   if (fulfilled(k, [](const auto& p) { return sure_sign(p.at_start()); })) return 0.0;
@@ -349,7 +354,8 @@ std::optional<double> decide(const Conditions<Integer>& k) {
 
 // --- Points ----------------------------------------------------------------------------------------------------------
 
-// Paths relative to the first point, so that the position in space costs no digits; each difference rounds once.
+// Paths relative to the moving first point of a, so that the distance from the origin costs no digits. Each difference
+// is rounded once.
 std::vector<Path<Interval>> interval_paths(const MovingSimplex& a, const MovingSimplex& b) {
   std::vector<Path<Interval>> paths;
   for (const MovingSimplex* s : {&a, &b}) {
@@ -416,7 +422,8 @@ std::vector<const Vec3*> ends(const std::vector<std::size_t>& points, const Movi
   return list;
 }
 
-// Whether an edge of a pierces the triangle b at the start: its ends are on different sides, or one is in the plane.
+// Whether an edge of a pierces the triangle b at the start. The ends of such an edge are on different sides of b's
+// plane, or one of them is in it.
 bool pierces_at_start(const MovingSimplex& a, const MovingSimplex& b) {
   if (b.count != 3) return false;
   const auto point = [](const Vec3& x) { return Kernel::Point_3(x.x(), x.y(), x.z()); };

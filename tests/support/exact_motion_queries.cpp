@@ -64,7 +64,8 @@ void for_all_points(MotionQuery& q, const Change& change) {
   }
 }
 
-// Scales and shifts a query of size 1. Rounds, unless `exact`: then scale and shift keep multiples of 2⁻⁸ exact.
+// Scales and shifts a query of size 1. With `exact`, coordinates that are multiples of 2⁻⁸ stay exact; otherwise they
+// are rounded.
 void place(MotionQuery& q, Random& random, bool exact = false) {
   double size = random.decade(-6, 3);
   Vec3 shift = random.heads() ? Vec3(random.vector(random.decade(-6, 3))) : Vec3(Vec3::Zero());
@@ -91,7 +92,8 @@ MotionQuery random_query(Random& random) {
   return q;
 }
 
-// Coordinates are multiples of 1/16 and the corners of b are integers: a point of b coincides with a point of a.
+// At t = 0, coordinates are multiples of 1/16 and the corners of b are integers, so that a point of a lies exactly on
+// b.
 MotionQuery touching_query(Random& random) {
   Corners b{random.grid(8), random.grid(8), random.grid(8)};
   const Vec3 contact = mix(random.weights(), b);
@@ -99,7 +101,7 @@ MotionQuery touching_query(Random& random) {
   const double side = random.heads() ? 1 : -1;
   const auto above = [&] {
     Vec3 v = random.grid(8);
-    if (random.whole(0, 3) == 0) return v;  // or a motion through the plane
+    if (random.whole(0, 3) == 0) return v;  // on any side, so that a may cross the plane of b
     return side * n.dot(v) < 0 ? Vec3(-v) : v;
   };
   Corners a{contact, contact + above(), contact + above()};
@@ -222,7 +224,7 @@ MotionQuery degenerate_query(Random& random) {
       move_each(q.a, random, random.decade(-3, 0.3));
       break;
     default:
-      q.a.t1 = degenerate_corners(random);  // between two degenerate ones
+      q.a.t1 = degenerate_corners(random);  // a becomes degenerate
   }
   return q;
 }
@@ -267,7 +269,8 @@ MotionQuery fast_query(Random& random) {
 MotionQuery grazing_rotation_query(Random& random) {
   const double gap = random.heads() ? 0 : random.decade(-9, -1);
   MotionQuery q = close_query(random, gap);
-  // Rotates about a point near the contact or a corner farther away, before or after the place of contact.
+  // a rotates about a point near one of its corners. At `fraction` of the motion it comes close to its position beside
+  // b; if `fraction` is negative, the motion starts beyond this position.
   const Vec3 centre = q.a.t0[random.whole(0, 2)] + random.vector(random.decade(-3, 0));
   const Vec3 axis = random.unit();
   const double angle = random.decade(-3, 0) * std::numbers::pi, fraction = random.between(-0.2, 1);

@@ -8,17 +8,18 @@
 
 namespace weft::support {
 
-/// Kind of a query. Unless stated otherwise, sizes are 1e-6 to 1e3 m, and places up to 1e3 m from the origin.
+/// Kind of a query. Unless stated otherwise, sizes are 1e-6 to 1e3 m, and places up to 1e3 m from the origin. Queries
+/// with exact coordinates are scaled by 2⁻²⁰ to 2⁵ m, and shifted along each axis by up to 1000 times this scale.
 enum class QueryFamily {
   random,    ///< motions from a thousandth of the size to three times the size
   touching,  ///< touch exactly at t = 0: vertex or edges on face, edge or vertex; then move away, along or through
-  nearly_touching,   ///< touch up to rounding, on either side
-  parallel_edges,    ///< edges that stay parallel, or turn
-  one_plane,         ///< exactly in one plane, throughout or at the start; or in parallel planes
-  degenerate,        ///< a point, or three points in a line, for at least one side
-  needles,           ///< heights of 1e-3 to 1e-9 of the length
-  near_misses,       ///< 1e-9 to 1e-3 m apart, sizes 1e-2 to 10 m, motions a tenth to ten times the gap
-  fast,              ///< motion through or past each other by 10 to 1000 times the size
+  nearly_touching,   ///< touch at t = 0 up to rounding, so that they may be apart or cross
+  parallel_edges,    ///< an edge of each: parallel at t = 0, then stay so or turn
+  one_plane,         ///< both in one plane, exact or rounded, throughout or at the start; or in parallel planes
+  degenerate,        ///< at least one simplex is a point or three collinear points
+  needles,           ///< at least one triangle has a height of about 1e-9 to 1e-3 of its length
+  near_misses,       ///< 1e-9 to 1e-3 m apart, sizes 1e-2 to 10 m, relative motions 0.1 to 10 times the gap
+  fast,              ///< one moves through or past the other, by 10 to 1000 times the size
   grazing_rotation,  ///< one corner sweeps past a feature while its triangle turns by up to half a turn
 };
 inline constexpr std::array kQueryFamilies = {

@@ -13,7 +13,8 @@ namespace weft::support {
 
 /// Volume [m³] inside a watertight mesh; positive if the triangles are counter-clockwise seen from outside.
 inline double enclosed_volume(std::span<const mesh::Triangle> triangles, std::span<const Vec3> positions) {
-  // Signed tetrahedra over the triangles. Their common apex is on the mesh: from afar, large terms would cancel.
+  // Sums signed tetrahedra over the triangles. Their common apex is a vertex of the mesh, since with a distant apex,
+  // large terms would cancel.
   double sum = 0;
   for (const mesh::Triangle& t : triangles)
     sum += mesh::area_vector(t, positions).dot(positions[t[0]] - positions[0]) / 3;

@@ -21,8 +21,8 @@ struct PlyMesh {
   std::size_t passed_through = 0;  // number of triangles, at the end of the list, that cloth may pass through
 };
 
-/// Reads a file bit for bit. Throws std::runtime_error if the length of the file differs from its header, or if a face
-/// is not a triangle of its vertices.
+/// Reads a file; positions keep all their bits. Throws std::runtime_error if the length of the file differs from its
+/// header, or if a face is not a triangle of its vertices.
 inline PlyMesh read_ply(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};

@@ -15,10 +15,10 @@ namespace weft::support {
 /// Measurements of a frame.
 struct MeasuredFrame {
   simulation::FrameReport report;
-  std::size_t pairs = 0;     ///< intersecting pairs, see judge(); 0 if the run is not judged
+  std::size_t pairs = 0;     ///< intersecting pairs, see judge(); 0 if the frame is not judged
   std::string between;       ///< the objects of these pairs, "ball-sheet 3, sheet-sheet 1"
-  double max_stretch = 1;    ///< largest length over rest length of a weft or warp edge
-  std::string stretched_at;  ///< object and place of that edge, "sheet (0.1, 0, 0.3)"; empty if no edge is stretched
+  double max_stretch = 1;    ///< largest length / rest length of weft and warp edges; without a grid 1 + max_strain
+  std::string stretched_at;  ///< object and place of that edge, "sheet (0.1, 0, 0.3)"; empty if there is none
   double rms_speed = 0;      ///< of all particles, from their displacement since the previous frame [m/s]
   double largest_speed = 0;  ///< of one particle, computed likewise [m/s]
   std::vector<std::vector<Vec3>> cloths;  ///< positions [m], one list per cloth

@@ -33,7 +33,7 @@ struct Case {
   const char *name, *cloth, *rest;
 };
 constexpr const char* kFree = "[contact]\nself = false\nobstacles = false\n";
-// Not a fabric; the same material as the map of bench/stability.cpp.
+// Values of no named fabric.
 constexpr const char* kSoft =
     "material = { density = 0.2, stretch = 200, max_stretch = 0, shear = 60, bend = 1e-3, bend_viscosity = 5e-6, "
     "stretch_viscosity = 0.2, shear_viscosity = 0.1, bend_friction = 0 }\n";

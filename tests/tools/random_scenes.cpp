@@ -69,7 +69,7 @@ double rms_apart(const Positions& a, const Positions& b) {
 }
 
 struct Run {
-  double steps = 0, solver = 0;  // summed errors [m]
+  double steps = 0, solver = 0;  // errors of the time steps and of the solver, summed over the frames [m]
   int rejected = 0, taken = 0, newton = 0;
   double stretch = 1;
   std::size_t pairs = 0;

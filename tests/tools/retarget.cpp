@@ -33,18 +33,19 @@ double angle(const Vec3& a, const Vec3& b) {
 }
 
 struct Follows {
-  double angle = 0;                  // largest angle between a bone and that of the motion [degrees]
+  double angle = 0;                  // largest angle between a bone and the same bone of the motion [degrees]
   std::string bone;                  // the bone with that angle
-  double arm = 0;                    // largest angle of arms only
-  double trunk = 0, trunk_when = 0;  // largest angle of the line from the hips to between the shoulders, and its time
+  double arm = 0;                    // the same for bones of the arms only [degrees]
+  double trunk = 0, trunk_when = 0;  // the same for the line from the hips to between the shoulders, and its time [s]
   double slip = 0;                   // largest horizontal displacement of the toe joint during a contact [m]
   double theirs = 0;                 // the same for the motion itself, scaled by the ratio of leg lengths [m]
-  double toes = 0;                   // the same for the middle of the skin of the toes, or of the foot without toes [m]
-  double below = 0, above = 0;       // extreme heights of the lowest vertex of the feet while one stands [m]
+  double toes = 0;                   // the same for the mean vertex of the toes, or of the foot without toe joint [m]
+  double below = 0, above = 0;       // least and largest height of the feet over the floor while a foot stands [m]
   std::size_t steps = 0, keys = 0;
   double when = 0;
-  // Offsets of a hand from the other hand, and from the hips: root mean square of the difference to the same offset of
-  // the motion, scaled to the body [m]. Only keys at which the hand is near the other hand or the hips count.
+  // Root mean square error of the offset of the hands from each other, and of a hand from the hips, relative to the
+  // offset in the motion, scaled to the body [m]. Only keys at which the motion holds the hands together, or a hand at
+  // the hips with a bent arm, count.
   double hands = 0, hips = 0;
   std::size_t hands_keys = 0, hips_keys = 0;
 };
@@ -145,9 +146,9 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   return result;
 }
 
-/// Measures how well hands that touch each other, or the hips with bent arms, stay there.
+/// Measures how well the body holds its hands together, or at the hips with bent arms, where the motion does so.
 void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const Clip& ours, Follows& result) {
-  constexpr double kTogether = 0.24, kAtHips = 0.5, kBent = 60;  // lengths of the arm; degrees
+  constexpr double kTogether = 0.24, kAtHips = 0.5, kBent = 60;  // [arm lengths], [arm lengths], [degrees]
   const Skeleton a(body), b(motion);
   for (const Joint joint : {Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_hand, Joint::right_hand})
     if (!a.has(joint) || !b.has(joint)) return;

@@ -26,10 +26,10 @@ using character::Affine;
 /// Maximum number of vertices of all parts with all copies, before merging: far more than collision can handle.
 constexpr std::size_t kMaxVertices = 4'000'000;
 
-/// Maximum distance of the skin in the rest pose of the nodes from its bind pose without a warning [m].
+/// Maximum distance between the skin in the rest pose of the nodes and in its bind pose that causes no warning [m].
 constexpr double kMaxBindError = 0.05;
 
-/// Maximum error of the sum of a vertex's weights, which should be 1, without a warning. Smaller errors come from
+/// Maximum difference of the sum of a vertex's weights from 1 that causes no warning. Smaller errors come from
 /// rounding, and from formats that store few bits.
 constexpr double kWeightSlack = 0.02;
 
@@ -47,8 +47,9 @@ bool invertible(const Affine& map) {
 /// A node, and the index of its parent in the same list.
 using NodeWithParent = std::pair<const aiNode*, Index>;
 
-/// All nodes, parents first, by mParent: assimp 5.2 lists the bones of Half-Life models as children of one node and
-/// stores their parents only in mParent. If mParent does not lead to all nodes, uses the lists of children.
+/// All nodes, parents first. The parents come from mParent, since assimp 5.2 lists the bones of Half-Life models as
+/// children of one node and stores their parents only in mParent. If mParent does not lead to all nodes, uses the lists
+/// of children.
 std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
   using Children = std::unordered_map<const aiNode*, std::vector<const aiNode*>>;
   // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
@@ -145,7 +146,7 @@ class CharacterReader {
     const bool faces = std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
                                    [](const aiFace& face) { return face.mNumIndices >= 3; });
     if (!faces) return;
-    // Its bones place a skinned mesh. The mesh is read only once, even if several nodes show it.
+    // The bones of a skinned mesh determine its place, so it is read only once, even if several nodes show it.
     if (mesh.mNumBones > 0 && !skinned_.insert(&mesh).second) return;
     const std::size_t base = soup_.positions.size();
     if (base + mesh.mNumVertices > kMaxVertices)

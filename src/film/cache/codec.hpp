@@ -4,8 +4,9 @@
 //
 //   surfaces  the stage (surroundings); list of textures; list of surfaces; for each surface the positions in frame 0
 //             (count u64, then planes)
-//   frame     time; list of cameras; list of lights; the report; for each surface two bytes. First byte: 0 positions
-//             as in frame 0, 1 positions follow (planes). Second byte: 0 no heat, 1 heat follows (planes of f32)
+//   frame     time; list of cameras; list of lights; the report; for each surface a byte, 0 if its positions are those
+//             of frame 0, or 1, followed by the positions (planes); then a byte, 0 if it has no heat, or 1, followed by
+//             the heat (planes of f32)
 //   state     bytes of Simulation::save
 //
 // The serialize() functions in codec.cpp define the members of each part and their order. An optional value is stored

@@ -16,7 +16,7 @@ struct Manifest {
   std::string title;  ///< may be empty
   std::uint64_t scene_hash = 0;
   std::uint64_t simulation_hash = 0;         ///< hash of the simulation's inputs; scenes with equal hashes share frames
-  std::vector<std::uint64_t> former_hashes;  ///< of former scenes with equal simulations; frames may have their looks
+  std::vector<std::uint64_t> former_hashes;  ///< of earlier scenes with equal simulations; frames may have their looks
   double fps = 25;
   int frame_count = 1;               ///< of the scene; the cache may contain fewer
   int preroll_frames = 0;            ///< simulated before frame 0 and not stored

@@ -15,8 +15,8 @@ namespace {
 /// Vectors shorter than this, absolutely or relative to the vector they derive from, have no reliable direction.
 constexpr double kNegligibleLength = 1e-9;
 
-/// Minimum mean weight of the postures that determine the axes of a joint; a guess fills the remainder. The weight of a
-/// hinge is the squared sine of its angle, so elbows bent by 13° need no guess.
+/// Minimum mean weight of the postures that determine the axes of a joint; a guess gets the weight that is missing. The
+/// weight of a hinge is the squared sine of its angle, so elbows bent by 13° need no guess.
 constexpr double kMinDeterminedWeight = 0.05;
 
 /// Widths of the Gaussian weights (see falloff) of standing postures [radians]: for the lean of the whole trunk, and
@@ -92,7 +92,8 @@ class AnatomyFinder {
     return sum;
   }
 
-  /// Sum of the directions `shown`, weighted; `guess` supplies the weight that is missing to kMinDeterminedWeight.
+  /// Weighted sum of the directions `shown`. If their mean weight is below kMinDeterminedWeight, the directions `guess`
+  /// get the difference as their weight.
   template <class Weight, class Shown, class Guess>
   Vec3 sum(Joint joint, const Weight& weight, const Shown& shown, const Guess& guess) const {
     double weight_sum = 0;
@@ -130,7 +131,8 @@ class AnatomyFinder {
         axes_along(sum(joint, axis_of(from, Vec3::UnitZ())), sum(joint, axis_of(from, Vec3::UnitX())));
   }
 
-  /// Aligns the axes of a joint with its bone; a joint without a bone gets the axes of its parent.
+  /// Aligns z with the mean bone of a joint and x, as nearly as possible, with `across`, both in the axes of the joint.
+  /// A joint without a bone gets the axes of its parent.
   void align_with_bone(Joint joint, Joint parent, const Vec3& across) {
     const Vec3 z = sum(joint, [&](const Posture& p, std::size_t) { return along(p, joint); });
     if (unit(z).isZero()) return copy_axes(joint, parent);

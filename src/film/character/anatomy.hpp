@@ -60,7 +60,8 @@ class Skeleton {
 /// How far the left and the right foot stand flat on the floor in a posture: weights from 0 (not) to 1 (fully).
 using Flat = std::array<double, 2>;
 
-/// Finds, for each joint, the rotation from the axes of its body part to the joint's own axes. Axes of body parts:
+/// Finds, for each joint, the axes of its body part, as a rotation from the coordinates of the part to those of the
+/// joint. Axes of body parts:
 /// - Hips, spine, chest, neck and head: x to their left, z up when the body stands upright. Shoulders: as the chest.
 /// - Arms and legs: z along the bone, x along the hinge axis of elbow or knee. Hands likewise, with x out of the left
 ///   palm and out of the back of the right hand.

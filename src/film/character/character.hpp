@@ -20,7 +20,7 @@ struct Node {
   Affine local = Affine::Identity();  ///< node to parent, at rest
 };
 
-/// Moves vertices: in any pose, a vertex to G · offset · vertex, where G is the global transform of the bone's node.
+/// Moves vertices. In any pose, a bone takes a vertex x to G · offset · x, where G is the global transform of its node.
 struct Bone {
   Index node = 0;
   Affine offset = Affine::Identity();  ///< mesh to node, in the pose in which the skin is bound
@@ -38,7 +38,8 @@ struct MorphTarget {
   double weight = 0;                ///< at rest
 };
 
-/// A value at strictly increasing times [s]: linear in between (rotations along the shortest arc), constant outside.
+/// A value given at strictly increasing times [s]. It is interpolated linearly (rotations along the shortest arc), and
+/// constant before the first and after the last time.
 template <typename Value>
 struct Curve {
   std::vector<double> times;

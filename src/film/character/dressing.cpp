@@ -87,8 +87,8 @@ class BoneChains {
           on_one_chain_[b * count_ + c] = on_one_chain_[c * count_ + b] = 1;
   }
 
-  /// Weight of a vertex on the chain of a bone minus its weight on other branches, such as the other leg; clamped to 0
-  /// to 1.
+  /// Weight of a vertex on the chain of a bone minus its weight on other branches, such as the other leg; clamped to
+  /// [0, 1].
   double branch_weight(std::span<const Influence> influences, Index bone) const {
     double branch_weight = 0;
     for (const Influence& i : influences)

@@ -14,7 +14,7 @@ Pose raise_arms(const Rig& rig, const Pose& pose, double degrees, const Vec3& up
 
 /// Start position inside the body from which each vertex grows: the nearest points on the bones that influence it,
 /// averaged by the influence weights and, where bones branch, by the inverse fourth power of the distance. Vertices
-/// that two limbs influence equally, as between the legs, grow from the branching point.
+/// that two limbs influence equally, as between the legs, grow from the mean position of the joints of these bones.
 std::vector<Vec3> growth_start_positions(const Character& character, const Pose& pose);
 
 /// Fraction of the distance from bone to skin that a body has reached at time `t` [s] after the start of growth, which

@@ -13,7 +13,7 @@ namespace {
 
 // All positions below are in cm, for a height of kTableHeight.
 
-/// A colour (sRGB, 0 to 1) that covers the colour below by `fraction`.
+/// A colour (sRGB, 0 to 1) with the opacity `fraction`.
 struct Ink {
   Vec3 color = Vec3::Zero();
   double fraction = 0;

@@ -23,7 +23,7 @@ struct Footsteps {
 
 /// Finds the contacts of a motion from the speed and the height of the toes, or of the ankles of feet without toes.
 /// `times`: of the postures, increasing [s]. `up`: unit vector. Without feet or steps there are no contacts, and
-/// ankle_height is the height of the lowest ankle.
+/// ankle_height is the height of the lowest ankle; infinite without feet.
 Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
                          const Vec3& up);
 

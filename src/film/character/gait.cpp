@@ -14,10 +14,11 @@ namespace {
 constexpr double kHipSwing = 1.6;       ///< factor on the recorded pelvis yaw, for longer legs and a catwalk gait
 constexpr double kShoulderSwing = 1.5;  ///< factor on the chest yaw, which is opposite to that of the pelvis
 constexpr double kChestNod = 0.8, kHeadNod = -0.4,
-                 kHeadRoll = -0.4;           ///< factors on the pelvis pitch and the chest roll
+                 kHeadRoll = -0.4;           ///< chest and head pitch / pelvis pitch, head roll / chest roll
 constexpr double kShoulderTurnRatio = 0.12;  ///< rotation of a shoulder / rotation of its arm
-// Hanging arms have bent elbows. The upper arms keep an angle from the vertical; the forearms turn back by the fraction
-// kForearmTurnRatio of this angle, at most by kMaxForearmTurn. Angles in degrees.
+// Hanging arms have bent elbows; walking adds kElbowRatio of the recorded difference from kElbowAtRest. The upper arms
+// keep an angle from the vertical; the forearms turn back toward the vertical by the fraction kForearmTurnRatio of this
+// angle, at most by kMaxForearmTurn. Angles in degrees.
 constexpr double kElbowAtRest = 14, kElbowRatio = 0.75, kForearmTurnRatio = 0.75, kMaxForearmTurn = 4.5;
 constexpr double kHandClearance =
     8;  ///< from the skin of the hips to the middle of a hanging hand [cm], for a height of 175 cm

@@ -25,18 +25,20 @@ struct HarmonicCurve {
 /// other angles.
 namespace walking {
 
-constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording [m/s], [s]
+constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording: speed [m/s], stride time [s]
 constexpr double kLegLength = 0.788;               ///< hip to ankle [m]
 constexpr double kFlatPitch = -10.8;               ///< value of foot_pitch for a flat foot
 
-constexpr HarmonicCurve pelvis_yaw{0, {-0.52, 0, 0, 0, 0, 0}, {-2.52, 0, -0.16, 0, 0, 0}};            // + to the left
-constexpr HarmonicCurve pelvis_roll{0, {-3.92, 0, -0.66, 0, 0.07, 0}, {1.59, 0, -0.72, 0, 0.09, 0}};  // + left side up
-constexpr HarmonicCurve pelvis_pitch{0.66, {0, 1.12, 0, 0.17, 0, -0.03}, {0, 0.36, 0, -0.13, 0, 0.05}};  // + forward
+// Positive yaw turns to the left, positive roll raises the left side, and positive pitch tilts forward.
+constexpr HarmonicCurve pelvis_yaw{0, {-0.52, 0, 0, 0, 0, 0}, {-2.52, 0, -0.16, 0, 0, 0}};
+constexpr HarmonicCurve pelvis_roll{0, {-3.92, 0, -0.66, 0, 0.07, 0}, {1.59, 0, -0.72, 0, 0.09, 0}};
+constexpr HarmonicCurve pelvis_pitch{0.66, {0, 1.12, 0, 0.17, 0, -0.03}, {0, 0.36, 0, -0.13, 0, 0.05}};
 constexpr HarmonicCurve chest_yaw{0, {3.39, 0, -0.80, 0, 0.03, 0}, {-1.86, 0, -0.09, 0, -0.12, 0}};
 constexpr HarmonicCurve chest_roll{0, {-1.54, 0, 0.35, 0, 0.03, 0}, {-0.14, 0, -0.06, 0, -0.09, 0}};
 constexpr HarmonicCurve head_yaw{0, {1.09, 0, 0.14, 0, 0.04, 0}, {-0.84, 0, -0.23, 0, -0.07, 0}};
 
-// Left side. Pitch of the line from the ankle to the ball of the foot, + toes up.
+// Curves of the left side. `foot_pitch`: pitch of the line from the ankle to the ball of the foot; a larger pitch
+// raises the toes.
 constexpr HarmonicCurve foot_pitch{
     -22.00, {12.48, 20.97, -0.12, -0.43, 3.08, 0.53}, {25.19, -5.71, -7.76, 2.40, 0.46, -0.92}};
 // `arm_forward`, `arm_out`: angle of the upper arm from the vertical, forward and outward. `elbow`: its bend.

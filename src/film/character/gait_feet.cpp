@@ -12,15 +12,15 @@ namespace {
 
 constexpr double kStandingKnee = 6;        ///< [degrees]; a straighter leg looks stiff and could not reach its foothold
 constexpr double kPitchRatio = 0.79;       ///< factor on the recorded foot pitch, which is too large for a mannequin
-constexpr double kReleaseFraction = 0.17;  ///< before a strike [strides]: end of the support by the trailing leg
-constexpr double kTakeoverFraction = 0.13;  ///< after a strike [strides]: start of the support by the leading leg
+constexpr double kReleaseFraction = 0.17;  ///< from the end of the trailing leg's support to a strike [strides]
+constexpr double kTakeoverFraction = 0.13;  ///< from a strike to the start of the leading leg's support [strides]
 constexpr double kLateKneeRatio = 0.75;     ///< factor on the knee curve before toe-off
 constexpr double kHeelRiseLength = 0.002;   ///< smoothing length of the start of a heel's rise [m]
 constexpr double kSwingKneeShift = 13;      ///< knee bend that is moved from before toe-off into the swing [degrees]
-constexpr double kToesFlat = 22, kToesRound = 16, kToePitchRatio = 0.75;  ///< see toe_pitch [degrees]
+constexpr double kToesFlat = 22, kToesRound = 16, kToePitchRatio = 0.75;  ///< angles [degrees] and factor in toe_pitch
 constexpr double kMaxToePitch = 80;      ///< maximum pitch of a foot on its toes [degrees]
 constexpr double kInPlaceKneeLift = 32;  ///< additional knee bend in a step in place [degrees]
-constexpr double kToeClearRatio = 0.36;  ///< fraction of the toes' descent at toe-off that is reversed in swing
+constexpr double kToeClearRatio = 0.36;  ///< peak pitch added in swing / (downward pitch rate at toe-off × swing time)
 
 /// A value with its first and second derivative per key.
 template <class Value>
@@ -105,7 +105,7 @@ Vec3 Feet::hip(int side, int key) const {
 }
 
 /// Knee bend of a stance leg [degrees]: a blend of the curve after the strike and the curve before toe-off, each scaled
-/// by the size of its step. The two weights sum to 1 in steady walking.
+/// by the size of its step. Without kLateKneeRatio, the two weights sum to 1 in steady walking.
 double Feet::knee(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double since = plan_.strides_since_strike(here, key), until = plan_.until_off(here, key);
@@ -131,7 +131,8 @@ double Feet::strike_pitch(const Plant& plant, int key) const {
   return plant.size * recorded * (1 - smooth_ramp(since, 0.03, 0.12));
 }
 
-/// Pitch of the toes relative to the floor: 0 until the heel is high, then the toes roll over their tips.
+/// Pitch of the toes relative to the floor. It is 0 until the foot is pitched down by kToesFlat. Then the toes roll
+/// over their tips, by kToePitchRatio of the further pitch; a parabola over kToesRound smooths the transition.
 double Feet::toe_pitch(double pitch) {
   const double beyond = -pitch - kToesFlat * kDegree, round = kToesRound * kDegree;
   if (beyond <= 0) return 0;
@@ -188,7 +189,8 @@ FootState Feet::standing(int side, std::size_t number, int key) const {
 FootState Feet::swinging(int side, std::size_t number, int key) const {
   const Plant &from = plant(side, number), &to = plant(side, number + 1);
   const double span = to.strike - from.off, s = (key - from.off) / span;
-  // Bend of the knee [degrees], direction of the leg forward [rad], offset to the left [m], pitch of the foot [rad].
+  // Bend of the knee [degrees], forward angle of the leg from the vertical [rad], offset of the ankle from the hip to
+  // the left [m], pitch of the foot [rad].
   using Values = Eigen::Vector4d;
   const auto values_of = [&](std::size_t which) {
     return [this, side, which](int at) {

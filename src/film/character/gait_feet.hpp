@@ -11,8 +11,8 @@ namespace weft::character {
 struct FootState {
   Vec3 ankle = Vec3::Zero();
   double yaw = 0;    ///< of the foot relative to rest [rad]
-  double pitch = 0;  ///< [rad], + toes up; 0 flat
-  double toes = 0;   ///< bend of the toes relative to the foot [rad], + up
+  double pitch = 0;  ///< [rad]; > 0: toes up, 0: flat
+  double toes = 0;   ///< upward bend of the toes relative to the foot [rad]
 };
 
 /// Positions of the hip joints relative to the middle of the pelvis, per key from the first key of the track.

@@ -11,7 +11,7 @@ namespace {
 constexpr double kKeysPerSecond = 60;
 constexpr double kHalfTrack = 0.048;     ///< ankle to midline / height; at the recorded 0.038, thighs would touch
 constexpr double kOutwardDetour = 0.07;  ///< outward detour of a foot that turns with the body [m]
-constexpr double kFirstStepRatio = 0.65, kLastStepRatio = 0.75;  ///< first and last step / steady step
+constexpr double kFirstStepRatio = 0.65, kLastStepRatio = 0.75;  ///< length of first and last / steady step
 constexpr double kWeightShiftFraction = 0.45;  ///< time to shift the weight before the first step [strides]
 
 /// Turn of the body per step on the small arc of a turn, toward the side of the foot that takes the first step of the

@@ -40,8 +40,8 @@ const std::vector<BodyPart> kSides = {
     {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
 };
 
-/// Whether a word of a node name names neither a side nor a part: words of Biped, Rigify, Source, VRM, Character
-/// Creator, Meebits, and of Mixamo if a program left out the colon.
+/// Whether a word of a node name names neither a side nor a part. Such words occur in Biped, Rigify, Source, VRM,
+/// Character Creator, Meebits, and in Mixamo if a program left out the colon.
 bool is_filler_word(const std::string& word) {
   static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
                                                   "j", "bip", "biped", "valve", "m",    "bone"};
@@ -190,7 +190,7 @@ struct Affixes {
   }
 };
 
-/// Affixes in order: prefixes with a separator, prefixes without one, then suffixes.
+/// Affixes in order: prefixes with a separator, prefixes without one, then suffixes, alone and with each prefix.
 std::vector<Affixes> shared_affixes(std::span<const Node> nodes) {
   std::vector<std::string> names, reversed;
   for (const Node& node : nodes) {

@@ -63,8 +63,8 @@ Index joint_number(const std::string& name);
 /// hips, spine and chest.
 std::vector<Index> find_named_joints(std::span<const Node> nodes);
 
-/// Like find_named_joints(), but also handles rigs whose node names share a prefix or suffix with the name of the rig.
-/// If upper or lower arms or legs are not found by name, the tree determines the joints (nameless.hpp).
+/// Like find_named_joints(), but also handles rigs whose node names have a prefix or suffix in common, such as the name
+/// of the rig. If upper or lower arms or legs are not found by name, the tree determines the joints (nameless.hpp).
 std::vector<Index> find_joints(const Character& character);
 
 }  // namespace weft::character

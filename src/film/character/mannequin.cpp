@@ -32,7 +32,8 @@ mesh::Field standing_on_floor(const BlendedBody& body, double height) {
 }
 
 /// Wanted edge length: shorter where the body is thin or strongly curved (arms, hands, shins, feet, neck, head, between
-/// the legs and under the arms). Faces and fingers keep their edge length in coarser bodies, to keep their shape.
+/// the legs and under the arms). The face and the fingers keep their edge length in coarser bodies, to keep their
+/// shape.
 mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
   const double unit = build.height / 1.75, edge = build.edge_length, fine = std::min(edge, kMaxHandEdge * unit);
   const double wrist = joints[place_of(Joint::left_hand)].x(), shoulder = joints[place_of(Joint::left_upper_arm)].x();
@@ -92,8 +93,8 @@ void bind_skin(Character& character, const mesh::MirroredMesh& skin, const std::
 }  // namespace
 
 std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
-  // Fractions of the height: Drillis & Contini (1966): ankle 0.039, knee 0.285, hip 0.530, shoulder 0.818 less half of
-  // the thickness of a shoulder, upper arm 0.186, forearm 0.146.
+  // Fractions of the height, from Drillis & Contini (1966): ankle 0.039, knee 0.285, hip 0.530, shoulder 0.818 less
+  // half of the thickness of a shoulder, upper arm 0.186, forearm 0.146.
   const double h = build.height, cm = h / 175;
   const double wide = 1 + 0.2 * build.masculinity;
   std::array<Vec3, kJointCount> at{};

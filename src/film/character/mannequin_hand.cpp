@@ -20,7 +20,7 @@ constexpr Finger kRelaxedFingers[] = {
 constexpr double kPlateRoot = 16,
                  kPlateTip = 41;  ///< bends of the plates between the fingers: the mean bends of the fingers [degrees]
 constexpr double kClosing =
-    0.040;  ///< convergence of fingers per distance from the middle [1/cm]: they touch up to the tips
+    0.040;  ///< convergence of fingers per distance from the middle [1/cm], so that they touch up to the tips
 
 /// Adds a rod with round ends.
 void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& along, const Vec3& across, double length,

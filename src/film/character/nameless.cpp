@@ -12,7 +12,7 @@ namespace weft::character {
 namespace {
 
 /// Maximum difference between the chains of both sides, in their first bones and as a whole, relative to the longer
-/// chain. Left and right legs of recordings differ by 2 %; hands end at different fingers.
+/// chain. Left and right legs of recordings differ by 2 %; the longest chains of two arms may end at different fingers.
 constexpr double kMaxChainDifference = 0.1;
 /// Number of bones that are compared one by one: an auxiliary bone, the upper and the lower bone.
 constexpr int kComparedBones = 3;
@@ -22,8 +22,8 @@ constexpr int kMinFingers = 3;
 /// fraction of the shorter bone of the inner candidate. Some recordings have collarbones of 13 cm and forearms of 9 cm;
 /// hands up to the fingers are shorter than half a forearm.
 constexpr double kMinOuterElbowRatio = 0.6;
-/// Maximum relative difference of two halves of a bone, and ratio of upper and lower bones of limbs (1.0 to 1.3 in
-/// adults).
+/// Maximum relative difference of two halves of a bone, and maximum ratio between upper and lower bone of a limb (1.0
+/// to 1.3 in adults).
 constexpr double kMaxHalfDifference = 0.01, kMaxLimbBoneRatio = 1.5;
 /// If a node above the arms is inactive, its bone belongs to the neck if it is shorter than this fraction of a leg. A
 /// longer bone is the head itself.
@@ -173,8 +173,8 @@ class NamelessFinder {
     return p_above || (!q_above && p_longer) ? std::pair{p, q} : std::pair{q, p};
   }
 
-  /// `outer`: prefers an outer pair of bones if its shorter bone is longer than this fraction of the shorter bone of
-  /// the best pair so far.
+  /// Finds upper and lower bone on the longest chain through a node. `outer`: an outer pair of bones replaces the best
+  /// pair so far if its shorter bone is longer than this fraction of that of the best pair.
   Chain chain_of(Index from, double outer) const {
     std::vector<Index> nodes;
     std::size_t last = 0, hand = 0;  // last node that may end the lower bone; node where fingers branch

@@ -125,7 +125,8 @@ VertexMask vertices_of_material(const Character& character, Index material) {
 
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places) {
   // Radius of the mean: multiples of the distance from the skin and of the body size (3 cm for a person). With a
-  // smaller radius, neighbouring positions diverge with single faces; with a larger one, a shoulder moves a neck.
+  // smaller radius, neighbouring vertices move apart with different faces of the skin; with a larger one, a shoulder
+  // moves vertices at the neck.
   constexpr double kRadiusPerDistance = 2, kRadiusPerSize = 0.015;
   std::vector<Vec3> skinned(character.mesh.positions.size());
   skin(character, pose, skinned);

@@ -35,8 +35,8 @@ VertexMask vertices_below(const Character& character, Index node);
 /// The vertices of a material of the file.
 VertexMask vertices_of_material(const Character& character, Index material);
 
-/// Appends vertices without faces at these positions [m], given for the current pose of the character. Their bone
-/// weights are means over the nearby skin of the part, within a radius that grows with their distance from the skin.
+/// Appends vertices without faces, which have the given positions [m] in the pose `pose`. Their bone weights are means
+/// over the nearby skin of the part, within a radius that grows with their distance from the skin.
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places);
 
 /// Whether three or more chains of nodes below a hand influence skin: thumb and fingers that move separately.

@@ -36,7 +36,8 @@ constexpr double kMaxToeTurn = 150 * kDegree;
 /// Soles that are farther from the floor in a contact cause a warning [m].
 constexpr double kMaxFloorError = 0.05;
 
-/// Number of rounds that move hands to the parts they touch: each round also moves the other hand and its elbow.
+/// Number of rounds that move hands to the parts they touch. One does not suffice, since hand and elbow of the other
+/// arm, which a hand may touch, move too.
 constexpr int kTouchingRounds = 3;
 /// Hands with a smaller error are not moved [m].
 constexpr double kMinPull = 1e-4;
@@ -190,7 +191,8 @@ class Retargeter {
 
   /// Position of the hips of the body at a key.
   Vec3 hips_at(std::size_t k, const Frame& frame) const {
-    // Based on the midpoint between the hip joints: its height above the ankles scales with the legs.
+    // The position follows from the midpoint between the hip joints, whose height above the ankles scales with the
+    // legs.
     const Vec3 place = theirs_.middle_of_hips(postures_[k]);
     const Vec3 moved = face_ * (place - theirs_.middle_of_hips(postures_.front()));
     const Vec3 middle = ours_.middle_of_hips(rest_), hips = rest_.places[0];
@@ -213,7 +215,7 @@ class Retargeter {
     return can_stand() ? ankles / 2 + ratio_ * (up_.dot(place) - steps_.ankle_height) - travelled : 0;
   }
 
-  /// Node to world for all nodes of the body.
+  /// Transforms from node to world of all nodes of the body. Writes the transforms to the parents to `locals`.
   std::vector<Affine> globals(const Frame& frame, std::vector<Placement>* locals = nullptr) const {
     std::vector<Affine> globals;
     for (std::size_t n = 0; n < joint_of_.size(); ++n) {
@@ -231,7 +233,7 @@ class Retargeter {
     return globals;
   }
 
-  /// Appends a key. Nodes follow their parents, so the parent's rotation is already known.
+  /// Appends a key to each channel: the rotation of its joint, and for the hips the position.
   void append(double t, const Frame& frame, Clip& result) const {
     std::vector<Placement> locals;
     globals(frame, &locals);
@@ -391,7 +393,7 @@ class Retargeter {
     return length;
   }
 
-  /// Warns if a joint exceeds the human limit `limit` [degrees]. `angle`: of a posture [rad].
+  /// Warns if a joint exceeds the human limit `limit` [degrees]. `angle(posture)`: angle of the joint [rad].
   template <class Angle>
   void check_joint(const std::string& what, double limit, const Angle& angle, std::vector<std::string>& doubts) const {
     double worst = 0, when = 0;

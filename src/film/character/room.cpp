@@ -12,8 +12,8 @@
 namespace weft::character {
 namespace {
 
-/// Skin whose limb weights differ by more than this belongs to another limb (1: no common bone, 0: equal weights). Near
-/// a joint, where weights change gradually, skin folds onto itself.
+/// Skin whose limb weights differ by more than this belongs to another limb (1: no common limb, 0: equal weights). A
+/// smaller difference occurs near a joint, where weights change gradually and skin may fold onto itself.
 constexpr float kMinWeightDifference = 0.15F;
 
 /// Lines from bone to skin per task; such a task takes some hundred microseconds.

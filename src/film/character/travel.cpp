@@ -12,11 +12,11 @@ namespace {
 
 /// Smoothing time of paths to either side [s]; people take a step in 0.4 to 0.7 s.
 constexpr double kPathWindow = 0.6;
-/// Smoothing time of foot speeds, whose contacts begin and end abruptly [s].
+/// Smoothing time to either side of the velocities that feet imply [s]: these jump where contacts begin and end.
 constexpr double kFootWindow = 0.05;
 /// Balls of feet up to this height above the lowest one carry the body [leg lengths].
 constexpr double kMaxFootHeight = 0.05;
-/// Minimum speed of passing feet in a walk [leg lengths/s].
+/// Minimum mean speed of feet in stance, relative to the body, in a walk [leg lengths/s].
 constexpr double kMinFeetSpeed = 0.1;
 
 /// A clip, sampled at its keys.

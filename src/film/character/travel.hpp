@@ -15,9 +15,9 @@ struct TravelResult {
   double feet = 0;  ///< mean speed of feet in stance relative to a body in place [m/s]; 0: too slow for a walk
 };
 
-/// Gives a clip in place a mean speed of `speed` [m per second of clip time], along the path that its feet in stance
-/// imply; feet do not slide if `speed` equals TravelResult::feet. If this is 0, the clip moves straight ahead. Travel
-/// of the clip is removed first. `up`: unit vector.
+/// Moves a clip at the mean speed `speed` [m per second of clip time], along the path that its feet in stance imply.
+/// Feet do not slide if `speed` equals TravelResult::feet. If this is 0, the clip moves straight ahead. Travel of the
+/// clip is removed first. `up`: unit vector.
 TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up);
 
 }  // namespace weft::character

@@ -218,7 +218,7 @@ Body make_playing_body(const Cast& cast, const Source& source) {
   return body;
 }
 
-/// Adds the particles of a pin to the vertices of the body. `vertices`: their number without those of pins.
+/// Adds the particles of a pin to the vertices of the body. `vertices`: number of vertices without those of pins.
 void add_following_pin(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& parts,
                        const character::Pose& start, std::size_t vertices, character::Character& body) {
   character::VertexMask mask(vertices, 1);

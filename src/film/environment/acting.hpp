@@ -29,7 +29,7 @@ struct Part {
   bool is_patch() const { return friction || thickness > 0; }
 };
 
-/// Start positions of the particles of a pin that follows a character [m].
+/// Start positions of points that follow a character [m]: particles of a pin, or the frame of an obstacle or camera.
 struct FollowingPin {
   std::string part;  ///< of the character; empty: the whole character
   std::vector<Vec3> places;
@@ -45,7 +45,7 @@ struct ClothAtStart {
 /// A body that moves by key frames of its vertices, computed before the simulation starts.
 struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
-  KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the particles of all following pins
+  KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the places of each FollowingPin
   std::vector<Part> parts;   ///< parts that the scene lists, or that pins follow
   std::vector<Index> limbs;  ///< per vertex: number of its character::Limb; of a sequence: its connected component
   std::vector<std::string> warnings;

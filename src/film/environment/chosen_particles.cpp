@@ -43,7 +43,7 @@ double grey_at(const image::Picture& picture, const Vec2& uv) {
          t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
 }
 
-/// Finds the particles of regions of one cloth.
+/// Finds the particles of regions (scene::ClothPart) of one cloth.
 class ParticleFinder {
  public:
   ParticleFinder(const scene::Cloth& cloth, const assets::LoadedMesh& file, const MadeCloth& made)

@@ -1,4 +1,5 @@
-// Converts a scene to its model (seed, Fig. 1) and to the data that are only drawn.
+// Converts a scene to its model (Fig. 1 of the seed, the paper that README.md names) and to the data that are only
+// drawn.
 #pragma once
 
 #include <cstdint>

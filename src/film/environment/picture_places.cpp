@@ -74,7 +74,8 @@ struct PlaceOnShape {
 
   using Places = std::array<Vec2, 3>;
 
-  /// Across: around the z axis at `radius`. Upward: by `height` of a corner, from 0 to 1 over `length`.
+  /// The picture's width runs around the z axis at `radius` [m]; its height runs along `length` [m], over which
+  /// `height`(corner) grows from 0 to 1.
   template <class Height>
   Places around(double radius, double length, Height height) const {
     const double across = tiling.whole_count(2 * kPi * radius, 0), upward = tiling.count(length, 1);
@@ -103,7 +104,8 @@ struct PlaceOnShape {
     if (is_level()) return place_on_side(corners, {2 * s.radius, 2 * s.radius, s.height}, tiling);
     return around(s.radius, std::hypot(s.radius, s.height), [&](const Vec3& x) { return 0.5 + x.z() / s.height; });
   }
-  /// Upward: around the tube, from its inner side over the bottom, so that the middle of the picture is on the outside.
+  /// The picture's height runs around the tube, from its inner side over the bottom, so that the middle of the picture
+  /// is on the outside.
   Places operator()(const scene::Torus& s) const {
     const auto turn_of = [&](const Vec3& x, double near) {
       return angle_in_turns(x.z(), -(std::hypot(x.x(), x.y()) - s.radius), near);
@@ -113,8 +115,8 @@ struct PlaceOnShape {
     return around(s.radius, 2 * kPi * s.tube_radius,
                   [&](const Vec3& x) { return (0.5 + turn_of(x, at_middle)) * upward; });
   }
-  /// Across: along the pipe. Upward: around it, inside from the front to the back rim. Its ends are like sides of a
-  /// box.
+  /// The picture's width runs along the pipe, its height around the pipe: inside, from the front to the back rim. The
+  /// ends of the pipe are like sides of a box.
   Places operator()(const scene::HalfPipe& s) const {
     const Vec3 middle = corners.middle();
     const double outside = s.radius + s.thickness,

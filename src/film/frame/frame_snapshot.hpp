@@ -56,7 +56,7 @@ struct Appearance {
   double roughness = 0.6;          ///< 0 mirror-like to 1 matte
   double thread_spacing = 0;       ///< between drawn threads, or lay length of a rope [m]; 0: draws no threads
   Finish finish;                   ///< cloth only
-  double metal = 0;                ///< not for cloth: 1: all light is reflected, in `color`; none is scattered
+  double metal = 0;                ///< not for cloth; at 1, all light is reflected, in `color`; none is scattered
   double coat = 0;                 ///< not for cloth: strength of a clear coat, 1 as glass
   double thickness = 0;            ///< thickness of cloth, visible at its borders, or diameter of a rope [m]; 0: none
   double hem = 0;                  ///< width of borders of cloth that is folded back and sewn [m]; 0: borders are cut

@@ -19,12 +19,13 @@ struct SewnSeam {
 
 /// A pattern as one mesh, sewn from the start.
 ///
-/// Sheet::rest holds the start: a smooth surface without intersections, but not isometric to the panels, in the
-/// wearer's coordinates (x to the left, y from front to back, z up). Sheet::material holds the rest shape, that of the
-/// flat panels. The front of the cloth faces away from the wearer.
+/// Sheet::rest holds the start: a smooth surface without intersections, but not isometric to the panels. Its
+/// coordinates are those of the world for panels around a wearer, else x to the wearer's left, y from front to back, z
+/// up. Sheet::material holds the rest shape, that of the flat panels. The front of the cloth faces away from the
+/// wearer.
 struct Garment {
   mesh::Sheet sheet;
-  std::vector<Vec2> uv;         ///< per vertex: all panels laid out in one plane, for drawing the weave [m]
+  std::vector<Vec2> uv;         ///< per vertex: coordinates in a plane, for drawing the weave [m]; bent panels overlap
   std::vector<Index> panel_of;  ///< index of the panel, per triangle
   std::vector<SewnSeam> seams;  ///< as in the pattern, without closures
   std::map<std::string, std::vector<Index>> edges;  ///< vertices of each edge by "panel.edge", from its start

@@ -28,7 +28,7 @@ using scene::within;
 
 // Sample points per curve for finding self-crossings of an outline.
 constexpr int kPointsPerCurve = 16;
-// Maximum deviation of a fold edge from a line / length of the edge, as files round coordinates.
+// Maximum deviation of a fold edge from a line / length of the edge; it is not 0, since files round coordinates.
 constexpr double kMaxFoldDeviation = 1e-3;
 // Maximum size of a panel [m].
 constexpr double kMaxPanelSize = 100;

@@ -25,7 +25,8 @@ using scene::Findings;
 // Larger coordinates are treated as damaged data.
 constexpr double kMaxSpecCoordinate = 1e5;
 constexpr double kDefaultUnitsPerMetre = 100;  // of files that state no unit: centimetres
-// Height of the origin of the predecessor's body above the floor [m]; the origin lies between pelvis and chest.
+// Height above the floor of the origin of the body in the Garment-Pattern-Generator, the predecessor of GarmentCode
+// [m]. The origin lies between pelvis and chest.
 constexpr double kPredecessorOrigin = 1.12;
 // Measures of the body that the dataset's patterns are drawn for [m].
 constexpr double kChest = 0.998, kWaist = 0.843, kHip = 1.035, kHeight = 1.72;
@@ -170,8 +171,8 @@ class Reader {
     edges.push_back(std::move(edge));
   }
 
-  /// A control point: in coordinates of the panel if the file says so, else along the edge and to its left, in units of
-  /// the edge's length.
+  /// A control point. Its coordinates `p` are those of the panel if the file says so; else they count along the edge
+  /// and to its left, in units of the edge's length.
   Vec2 control_point(const SpecEdge& edge, const std::vector<double>& p) const {
     if (has_absolute_curvature_) return {unit_ * p[0], unit_ * p[1]};
     const Vec2 along = edge.end - edge.start;

@@ -17,7 +17,7 @@ struct SpecEdge {
   Vec2 start, end;
   std::vector<Vec2> control;          // inner control points of a Bézier curve; empty: none
   double radius = 0;                  // of a circular arc; 0: no arc
-  bool large = false, right = false;  // flags of an SVG arc, y upward
+  bool large = false, right = false;  // flags large-arc and sweep of an SVG arc, y upward
   bool has_length() const { return (end - start).norm() > 1e-9; }
 };
 
@@ -41,7 +41,7 @@ struct SpecPanel {
   int steps = -1;       // for a limb: number of limb panels between it and the trunk; -1: unknown
   double area = 0;      // [m²]
   bool turned = false;  // folded over as a lapel; see Panel::turned
-  Eigen::Affine2d worn = Eigen::Affine2d::Identity();  // drawing to panel as worn, without position
+  Eigen::Affine2d worn = Eigen::Affine2d::Identity();  // map from drawing to panel as worn, without its position
 
   Vec3 in_space(const Vec2& p) const { return rotation * Vec3(p.x(), p.y(), 0) + translation; }
   bool is_limb() const { return around >= Around::left_arm; }

@@ -189,7 +189,7 @@ FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spac
     low = low.cwiseMin(rotated.back());
     high = high.cwiseMax(rotated.back());
   }
-  // The lattice has whole rows and is centred, so that a symmetric panel gets a symmetric lattice. The added shift
+  // The lattice has whole rows and is centred, so that a symmetric panel gets a symmetric lattice. Adding kRowShift
   // keeps rounding errors from losing a row if the size is a multiple of the spacing.
   std::array<int, 2> count{};
   for (int axis = 0; axis < 2; ++axis) count[axis] = static_cast<int>((high[axis] - low[axis]) / spacing + kRowShift);

@@ -232,7 +232,8 @@ Tube::Section Tube::section(double s) const {
   return mixed;
 }
 
-// Boundary curve of a support function h: h n + h' t, with the unit vectors n of the direction and t, 90° further.
+// Boundary curve of a support function h(φ): h n + h' t, with the unit vectors n in the direction φ and t in the
+// direction φ + 90°.
 Tube::Ring Tube::ring(const Section& section, double outward) {
   Ring points;
   const double step = 2 * std::numbers::pi / kDirections;

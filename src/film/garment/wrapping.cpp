@@ -20,8 +20,8 @@ namespace {
 constexpr double kLayerDistance = 0.01;
 // Slack in a ring with a closure [m], so that the two edges of the closure do not start in the same place.
 constexpr double kClosureSlack = 0.03;
-// Minimum distance between a narrow sleeve and the skin at the start [m]; decrease in width at the start of its cap
-// [m].
+// Minimum distance between a narrow sleeve and the skin at the start [m], and the decrease in width at which the cap of
+// a sleeve begins [m].
 constexpr double kMinSleeveGap = 0.006, kCapNarrowing = 0.01;
 // Number of sample points along a seam, and of rounds, for moving a panel to its neighbour.
 constexpr int kSeamPoints = 16, kSeamRounds = 6;

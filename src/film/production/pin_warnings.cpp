@@ -18,8 +18,7 @@ namespace {
 
 // Smallest jump of a pin at the start that is reported [m].
 constexpr double kMinJump = 1e-3;
-// Maximum distance of a pin, at the start, from the body that it follows without a warning [m]; pins of capes are 5 cm
-// away.
+// A pin that starts farther than this from the body that it follows gives a warning [m]; pins of capes are 5 cm away.
 constexpr double kMaxPinDistance = 0.1;
 // Minimum depth in an obstacle at which a particle counts as inside [m].
 constexpr double kEntryDepth = 1e-3;
@@ -45,7 +44,7 @@ bool any_pin(const scene::Scene& scene, bool (*is)(const scene::Pin&)) {
 }
 
 struct MovingPins {
-  std::vector<Index> first;  // of each cloth, then the number of all particles
+  std::vector<Index> first;  // first particle of each cloth, then the number of all particles
   simulation::Pins pins;
   std::vector<Vec3> start;  // of all particles
 

@@ -213,7 +213,7 @@ void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   }
 }
 
-// Whether forces move the obstacle, and whether it can roll or has a spin.
+// Whether forces move the obstacle, and it can roll or has a spin.
 bool turns_freely(const scene::Obstacle& obstacle) {
   const bool is_round = !std::holds_alternative<scene::BoxShape>(obstacle.shape) &&
                         !std::holds_alternative<scene::HalfPipe>(obstacle.shape);

@@ -10,8 +10,8 @@ namespace {
 
 using Kind = frame::Camera::Kind;
 
-// The camera keeps cloth in view up to this distance from the subjects of the first frame [diagonals of their bounding
-// box]. Without a limit, cloth that falls for ever would shrink everything else to a dot.
+// A camera of kind `whole` keeps cloth in view up to this distance from the subjects of the first frame [diagonals of
+// their bounding box]. Without a limit, cloth that falls for ever would shrink everything else to a dot.
 constexpr double kClothRange = 1.5;
 
 // The Gaussian kernel ends at this number of standard deviations; 0.3 % of its weight is cut off.

@@ -12,7 +12,7 @@ namespace weft::render {
 
 class CameraPath {
  public:
-  /// `camera`: name of the camera; empty: the first of the scene or, if it has none, one that shows the whole run.
+  /// `camera`: name of the camera. If empty: the first of the scene or, without any, one that shows the whole run.
   /// `aspect`: width / height of the pictures.
   CameraPath(std::string camera, double aspect) : name_(std::move(camera)), aspect_(aspect) {}
 
@@ -23,8 +23,8 @@ class CameraPath {
   void see(const frame::FrameSnapshot& snapshot);
   void find();
 
-  /// The camera of a frame. If it is computed, returns that of the latest frame up to this one that see() received;
-  /// see() must have received at least one frame.
+  /// The camera of a frame. If it is computed, returns that of the last frame given to see() whose number is at most
+  /// that of `snapshot`, or of the first frame if all are later. see() must have received at least one frame.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
  private:

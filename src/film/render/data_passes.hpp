@@ -20,7 +20,7 @@ struct Before {
   const std::vector<Vec3>* positions(const frame::Surface& surface, std::size_t count) const;
 };
 
-/// Finds the front triangle of each pixel by rasterising on the CPU in single precision. Then intersects the pixel's
+/// Finds the nearest triangle of each pixel by rasterising on the CPU in single precision. Then intersects the pixel's
 /// ray with the plane of this triangle in double precision. Holes that pictures cut into cloth (lace) count as cloth.
 class DataPasses {
  public:
@@ -29,7 +29,8 @@ class DataPasses {
   /// Appends to `layers`, as 32-bit floats:
   /// - depth.Z: distance along the view axis [m]; infinite where nothing is visible
   /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, towards the viewer
-  /// - id.object: 0 nothing, 1 the floor, 2 + i surface i of the picture; id.part: 1 + i part i of that surface, else 0
+  /// - id.object: 0 for nothing, 1 for the floor, 2 + i for surface i of the picture; id.part: 1 + k for part k of that
+  ///   surface, 0 if it has no parts
   /// - uv.U, .V: rest coordinates (weft, warp) [m]
   /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the motion of the
   ///   camera; a surface that `before` does not contain counts as still

@@ -41,7 +41,7 @@ class DrawingTimer {
 
  private:
   double start_seconds_;                   // CPU time of this thread at construction
-  mutable double rasteriser_seconds_ = 0;  // rasteriser seconds of this picture so far; any timer updates all timers
+  mutable double rasteriser_seconds_ = 0;  // this picture's part of rasteriser time; every timer updates those of all
 };
 
 }  // namespace weft::render

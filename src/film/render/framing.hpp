@@ -14,7 +14,7 @@ namespace weft::render {
 /// True for visible surfaces other than infinite floors.
 bool is_subject(const frame::Surface& surface);
 
-/// Smallest box around all subjects [m]; a metre around the origin if there are none.
+/// Smallest box around all subjects [m]; a cube of 1 m around the origin if there are none.
 Box3 subject_bounds(const frame::FrameSnapshot& snapshot);
 
 /// Box around all places that the subjects reach during the run [m]; the same in all frames. Backdrop and floor
@@ -28,7 +28,7 @@ frame::Camera automatic_camera();
 ViewAxes axes_from_angles(const frame::Camera& camera, const Vec3& up);
 
 /// Where an eye with given axes may stand so that all points are in its picture. t is the tangent of half the field of
-/// view, less the margin. A point (x, y, z) in the eye's axes (z forward) is between the left and right edges of the
+/// view times (1 - margin). A point (x, y, z) in the eye's axes (z forward) is between the left and right edges of the
 /// picture of an eye at (cx, cz) if |x - cx| <= t (z - cz). All points together require t cz - cx <= min(t z - x) = low
 /// and t cz + cx <= min(t z + x) = high; the same holds for y.
 class FrustumFit {
@@ -44,8 +44,9 @@ class FrustumFit {
   const ViewAxes& axes() const { return axes_; }
   /// Distance from `center` that an eye looking at it needs, so that all points are in the picture [m].
   double distance(const Vec3& center) const;
-  /// Sets position and target of the camera. The eye is as close as the points allow; they are centred along the
-  /// picture direction that needs the larger distance. The target has the depth of `center`.
+  /// Sets position and target of the camera. The eye is as close as the points allow; they are centred along that
+  /// direction of the picture, horizontal or vertical, which needs the larger distance. The target has the depth of
+  /// `center`.
   void place(frame::Camera& camera, const Vec3& center) const;
 
  private:

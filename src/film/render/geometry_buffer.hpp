@@ -23,8 +23,8 @@ class GeometryBuffer {
   GeometryBuffer(const Gl& gl, int width, int height);
 
   /// Draws all surfaces except those flagged in `left_out` (empty: none) and, if not null, the floor, as seen from
-  /// `eye`. `far`: distance stored where nothing is visible [m]. Binds the results to units 4, 5 and 8; colours to unit
-  /// 10 if something is painted; trims to unit 11 if cloth has hems.
+  /// `eye`. `far`: distance stored where nothing is visible [m]. Binds the results to texture units: normal and heat to
+  /// 4, rest coordinates to 5, seen() to 8, colours to 10 if something is painted, trims to 11 if cloth has trims.
   void draw(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, const FloorBuffers* floor,
             const Vec3& eye, double far);
   /// Draws the nearest layer of the surfaces flagged in `left_out` over the result of draw(), as PixelClass::cloth, and
@@ -35,7 +35,7 @@ class GeometryBuffer {
   bool painted() const { return painted_; }
   /// Whether some cloth has visible hems or seams.
   bool trimmed() const { return trimmed_; }
-  /// For each range of a painted mesh: the opacity of its picture, or null if it has no holes. For class Holes.
+  /// For each range of a painted mesh: the opacity of its picture, or null if it has no holes. Class Holes needs it.
   std::vector<const Opacity*> opacity_of(const PaintedMesh& mesh);
 
   /// Reads back what each pixel shows, lowest row first.
@@ -49,7 +49,8 @@ class GeometryBuffer {
   const Texture& depth_stencil() const { return depth_stencil_; }
 
  private:
-  /// Shader variant. If any surface has paint (trims), the shaders of all surfaces write a pixel's paint (trims).
+  /// Shader variant. If any surface has paint, the shaders of all surfaces write the paint of each pixel; likewise for
+  /// trims.
   struct Variant {
     bool painted = false, pictured = false, holes = false, trimmed = false, peeled = false;
     auto operator<=>(const Variant&) const = default;

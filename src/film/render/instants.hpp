@@ -16,7 +16,7 @@ struct Instant {
 
 /// `count` instants, evenly spread over the time in which the shutter is open: `shutter` degrees (360: the time between
 /// two frames) that end at the drawn frame. If `lens`, they are also spread over the lens, else all are at its centre.
-/// Empty without blur, if `shutter` is 0 and `lens` is false.
+/// Empty if there is no blur: if `shutter` is 0 and `lens` is false.
 std::vector<Instant> instants(double shutter, bool lens, int count);
 
 /// Interpolates positions and lights linearly between a frame (back = 0) and the one before (back = 1). What `before`

@@ -9,11 +9,11 @@ namespace weft::render {
 namespace {
 
 constexpr int kFilterReach = 2;      // points to either side
-constexpr float kNarrow = 1.5f;      // like kWide, for shadows, whose edges may be sharp [steps]
+constexpr float kNarrow = 1.5f;      // like kWide, but for shadows, whose edges may be sharp [steps]
 constexpr float kAny = 1e9f;         // value of `wide` for which the distance does not matter
 constexpr float kNoise = 0.05f;      // difference of values that halves a weight
 constexpr float kPlaneSlack = 0.5f;  // distance from the tangent plane that halves a weight [points]
-constexpr float kWide = 6;           // distance in this plane that halves a weight; large for oblique floors [steps]
+constexpr float kWide = 6;           // in-plane distance that halves a weight [steps]; large for oblique floors
 
 /// Data of one row of points.
 struct Rows {
@@ -140,7 +140,7 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
   };
   std::vector<Place> columns;
   for (int x = 0; x < many.width(); ++x) columns.push_back(place(x, few.width()));
-  std::vector<char> alike(static_cast<std::size_t>(few.width()));  // whether four points show one smooth surface
+  std::vector<char> alike(static_cast<std::size_t>(few.width()));  // whether 2 x 2 points show a smooth surface
   int known_row = -1;
   for (int y = begin; y < end; ++y) {
     const Place row = place(y, few.height());

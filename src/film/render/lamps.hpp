@@ -6,7 +6,7 @@
 
 namespace weft::render {
 
-/// Directions from eight points toward a lamp, and the intensity at these points: 1 at the target of a spot.
+/// Directions from eight points toward a lamp, and the intensity at these points: 1 for a sun, and at a spot's target.
 struct Toward {
   Lanes3 direction;  ///< unit length
   Lanes distance;    ///< of a spot [m]; 1e30 for suns

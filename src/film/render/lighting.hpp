@@ -32,7 +32,7 @@ LightSet light_set(std::span<const frame::Light> lights);
 struct LightUniform {
   Eigen::Vector4f toward_light;  ///< unit; w: squared distance of a spot from its target [m²]; sun: 0
   Eigen::Vector4f position;      ///< [m]; w: cosine of half the cone angle
-  Eigen::Vector4f color;         ///< linear, times intensity; w: 1 / (cosine of the fully lit cone - position.w)
+  Eigen::Vector4f color;         ///< linear, times intensity; w: 1 / (cosine of half the fully lit angle - position.w)
 };
 static_assert(sizeof(LightUniform) == 3 * 16);
 struct LightsUniform {

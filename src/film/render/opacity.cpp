@@ -11,7 +11,7 @@ namespace {
 
 using Wrap = frame::Paint::Wrap;
 
-/// Scaling of a line of `from` texels to `to` texels: weights of the old texels that each new texel covers.
+/// One texel of a scaled line: weights of the old texels that it covers, from texel `first` on.
 struct TexelWeights {
   int first = 0;
   std::vector<float> weights;

@@ -23,7 +23,8 @@ constexpr float kOffsetY[] = {19 / 32.f, 11 / 32.f, 21 / 32.f, 15 / 32.f, 13 / 3
                               29 / 32.f, 3 / 32.f,  5 / 32.f,  25 / 32.f, 17 / 32.f, 9 / 32.f,  31 / 32.f, 1 / 32.f};
 
 // 1 / distance is linear over the picture of any plane. It has a step where a surface ends, and a kink where it folds.
-// For a crease seen head-on, the relative change of slope is the tangent of its angle times the angle of a pixel.
+// For a crease seen head-on, the relative change of slope is the tangent of its angle times the angle of a pixel. Folds
+// with smaller tangents are not antialiased.
 constexpr double kMinCreaseTangent = 0.4;
 // A sample takes its pixel's colour if the point that the pixel shows lies in the plane of the sample's triangle,
 // within this fraction of `kink_`.

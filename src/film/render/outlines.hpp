@@ -64,7 +64,7 @@ class Outlines {
   int width_, height_, words_;  // words_: bit words in a row
   float kink_ = 0;              // relative change of the slope of 1 / distance per pixel that counts as a fold
   std::vector<Bits> bits_;      // a bit for each pixel with an outline
-  std::vector<int> first_;      // index of the first sample of each word
+  std::vector<int> first_;      // by word of `bits_`: index of its first pixel in `pixels_`
   std::vector<Pixel> pixels_;
   std::vector<Samples> samples_;
   std::vector<std::uint64_t> resolved_;

@@ -18,7 +18,7 @@ struct PaintedRange {
 
 /// What a painted surface has in addition to its drawn mesh.
 struct PaintedMesh {
-  std::vector<Eigen::Vector2f> places;  ///< per drawn vertex: paint coordinates
+  std::vector<Eigen::Vector2f> places;  ///< per drawn vertex: paint coordinates (Surface::paint_uv or uv)
   std::vector<PaintedRange> ranges;
 };
 

@@ -35,7 +35,7 @@ GLint gl_wrap(Wrap wrap) {
 
 /// Converts linear light to the bytes of an sRGB texture, with an error below half a byte.
 std::uint8_t srgb_byte(float linear) {
-  constexpr int kSteps = 8192;  // bytes are at least 2.5 steps apart, near black
+  constexpr int kSteps = 8192;  // adjacent bytes are 2.5 steps apart near black, more elsewhere
   static const auto kTable = [] {
     std::vector<std::uint8_t> table;
     for (int i = 0; i <= kSteps; ++i)

@@ -13,7 +13,7 @@
 namespace weft::render {
 
 /// One picture with all mip levels, and its opacity if it cuts holes. The CPU makes the levels from premultiplied
-/// linear colour, so that means are means of light and transparent texels contribute no colour.
+/// linear colour, so that the levels average light and transparent texels contribute no colour.
 struct PaintTexture {
   Texture texture;
   std::optional<Opacity> opacity;

@@ -63,7 +63,7 @@ void put(const Rays& rays, RTCRay8& to) {
 
 }  // namespace
 
-// Embree uses the same kernels on every processor, so that pictures do not depend on it.
+// Embree uses the same kernels on every processor, so that pictures do not depend on the processor.
 #ifdef __AVX2__
 constexpr const char* kKernels = "isa=avx2";
 #else

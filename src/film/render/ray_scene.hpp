@@ -1,4 +1,4 @@
-// The drawn surfaces, prepared for intersection with rays. Embree builds and traverses the hierarchy.
+// The drawn surfaces, prepared for intersection with rays. Embree builds and traverses the bounding volume hierarchy.
 #pragma once
 
 #include <Eigen/Core>

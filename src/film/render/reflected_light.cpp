@@ -12,7 +12,7 @@ using Eigen::Vector3f;
 
 // Assumed open fraction of the surroundings at the point that a ray meets; no second ray measures it.
 constexpr float kOpenAtHits = 0.6f;
-constexpr float kMinSlope = 0.02f;  // rays that descend less steeply do not meet the floor [m/m]
+constexpr float kMinSlope = 0.02f;  // the floor is ignored for rays that descend less steeply [m/m]
 
 Lanes evaluate(const std::array<Vector3f, 9>& c, int k, const Lanes3& n) {
   return (c[0][k] + n.x * c[1][k] + n.y * c[2][k] + n.z * c[3][k] + n.x * n.y * c[4][k] + n.y * n.z * c[5][k] +
@@ -51,7 +51,7 @@ ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame:
   };
   if (plain || surface.painted() == nullptr) return {{range(look, 0)}};
   ReflectingSurface result;
-  const std::size_t pieces = surface.refined() ? 4 : 1;  // Refinement
+  const std::size_t pieces = surface.refined() ? 4 : 1;  // triangles drawn for each one
   for (const PaintedRange& each : surface.painted()->ranges)
     result.ranges.push_back(range(*each.look, pieces * (each.first + each.count)));
   return result;

@@ -113,8 +113,8 @@ struct Renderer::Impl {
   std::optional<DataPasses> data;
   image::Layers layers;
 
-  // The picture and what it shows, lowest row first; members, so that their memory is reused. open_floor: the picture
-  // with its floor unshadowed, only if layers are requested.
+  // The picture and what it shows, lowest row first; members, so that their memory is reused. Only if layers are
+  // requested: `unsmoothed`, the picture before antialiasing, and `open_floor`, the picture with its floor unshadowed.
   std::vector<std::uint64_t> rgba, unsmoothed, open_floor;
   std::vector<Seen> seen;
 

@@ -10,8 +10,8 @@ namespace weft::render {
 /// What a picture of a frame would show of its cloth, computed without drawing it; each from 0 to 1.
 struct Saliency {
   double coverage = 0;  ///< fraction of the picture that shows unoccluded cloth
-  double folding = 0;   ///< 0: all cloth is flat; 1: its front normals are evenly distributed
-  double motion = 0;    ///< rate of change of shape: 0: none; 1/2: half of the cloth's size per second
+  double folding = 0;   ///< 0: all cloth is flat; 1: the normals of its faces cancel each other
+  double motion = 0;    ///< rate of change of shape; 1/2 at half of the cloth's size per second
 
   /// Cloth outside the picture scores 0. Folding and motion each weigh at most as much as coverage.
   double score() const { return coverage * (1 + folding + motion); }

@@ -51,9 +51,10 @@ struct ShadedMesh {
   std::vector<Triangle> triangles;  ///< of drawn vertices; in the surface's order or, if painted, sorted by part
 };
 
-/// Each corner averages, weighted by area, the triangles of its vertex star whose normals differ from its own
-/// triangle's by less than `crease_angle` [degrees, 0 to 180]. With 180 no vertex is split, and under mesh refinement
-/// the normals converge to those of the smooth surface. Vertices without area get +z.
+/// The normal of a corner is the area-weighted mean over the triangles of its vertex star whose normals differ from
+/// that of its own triangle by less than `crease_angle` [degrees, 0 to 180]. With 180 no vertex is split, and under
+/// mesh refinement the normals converge to those of the smooth surface. If all these triangles are degenerate, it is
+/// +z.
 ShadedMesh shade(std::span<const Triangle> triangles, const CornerMap& corners, std::span<const Vec3> positions,
                  double crease_angle);
 

@@ -43,7 +43,7 @@ class Shading {
   };
   /// Sets the floor whose picture is drawn, and `tint`, a factor on the colour of that picture. Call before draw().
   void set_floor(const std::optional<Floor>& floor, double tint);
-  /// `materials`: in the order of the surfaces. `heat_scale`: 1 / hottest value, or 0: cloth has its own colours.
+  /// `materials`: in the order of the surfaces. `heat_scale`: 1 / hottest value, or 0 if cloth has its own colours.
   /// `subjects`: area that contains all surfaces. Outside `shaded_floor`, floor is fully lit and open to the sky. Frame
   /// and light blocks, traced light and geometry must be bound.
   void draw(std::span<const Material> materials, double heat_scale, const Features& features, const PixelArea& subjects,
@@ -98,7 +98,8 @@ bool is_skin(const frame::Surface& surface);
 /// `plain`: clay, in place of the surface's own colours.
 Shading::Material material_of(const frame::Surface& surface, bool plain);
 
-/// The heat that a stage shows for a frame: none for the looks `clay` and `wire`, strain for the look `strain`.
+/// The heat that a stage shows for a frame: none for the looks `clay` and `wire`, strain for the look `strain`, else as
+/// the stage says. Throws Error(usage) if the look is `strain` and the frame has no strain.
 frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
 
 /// 1 / value at the hot end of the scale; 0 if no heat is drawn.

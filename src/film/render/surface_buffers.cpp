@@ -196,7 +196,7 @@ void SurfaceBuffers::upload_trims() {
   for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
   if (refinement_)
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
-  // The strips' distance from the border lies between the hem's fold and its stitches, so that they show neither.
+  // Strips get a distance from the border between the hem's fold and its stitches, so that they show neither.
   constexpr float kPlain = 0.3f;
   Trim plain;
   plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);

@@ -15,7 +15,7 @@ namespace weft::render {
 
 /// Detail of the drawn surface beyond its simulated triangles.
 struct Detail {
-  bool refines = false;  ///< splits triangles on a smooth surface; mesh() then holds the coarse ones
+  bool refines = false;  ///< splits each triangle in four (Refinement); mesh() keeps the coarse ones
   bool rims = false;     ///< strips along borders, as wide as the cloth is thick; mesh() excludes them
   bool trims = false;    ///< hems and seams
 };
@@ -30,8 +30,8 @@ class SurfaceBuffers {
   bool refined() const { return refinement_.has_value(); }
   bool trimmed() const { return trims_.has_value() && detail_.trims; }
 
-  /// Copies the state of a frame. Throws Error(internal) if the number of positions differs from the surface's. `rim`:
-  /// width of the strips along borders [m], 0 for none.
+  /// Copies the state of a frame. Throws Error(internal) if a triangle names a vertex without a position. `rim`: width
+  /// of the strips along borders [m], 0 for none.
   void update(const frame::SurfaceState& state, double rim = 0);
   void draw() const;
   void draw(const PaintedRange& range) const;
@@ -82,7 +82,7 @@ class SurfaceBuffers {
   frame::SurfaceState state_;  // of the last frame
 };
 
-/// Two triangles that extend to the horizon, wound so that `normal` faces the viewer.
+/// Two triangles that extend to the horizon, counter-clockwise as seen from the side to which `normal` points.
 class FloorBuffers {
  public:
   explicit FloorBuffers(const Gl& gl);

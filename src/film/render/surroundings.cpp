@@ -20,7 +20,7 @@ double smoothstep(double from, double to, double x) {
   return t * t * (3 - 2 * t);
 }
 
-/// Basis of the quadric Irradiance.
+/// Basis functions of Irradiance.
 std::array<double, 9> quadric(const Vec3& n) {
   const double x = n.x(), y = n.y(), z = n.z();
   return {1, x, y, z, x * y, y * z, z * x, z * z, x * x - y * y};
@@ -81,8 +81,8 @@ Vec3 Surroundings::light(const Vec3& toward, double alpha) const {
   const double height = toward.dot(up), blur = 0.08 + alpha;
   const Vec3 above = horizon + smoothstep(0, 1, height) * (sky - horizon);
   Vec3 sum = ground + smoothstep(-blur, blur, height) * (above - ground);
-  // A Gaussian blurred by another has the sharpness of their convolution (Wang et al., "All-Frequency Rendering of
-  // Dynamic, Spatially-Varying Reflectance", 2009).
+  // The convolution of two spherical Gaussians is nearly one with the sharpness a b / (a + b) (Wang et al.,
+  // "All-Frequency Rendering of Dynamic, Spatially-Varying Reflectance", 2009).
   const double own = 2 / (alpha * alpha + 1e-4);
   for (const Box& box : boxes) {
     const double sharpness = box.sharpness * own / (box.sharpness + own);
@@ -145,8 +145,8 @@ Irradiance irradiance_of(const Surroundings& surroundings) {
   // Integrates over 24 x 48 cells of the sphere, uniform in height; enough, because the projected function is smooth.
   constexpr int kRows = 24, kColumns = 48;
   constexpr double kPi = std::numbers::pi;
-  // Squared norms of the harmonics, times the factors of the clamped cosine (pi, 2 pi / 3 and pi / 4), divided by pi to
-  // get the light that matte white shows.
+  // Squared normalisation factors of the harmonics, times the factors of the clamped cosine (pi, 2 pi / 3 and pi / 4),
+  // divided by pi to get the light that matte white shows.
   constexpr double kZero = 1 / (4 * kPi), kOne = 3 / (4 * kPi) * 2 / 3, kCross = 15 / (4 * kPi) / 4,
                    kUp = 5 / (16 * kPi) / 4, kSaddle = 15 / (16 * kPi) / 4;
   std::array<Vec3, 9> sums;

@@ -48,9 +48,9 @@ struct Surroundings {
 Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3& up,
                       std::span<const frame::Light> lights, const Vec3& ground);
 
-/// Irradiance on a surface with normal n, as the light that matte white shows: a quadric in n. Coefficients of 1, x, y,
-/// z, xy, yz, zx, z², x² - y²: the first nine spherical harmonics, convolved with the clamped cosine (Ramamoorthi and
-/// Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001).
+/// Light that a matte white surface with normal n shows (irradiance / pi): a quadratic polynomial in n. Coefficients of
+/// 1, x, y, z, xy, yz, zx, z², x² - y²: the first nine spherical harmonics, convolved with the clamped cosine
+/// (Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001).
 using Irradiance = std::array<Vec3, 9>;
 Irradiance irradiance_of(const Surroundings& surroundings);
 Vec3 at(const Irradiance& irradiance, const Vec3& n);

@@ -29,7 +29,7 @@ constexpr float kUnseen = 0.002f;
 constexpr float kFloorKind = static_cast<float>(Kind::floor), kClothKind = static_cast<float>(Kind::cloth);
 
 /// A rotation for each pixel, from 0 to kTurns - 1. Any 4 x 4 pixels have 16 evenly spread rotations, in an order that
-/// shows no rows or columns (8 x 8 pixels of Bayer, "An optimum method for two-level rendition of continuous-tone
+/// shows no rows or columns (the 8 x 8 matrix of Bayer, "An optimum method for two-level rendition of continuous-tone
 /// pictures", 1973).
 int turn_of(int x, int y) {
   static constexpr auto kOrder = [] {

@@ -51,8 +51,8 @@ class TracedLight {
   QualitySettings quality_;
   int width_, height_;
   PixelPoints pixels_, open_points_;
-  std::optional<PixelPoints> lit_points_;              // if shadows are smaller than the picture
-  std::vector<Plane> lit_;                             // per lamp
+  std::optional<PixelPoints> lit_points_;              // if shadows have a lower resolution
+  std::vector<Plane> lit_;                             // visible fraction of each lamp
   std::vector<Plane> open_, open_scratch_, mirrored_;  // red, green, blue, fraction
   std::vector<Eigen::Vector3f> directions_;            // directions of the rays to the surroundings
   std::array<Plane, 5> scratch_;                       // scratch planes, as large as those of lit_

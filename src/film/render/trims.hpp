@@ -13,7 +13,8 @@ namespace weft::render {
 inline constexpr float kNoTrim = 1e3f;
 
 /// Distances from a point to the nearest line of each kind, in rest coordinates [m]; kNoTrim if there is none. Two
-/// borders that meet at a corner have different kinds: each distance is linear across the corner, their minimum is not.
+/// borders that meet at a corner have different kinds, because each distance can be interpolated linearly across the
+/// corner, but their minimum cannot.
 struct Trim {
   enum Kind { border, other_border, seam };
   static constexpr int kKinds = 3;
@@ -71,9 +72,9 @@ class Trims {
 /// The visible thickness at the edge of cloth: a strip along each border, from front to back.
 struct RimStrip {
   std::vector<Vec3> positions, normals;
-  std::vector<Index> source;        ///< per position: the vertex of the surface at or behind which it lies
+  std::vector<Index> source;        ///< per position: the argument's vertex at or behind which it lies
   std::vector<Triangle> triangles;  ///< indices into positions, from 0
-  std::vector<std::int32_t> owner;  ///< by triangle: the triangle of its rim
+  std::vector<std::int32_t> owner;  ///< by triangle: the triangle of the surface at its border
 };
 
 /// Width of the strips [m]: the thickness of the edge, doubled if it is folded to a hem. Reduced if it covers less than

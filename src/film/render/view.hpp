@@ -45,7 +45,7 @@ struct PixelArea {
 /// front of the viewer.
 PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height);
 
-/// Frame block, std140.
+/// The frame block of shaders/frame.glsl, in the layout std140.
 struct FrameUniform {
   // Matrices first: Eigen aligns them to 16 or 32 bytes, depending on the CPU level; std140 aligns to 16.
   Eigen::Matrix4f clip_from_world, view_from_world;

@@ -33,7 +33,7 @@ struct Camera {
   std::vector<CameraKey> keys;  ///< at least one; with one, placed cameras stand still and computed ones use its lens
   motion::Interpolation interpolation = motion::Interpolation::cubic;
   std::vector<std::string> subjects =
-      {};                  ///< names; if empty: all but infinite floors (`whole`), else the characters, else the cloths
+      {};                  ///< names; if empty: for `whole` all but infinite floors, for others characters, else cloths
   double azimuth = 33;     ///< of the camera position, from the front to the right [degrees]
   double elevation = 17;   ///< of the camera position above the subject [degrees]
   double orbit = 0;        ///< rate at which the azimuth grows [degrees/s]

@@ -22,7 +22,7 @@ namespace weft::scene {
 namespace {
 
 constexpr double kMaxFrames = 100000;
-constexpr long kMaxParticles = 4'000'000;  // of all cloths together; the solver's data fit a large workstation
+constexpr long kMaxParticles = 4'000'000;  // of all cloths together: the solver's data fit into a large workstation
 
 template <class Entries>
 std::vector<std::string> names_of(const Entries& entries) {

@@ -9,10 +9,10 @@
 
 namespace weft::scene {
 
-/// Fills in `hash`, `simulation_hash` and `files`. The hash is 64-bit FNV-1a of the checked values of a scene and the
-/// bytes of the files that for_each_dependency() visits, without their folders. Scenes that differ only in comments,
-/// order, spelling of numbers or explicit defaults have equal hashes. `simulation_hash` omits keys that the rules mark
-/// as not simulated, such as colours, and files of pictures and cameras.
+/// Fills in `hash`, `simulation_hash` and `files`. The hash is 64-bit FNV-1a of the checked values of a scene, in which
+/// file names lose their folders, and of the bytes of the files that for_each_dependency() visits. Scenes that differ
+/// only in comments, order, spelling of numbers or explicit defaults have equal hashes. `simulation_hash` omits keys
+/// that the rules mark as not simulated, such as colours, and files of pictures and cameras.
 void identify(Scene& scene);
 
 }  // namespace weft::scene

@@ -12,9 +12,9 @@
 //   extension   E5, E20 and E100 are the strains at 4.9, 19.6 and 98.07 N/m
 //
 // Conversion of measurements to a Material, for all fabrics:
-//   stretch      secant up to 19.6 N/m, the load of worn and hanging cloth. With threads, force ~ strain²: LT is 2/3
-//                (measured: 0.50 to 0.60 for suitings, 0.66 to 0.78 for denims), and the secant 98.0 N/m / EMT. Without
-//                threads, force ~ strain, and the secant is 490.3 N/m / EMT.
+//   stretch      secant up to 19.6 N/m, the load of worn and hanging cloth. In fabrics with threads, force ~ strain²,
+//                so that LT is 2/3 (measured: 0.50 to 0.60 for suitings, 0.66 to 0.78 for denims) and the secant is
+//                98.0 N/m / EMT. Without threads, force ~ strain, and the secant is 490.3 N/m / EMT.
 //   max_stretch  such that the force at the mean EMT of weft and warp is the measured 490 N/m, by `stretch` and the law
 //                of forces/stretch_limit.hpp, whose threads carry 4 kN/m at the limit.
 //   shear        2 G

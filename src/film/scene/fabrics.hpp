@@ -28,7 +28,7 @@ struct Measurements {
 };
 
 struct Fabric {
-  Material material;  ///< `fabric` is the name; derived from `measured`
+  Material material;  ///< derived from `measured`; its member `fabric` is the name
   Measurements measured;
   Finish finish;       ///< chosen by fibre and weave, not measured
   bool frays;          ///< cut edges fray, so they are hemmed
@@ -36,8 +36,8 @@ struct Fabric {
   std::string source;  ///< publication of the measurements
 };
 
-/// Load of the KES extension test (500 gf/cm) [N/m], and the load of worn cloth (20 gf/cm, as in FAST) [N/m]:
-/// Material's `stretch` is the secant stiffness up to this load.
+/// Load of the KES extension test (500 gf/cm) [N/m], and the load of worn cloth (20 gf/cm, as in FAST) [N/m], up to
+/// which Material's `stretch` is the secant stiffness.
 inline constexpr double kExtensionLoad = 490.3, kWornLoad = 19.6;
 
 /// All named fabrics; the first is the default and equals Material{}.

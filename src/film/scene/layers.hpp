@@ -12,7 +12,8 @@ namespace weft::scene {
 /// Whether `outer` is worn over `inner`, directly or through other cloths. False if `outer` is not the name of a cloth.
 bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner);
 
-/// For each cloth, the number of layers below it (longest chain of cloths, one over the other); 0: next to the skin.
+/// For each cloth, the number of layers below it: the length of the longest chain of cloths, each worn over the next. 0
+/// for cloth next to the skin.
 std::vector<std::size_t> layer_depths(const Scene& scene);
 
 using model::Layer;

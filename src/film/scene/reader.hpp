@@ -33,8 +33,8 @@ class Reader {
  private:
   void read_rule(const toml::table& table, const Rule& rule, void* target, const std::string& path);
   void read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path);
-  /// The key path of a list entry: if its name is valid and not yet in `names`, with this name, which is added to
-  /// `names`; else with its index.
+  /// The key path of a list entry. It ends with the entry's name if this is valid and not yet in `names`; the name is
+  /// then added to `names`. Else it ends with the index.
   std::string entry_path(const toml::table& table, const Rule& rule, const std::string& path,
                          const std::string& by_index, std::set<std::string>& names);
   void report_unknown(const toml::table& table, const Table& rules, const Variant* variant, const std::string& path);

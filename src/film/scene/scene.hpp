@@ -1,4 +1,4 @@
-// A checked scene: plain values in SI units, with every default filled in and every name resolved.
+// A checked scene: plain values in SI units, with every default filled in and every reference to a name checked.
 #pragma once
 
 #include <cmath>
@@ -92,9 +92,9 @@ struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< colours of the panels of a pattern
   bool as_file = true;             ///< characters: use colours and pictures of the file, if any
   double roughness = 0.6;
-  std::optional<double> gloss;        ///< cloth: gloss of threads, absent: that of the fabric; obstacles: clear coat
+  std::optional<double> gloss;        ///< cloth: gloss of threads (absent: of the fabric); obstacles: clear coat
   std::optional<double> fuzz, sheer;  ///< cloth only; absent: those of the fabric
-  double metal = 0;                   ///< obstacles only: 1: reflects all light, in the object's colour
+  double metal = 0;                   ///< obstacles only; 1 reflects all light, in the object's colour
   std::optional<double> tile_width;   ///< obstacles only: width of the picture [m]; absent: once over the shape
   double warp_fraction = 0.5;         ///< fraction of warp among the threads on top; from the fabric
   Threads threads = Threads::plain;   ///< of the fabric
@@ -121,15 +121,15 @@ struct PinTrack {
 enum class VertexColor { none, red, green, blue, brightness };
 
 /// Particles of a cloth inside [low, high], in fractions of its rest size along weft and warp. `mask`, `vertex_color`
-/// and `vertex_group` give each particle a weight; several weights are multiplied.
+/// and `vertex_group` give each particle a fraction from 0 to 1, its part in the effect; several are multiplied.
 struct ClothPart {
   std::string panel;  ///< of a pattern: only this panel, with fractions of its size; empty: all
   Vec2 low{0, 0}, high{1, 1};
   std::optional<Vec2> at = {};                ///< of a rope, replaces low, high: first and last fraction of its length
   std::string edge;                           ///< of a pattern, as "panel.edge": only this edge; empty: all
-  std::optional<std::filesystem::path> mask;  ///< picture whose grey values are weights; absolute after checking
-  VertexColor vertex_color = VertexColor::none;  ///< of a mesh file: colour channel that gives weights
-  std::string vertex_group;  ///< of a mesh file: vertex group or bone that gives weights; empty: all
+  std::optional<std::filesystem::path> mask;  ///< picture whose grey values are fractions; absolute after checking
+  VertexColor vertex_color = VertexColor::none;  ///< of a mesh file: colour channel that gives fractions
+  std::string vertex_group;  ///< of a mesh file: vertex group or bone that gives fractions; empty: all
 
   /// Whether the particle at fractions (u, v) of the rest size is inside. The tolerance kSlack admits a particle at a
   /// bound that the scene gives with nine digits, such as 0.333333333.
@@ -157,7 +157,7 @@ inline Followed followed(const std::string& follow) {
   return {follow.substr(0, dot), dot == std::string::npos ? "" : follow.substr(dot + 1)};
 }
 
-/// Additional mass, distributed over particles in proportion to their weights (see ClothPart).
+/// Additional mass, distributed over particles in proportion to their fractions (see ClothPart).
 struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };
@@ -165,7 +165,7 @@ struct Weight : ClothPart {
 /// Springs from particles of a cloth to the nearest points of another cloth or body: buttons, pegs, tacks.
 struct Attachment : ClothPart {
   std::string name, cloth, to;
-  double stiffness = 10000;             ///< stiffness of the spring of a particle with weight 1 [N/m]
+  double stiffness = 10000;             ///< stiffness of the spring of a particle with fraction 1 [N/m]
   std::optional<double> length;         ///< rest length of the springs [m]; absent: the distance at `begin`
   double begin = -1e5, release = -1;    ///< times between which it acts [s]; negative release: for ever
   std::optional<double> breaking_load;  ///< total force of its springs above which it breaks [N]; absent: never

@@ -22,7 +22,7 @@ struct LibavDeleter {
   void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
 };
 
-/// Also closes the file, ignoring errors; Mp4Writer::close() reports them.
+/// Closes the file, ignoring errors, which Mp4Writer::close() reports, and frees the context.
 struct OutputDeleter {
   void operator()(AVFormatContext* output) const;
 };

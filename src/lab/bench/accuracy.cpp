@@ -20,10 +20,11 @@ using scene::Integrator;
 // Fixed steps, relative to the scene's.
 constexpr double kSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
 // Ratio of the shortest measured step to the step of the references. Without contact, a second-order reference then has
-// 1/64 of the error of that shortest step. With contact, chaotic divergence exceeds the error of such steps.
+// 1/64 of the error of that shortest step. With contact, so short a step is useless, since chaotic divergence exceeds
+// its error.
 constexpr int kReferenceStepDivisor = 8, kReferenceStepDivisorWithContact = 2;
-// Values of time.tolerance [m] fall from kLargestTolerance by half a decade each, until a run has more steps than that
-// with the shortest fixed step.
+// Values of time.tolerance [m] fall from kLargestTolerance by half a decade each. They end after kTolerances values, or
+// earlier if a run fails or takes more steps than the run with the shortest fixed step.
 constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
 // newton_tolerance falls by decades from the scene's value down to this minimum.
@@ -228,9 +229,10 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
   return sample;
 }
 
-// Divides newton_tolerance, at twice the step of a reference, by ten repeatedly. Stops if a division changes the result
-// by less than a tenth of what halving the step is expected to change, or by less than the starts differ, or if a run
-// fails. `coarse` becomes the last successful run. Returns the last change.
+// Repeatedly divides by ten the newton_tolerance of `twice`, the setting of a reference with twice its step. Stops at
+// kMinNewtonTolerance, if a run fails, or if a division changes the result by less than the starts differ or by less
+// than a tenth of what halving the step is expected to change. `coarse` becomes the last successful run. Returns the
+// last change.
 Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
   const double order = expected_order({.setting = twice});
@@ -301,7 +303,8 @@ bool Campaign::decides(const Run& run, const Run& tighter) const {
   return run.change <= std::max(kMaxSolverChangeRatio * error_of(tighter, q), result_.doubt(tighter, q));
 }
 
-// Lowers newton_tolerance at one step from the scene's until the step decides. Returns that run, or nullptr.
+// Lowers newton_tolerance, with this fixed step, from the scene's value until the step decides. Returns the run in
+// which it does, or nullptr.
 Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   std::vector<Run> runs;
   std::vector<SamplePtr> samples;

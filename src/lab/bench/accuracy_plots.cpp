@@ -49,7 +49,7 @@ std::string error_label(Quantity quantity) {
   return fmt::format("error of the {} [{}]", name_of(quantity), unit == "1" ? "ratio" : unit);
 }
 
-// Adds curves for the coarsest step, the scene's step and the finest.
+// Adds curves of Run::left over newton_tolerance for the coarsest step, the scene's step and the finest.
 void add_tolerances(Panel& panel, const Accuracy& accuracy, Integrator integrator) {
   const auto runs = accuracy.series(Axis::grid, integrator);
   if (runs.empty()) return;

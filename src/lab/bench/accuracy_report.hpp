@@ -23,8 +23,8 @@ std::string work_svg(const std::string& title, const Accuracy& accuracy);
 /// Errors against step, solver tolerance and mesh.
 std::string settings_svg(const std::string& title, const Accuracy& accuracy);
 
-/// The cheapest run whose error is certainly at most `target`, as are the errors of all runs of its axis that are
-/// solved more exactly; nullptr if there is none.
+/// The cheapest run whose error is certainly at most `target`, as are the errors of all finer runs of its axis and
+/// integrator; nullptr if there is none.
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target);
 /// The Pareto front: runs for which no other run is both cheaper and more exact, cheapest first.
 std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity);

@@ -31,7 +31,8 @@ bool is_candidate(const Run& run) {
   return !run.failed() && (run.axis == Axis::grid || run.axis == Axis::tolerance);
 }
 
-// Whether `a` is solved more exactly than `b` along the same axis.
+// Whether `a` is finer than `b`: the same axis and integrator, and a smaller time.tolerance, or of step and
+// newton_tolerance one smaller and none larger.
 bool is_finer(const Run& a, const Run& b) {
   if (a.axis != b.axis || a.setting.integrator != b.setting.integrator) return false;
   if (a.axis == Axis::tolerance) return a.setting.tolerance < b.setting.tolerance;
@@ -44,7 +45,7 @@ double bound_of(const Accuracy& accuracy, const Run& run, Quantity quantity) {
   return error_of(run, quantity) + accuracy.doubt(run, quantity);
 }
 
-// Whether the run certainly reaches the target, and all runs that are solved more exactly along the same axis do too.
+// Whether the run and all finer runs (see is_finer()) certainly reach the target.
 bool certainly_reaches(const Accuracy& accuracy, const Run& run, Quantity quantity, double target) {
   const auto reaches = [&](const Run& r) { return bound_of(accuracy, r, quantity) <= target; };
   return is_candidate(run) && reaches(run) && std::ranges::all_of(accuracy.runs, [&](const Run& other) {

@@ -7,7 +7,8 @@ namespace {
 
 constexpr const char* kSecond = "duration = 1.0\nfps = 25\nstep = 0.01";
 
-/// A square sheet of cotton, 0.5 m wide, held at two corners; `cloth` adds keys to the cloth, `rest` to the scene.
+/// A square sheet of cotton, 0.5 m wide, held at two corners, without contact; `cloth` adds keys to the cloth, `rest`
+/// to the scene.
 std::string hanging(const std::string& cloth, const std::string& rest = {}) {
   return fmt::format(
       "[time]\n{}\n\n[contact]\nself = false\nobstacles = false\n{}\n"
@@ -16,7 +17,7 @@ std::string hanging(const std::string& cloth, const std::string& rest = {}) {
       kSecond, rest.empty() ? "" : "\n" + rest + "\n", cloth);
 }
 
-/// The same sheet without pins and contact.
+/// The same sheet without pins.
 std::string free_sheet(const std::string& cloth) {
   return fmt::format(
       "[time]\n{}\n\n[contact]\nself = false\nobstacles = false\n\n"

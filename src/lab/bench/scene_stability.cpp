@@ -90,7 +90,7 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   return true;
 }
 
-// Adds the faults of a frame; for a list see TrialVerdict.
+// Adds the faults of a frame, which TrialVerdict defines.
 void find_broken(const simulation::FrameReport& report, std::set<std::string>& broken) {
   if (report.min_distance <= 0 && report.frame > 0) broken.insert("surfaces touch or pass through each other");
   if (report.stretch_ratio > simulation::kMaxStretchRatio) broken.insert("cloth is stretched beyond its max_stretch");

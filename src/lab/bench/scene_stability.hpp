@@ -25,11 +25,13 @@ std::string_view name_of(VariedParameter axis);
 
 using Factors = std::array<double, kVariedValues>;
 
-/// A trial breaks if surfaces pass through each other, cloth exceeds `max_stretch` or is pinched by an obstacle, pinned
-/// particles lag behind their targets, energy appears from nothing, or the solver leaves unbalanced forces.
+/// Faults: surfaces touch or pass through each other, cloth exceeds `max_stretch` or is pinched by an obstacle, pinned
+/// particles lag behind their targets, energy appears from nothing, or the solver leaves unbalanced forces. A trial
+/// breaks if it has a fault that the unchanged scene does not have, or does not run to the end. For the unchanged scene
+/// itself, every fault counts.
 enum class TrialVerdict {
-  holds,       ///< ran to the end, without faults that the unchanged scene does not have
-  warned,      ///< ran to the end, with faults that the unchanged scene does not have
+  holds,       ///< ran to the end, with no fault except those of the unchanged scene
+  warned,      ///< ran to the end, with a fault that the unchanged scene does not have
   refused,     ///< the simulation ended with an error
   not_finite,  ///< a position is not finite
   too_slow,    ///< aborted: it takes many times as long as the unchanged scene
@@ -70,7 +72,7 @@ inline constexpr std::array<double, 5> kMapSteps{0.25, 0.5, 1, 2, 4};
 
 /// Runs all frames of the scene once per trial, some fifty trials. Calls `each` after each trial with the fraction of
 /// the work done. Returns early with the trials so far if `stop` returns true; throws Error(interrupted) if that
-/// happens in the unchanged scene. Also throws what Simulation(scene) throws.
+/// happens in the unchanged scene. Also throws what SceneSimulation(scene) throws.
 SceneStability measure_scene_stability(
     const scene::Scene& scene, const std::function<void(const Trial&, double done)>& each = {},
     const std::function<bool()>& stop = [] { return false; });

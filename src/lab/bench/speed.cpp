@@ -57,7 +57,7 @@ void count(const simulation::FrameReport& report, const StageTime& whole, SpeedR
   run.at(SpeedStage::rest) += rest;
 }
 
-/// Counts loops during its lifetime.
+/// While it lives, parallel loops are counted in `counts`; null: nothing is counted.
 class Counting {
  public:
   explicit Counting(LoopCounts* counts) { counted_loops = counts; }

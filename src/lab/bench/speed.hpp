@@ -59,7 +59,7 @@ struct SpeedRun {
   double largest_gain(std::size_t number) const;
 };
 
-/// Measured frames, half-open interval; earlier frames are simulated too. Frame 0 takes no time.
+/// Measured frames, half-open interval; earlier frames are simulated too. Frame 0, the initial state, takes no time.
 struct SpeedFrames {
   int begin = 1, end = 9;
 };

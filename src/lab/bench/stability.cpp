@@ -137,7 +137,7 @@ scene::Scene swing(scene::Integrator integrator, double stiffness, double step) 
   material.bend = 5e-5;
   material.bend_viscosity = 5e-6;
   material.bend_friction = 2e-4;
-  material.max_stretch = 0;  // so that only stretch stiffness, the axis of the map, resists
+  material.max_stretch = 0;  // so that only the stretch stiffness, which the map varies, resists stretching
   scene::Pin left, right;
   left.low = left.high = {0, 1};
   right.low = right.high = {1, 1};

@@ -36,7 +36,8 @@ struct ContactMaterial {
 };
 
 /// Owns the triangles; the rest of the engine holds spans of them. The vertices of all bodies share the numbering of
-/// the position arrays. These list particles first, so add cloth first, then rigid deformable bodies, then obstacles.
+/// the position arrays. These list particles first, so add cloth first, then bodies that are deformable and rigid, then
+/// obstacles.
 class Bodies {
  public:
   Bodies() = default;
@@ -44,8 +45,9 @@ class Bodies {
   Bodies& operator=(Bodies&&) = default;
 
   /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`: number of positions
-  /// before these vertices that belong to the body but to no triangle; patches and `limbs` include them. If patches
-  /// share a vertex, the last one counts. `limbs`: limb number of each vertex, from 0; empty: one limb.
+  /// before these vertices that count as part of the body but belong to no triangle, such as frame particles; patches
+  /// and `limbs` include them. If patches share a vertex, the last one counts. `limbs`: limb number of each vertex,
+  /// from 0; empty: one limb.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
            std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
 

@@ -131,7 +131,7 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& 
   return is_new;
 }
 
-// Adds a wall for each corner of the cloth triangle, parallel to the plane through the obstacle's closest point.
+// Adds a wall for each corner of the cloth triangle, perpendicular to the line between the closest points of the pair.
 void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                ContactResponse& response) const {
   const Triangle& cloth = is_particle(pair.a[0]) ? pair.a : pair.b;

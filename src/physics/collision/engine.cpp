@@ -29,7 +29,7 @@ std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const doubl
     if (frame < 0) continue;
     const Surface& surface = bodies.surfaces()[b];
     const auto of_frame = masses.subspan(static_cast<std::size_t>(frame), kFrame);
-    // The frame particles of such a body precede its triangle vertices.
+    // The vertices of a body may begin with frame particles, which belong to no triangle.
     Index first = bodies.vertex_count(), last = 0;
     for (const Triangle& corners : surface.triangles)
       for (const Index v : corners) first = std::min(first, v), last = std::max(last, v);
@@ -143,10 +143,10 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   return is_moved;
 }
 
-// Pushes an estimate with intersections apart. Contacts found at intersecting positions would have meaningless
-// directions, and of several layers that push each other, only one would be found per iteration. Exempts no pinched
-// cloth, because x_t1 is only an estimate. Between cloths, seeks only planes for the whole step (measured in
-// falling_band: two thirds of the searches were for parts of it, mostly in vain).
+// Pushes surfaces apart that the estimate x_t1 lets meet. Contacts found at intersecting positions would have
+// meaningless directions, and of several layers that push each other, only one would be found per iteration. Exempts no
+// pinched cloth, because x_t1 is only an estimate. Between cloths, seeks only planes for the whole step (measured in
+// falling_band: two thirds of the searches were for parts of the step, mostly in vain).
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || !find_failing(x_t0, x_t1, PlaneKinds::turning))
     return false;

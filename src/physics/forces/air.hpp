@@ -12,17 +12,18 @@ namespace weft::forces {
 
 struct AirParameters {
   double density = 1.2;      ///< of the air [kg/m³]
-  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s], unless an evaluation provides its own
+  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s], if Evaluation::air is empty
   double drag = 1.0;         ///< coefficient of drag along the normal
 };
 
 /// Quadratic drag along the normal of each cell or triangle, divided equally among its corners: f = −½ ρ c A ‖v_n‖ v_n,
 /// with the density ρ, the drag coefficient c, the area A and the velocity v_n along the normal, relative to the air.
 ///
-/// The drag is implicit although it is not stiff. The seed ("Time integration") evaluates it once per step at the
-/// initial velocity; terminal velocities and folds in steady wind would then depend on the step size. The matrix
-/// contains the derivative with respect to velocities, lumped on the diagonal: an upper bound of the full derivative,
-/// exact if the corners of a face change velocity together. The derivatives of normals and areas are neglected.
+/// The drag is implicit although it is not stiff. The seed (the paper that README.md names, section "Time integration")
+/// evaluates it once per step at the initial velocity; terminal velocities and folds in steady wind would then depend
+/// on the step size. The matrix contains the derivative with respect to velocities, lumped on the diagonal: an upper
+/// bound of the full derivative, exact if the corners of a face change velocity together. The derivatives of normals
+/// and areas are neglected.
 class Air final : public Force {
  public:
   Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);

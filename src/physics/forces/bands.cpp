@@ -72,8 +72,8 @@ void Bands::add(const Evaluation& at) const {
   }
 }
 
-// Stiffness of a piece [N/m]. `along`: vector from its first particle to its second [m]. `lateral`: 1 − rest / length,
-// or at least 0, so that the matrix is positive semidefinite.
+// Stiffness of a piece [N/m]. `along`: vector from its first particle to its second [m]. `lateral`: 1 − rest / length;
+// add() raises it to at least 0, so that the matrix is positive semidefinite.
 Mat3 Bands::stiffness(const Piece& piece, const Vec3& along, double lateral) {
   const Vec3 n = along.normalized();
   return piece.stiffness / piece.rest * ((1 - lateral) * n * n.transpose() + lateral * Mat3::Identity());

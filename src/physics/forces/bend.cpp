@@ -116,9 +116,9 @@ void Bend::add(const Evaluation& at) const {
   cells_.ranges.for_each(at.range, cells_.packs.size(), [&](std::size_t p) { add(cells_.packs[p], at); });
 }
 
-// The stiffness of damping is proportional to c cᵀ. The matrix contains ‖c‖² I instead, so that all of bending needs
-// scalars only, no 3×3 blocks. Along c, which is nearly the normal, both are equal; across c, the membrane is far
-// stiffer.
+// The stiffness of damping is proportional to c cᵀ, with c as in BendDamping. The matrix contains ‖c‖² I instead, so
+// that all of bending needs scalars only, no 3×3 blocks. Along c, which is nearly the normal, both are equal; across c,
+// the membrane is far stiffer.
 template <std::size_t Count>
 void Bend::add(const Differences<Count>& d, const Evaluation& at) const {
   const VecLanes curvature = weighted_sum(d, at.x);

@@ -9,9 +9,10 @@
 
 namespace weft::forces {
 
-/// The bending force of the seed ("Elastic Model"), f = −B Δ² s along the normal N, is the restoring force of a plate
-/// with rigidity B, ν = 0 and energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), here by central differences on lines
-/// and in cells. The energy also determines the forces at free edges.
+/// The bending force of the seed (the paper that README.md names, section "Elastic Model"), f = −B Δ² s along the
+/// normal N, is the restoring force of a plate with rigidity B, ν = 0 and energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² +
+/// ‖s_vv‖²). This class discretises the energy by central differences on lines and in cells. The energy also determines
+/// the forces at free edges.
 ///
 /// The full second differences are used, not their component along N. On an inextensible sheet both are equal, and the
 /// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,

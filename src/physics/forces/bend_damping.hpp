@@ -17,7 +17,7 @@ struct BendParameters {
 /// Only the part of the rate κ̇ along the curvature counts, so that a curved piece turns rigidly without loss. Friction
 /// models Kawabata's bending hysteresis ("The Standardization and Analysis of Hand Evaluation", 1980): a moment of
 /// constant magnitude against the change, smoothed below a rate of kStickRate. It brings cloth to rest: without
-/// friction the hem of a draped sheet keeps tipping at centimetres per second.
+/// friction the hem of a draped sheet keeps moving at centimetres per second.
 ///
 /// Moment per width [N]:
 ///

@@ -14,7 +14,7 @@ struct CordParameters {
   double bend = 0;               ///< bending stiffness, EI [N·m²]
   double bend_viscosity = 0;     ///< moment per rate of curvature [N·m²·s]
   double air_density = 0;        ///< ρ [kg/m³]; 0: no air
-  Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], unless an evaluation provides its own
+  Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], if Evaluation::air is empty
   double drag = 0;               ///< c, drag coefficient across the cord
   double diameter = 0;           ///< d, for drag [m]
 };
@@ -22,10 +22,11 @@ struct CordParameters {
 /// The forces within one chain.
 ///
 /// Stretch: a piece of length l and rest length r has the energy ½ EA r (l / r − 1)² and the viscous tension η d/dt (l
-/// / r). Bending: energy ½ EI L ‖s''‖² at each particle between two pieces, where s'' is the second difference of the
-/// positions for the initial rest lengths, and L is the mean of both lengths (as in Bend on lines, clamps included);
-/// straight at rest. For viscosity of bending see BendDamping. Air: −½ ρ c d l ‖v_n‖ v_n on a piece, half at either
-/// end, where v_n is the part across the piece of its velocity relative to the air.
+/// / r). Bending: each particle between two pieces has the energy ½ EI L ‖s''‖², where s'' is the second difference of
+/// the positions for the initial rest lengths, and L is the mean of both lengths (as in Bend on lines, clamps
+/// included). The cord is straight at rest. For viscosity of bending see BendDamping. Air: the drag on a piece is −½ ρ
+/// c d l ‖v_n‖ v_n, half at either end, where v_n is the component across the piece of its velocity relative to the
+/// air.
 class Cord final : public Membrane {
  public:
   /// `lengths`: rest lengths of the pieces [m]; `closed`: the last piece connects the last particle to the first.

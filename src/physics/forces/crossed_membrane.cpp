@@ -231,8 +231,9 @@ Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& stat
 }
 
 // Sums stiffness (1 − lateral) ∂L ∂Lᵀ over the relative lengths L, and likewise for shear. Then adds the geometric
-// stiffness, that of the stresses. Across n, it uses the gradients of the flat cell. Along n, it uses those with the
-// middle at the mean of the corners, and adds a part on the height. In all directions, it adds a part on the twist.
+// stiffness, that of the stresses. Across n, it uses the gradients of the flat cell. Along n, it uses those of a cell
+// with its middle at the mean of the corners, and adds the stiffness of the height. In all directions, it adds the
+// stiffness of the twist.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];

@@ -8,17 +8,19 @@ namespace weft::forces {
 /// TriangleMembrane without membrane locking (spurious bending stiffness). If four triangles keep their lengths, the
 /// middle m of their cell stays in the plane of its corners a, b, c, d: cells stay flat, and kinks between cells
 /// replace bending. Here the height w of the middle above the mean of the corners, along the normal n of the diagonals,
-/// lengthens all four triangles equally, instead of each by its own inclination. With m' = m − w n instead of m,
+/// lengthens all four triangles equally, instead of each by its own inclination. The derivatives s_u and s_v are those
+/// of the flat cell with its middle at m' = m − w n, and
 ///
 ///     ‖s_u‖² + θ w² ⟨g_u²⟩ + ‖n‖² ‖t‖² g_u² / 16   replaces ‖s_u‖²,   likewise along v,
 ///
-/// where g is the gradient of the middle's weight, ⟨⟩ the average over the cell, and θ a tenth, so that tension still
-/// flattens cells. t = a − b + c − d is the twist of the cell. If the threads at two opposite sides are skew, both keep
-/// their lengths, but the thread halfway between them is the mean of both vectors: its square is exactly ‖t‖² / 4 less
-/// than the mean of theirs. Plane parallelograms have w = 0 and t = 0: nothing changes. n = D₁ × D₂ / S with the
-/// diagonals D₁ = c − a, D₂ = d − b and S = ‖D₁ × D₂‖; for folded cells with ‖D₁ × D₂‖ < S₀, S = (S₀ + ‖D₁ × D₂‖² / S₀)
-/// / 2, so that w and t count less, the more a cell is folded. (Chen et al., "Locking-free Simulation of Isometric Thin
-/// Plates", 2019, average strains around vertices against locking.)
+/// where g is the gradient of the middle's weight in a triangle, and ⟨⟩ the average over the cell. θ = kHeightFraction
+/// is small, so that tension still flattens cells. t = a − b + c − d is the twist of the cell. If the threads at two
+/// opposite sides are skew, both keep their lengths, but the thread halfway between them is the mean of both vectors:
+/// its square is exactly ‖t‖² / 4 less than the mean of theirs, which the last term compensates. Plane parallelograms
+/// have w = 0 and t = 0: nothing changes. n = D₁ × D₂ / S with the diagonals D₁ = c − a, D₂ = d − b and S = ‖D₁ × D₂‖;
+/// for folded cells with ‖D₁ × D₂‖ < S₀, S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2, so that w and t count less, the more a cell is
+/// folded. (Chen et al., "Locking-free Simulation of Isometric Thin Plates", 2019, average strains around vertices
+/// against locking.)
 class CrossedMembrane final : public TriangleMembrane {
  public:
   /// The sheet's triangles must be cells of four: (a, b, m), (b, c, m), (c, d, m), (d, a, m).
@@ -56,7 +58,7 @@ class CrossedMembrane final : public TriangleMembrane {
     std::array<Vec3, 2> diagonals;
     double size = 0;                // S [m²]
     Vec3 direction = Vec3::Zero();  // e, unit vector of the cross product of the diagonals
-    double kept_change = 0;         // κ, fraction of a change of that product along e that changes n
+    double kept_change = 0;         // κ: along e, S δn is κ times the change of that product
   };
   double strain(std::size_t triangle, std::span<const Vec3> x) const override;
   static State state_of(const Cell& cell, const Five& positions);
@@ -76,7 +78,7 @@ class CrossedMembrane final : public TriangleMembrane {
   Blocks blocks_of(std::size_t cell, const State& state, double rate, Lateral lateral_of, bool definite) const;
 
   std::vector<Cell> cells_;
-  std::vector<std::array<Index, 25>> cell_blocks_;  // of pair (a, b) at 5 a + b, if a's particle is before b's
+  std::vector<std::array<Index, 25>> cell_blocks_;  // at 5 a + b: of the pair (a, b), if a's particle comes before b's
   Ranges ranges_;                                   // of cells
 };
 

@@ -19,7 +19,7 @@ namespace weft::forces {
 class EnclosedVolume {
  public:
   /// `triangles`: manifold, consistently oriented, over particles 0 to start.size() − 1. The sign is chosen so that the
-  /// volume at `start` [m] is positive; if it is flat there, the front of the triangles is outside.
+  /// volume at `start` [m] is positive; if the surface is flat there, the front of the triangles is outside.
   EnclosedVolume(std::span<const mesh::Triangle> triangles, std::span<const Vec3> start);
 
   /// Returns the volume [m³] at x [m], one position per particle. Writes ∂V/∂x [m²] into `gradient`, which has the same
@@ -32,7 +32,7 @@ class EnclosedVolume {
   std::size_t openings() const { return borders_.size(); }
 
  private:
-  std::vector<Index> star_begin_;            // per vertex: its first entry of star_; then the end
+  std::vector<Index> star_begin_;            // per vertex: its first entry in star_; last: the size of star_
   std::vector<std::array<Index, 2>> star_;   // the two other corners of each triangle of the vertex star
   std::vector<std::vector<Index>> borders_;  // particles of each border; their mean is a further vertex
   double sign_ = 1;

@@ -41,25 +41,25 @@ struct LockLinearisation;
 struct Evaluation {
   std::span<const solver::PaddedVec3<double>> x;  ///< positions [m]
   std::span<const solver::PaddedVec3<double>> v;  ///< velocities [m/s]
-  ForceRows force;                                ///< the forces f are added to it [N]
-  /// −(∂f/∂x + rate ∂f/∂v) is added to it [N/m], made symmetric and positive semidefinite term by term, as conjugate
+  ForceRows force;                                ///< receives the forces f [N]
+  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m], made symmetric and positive semidefinite term by term, as conjugate
   /// gradients and line search require. Empty: forces only.
   solver::AssemblyRows assembly = {};
-  double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂), x̂ fixed in a step [1/s]; 0: none
+  double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂), x̂ fixed in a step [1/s]; 0: v is fixed
   /// Earlier positions from which v is computed. Empty: rates of strain follow from v at x.
   std::span<const Past> past = {};
   /// Range of Force::cut() to evaluate; kAll: everything.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   std::size_t range = kAll;
-  /// Velocity of the air at each particle [m/s]; empty: the same everywhere.
+  /// Velocity of the air at each particle [m/s]. If empty, each force uses its own uniform wind.
   std::span<const solver::PaddedVec3<double>> air = {};
   /// Linearisation points of the locks of the threads; null: linearise at x.
   const LockLinearisation* locks = nullptr;
 
-  /// Rate of a quantity q of the positions. `now`: q(x); of_places(y): q at earlier positions y; by_velocity(): ∂q/∂x
-  /// v, used if `past` is empty. With ∂q/∂x v and implicit Euler, an edge that turns by θ in a step would seem to
-  /// lengthen by the fraction 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step,
-  /// and create energy.
+  /// Rate of a quantity q of the positions. `now` is q(x), of_places(y) returns q at earlier positions y, and
+  /// by_velocity() returns ∂q/∂x v, which is used if `past` is empty. With ∂q/∂x v and implicit Euler, an edge that
+  /// turns by θ in a step would seem to lengthen by the fraction 1 − cos θ. Stiff viscosity would then shorten the edge
+  /// by that fraction in every step, and create energy.
   template <class Quantity, class OfPlaces, class ByVelocity>
   Quantity rate_of(const Quantity& now, const OfPlaces& of_places, const ByVelocity& by_velocity) const {
     if (past.empty()) return by_velocity();
@@ -69,31 +69,32 @@ struct Evaluation {
   }
 };
 
-/// A force on the particles of one cloth. `first`: the cloth's first particle in the global numbering.
+/// A force on the particles of one cloth. In all forces, `first` is the cloth's first particle in the global numbering.
 class Force {
  public:
   virtual ~Force() = default;
 
   /// Appends the pairs of particles that the Jacobian couples, in either order; pairs may repeat.
   virtual void couple(std::vector<std::pair<Index, Index>>& pairs) const = 0;
-  /// Whether everything added to an Assembly is a multiple of the identity.
+  /// Whether everything that the force adds to an Assembly is a multiple of the identity.
   virtual bool isotropic() const { return false; }
   /// Looks up the blocks of the pairs. Call once, when the pattern is known.
   virtual void attach(const solver::Assembly& assembly) = 0;
 
-  /// Divides the particles at these bounds, ends included, into ranges that threads may evaluate at the same time. Call
-  /// after attach().
+  /// Prepares ranges of particles that threads may evaluate at the same time: range r is [bounds[r], bounds[r + 1]).
+  /// Call after attach().
   virtual void cut(std::span<const Index> bounds) = 0;
 
   virtual void add(const Evaluation& at) const = 0;
   /// Elastic energy [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
-  /// Adds the part of −∂f/∂x that only hold() can change, if there is one; `add` omits it.
+  /// Adds the part of −∂f/∂x that does not depend on x, if there is one. `add` omits it, and only hold() changes it.
   virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
 
-  /// Adds the exact −(∂f/∂x + rate ∂f/∂v) without past, element by element: indefinite under compression, unsymmetric
-  /// with viscosity. For vibrations and tests. Exceptions: CrossedMembrane omits parts; air and Rigidity add nothing.
+  /// Adds the exact −(∂f/∂x + rate ∂f/∂v), with the rates of an empty `Evaluation::past`. It is indefinite under
+  /// compression and unsymmetric with viscosity. For vibrations and tests. Exceptions: CrossedMembrane omits parts; air
+  /// and Rigidity add nothing.
   virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
                             solver::BlockMatrix& /*jacobian*/) const {}
 

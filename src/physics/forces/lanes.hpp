@@ -122,8 +122,8 @@ inline void add_scalars(const solver::AssemblyRows& assembly, const Four& scalar
   for (std::size_t l = 0; l < 4; ++l) assembly.add_scalar(scalar[l], value[l]);
 }
 
-/// Calls body(index, lane, is_used) for the four lanes of this pack of a list of `count` elements. Lanes behind the
-/// last element repeat it, with is_used false.
+/// Calls body(index, lane, is_used) for the four lanes of pack number `pack` in a list of `count` elements. Lanes
+/// behind the last element repeat it, with is_used false.
 template <class Body>
 void for_each_lane(std::size_t count, std::size_t pack, const Body& body) {
   for (std::size_t l = 0; l < 4; ++l) body(std::min(4 * pack + l, count - 1), l, 4 * pack + l < count);

@@ -13,7 +13,8 @@ struct ShearParameters {
   double viscosity = 0;  ///< η, shear stress per rate of ½ ⟨s_u, s_v⟩ [N·s/m]
 };
 
-/// Seed Eq. (1), entry 12: stress ½ μ ⟨s_u, s_v⟩ [N/m], from the energy density ¼ μ ⟨s_u, s_v⟩².
+/// Eq. (1), entry 12, of the seed (the paper that README.md names): stress ½ μ ⟨s_u, s_v⟩ [N/m], from the energy
+/// density ¼ μ ⟨s_u, s_v⟩².
 ///
 /// s_u and s_v are central differences in the middle of each cell, each the mean over two opposite edges, with an error
 /// of O(l²) for spacing l. The seed uses central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), also

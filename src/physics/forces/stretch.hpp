@@ -14,7 +14,8 @@ struct StretchParameters {
   double viscosity = 0;       ///< η, stress per strain rate, both directions [N·s/m]
 };
 
-/// Tension along the grid lines: seed Eq. (1), entries 11 and 22, with the spring formula of "Elastic Model".
+/// Tension along the grid lines: Eq. (1), entries 11 and 22, of the seed (the paper that README.md names), with the
+/// spring formula of its section "Elastic Model".
 ///
 /// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)², k = k1 or k2. The
 /// seed's force density, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force of an

@@ -25,8 +25,8 @@ class Lock {
   /// Stress at the limit [N/m]; at 1.1 times the limit it is 9,500. A ball at 100 m/s pulls with ρ v² / (2 √e), 3,500
   /// to 9,000 N/m in the fabrics of film/scene/fabrics.hpp (a transverse wave along a thread of strain e, with the
   /// density ρ per area and the speed v of the ball; Smith, McCrackin & Schiefer, "Stress-Strain Relationships in Yarns
-  /// Subjected to Rapid Impact Loading", 1958). Measured with 2e4 and a stress linear from the limit on: Newton's
-  /// method oscillates at the kink, and takes 1.2 times the iterations.
+  /// Subjected to Rapid Impact Loading", 1958). Measured: with 2e4 and a stress that is linear from the limit on,
+  /// Newton's method oscillates at the kink, and takes 1.2 times the iterations.
   static constexpr double kTension = 4e3;
   static constexpr double kStraight = 1.5;
 
@@ -55,13 +55,13 @@ class Lock {
 /// linearised at the iterate, a piece would lose only a third of its excess over the onset per iteration.
 struct LockLinearisation {
   std::vector<double> extensions;   ///< per piece of a thread
-  std::vector<std::uint32_t> near;  ///< pieces beyond the onset by this extension or by that of the iterate
+  std::vector<std::uint32_t> near;  ///< pieces whose extension, here or at the iterate, exceeds the onset
 };
 
-/// The energy A Lock::energy() of each piece of weft and warp at its extension ‖s‖ − 1, and of each cell or triangle of
-/// area A at its shear |⟨s_u, s_v⟩|: if both have unit length, the sine of the deviation of weft and warp from a right
-/// angle. Pieces, cells and their derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no
-/// limit: threads buckle.
+/// The energy of each piece of weft and warp is A · Lock::energy() at its extension ‖s‖ − 1, where A is the area that
+/// it covers. That of each cell or triangle of area A is A · Lock::energy() at its shear |⟨s_u, s_v⟩|: if both
+/// derivatives have unit length, the sine of the deviation of weft and warp from a right angle. Pieces, cells and their
+/// derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
 class StretchLimit final : public Force {
  public:
   /// `stretch`: limit of the extension; `shear`: limit of the sine. Infinite: no limit. `below`: stiffness below the

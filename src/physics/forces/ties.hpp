@@ -26,7 +26,7 @@ class Ties final : public Force {
 
   /// Accepts the end of a step, with particles at x [m]: ties of tearable seams begin to hold, or tear.
   void accept(std::span<const Vec3> x);
-  /// Pull of a tearable seam [N], and whether any of its ties has a strength now, being neither torn nor open.
+  /// Total pull of a tearable seam [N], and whether any of its ties has a strength now (is neither torn nor open).
   struct SeamLoad {
     double load = 0;
     bool holds = false;

@@ -172,7 +172,7 @@ void TriangleBend::add(const Evaluation& at) const {
     for (std::size_t l = 0; l < count; ++l) area[l] = elements[l].area;
 
     // Moments for s_uu, s_vv and s_uv, and the stiffness of damping: as in Bend, with ‖c‖² I instead of c cᵀ (measured:
-    // the catwalk takes no more iterations).
+    // the scene catwalk takes no more iterations).
     std::array<std::array<Quad, 4>, 3> moments;
     std::array<Lanes, 3> stiffness{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -230,7 +230,7 @@ void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std:
 //
 // With g_k the in-plane gradient of corner k's linear weight, δn = −Σ_k g_k (n·δx_k) and δg_k = −Σ_j g_j (g_k·δx_j) + n
 // Σ_j (g_k·g_j)(n·δx_j). If `exact` is false, the blocks are the Gauss-Newton matrix of ‖s_ab − κ_ab n‖² without its
-// constant part; both together are positive semidefinite.
+// constant part; together with that part, they are positive semidefinite.
 template <class Push, class AddBlock>
 void TriangleBend::rest_moment(const Element& element, const Mat3& curved, const std::array<Vec3, 3>& corners,
                                bool exact, const Push& push, const AddBlock& add_block) const {

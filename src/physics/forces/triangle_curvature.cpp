@@ -177,7 +177,8 @@ Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const 
   return std::isinf(nearest) ? Eigen::VectorXd() : fit_in_front_of_clamp(patch, axes, clamp);
 }
 
-// Slope that is exact for linear functions and s²; s: distance from a clamp with the held triangle on its left.
+// Slope that is exact for linear functions and for s², where s is the distance from a clamp whose held triangle lies on
+// its left.
 Eigen::VectorXd Slopes::fit_in_front_of_clamp(const Patch& patch, const Axes& axes,
                                               const std::array<Point, 2>& clamp) const {
   const Point line = clamp[1] - clamp[0];
@@ -268,7 +269,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
     bool near_pin = false;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2 side = m[(k + 1) % 3] - m[k], along = side.normalized(), outward(along.y(), -along.x());
-      const Vec3 twist = packed(outward * along.transpose()) / area;  // the side's length cancels that of ∂/∂t
+      const Vec3 twist = packed(outward * along.transpose()) / area;  // the side's length cancels 1 / length of ∂/∂t
       add(corners[(k + 1) % 3], twist);
       add(corners[k], -twist);
       const Vec3 bend = packed(outward * outward.transpose());

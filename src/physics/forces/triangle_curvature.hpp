@@ -31,8 +31,8 @@ struct CurvatureStencil {
 /// vanishes (curvature across it 0, for ν = 0).
 ///
 /// A triangle with three held corners is a clamp: at its edges the slope is the triangle's own. At other edges near a
-/// clamp, the slope is exact for linear functions, and for the squared distance from the clamp in front of it (0 in the
-/// clamp). `held`: per vertex, whether it is held now. `pinned`: whether it may be held at any time; so the vertices of
+/// clamp, the slope is exact for linear functions, and for the squared distance in front of the clamp (0 inside it).
+/// `held`: per vertex, whether it is held now. `pinned`: whether it may be held at any time; so the vertices of
 /// stencils do not depend on `held`. Empty: no vertex.
 std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::span<const char> pinned = {},
                                                  std::span<const char> held = {});

@@ -36,9 +36,9 @@ class TriangleMembrane : public Membrane {
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
-  /// For sewn sheets: interpolates the rest shape of each triangle between its shape at the start (progress 0, no
-  /// stress at the start) and in the pattern (progress 1), by blending the stretch U of the start relative to the
-  /// pattern, in weft and warp, with the identity.
+  /// For sewn sheets: interpolates the rest shape of each triangle between its shape at the start (progress 0, without
+  /// stress there) and that in the pattern (progress 1). Blends the right stretch tensor U of the start relative to the
+  /// pattern, in axes of weft and warp, with the identity.
   void interpolate_rest_shape(double progress);
   std::span<const Element> elements() const { return elements_; }
   double max_strain(std::span<const Vec3> x) const override;

@@ -32,7 +32,7 @@ void StepControl::record_accepted_step(double h, double error) {
       std::pow(ratio, kExponentNow / order_plus_one_) * std::pow(last_ratio_, kExponentBefore / order_plus_one_);
   // A step may be shorter than wanted to end with its frame; growth continues from the wanted length.
   const double max_step = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
-  // Unsolved steps may be shorter than `least`.
+  // After unsolved steps, `max_step` may be below `least`; it is then the bound.
   wanted_ = std::min(std::max(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least), max_step);
   last_ratio_ = ratio;
   after_failure_ = false;

@@ -189,7 +189,7 @@ void Stepper::select_unsolved(int iterations) {
 }
 
 // Line search along delta_: moves x by delta_, less if that overshoots, more if it hardly approaches the minimum.
-// Returns the factor of delta_, or a slope that is not finite.
+// Returns the factor of delta_; if a slope is not finite, returns that slope.
 double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
   // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
   // of the energy: positive before the minimum along delta, negative behind it. The product becomes strongly negative
@@ -278,7 +278,8 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   do {
     end_if_stopped();
     linearise(system, now, stage, previous_iterations + report.newton_iterations);
-    // Later iterations reuse the sums: aggregates represent long waves, whose stiffness hardly changes in a step.
+    // Later iterations reuse the sums over aggregates: these represent long waves, whose stiffness hardly changes in a
+    // step.
     {
       const Stopwatch watch(times_.preconditioner);
       cg_.prepare(linear,

@@ -1,4 +1,5 @@
-// One implicit time step (seed, Fig. 2): method → implicit equation → Newton with residual control → constrained CG.
+// One implicit time step, as in Fig. 2 of the seed (the paper that README.md names): the method defines an implicit
+// equation, which Newton's method with residual control solves by constrained conjugate gradients.
 #pragma once
 
 #include <algorithm>
@@ -64,10 +65,10 @@ struct StepReport {
 /// energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's method,
 /// and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls, Int. J. Numer.
 /// Meth. Engng 96, 2013). Impacts move particles by δ with A δ = F, where F are the forces of impacts, and A is the
-/// matrix of the step with only the terms of friction in impacts and of contacts that transmit impacts. Positions do
-/// not change; velocities change by δ/h instead of δ/β. The start velocity in the history also changes by δ/h, so that
-/// the next step starts from a smooth trajectory. Changes of velocity by corrections after a solve count as impacts,
-/// too.
+/// matrix of the step, whose contact terms are only those of friction in impacts and of contacts that transmit impacts.
+/// Positions do not change; velocities change by δ/h instead of δ/β. The start velocity in the history also changes by
+/// δ/h, so that the next step starts from a smooth trajectory. Changes of velocity by corrections after a solve count
+/// as impacts, too.
 ///
 /// The local error of positions is estimated from known velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of
 /// the mean acceleration from the last step to this one; then the leading terms of the error are
@@ -145,7 +146,7 @@ class Stepper {
     solver::DiagonalBlock rows;
     double mass = 0;             // [kg]
     double local_error = 0;      // of the method, at the current iterate [m]
-    double velocity_error = 0;   // local error of implicit Euler [m/s]; 0: no history
+    double velocity_error = 0;   // local error of implicit Euler [m/s]; 0: no history, or another method
     double allowed = 0;          // bound of the remaining velocity error [m/s]
     double left = 0;             // remaining velocity error [m/s]
     double rounding = 0;         // velocity that corresponds to rounding of its positions [m/s]

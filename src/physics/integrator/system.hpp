@@ -23,8 +23,8 @@ struct StagePoint {
   std::span<const Vec3> x_end;  ///< positions at the end of the step that belongs to this stage; contacts act there
   double rate = 0;              ///< dv/dx = 1/β [1/s]
   double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
-  /// Earlier positions that x̂ consists of, from which the rate of a quantity q(x) follows (see Past). Empty for the
-  /// midpoint rule, where the rate is ∂q/∂x v, the exact mean rate of a quadratic q over the step.
+  /// Earlier positions of which x̂ is the weighted sum; the rate of a quantity q(x) follows from them (see Past). Empty
+  /// for the midpoint rule, where the rate is ∂q/∂x v, the exact mean rate of a quadratic q over the step.
   std::span<const Past> past = {};
 };
 
@@ -45,8 +45,8 @@ class System {
   virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
 
   /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. First
-  /// updates the forces that lag behind the positions. `iteration`: Newton iteration, from 0 in each solve. If a paused
-  /// solve continues, so does the count.
+  /// updates what lags behind the positions, such as the normal forces that limit friction. `iteration`: Newton
+  /// iteration, from 0 in each solve. If a paused solve continues, so does the count.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
   /// Whether translating a diagonal block changes no force except through terms, constraints, and air.

@@ -38,7 +38,7 @@ class Lattice {
     return v;
   }
 
-  /// Whether the surface may pass through the block that starts at this node, with a gradient below 3 (Field).
+  /// Whether the surface may pass through the block that starts at this node, if the gradient is below 3 (Field).
   bool may_cross(int i, int j, int k) const {
     const double half_diagonal = std::sqrt(3.0) / 2 * kBlock * cell_;
     const double half = kBlock / 2.0;

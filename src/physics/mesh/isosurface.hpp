@@ -8,7 +8,7 @@
 namespace weft::mesh {
 
 /// Implicit function [m], negative inside. The length of its gradient must stay below 3 everywhere. Near the zero set,
-/// the gradient must be continuous and its length about 1 (as of a distance) or more.
+/// the gradient must be continuous and its length about 1 (as for a distance) or more.
 using Field = std::function<double(const Vec3&)>;
 
 /// Wanted edge length [m] at a point; it should vary slowly.

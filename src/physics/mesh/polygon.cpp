@@ -28,7 +28,8 @@ std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> 
 }
 
 /// Smallest allowed ratios of an ear's height to its longest side, tried one after the other. Rounding errors move
-/// corners off a straight side; an ear there has hardly any area, and would later be removed together with its corner.
+/// corners off a straight side; an ear there has hardly any area, and later repairs of the mesh would remove it
+/// together with its corner.
 constexpr std::array<double, 3> kMinEarHeightRatios = {1e-3, 1e-6, 0};
 
 /// Whether corner k of the ring turns left and its triangle, sides included, holds no other corner. Corners nearer to a

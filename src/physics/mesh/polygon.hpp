@@ -15,7 +15,8 @@ void triangulate_polygon(std::span<const Index> corners, std::span<const Vec3> p
                          std::vector<Triangle>& triangles);
 
 /// The same for a face of a file, whose coordinates have single precision. Corners along a straight side become corners
-/// of triangles with an area. If flat triangles remain, flips edges until all of them are locally Delaunay.
+/// of triangles with an area. If needle triangles remain, flips edges inside the polygon until all are locally
+/// Delaunay.
 void triangulate_face(std::span<const Index> corners, std::span<const Vec3> positions,
                       std::vector<Triangle>& triangles);
 

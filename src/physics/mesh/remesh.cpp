@@ -144,7 +144,8 @@ class Remesher {
            std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
   }
 
-  /// Whether, if `v` moves to p, its triangles without `other` turn by at most 60° and get no edge that is too long.
+  /// Whether `v` may move to p: its triangles that do not contain `other` turn by at most 60° and get no edge that is
+  /// too long.
   bool shape_allows(Index v, Index other, const Vec3& p) const {
     for (const Index t : around_[z(v)]) {
       Triangle corner = triangles_[z(t)];

@@ -22,8 +22,8 @@ struct Band {
   double allowance = 0;         ///< width of extra cloth along the band, not part of the triangles [m]
 };
 
-/// Two vertices that a button or a tooth of a zip holds together while it is closed. Times are scene times [s];
-/// infinite: the event never happens.
+/// Two vertices that a button, a tooth of a zip, or a seam that can tear holds together while it is closed. `open` and
+/// `closed` are the scene times [s] at which it opens and closes; infinite: never.
 struct Tie {
   Index a = 0, b = 0;
   double strength = 0;  ///< maximum force [N]
@@ -53,9 +53,10 @@ struct Sheet {
 /// Area of a triangle at rest [m²].
 double rest_area(const Sheet& sheet, std::size_t triangle);
 
-/// Largest ratio of a cloth's longest edge to its smallest triangle height, or quad spacing, with which it may touch
-/// obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin triangles, eight of
-/// nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading of 50, none at 100.
+/// Largest ratio of a cloth's longest edge to its smallest triangle height (on grids: smallest spacing) at which it may
+/// touch obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin triangles,
+/// eight of nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading of 50, none
+/// at 100.
 inline constexpr double kMaxUnevenness = 80;
 
 /// Triangles lower than the longest edge / kMaxUnevenness.
@@ -66,9 +67,10 @@ struct FlatTriangles {
 };
 FlatTriangles find_flat_triangles(const Sheet& sheet);
 
-/// Makes a sheet whose rest shape is the mesh. In each triangle the weft runs along the projection of x; in triangles
-/// nearly perpendicular to x, along the cross product of y and the normal. A flat mesh in the x-y plane has x as weft
-/// and y as warp. Each triangle has its own coordinates; they differ from those of its neighbours by a rigid motion.
+/// Makes a sheet whose rest shape is the mesh. In each triangle the weft runs along the projection of the x axis; in
+/// triangles nearly perpendicular to that axis, along the cross product of the y axis and the normal. A flat mesh in
+/// the x-y plane has x as weft and y as warp. Each triangle has its own coordinates; they differ from those of its
+/// neighbours by a rigid motion.
 Sheet make_sheet_from_mesh(const Mesh& mesh);
 
 /// Shortest height of a triangle at rest [m].
@@ -78,7 +80,7 @@ double min_height(const Sheet& sheet);
 
 /// How each cell of a grid is cut.
 enum class Pattern {
-  aligned,  ///< all along the diagonal from (0,0) to (1,1)
+  aligned,  ///< along the diagonal from (0,0) to (1,1), the same in all cells
   crossed,  ///< along both diagonals, with a vertex in the middle
 };
 

@@ -23,7 +23,8 @@ class TriangleGrid {
   /// `cell`: edge length of a cell [m]; enlarged if there would be too many cells.
   TriangleGrid(std::span<const Triangle> triangles, std::span<const Vec3> x, double cell);
 
-  /// Finds the first triangle with `passes(its index)` that the path from `from` to `to` crosses from its front.
+  /// Of the triangles that the path from `from` to `to` crosses from their front, finds the first one for which
+  /// passes(index) is true.
   template <class Passes>
   Entry find_first_crossing(const Vec3& from, const Vec3& to, const Passes& passes) const {
     Entry entry{1, -1};

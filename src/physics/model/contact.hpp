@@ -11,7 +11,8 @@ enum class Response { springs, velocity_constraints };
 enum class Bounds { box, dop18, dop26 };
 enum class TreeKind { binary, quad, oct };
 
-/// Methods that find surfaces close to each other (seed, "Collision Detection"). They change the speed, not the result.
+/// Methods that find surfaces close to each other (section "Collision Detection" of the seed, the paper that README.md
+/// names). They change the speed, not the result.
 struct Search {
   Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
   TreeKind tree = TreeKind::oct;  ///< two, four or eight children per node
@@ -35,7 +36,7 @@ struct FrictionPair {
 struct Contact {
   bool self = true;        ///< cloth against itself and other cloths
   bool obstacles = true;   ///< cloth against obstacles
-  double stiffness = 100;  ///< stiffness of one contact [N/m]
+  double stiffness = 100;  ///< stiffness of one contact [N/m]; numerics.contact.inertial_stiffness bounds it from below
   std::vector<FrictionPair> pairs;
   Search search;
   Response response = Response::springs;

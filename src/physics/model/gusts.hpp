@@ -7,10 +7,10 @@
 
 namespace weft::model {
 
-/// A smooth, divergence-free velocity field that is the same in every run: a sum of waves whose directions and phases
-/// depend on the seed (kinematic simulation: Fung, Hunt, Malik & Perkins, "Kinematic simulation of homogeneous
-/// turbulence by unsteady random Fourier modes", J. Fluid Mech. 236, 1992). The energies of the waves follow von
-/// Kármán's spectrum,
+/// A smooth, divergence-free velocity field that is the same in every run: a sum of waves with random directions and
+/// phases, which Gusts::seed selects (kinematic simulation: Fung, Hunt, Malik & Perkins, "Kinematic simulation of
+/// homogeneous turbulence by unsteady random Fourier modes", J. Fluid Mech. 236, 1992). The energies of the waves
+/// follow von Kármán's spectrum,
 ///
 ///     E(k) ~ k⁴ / (k² + k_e²)^(17/6) for the wave number k,
 ///

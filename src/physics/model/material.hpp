@@ -5,14 +5,14 @@
 
 namespace weft::model {
 
-/// A fabric in continuum units (seed, "Elastic Model").
+/// A fabric in continuum units (section "Elastic Model" of the seed, the paper that README.md names).
 struct Material {
   std::string fabric = "cotton";  ///< the named fabric that supplies the default values
   double density = 0.15;          ///< [kg/m²]
-  double stretch_weft = 800;      ///< k1 [N/m]
-  double stretch_warp = 2100;     ///< k2 [N/m]
-  double shear = 130;             ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
-  double bend = 1e-5;             ///< B [N·m]
+  double stretch_weft = 800;      ///< k1: stiffness along weft [N/m]
+  double stretch_warp = 2100;     ///< k2: stiffness along warp [N/m]
+  double shear = 130;             ///< mu: shear stiffness [N/m]; the shear modulus of linear elasticity is mu / 2
+  double bend = 1e-5;             ///< B: bending stiffness [N·m]
   double max_stretch = 0.1;       ///< extension at which threads lock (stiffen) [1]; 0: never
   double max_shear = 0;           ///< change of the angle between weft and warp at which they lock [degrees]; 0: never
   double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]

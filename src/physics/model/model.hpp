@@ -56,9 +56,9 @@ struct Weight {
 struct Cloth {
   std::string name;
   std::string source;    ///< names the cloth in error messages, such as "napkin.toml:3:1: cloth.napkin"
-  mesh::Grid grid;       ///< of quads; of a rope: one row
+  mesh::Grid grid;       ///< if it is made of quads; for a rope, one row
   mesh::Sheet sheet;     ///< if it is made of triangles, in its own coordinates; else empty
-  bool crossed = false;  ///< cells of four triangles around a middle vertex, which need CrossedMembrane against locking
+  bool crossed = false;  ///< four triangles per cell, around its centre; CrossedMembrane prevents membrane locking
   mesh::Mesh mesh;       ///< rest shape in the world, posed as at the start; uv: along weft and warp from a corner [m]
   /// Smallest distance between neighbouring particles of a grid or rope [m]. For triangles, √2 times the smallest
   /// height, which gives the same value for the two halves of a square.
@@ -163,7 +163,7 @@ struct Model {
   std::vector<Cloth> cloths;
   std::vector<Body> bodies;
   std::vector<Attachment> attachments;
-  std::vector<Layer> layers;                      ///< of all cloths, from the skin outward; empty: one
+  std::vector<Layer> layers;                      ///< of all cloths, from the skin outward; empty: one layer
   std::string start_advice = "move one of them";  ///< what to do if surfaces touch at the start, for the error message
 
   /// Start of the run, preroll included [s].

@@ -23,7 +23,7 @@ struct Rope {
   double mass = 0;              ///< [kg/m]
   double stretch = 0;           ///< stiffness EA: force per strain [N]
   double bend = 0;              ///< bending stiffness EI [N·m²]
-  double damping = 0;           ///< viscosity of stretch and bending / their stiffness [s]
+  double damping = 0;           ///< viscosity of stretch and bending, relative to their stiffness [s]
   double diameter = 0;          ///< contact diameter [m]
   double drag = 0;              ///< air resistance coefficient of a cylinder, for motion across the rope
   motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between its keys

@@ -19,9 +19,9 @@ struct Time {
 };
 
 struct Solver {
-  double newton_tolerance = 0.4;  ///< error that the solver may leave / local truncation error of the step
+  double newton_tolerance = 0.4;  ///< error that the solver may leave, relative to the local truncation error
   int newton_iterations = 60;     ///< maximum per step; a step that needs more is halved
-  double linear_tolerance = 0.1;  ///< allowed error of a linear solve / its solution, in the energy norm
+  double linear_tolerance = 0.1;  ///< allowed error of a linear solve, relative to its solution, in the energy norm
   int linear_iterations = 1000;   ///< maximum number of conjugate gradient iterations in one linear solve
   int halvings = 8;               ///< how often a rejected step is halved before the run ends with an error
 };

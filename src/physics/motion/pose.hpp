@@ -13,7 +13,7 @@ namespace weft::motion {
 struct Pose {
   Vec3 position{0, 0, 0};  ///< [m]
   Quat rotation{1, 0, 0, 0};
-  std::optional<Vec3> angles{};  ///< angles that define `rotation` [degrees], may contain whole turns; absent: none
+  std::optional<Vec3> angles{};  ///< of `rotation`, about fixed x, then y, then z [degrees]; may contain whole turns
 };
 
 /// Difference of the angles of two poses [degrees]; empty if one of them has no angles.

@@ -99,7 +99,8 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
     }
     const double distance = (place - own).norm();
     spring.length = attachment.length.value_or(distance);
-    // A spring alone moves its particle at up to gap √(k/m), but an implicit step moves it by no more than the gap.
+    // A spring alone moves its particle at up to gap √(k/m), where the gap is the distance beyond the rest length. An
+    // implicit step moves the particle by no more than the gap.
     const double rate = std::min(std::sqrt(spring.stiffness / masses[spring.particle]), 1 / step_);
     attachment.speed = std::max(attachment.speed, rate * (distance - spring.length));
     if (attachment.frame >= 0) move_to_frame(attachment, spring);

@@ -24,7 +24,7 @@ namespace weft::simulation {
 class Attachments {
  public:
   /// `first_particle`: of each cloth; `first_of_frames`: first frame particle of each body, −1 for a body that forces
-  /// do not move. The environment must outlive this object.
+  /// do not move. The model must outlive this object.
   Attachments(const model::Model& model, std::span<const Index> first_particle, std::span<const Index> first_of_frames);
 
   bool empty() const { return attachments_.empty(); }
@@ -38,7 +38,8 @@ class Attachments {
 
   /// Adds the spring forces to `force` [N]; `x_end`: all particles at the end of the step [m].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  /// Adds the stiffness of the springs in tension, times `end_rate`, to the terms of the system.
+  /// Adds the stiffness of the springs in tension, times `end_rate` (integrator::StagePoint), to the terms of the
+  /// system.
   void add_terms(std::span<const Vec3> x_end, double end_rate, solver::LinearSystem& system) const;
   /// Energy of the springs [J].
   double energy(std::span<const Vec3> x_end) const;

@@ -141,7 +141,7 @@ class ClothSystem {
   struct Sewing {
     std::size_t cloth;
     double begin, duration;  // [s]
-    double progress = -1;    // from the start shape (0) to the pattern (1); −1: not set yet
+    double progress = -1;    // rest shape from the start (0) to flat panels (1); −1: not set yet
     forces::TriangleMembrane* membrane;
     forces::Bands* bands;                      // nullptr if the cloth has none
     forces::StretchLimit* limit;               // nullptr if the cloth has none

@@ -30,7 +30,7 @@ class CollisionStage {
   /// Whether anything in the model can collide. If not, no stage is made.
   static bool needed(const model::Model& model);
 
-  /// Appends the vertices of the bodies at start.bodies_time to start.x. The environment must outlive the stage.
+  /// Appends the vertices of the bodies at start.bodies_time to start.x. The model must outlive the stage.
   CollisionStage(const model::Model& model, const ClothSystem& cloth, SystemState& start);
 
   /// All places where surfaces touch or cross at the start. A run may begin only if there is none: the guarantee
@@ -63,7 +63,8 @@ class CollisionStage {
   /// [s] that its vertices deviate from them by more than `numerics.contact.margin` detection distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
-  /// Whether no body near the cloth moves between t0 and t1 [s]; t0 is the time of `now`. Places bodies in both states.
+  /// Whether no key-framed body near the cloth moves between t0 and t1 [s]; t0 is the time of `now`. Places bodies in
+  /// both states.
   bool bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const;
 
   /// Whether no obstacle near cloth moves by more than `numerics.contact.margin` detection distances from `now` to
@@ -119,7 +120,7 @@ class CollisionStage {
 
   void accept() { engine_.accept(); }
 
-  /// Before a frame: clears the caches of an optional part of the search, see Engine::forget.
+  /// Before a frame: drops search state that does not follow from positions, see Engine::forget().
   void forget() { engine_.forget(); }
 
   /// Saves or restores all that the next step from `now`, at t [s], depends on. Throws std::runtime_error if the
@@ -148,7 +149,7 @@ class CollisionStage {
 
   const model::Model& model_;
   std::vector<std::string> names_;   // of all cloths, then of all bodies_
-  std::vector<std::size_t> bodies_;  // colliding bodies of the environment; those that forces move come first
+  std::vector<std::size_t> bodies_;  // colliding bodies of the model; those that forces move come first
   std::vector<double> radii_;  // per body: largest distance from its origin if it is a moving obstacle, else 0 [m]
   std::vector<Box3> boxes_;    // bounding box of each body in its own coordinates
   std::size_t particles_;

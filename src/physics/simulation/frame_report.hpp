@@ -49,7 +49,7 @@ struct FrameReport {
   double air_energy = 0;              ///< energy of enclosed air [J]
   double pin_work = 0;                ///< work of pins on the cloth since the frame before [J]
   double solver_work = 0;             ///< work of the residual of the equations of motion since the frame before [J]
-  int pinched_pairs = 0;              ///< largest number of pinched cloth triangles at once, per obstacle limb
+  int pinched_pairs = 0;              ///< largest number of pinched cloth triangles at once, each counted once per limb
   int lagging_particles = 0;          ///< largest number of pinned particles at once that cannot reach their targets
   std::vector<EnclosedAir> enclosed;  ///< one per cloth with pressure
   std::vector<AttachmentLoad> attachments;  ///< one per attachment, then one per seam that can tear

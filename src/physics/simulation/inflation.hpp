@@ -17,8 +17,8 @@ namespace weft::simulation {
 /// model gives p, the energy is −p V. If it gives an amount of air, as the volume A that the air has at the outside
 /// pressure p₀, the air is isothermal: (p₀ + p) V = p₀ A, with the energy p₀ (V − A − A ln(V / A)).
 ///
-/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ, but not the change of ∂V/∂x, which is indefinite and small against the
-/// stiffness of cloth under tension.
+/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ, but not −p ∂²V/∂x², which is indefinite and small against the stiffness
+/// of cloth under tension.
 class Inflation {
  public:
   /// Pressure outside [Pa]: standard atmosphere.

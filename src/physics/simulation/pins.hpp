@@ -23,7 +23,7 @@ class Pins {
   bool empty() const { return groups_.empty(); }
 
   struct Info {
-    std::size_t cloth = 0, number = 0;  ///< from 0: of the cloth, of the pin in its cloth
+    std::size_t cloth = 0, number = 0;  ///< number of the cloth, and of the pin in its cloth, from 0
     std::size_t particles = 0;
     std::optional<double> strength;  ///< stiffness of the spring to each particle [N/m]; none: the particles are held
   };

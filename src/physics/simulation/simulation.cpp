@@ -93,7 +93,7 @@ struct Simulation::Impl {
   std::unique_ptr<StepLoop> steps;
   FrameReport start_report;  // of frame 0
   std::optional<EnergyBound> energy_bound;
-  std::map<std::size_t, std::array<motion::PoseKey, 2>> driven;  // bodies, with their keys over the last frame
+  std::map<std::size_t, std::array<motion::PoseKey, 2>> driven;  // bodies, with the two keys of their last drive()
 };
 
 Simulation::Impl::Impl(model::Model of) : model(std::move(of)), frame(-model.time.preroll_frames) {

@@ -42,8 +42,9 @@ struct IntersectionPlace {
 /// "12 pairs of triangles that touch or cross in 2 places: 'sheet' and 'ball' (8 pairs) around (0, 0, 1) m, ...".
 std::string describe(std::span<const IntersectionPlace> places);
 
-/// Places where surfaces touch or cross at the start of the preroll, without untangling, layer by layer; in each layer,
-/// largest number of pairs first; empty if a run may begin. Layers are not checked against each other.
+/// Finds the places where surfaces touch or cross at the start of the preroll, before bodies are lifted and cloth is
+/// untangled. Checks each layer alone against the bodies, not against other layers. Lists the places layer by layer, in
+/// each layer those with most pairs first.
 std::vector<IntersectionPlace> find_start_intersections(const model::Model& model);
 
 /// Size of the matrix of one Newton iteration, without contacts.
@@ -54,7 +55,8 @@ struct MatrixSize {
 
 class Simulation {
  public:
-  /// Builds only what the model needs. Throws Error(scene_invalid) if surfaces touch or cross at the start.
+  /// Builds only what the model needs. At the start, lifts dynamic bodies off what they touch, and untangles cloth if
+  /// the model allows it. Throws Error(scene_invalid) if surfaces still touch or cross.
   explicit Simulation(model::Model model);
   virtual ~Simulation();
 
@@ -63,7 +65,7 @@ class Simulation {
   /// Number of the current frame, negative in the preroll, and its time [s].
   int frame() const;
   double time() const;
-  /// Number of changes of the state so far: of frames advanced, and of restored states.
+  /// Number of changes of the state so far: frames advanced plus states restored.
   std::uint64_t changes() const;
 
   /// Simulates the next frame. If that fails, keeps the state of the current one and throws Error(simulation_failed)
@@ -74,7 +76,7 @@ class Simulation {
   FrameReport initial_report() const;
 
   /// Simulates time.preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before
-  /// each frame, and returns false as soon as that does: frame 0 is then not reached. Throws as advance() does.
+  /// each frame; if `proceed` returns false, stops before that frame and returns false. Throws as advance() does.
   bool run_preroll(const std::function<bool()>& proceed = [] { return true; });
   std::size_t particles() const;
   MatrixSize matrix() const;

@@ -52,7 +52,8 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   return start;
 }
 
-// Sets gravity at the stage of the step, and the air velocity there at the positions that unchanged velocities lead to.
+// Sets gravity and the air velocity at the time of the step's stage. The air velocity is that at the positions which
+// the particles reach by then with unchanged velocities.
 void StepLoop::update_weather(double t, double h) {
   const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
   gravity_ = weather_.gravity(t + until_stage);
@@ -104,8 +105,8 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
   }
 }
 
-// The response of the seed (contact.response). After each solve, it sets and releases velocity constraints, and adds
-// some for pairs without a separating plane.
+// Solves the step if contact.response selects the velocity constraints of the seed (the paper that README.md names).
+// After each solve, the response sets and releases constraints, and gets contacts for pairs without a separating plane.
 StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
                                                               FrameReport& report) {
   const SystemState& now = progress_.now;

@@ -82,8 +82,8 @@ class StepLoop {
   /// Pins that lagged in that frame.
   YieldingPins::Lags take_lags() { return pins_.take_lags(); }
 
-  /// Save or restore the state that later frames depend on: first all but contacts, then contacts at the time t of a
-  /// frame [s].
+  /// Save or restore the state that later frames depend on. Call serialize() first, for everything except contacts;
+  /// then serialize_contacts() at the time t [s] of a frame.
   template <class Archive>
   void serialize(Archive& archive);
   template <class Archive>

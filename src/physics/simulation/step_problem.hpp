@@ -15,12 +15,14 @@
 
 namespace weft::simulation {
 
-/// What evaluations keep for later ones. Evaluations with equal memory and equal arguments give the same bits.
+/// State that one evaluation of forces leaves for later ones. Evaluations with equal memory and equal arguments give
+/// the same bits.
 struct SolveMemory {
-  // Linearisations change the following members. Cloth at rest keeps its rows of the matrix.
+  // Linearisations change the following members. A cloth that has hardly moved since its rows of the matrix were
+  // assembled keeps these rows.
   solver::LinearSystem system;
   solver::Assembly assembly;        ///< from which the matrix is written
-  double rate = 0;                  ///< for which system and assembly were filled [1/s]; 0: not set
+  double rate = 0;                  ///< StagePoint::rate for which system and assembly were filled [1/s]; 0: not set
   std::vector<Vec3> linearised_at;  ///< positions where each cloth's rows were assembled; empty: not assembled
   collision::ContactLag contacts;
   ClothSystem::LockLinearisations locks;  ///< empty before the first step

@@ -18,8 +18,7 @@ namespace weft::simulation {
 /// arrives and is held again.
 class YieldingPins {
  public:
-  /// `first_particle`: of each cloth; `masses`: of all particles [kg]. The environment and `masses` must outlive this
-  /// object.
+  /// `first_particle`: of each cloth; `masses`: of all particles [kg]. The model and `masses` must outlive this object.
   YieldingPins(const model::Model& model, const std::vector<Index>& first_particle, std::span<const double> masses);
 
   /// Begins a step from t to t + h [s] with particles at x [m]: finds which ones are held at t + h, and which are
@@ -63,7 +62,7 @@ class YieldingPins {
   Pins pins_;
   const model::Model& model_;
   std::span<const double> masses_;
-  std::vector<double> pull_force_;  // per pin: maximum total force on its lagging particles [N]; pull() may raise it
+  std::vector<double> pull_force_;  // per pin: `numerics.pins.weights` times the weight of its cloth [N]; see pull()
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;
   std::vector<PinSpring> pulls_;
   std::vector<std::uint8_t> lagged_, lags_;     // per particle: in the previous step, and in this one

@@ -11,7 +11,8 @@
 
 namespace weft::solver {
 
-/// Position of one block among the values of a BlockMatrix; negative if the block is a multiple of the identity.
+/// Position of one block among the values of a BlockMatrix. Negative if the block is a multiple of the identity: then
+/// ~slot is its position among the scalars.
 using Slot = Index;
 
 using Lanes = PaddedVec3<double>;

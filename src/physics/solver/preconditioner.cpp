@@ -342,7 +342,7 @@ typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::make_touched_
   return all;
 }
 
-// Stiffness of terms for each particle if all particles on its side of a term move with it.
+// Stiffness of terms for each particle if all particles on its side of a term (weights of the same sign) move with it.
 template <class Real>
 typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lump_terms() const {
   TouchedBlocks lumped = make_touched_blocks();
@@ -400,7 +400,7 @@ void Preconditioner<Real>::invert_aggregates() {
 template <class Real>
 void Preconditioner<Real>::factorise_coarsest() {
   coarse_matrix_ = coarse_matrix_without_terms_;
-  // Coarsest aggregates from which an end of a term interpolates, with weights.
+  // Coarsest aggregates from which particles of a term interpolate, with weights.
   using CoarseWeights = std::vector<std::pair<Index, double>>;
   const auto add_coarse_weights = [&](Index i, double weight, CoarseWeights& weights_of_end) {
     for (Index s = coarse_weights_.start[i]; weight != 0 && s < coarse_weights_.start[i + 1]; ++s) {

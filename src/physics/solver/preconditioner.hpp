@@ -92,7 +92,7 @@ class Preconditioner {
   bool interpolates_ = true;                       // false if threads are very stiff
   std::vector<DiagonalBlock> parts_;               // at the last call of prepare()
   std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
-  std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: the matrix, its sums over aggregates
+  std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: new matrix, new sums over aggregates
   std::vector<ParticleConstraint> constraints_;    // when the sums were made
   std::vector<Index> constraint_of_;               // per particle, −1 for none
   struct Filter {

@@ -10,7 +10,7 @@
 namespace weft::solver {
 
 /// A block matrix A in single precision, which halves the memory to read. Its product is y_i = D_i x_i + Σ_j A_ij (x_j
-/// − x_i). The sum D_i of a row's blocks is made in double. Thus rounding affects only the stiffness of relative
+/// − x_i). The sum D_i of a row's blocks is computed in double. Thus rounding affects only the stiffness of relative
 /// motion; the much smaller mass is not lost.
 class DifferenceMatrix {
  public:
@@ -47,7 +47,7 @@ class Product {
   /// their order, into `norms_sq`. p must obey the constraints.
   double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q, std::span<double> norms_sq) const;
 
-  /// Per selected diagonal block: the sum of all its 3×3 entries, without terms and constraints.
+  /// Per selected diagonal block: the sum of all its 3×3 blocks, without terms and constraints.
   std::vector<Mat3> row_sums() const;
 
   /// b = S b, on the rows of the selected blocks.

@@ -11,8 +11,9 @@
 namespace weft::solver {
 
 /// Extends a preconditioner P of the matrix without outer products to the whole matrix, by the formula of Sherman and
-/// Morrison for one outer product k d dᵀ at a time: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P
-/// bounds the rest of the matrix, P + k d dᵀ bounds all of it with the same constants for any k.
+/// Morrison for one outer product k d dᵀ at a time: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P is
+/// spectrally equivalent to the rest of the matrix, P + k d dᵀ is so to all of it, with the same constants (if these
+/// enclose 1) for any k.
 template <class Real>
 class RankOneTerms {
  public:

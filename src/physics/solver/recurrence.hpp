@@ -18,7 +18,7 @@ namespace weft::solver {
 inline constexpr double kSmallestSingleGoal = 1e-3;
 
 /// Allowed error of the solution, per diagonal block. It must meet one of two bounds: in the energy norm, `relative`
-/// times the norm of the sum of all iterations; or, in the mass-weighted norm, `absolute`.
+/// times the norm of the solution without its step along Directions::start; or, in the mass-weighted norm, `absolute`.
 struct LinearGoal {
   double relative = 0;
   std::span<const double> absolute = {};  ///< per diagonal block; empty: none
@@ -41,9 +41,9 @@ struct Directions {
 struct Progress {
   /// Error data of one diagonal block.
   struct OfPart {
-    double energy = 0;  ///< ‖x‖²_A of x, the sum of all iterations after the start
+    double energy = 0;  ///< ‖x‖²_A of the solution x without its step along Directions::start
     std::vector<double> gains,
-        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step, relative to it
+        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step / that decrease
     double error_energy() const;  ///< estimate of ‖e‖²_A
     double error_norm_ratio() const;
 
@@ -52,7 +52,7 @@ struct Progress {
   };
   std::vector<OfPart> parts;  ///< of the whole system
   int iterations = 0;
-  bool is_exact = false;
+  bool is_exact = false;  ///< the residual is zero, or only rounding
 
   bool meets(const LinearGoal& goal, std::span<const std::size_t> selected) const;
 };
@@ -61,7 +61,7 @@ enum class End {
   converged,
   out_of_iterations,
   indefinite,    ///< a direction without positive curvature
-  needs_double,  ///< single precision only: continue in double, with a new direction
+  needs_double,  ///< single precision only: the caller must continue in double, with a new direction
 };
 
 template <class Real>

@@ -85,8 +85,8 @@ void extend_cut(const Fabric& fabric, std::span<const Crossing> crossings, std::
   }
 }
 
-// Moves particles along `up` to `height` above the plane at the nearest point of the line, then above the other
-// surface.
+// Raises the island's particles along `up` to `height` above the plane through the nearest point of the line, then
+// along the normal of the other surface to `height` above that surface.
 std::vector<Move> flatten(const Island& island, const Vec3& up, double height, const collision::BroadPhase& surfaces,
                           std::span<const Vec3> x) {
   std::vector<Move> moves;

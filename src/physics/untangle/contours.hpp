@@ -27,7 +27,7 @@ std::vector<CrossedPair> list_crossed_pairs(const Fabric& fabric, std::span<cons
 /// folded over the line of crossing if that costs a tenth less (see stretch_cost). If islands cut each other off, only
 /// the smallest moves. `above`: height over the other surface, per body of cloth [m]. `only`: restricts the search to
 /// one pair; if a line then ends inside that cloth, at a border of the other, the other is extended as a plane.
-/// `surfaces`: fitted to x.
+/// `surfaces`: refitted at x.
 std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::span<const Crossing> crossings,
                                                     const collision::BroadPhase& surfaces,
                                                     std::span<const double> above,

@@ -12,7 +12,7 @@
 namespace weft::untangle {
 
 /// The region where cloth may not be: inside a body of closed shells, which may cross each other; below a floor; or
-/// behind worn cloth (a layer), for points whose nearest point is not on its border. Does not move.
+/// behind worn cloth (a layer), except for points whose nearest point of the layer is on its border. Does not move.
 class Solid {
  public:
   /// Body `number` of the broad phase at x [m]; both must outlive it.
@@ -34,8 +34,8 @@ class Solid {
     double height;       ///< signed distance of p [m], negative inside
   };
   Exit exit(const Vec3& p) const;
-  /// Distance along the unit direction d from p, inside, to the end of the solid [m]; infinite if the ray stays in a
-  /// floor or layer.
+  /// Distance from p, which is inside, along the unit direction d to the end of the solid [m]; infinite if the ray
+  /// stays in a floor or layer.
   double distance_out(const Vec3& p, const Vec3& d) const;
   /// Whether the segment from p to q crosses the surface; false for a floor.
   bool crosses_surface(const Vec3& p, const Vec3& q) const { return kind_ != Kind::floor && !hits(p, q - p).empty(); }

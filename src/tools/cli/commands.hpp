@@ -19,7 +19,7 @@ ExitCode render(const RenderOptions& options);
 /// Checks scenes. Mistakes go to standard error, valid scenes and plans to standard output.
 ExitCode check(const CheckOptions& options);
 
-/// Draws one still: the requested frame, or the most informative one.
+/// Draws one still of each scene: the requested frame, the most informative one, or the start.
 ExitCode thumbnail(const ThumbnailOptions& options);
 
 /// Draws evenly spaced frames on one picture, with their numbers and times.

@@ -11,7 +11,7 @@ namespace {
 
 using run_error::ErrorEstimate, run_error::ErrorPart, run_error::ErrorSource, run_error::Quantity;
 
-// A reported quantity with its column and key.
+// A reported quantity, with its column in the table and its key in JSON.
 struct Figure {
   Quantity quantity;
   const char *column, *format, *key;
@@ -40,7 +40,7 @@ std::string remedy(ErrorSource source) {
   return {};
 }
 
-// Position error due to the displaced start alone [mm].
+// Error of positions due to the random offsets at the start alone [mm]; "?" if it is not known.
 std::string start_text(const ErrorEstimate& estimate) {
   for (const ErrorPart& part : estimate.parts)
     if (part.source == ErrorSource::start && part.missing.empty())

@@ -8,8 +8,8 @@
 
 namespace weft::cli {
 
-/// One line per source of error, one for all of them (root of the sum of squares), and one with the CPU time of the
-/// companion runs; no line feed at the end.
+/// One line per source of error, one for all of them (root of the sum of squares), one for each source that is not
+/// known, and one with the CPU time of the companion runs (companions.hpp); no line feed at the end.
 std::string error_summary(const run_error::ErrorEstimate& estimate);
 
 /// One sentence: the error of positions, its main source, and how to reduce it. `cloth_size` [m]; 0: not known.

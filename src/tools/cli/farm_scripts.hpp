@@ -1,4 +1,4 @@
-// The scripts of a farm: one that performs each of the tasks on any machine, one that submits the tasks to Slurm, and a
+// The scripts of a farm: one that performs any of the tasks, on any machine, one that submits the tasks to Slurm, and a
 // list of the tasks for other schedulers.
 #pragma once
 

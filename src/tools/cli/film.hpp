@@ -47,7 +47,7 @@ struct FilmResult {
   int written = 0;
   double cloth_size = 0;         ///< longest side of the box around the largest cloth, in the first frame [m]
   bool interrupted = false;      ///< stopped by request before the last wanted frame
-  std::string painter = "none";  ///< its description
+  std::string painter = "none";  ///< description of the painter
   std::exception_ptr failure;    ///< of the failed stage nearest to the output; null if none failed
   bool finished_output = false;  ///< the output has its final name; it may have fewer frames than wanted
 };

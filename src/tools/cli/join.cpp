@@ -55,7 +55,8 @@ Number number(const fs::path& file, const Metadata& metadata, const std::string&
   return value;
 }
 
-// Checks a time or a rate. The tolerance covers broadcast rates, which differ from their decimals by up to 1.1e-6.
+// Checks a time or a rate. The tolerance covers broadcast rates such as 30000/1001, which differ from their decimals
+// (29.97) by up to 1.1e-6 of the rate.
 void check_time(const fs::path& file, double found, double expected, const char* what) {
   if (std::abs(found - expected) <= 1e-5 * std::max(1.0, expected)) return;
   throw Error(ExitCode::usage, "{}: expected {} {:g}, got {:g}", file.string(), what, expected, found);

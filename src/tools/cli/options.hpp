@@ -110,7 +110,7 @@ struct SweepOptions {
 struct FarmOptions {
   enum class Action { submit, status, cancel };
   Action action = Action::status;
-  SweepOptions sweep;  ///< submit: the scene, and the folder of the runs as output; other actions: this folder as both
+  SweepOptions sweep;  ///< submit: `scene`, and as `output` the folder of the runs; otherwise both are this folder
   FrameSelection frames;
   int part = 50;                           ///< frames per drawing task
   int threads = 1;                         ///< per task

@@ -99,7 +99,7 @@ void decompress(const std::string& compressed, const std::function<void(std::str
   if (!stream) throw std::bad_alloc();
   std::vector<char> buffer(ZSTD_DStreamOutSize());
   ZSTD_inBuffer in{compressed.data(), compressed.size(), 0};
-  std::size_t left = 1;  // 0: at the end of a frame
+  std::size_t left = 1;  // 0: at the end of a zstd frame
   while (in.pos < in.size || left != 0) {
     ZSTD_outBuffer out{buffer.data(), buffer.size(), 0};
     const std::size_t read = in.pos;

@@ -47,7 +47,7 @@ struct RunReport {
   double wall_s = 0, cpu_s = 0;    ///< of the whole process, all threads
   std::int64_t peak_memory = 0;    ///< [bytes]
   std::vector<std::string> warnings;
-  std::vector<std::string> notes;  ///< remarks that are not problems, such as skin moved to make space for cloth
+  std::vector<std::string> notes;  ///< harmless remarks, such as a body surface moved to make space for cloth
   ExitCode exit_code = ExitCode::ok;
   std::string message;                            ///< why the run ended early; empty if it did not
   std::optional<run_error::ErrorEstimate> error;  ///< if requested

@@ -22,7 +22,7 @@ namespace weft::cli {
 struct Picture {
   image::Image image;
   image::Layers layers = {};  ///< if requested
-  image::Image16 deep = {};   ///< if requested
+  image::Image16 deep = {};   ///< with 16 bits per channel, if requested
 };
 
 /// Draws frames.

@@ -66,7 +66,8 @@ void Store::find_start() {
   }
 }
 
-// Lists the former scenes in the manifest: stored frames keep their looks until the run reads and stores them again.
+// Adds the hashes of former scenes to the manifest, since stored frames have the looks of these scenes until the run
+// reads and stores them again.
 void Store::note_former_looks(const cache::Manifest& found) {
   std::set<std::uint64_t> former(found.former_hashes.begin(), found.former_hashes.end());
   former.insert(found.scene_hash);
@@ -98,7 +99,8 @@ void Store::note_outputs(std::set<std::string> outputs) const {
   }
 }
 
-// Ends storing, but keeps the stored frames: if the output fails for the same reason, they are the only result.
+// Ends storing. If a state is stored, keeps the stored frames: if the output fails for the same reason, they are the
+// only result.
 void Store::give_up(const std::string& reason) {
   log::warn(reason + "; the run continues, but if it is interrupted, frames from here on must be simulated again");
   writer_.reset();

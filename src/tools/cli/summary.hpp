@@ -10,7 +10,7 @@ namespace weft::cli {
 /// about suspicious figures.
 std::string summary(const RunReport& report);
 
-/// Warnings about suspicious figures: strain, rejected steps, touching surfaces.
+/// Warnings about suspicious figures, such as large strain, many rejected steps, or touching surfaces.
 std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames);
 
 }  // namespace weft::cli

@@ -95,8 +95,8 @@ class Sweep {
     while (next < jobs_.size() || !running.empty()) {
       if (stop_.requested()) {
         next = jobs_.size();
-        // A terminal signals the whole process group. Other senders may signal this process alone, so it passes the
-        // signal on.
+        // A terminal signals the whole process group. Other senders may signal this process alone, so this process
+        // passes the signal on to the runs.
         if (!std::exchange(told, true))
           for (const Job* job : running) ::kill(job->process, SIGTERM);
       }

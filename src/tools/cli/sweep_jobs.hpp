@@ -22,7 +22,7 @@ struct SweepJob {
   std::filesystem::path folder = {};
   std::string scene = {};       ///< its name
   int frame_count = 1;          ///< of the scene
-  bool may_find_camera = true;  ///< the scene has no camera, or one computed from frames: all frames are needed
+  bool may_find_camera = true;  ///< the scene has no camera or a computed one, so that drawing may need all frames
 
   std::filesystem::path video() const { return folder / (scene + ".mp4"); }
   std::filesystem::path stats() const { return folder / (scene + ".json"); }

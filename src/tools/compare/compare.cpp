@@ -106,7 +106,7 @@ Limits for_size(Limits limits, const Figures& figures) {
 
 double counted_pixels(const Figures& figures, const Limits& limits) {
   // With this weight, the budget allows twice the largest number of edge pixels measured between CPU types: 21 of
-  // 57,600 (README, decisions).
+  // 57,600 (README.md, Decisions).
   constexpr double kEdgePixelWeight = 1.0 / 40;
   const auto over = static_cast<double>(figures.pixels_over), at_edges = static_cast<double>(figures.pixels_at_edges);
   return has_default_budget(limits) ? (over - at_edges) + kEdgePixelWeight * at_edges : over;

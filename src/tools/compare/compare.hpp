@@ -11,7 +11,7 @@
 namespace weft::compare {
 
 /// Limits beyond which two images count as different. The defaults tolerate differences between CPU types and Mesa
-/// versions: single pixels at edges of cloth, shadows and prints (README, decisions). They reject differences that a
+/// versions: single pixels at edges of cloth, shadows and prints (README.md, Decisions). They reject differences that a
 /// viewer sees if the images alternate.
 struct Limits {
   int pixel_tolerance = 4;  ///< largest tolerated difference of a channel [levels of 255]
@@ -21,9 +21,9 @@ struct Limits {
   /// Limit on the mean of the FLIP map, for small differences everywhere. The default corresponds to one level on 2 %
   /// of the pixels; it is wider for small pictures, see `for_size`.
   double flip = 5e-4;
-  /// Limit on the largest value of the FLIP map, for spots too small for the budget. If one of four samples of a pixel
-  /// is on the wrong side of an edge, this value is up to 0.25. It exceeds the limit if a speck of 2x2 pixels differs
-  /// by 64 levels, or one of 3x3 pixels by 32 levels.
+  /// Limit on the largest value of the FLIP map. It detects spots with fewer pixels than the budget allows. If one of
+  /// four samples of a pixel is on the wrong side of an edge, the FLIP value of that pixel is up to 0.25. A speck of
+  /// 2x2 pixels that differs by 64 levels, or one of 3x3 pixels by 32 levels, exceeds the limit.
   double spot = 0.3;
 };
 

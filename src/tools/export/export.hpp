@@ -12,9 +12,9 @@
 namespace weft::exporter {
 
 enum class Format {
-  ply,      ///< per object and frame: triangles, positions in double precision, weft and warp; panels are separate
-  obj,      ///< per object and frame: simulated faces, weft and warp, normals, materials (MTL) and pictures
-  pc2,      ///< per object: a point cache, and the OBJ of the first frame to which it applies; y is up
+  ply,      ///< per object and frame: triangles, positions (doubles), weft and warp coordinates; panels are separate
+  obj,      ///< per object and frame: simulated faces, weft and warp coordinates, normals, materials (MTL) and pictures
+  pc2,      ///< per object: the OBJ of the first frame, and a point cache that moves its vertices; y is up
   gltf,     ///< one file with all visible objects, their colours, pictures and motion, and cameras
   usd,      ///< the contents of gltf as text, with the axes of the scene
   usdz,     ///< as usd, but packed in one file
@@ -37,7 +37,8 @@ struct Request {
 /// All files that write() will write, except shared_files(). `first`: the first requested frame.
 std::vector<std::filesystem::path> files(const Request& request, const frame::FrameSnapshot& first);
 
-/// A material file or a picture, the same for all parts of a film.
+/// A material file or a picture. Exports of different frames of a film into one folder write the same content, so the
+/// file may exist already.
 struct SharedFile {
   std::filesystem::path file;
   std::string content;

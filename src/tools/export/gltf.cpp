@@ -265,7 +265,7 @@ void GltfFile::add(const frame::FrameSnapshot& snapshot, double time) {
 }
 
 void GltfFile::add_targets(Object& object, json& mesh) {
-  int still = -1;  // shared by all frames that equal the first
+  int still = -1;  // accessor of zeros, shared by all frames that equal the first
   json targets = json::array(), names = json::array();
   for (std::size_t k = 0; k < object.targets.size(); ++k) {
     const auto [positions, normals] = object.targets[k];

@@ -10,8 +10,9 @@
 
 namespace weft::exporter {
 
-/// A picture beside or inside the exported files. Other programs show it unchanged, so its pixels include the surface's
-/// colour: as a factor, or where the colour is visible through and around the picture.
+/// A picture beside or inside the exported files. Other programs show it unchanged, so its pixels already include the
+/// surface's colour: multiplied with the picture, or, with Alpha::over_color, visible through its transparent parts and
+/// around it.
 struct PictureFile {
   std::string name;  ///< file name
   std::shared_ptr<const frame::Texture> texture;

@@ -32,7 +32,7 @@ class UsdFile {
   /// Values of an attribute over time.
   class Samples {
    public:
-    /// Returns whether the value differs from that of the previous frame.
+    /// Adds the value of a frame. Returns whether it differs from that of the previous frame; true for the first frame.
     bool add(int frame, std::string value);
     /// Writes the attribute; `name` includes its type, such as `point3f[] points`; `metadata` may be empty.
     void write(std::ostream& out, std::string_view name, std::string_view metadata = "") const;

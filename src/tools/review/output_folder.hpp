@@ -8,7 +8,8 @@
 
 namespace weft::review {
 
-/// Name of the file that lists the files of a page, one per line. A later page may remove these files.
+/// Name of the file that lists the files of a page, one per line. A page that replaces this one may remove only these
+/// files.
 inline constexpr const char* kFileList = "files.txt";
 
 /// Throws Error(output_failed) if `folder` holds a page and `overwrite` is not set, or in any case if it holds a file

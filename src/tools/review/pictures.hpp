@@ -19,9 +19,9 @@ struct Tile {
 
 /// Result of one pass over the pictures of a run.
 struct Survey {
-  std::vector<Tile> tiles;  ///< evenly spaced: all pictures if there are few, else 8 to 15
+  std::vector<Tile> tiles;  ///< evenly spaced: all pictures if there are fewer than 16, else 8 to 15
   long long count = 0;      ///< number of readable pictures
-  double fps = 0;           ///< of a video; 0 if the file does not state it, and for stills
+  double fps = 0;           ///< frame rate of a video [1/s]; 0 if the file does not state it, and for stills
   int width = 0, height = 0;
 };
 
@@ -36,13 +36,15 @@ struct PairComparison {
   image::Image heat;  ///< FLIP map; empty if the pictures are equal
 };
 
-/// Compares the pictures with the ascending indices `at`; skips indices for which the reference has no picture at the
-/// same time. Throws Error(asset_unreadable) if pictures cannot be read or differ in size.
+/// Compares the pictures whose indices are in `at` (ascending) with those of the reference at the same times. Skips a
+/// picture if the reference has none at its time, or if that one is already compared. Throws Error(asset_unreadable) if
+/// pictures cannot be read or differ in size.
 std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,
                                                    const RunFiles& reference, const PictureTimes& reference_times,
                                                    const std::vector<long long>& at);
 
-/// Index of the picture of `to` that is closest in time to picture k of `from`.
+/// Index of the picture of `to` that is closest in time to picture k of `from`; it may lie outside of `to`. Returns k
+/// if a frame rate is unknown.
 long long same_moment(long long k, const PictureTimes& from, const PictureTimes& to);
 
 }  // namespace weft::review

@@ -303,7 +303,7 @@ class Page {
 
   const Request& request_;
   OutputFolder folder_;
-  std::map<std::string, std::set<std::string>> ids_;  // ids in use, per kind
+  std::map<std::string, std::set<std::string>> ids_;  // ids in use, for "runs" and for "references"
   Outcome outcome_;
 };
 

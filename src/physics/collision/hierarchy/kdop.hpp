@@ -1,4 +1,5 @@
-// Discrete oriented polytopes (k-DOPs): bounds by k fixed directions (seed, "Bounding Volume Hierarchy", Eq. 3).
+// Discrete oriented polytopes (k-DOPs): bounds by k fixed directions, as in the seed (the paper that README.md names;
+// "Bounding Volume Hierarchy", Eq. 3).
 //
 // A set is stored as its k support values: row r holds the minimum of direction_r · x over the set. Directions come in
 // opposite pairs, rows 2d and 2d + 1, so the interval along pair d is [row(2d), -row(2d + 1)]. With this sign
@@ -53,7 +54,7 @@ template <int K>
 struct alignas(32) KDop {
   float row[kRows<K>];
 
-  /// Eq. (3): the k-DOP of a union is the hull of the k-DOPs of its sets.
+  /// Eq. (3): the k-DOP of a union of sets is the row-wise minimum of their k-DOPs.
   void join(const KDop& other) {
     for (int r = 0; r < kRows<K>; ++r) row[r] = std::min(row[r], other.row[r]);
   }
@@ -82,8 +83,9 @@ struct alignas(32) KDop {
 template <int K>
 inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
   constexpr const Directions<K>& dir = kDirections<K>;
-  // Rounding to float moves a value by at most 2^-24 of itself, and rounding the sums of three products in double by
-  // less than 2^-50 of the coordinates. Subtract at least both, and 1e-38 for numbers near zero.
+  // Rounding to float changes a value by at most 2^-24 of itself. Rounding the sum of three products in double changes
+  // it by less than 2^-50 of the coordinates; for 6 directions, the sum is exact. Subtract at least both, and 1e-38 for
+  // values near zero.
   const double cancel = K == 6 ? 1e-38 : 1e-38 + 0x1p-50 * (p.cwiseAbs().sum() + q.cwiseAbs().sum() + margin);
   KDop<K> bound;
   for (int r = 0; r < kRows<K>; ++r) {
@@ -106,7 +108,7 @@ struct alignas(32) MovingKDop {
     for (std::size_t r = 0; r < std::size(row); ++r) row[r] = std::min(row[r], other.row[r]);
   }
 
-  /// Largest distance between two opposite faces over start and end [m].
+  /// Largest distance between two opposite faces of the k-DOP that contains both start and end [m].
   double longest_side() const {
     double longest = 0;
     for (int d = 0; d < K / 2; ++d) longest = std::max(longest, (-min_row(2 * d) - min_row(2 * d + 1)) / length(d));

@@ -7,7 +7,7 @@
 namespace weft::collision {
 namespace {
 
-/// Minimum of row r of bound l over start and end of the motion. Rows 0 to 5 are the axes.
+/// Minimum of row r of bound l over start and end of the motion. Rows 0 to 5 belong to the axes.
 template <int K>
 float row_over_motion(const LaneBounds<K>& bounds, int r, int l) {
   return std::min(bounds.row[r][l], bounds.row[K + r][l]);

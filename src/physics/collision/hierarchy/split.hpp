@@ -8,10 +8,10 @@
 
 namespace weft::collision {
 
-/// Splits `items` (indices into `bounds`) along the longest side (seed, "Bounding Volume Hierarchy"): the plane through
-/// the centre of their k-DOP, parallel to its two opposite faces that are furthest apart. A triangle that the plane
-/// cuts goes to the part with fewer uncut triangles. Reorders items, keeping the order within a part, and returns the
-/// size of the first part. Both parts are non-empty. Needs at least two items.
+/// Splits `items` (indices into `bounds`) at the plane through the centre of their k-DOP that is parallel to the two
+/// opposite faces furthest apart, as in the seed (the paper that README.md names; "Bounding Volume Hierarchy"). A
+/// triangle that the plane cuts goes to the part with fewer uncut triangles. Reorders items, keeping the order within a
+/// part, and returns the size of the first part. Both parts are non-empty. Needs at least two items.
 template <int K>
 std::size_t split_longest_side(std::span<Index> items, std::span<const KDop<K>> bounds);
 

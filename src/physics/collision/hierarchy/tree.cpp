@@ -187,7 +187,8 @@ bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low,
   if (resting.slack >= 0 && to_one_place && (p - resting.place).squaredNorm() <= slack_sq &&
       (low - resting.place).squaredNorm() <= slack_sq)
     return false;
-  // The ball must contain both ends of this step. If that needs too much slack, the bound is as tight as after refit.
+  // The ball of radius `slack` around the end of this step must contain its start, too. If that needs too much slack,
+  // the bound is as tight as after refit.
   const double slack = kSlackSteps * (low - p).norm() + kMinSlackFraction * margin;
   if (slack <= kMaxSlackFraction * margin && to_one_place) {
     resting = {low, slack};

@@ -23,7 +23,7 @@ struct Motion {
   Motion(std::span<const Vec3> start, std::span<const Vec3> end) : Motion(start, end, end) {}
 };
 
-/// Maximum number of children per node and of triangles per leaf. Each takes one lane.
+/// Maximum number of children per node and of triangles per leaf. Each child or triangle takes one lane (lanes.hpp).
 struct TreeShape {
   int children = kLanes;  ///< 2 to 8
   int leaf = kLanes;      ///< 1 to 8
@@ -60,13 +60,14 @@ class Tree {
   Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape = {});
 
   /// Fits all bounds to linear motion, enlarged by `margin` [m] in every direction at both ends. Triangles that come
-  /// closer than 2 · margin at any time of the motion then have overlapping bounds (seed, "Bounding Volume Hierarchy").
+  /// closer than 2 · margin at any time of the motion then have overlapping bounds (as in the seed, the paper that
+  /// README.md names: "Bounding Volume Hierarchy").
   void refit(const Motion& motion, double margin);
   void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) { refit({x_t0, x_t1}, margin); }
 
-  /// As refit, but keeps the bound of each vertex that is still inside its slack. Slow vertices get slack that lasts
-  /// for a few steps (see kMaxSlackFraction in tree.cpp). Nodes without a renewed vertex bound below them are not
-  /// refitted. Bounds are never smaller than after refit.
+  /// As refit, but enlarges the bounds of slow vertices by a slack that lasts for a few steps (see kMaxSlackFraction in
+  /// tree.cpp), and keeps such a bound while its vertex stays within the slack. Nodes without a renewed vertex bound
+  /// below them are not refitted. Bounds are never smaller than after refit.
   void refit_lazily(const Motion& motion, double margin);
   void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit_lazily({x_t0, x_t1}, margin);
@@ -87,7 +88,7 @@ class Tree {
  private:
   struct Builder;
 
-  /// A vertex stays inside its bound while it is within `slack` [m] of `place`; slack < 0: no such ball.
+  /// A vertex stays inside its bound while it is within `slack` [m] of `place`; slack < 0: the bound has no slack.
   struct Resting {
     Vec3 place = Vec3::Zero();
     double slack = -1;

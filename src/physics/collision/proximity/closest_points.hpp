@@ -60,8 +60,8 @@ inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3&
          height * height > kSafety * reach_sq * n_sq;
 }
 
-/// Fast test before closest_edge_edge: true only if the closest points are outside an edge or farther apart than
-/// √reach_sq.
+/// Fast test before closest_edge_edge: true only if the closest points of the two lines are outside an edge, or farther
+/// apart than √reach_sq.
 inline bool is_surely_not_interior(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {
   constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0, w = q0 - p0;

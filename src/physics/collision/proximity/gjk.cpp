@@ -70,7 +70,7 @@ void try_face(Simplex& simplex, double& least_sq, std::size_t i, std::size_t j, 
   simplex.weight[k] -= points.weights[3];
 }
 
-/// Whether the origin is inside the tetrahedron; if so, sets its weights.
+/// Whether the origin is inside the tetrahedron; if so, sets the weights of the corners.
 bool try_inside(Simplex& simplex) {
   const auto w = [&](std::size_t i) -> const Vec3& { return simplex.corner[i].w; };
   std::array<double, 4> volume{w(1).dot(w(2).cross(w(3))), -w(0).dot(w(2).cross(w(3))), w(0).dot(w(1).cross(w(3))),

@@ -1,5 +1,6 @@
 // Distance of two convex polytopes by the algorithm of Gilbert, Johnson & Keerthi ("A fast procedure for computing the
-// distance between complex objects in three-dimensional space", 1988; seed, "Distance Computation").
+// distance between complex objects in three-dimensional space", 1988), as in the seed (the paper that README.md names;
+// "Distance Computation").
 #pragma once
 
 #include <array>
@@ -22,10 +23,10 @@ struct ConvexClosest {
   int iterations;
 };
 
-/// Each set has 1 to 8 corners in any order: a triangle, convex quad (a warped one counts as the tetrahedron of its
-/// corners), edge or point. Let `size` be the largest coordinate difference of the corners. The distance is accurate to
-/// 5e-14 size, needles included. The lower bound is less than the distance by at most as much plus 1e-15 size² /
-/// distance (tests/collision/proximity/gjk_test.cpp).
+/// Each set has 1 to 8 corners in any order, for example a triangle, a convex quad (a warped one counts as the
+/// tetrahedron of its corners), an edge or a point. Let `size` be the largest coordinate difference of the corners. The
+/// distance is accurate to 5e-14 size, needles included. The lower bound is less than the distance by at most as much
+/// plus 1e-15 size² / distance (tests/collision/proximity/gjk_test.cpp).
 ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b);
 
 }  // namespace weft::collision

@@ -110,7 +110,7 @@ class ProximityFinder::Gathering {
   }
 
   /// The radius for the box tests in float. Rounding changes a coordinate by 2^-24 of itself, so a gap between two
-  /// changes by at most four times that. Only coordinates of the pair enter, so other bodies change nothing.
+  /// changes by at most four times that. Only coordinates of the pair enter, so other bodies do not affect the result.
   Lanes8 rounded_radius(const Boxes& a, const Boxes& b) const {
     Lanes8 largest = a.high.axis[0];
     for (const Boxes* box : {&a, &b})
@@ -205,7 +205,7 @@ class ProximityFinder::Search {
     for (std::size_t c = 0, n = 0; c < 3; ++c)
       if (points.weights[c + 1] != 0 && n < 2) support[n++] = corners[c];
 
-    // Between two vertices, both sides find the same pair. List the one whose vertex has the lower number.
+    // If two vertices are closest, both sides find the same pair. List the one whose vertex has the lower number.
     if (support[1] < 0 && vertex > support[0]) {
       const auto star = features_.triangles_at(vertex);
       const auto apart = [&](Index t) { return !has_vertex(features_.triangle(t), support[0]); };

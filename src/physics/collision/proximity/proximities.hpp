@@ -27,8 +27,8 @@ struct Proximity : FeaturePair {
 /// distance below the detection distance, those are listed whose closest points are
 ///   - inside the face;
 ///   - inside both edges;
-///   - on an edge or at a vertex of the face, if no other face around that edge or vertex is closer. Each is listed
-///   once.
+///   - on an edge or at a vertex of the face, if no other face around that edge or vertex is closer. If several faces
+///   there are equally close, only one is listed.
 /// Every skipped pair is represented by a listed pair that is at least as close. Proof: let S be the edge or vertex of
 /// the face where the closest point lies. Every face around S contains that point, so the vertex is no farther from
 /// each of them. Likewise, if the closest point of an edge pair is at an end, the faces around the other edge are no

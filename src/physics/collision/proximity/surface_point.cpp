@@ -22,7 +22,8 @@ ClosestPoints closest(const Vec3& p, const Triangle& t, std::span<const Vec3> x)
   return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]);
 }
 
-// Angle [rad] that a face spans around its point with these weights: its own at a corner, π on an edge, 2π inside.
+// Angle [rad] that a face spans around its point with these weights: the angle of the face at a corner, π on an edge,
+// 2π inside.
 double angle_at(const Triangle& t, const std::array<double, 3>& weights, std::span<const Vec3> x) {
   const auto on = [&](std::size_t c) { return weights[c] > kRoundoff; };
   const int support = on(0) + on(1) + on(2);

@@ -17,7 +17,7 @@ namespace weft::collision {
 struct SurfacePoint {
   Triangle face{};
   std::array<double, 3> weights{};  ///< of the corners of the face
-  Vec3 normal = Vec3::UnitZ();      ///< unit, outward, along the line through p
+  Vec3 normal = Vec3::UnitZ();      ///< unit, outward, along the line through the point and p
   double height = 0;                ///< signed distance of p [m], negative inside; infinite if there are no triangles
 };
 

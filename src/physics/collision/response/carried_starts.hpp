@@ -30,8 +30,8 @@ class CarriedStarts {
   CarriedStarts(Index first_obstacle, std::vector<std::size_t> body_of)
       : first_obstacle_(first_obstacle), body_of_(std::move(body_of)) {}
 
-  /// A step from x_t0, with obstacles at their end in x_t1 [m]; both must outlive the step. `motions`: one for each
-  /// body; empty: nothing is carried.
+  /// Begins a step from x_t0 to x_t1, which holds the ends of the obstacles [m]; both must outlive the step. `motions`:
+  /// one for each body; empty: nothing is carried.
   void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const RigidMotion> motions);
 
   /// Whether a body moves rigidly in this step.

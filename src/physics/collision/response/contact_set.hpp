@@ -33,7 +33,7 @@ struct Contact {
 /// State of the friction of a contact between iterations.
 struct FrictionLag {
   Vec3 relative_friction = Vec3::Zero();  ///< w: −friction / normal force; an unknown of its own
-  Vec3 slip = Vec3::Zero();               ///< at the last update, divided by the stick slip
+  Vec3 slip = Vec3::Zero();               ///< at the last update, divided by the stick slip (ContactSet::set_step)
   bool sticks = false;                    ///< true: friction is linearised at w; false: at the slip
   int slide_starts = 0;                   ///< how often it began to slide in this step
 };
@@ -55,22 +55,23 @@ Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w);
 /// − b) > 0. Beyond d = r = `full_range` it continues linearly. n = `normal` is constant, so f is convex and its
 /// Jacobian has rank one. A linear spring is too weak under sharp tips: on cotton it reaches 0.1 N before the gap is
 /// closed, but a sheet on the tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane.
-/// Its maximum is the friction coefficient times the normal force, to which it grows smoothly within a slip of
-/// `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
+/// Its maximum is the friction coefficient times the normal force, to which it grows smoothly until the slip is the
+/// stick slip ε = `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
 class ContactSet {
  public:
   void clear() { contacts_.clear(); }
   void add(const Contact& contact);
-  /// Call before the first solve of a step over h [s]. Below `stick_speed` [m/s] friction is reduced.
+  /// Sets the stick slip. Call before the first solve of a step over h [s]. Below `stick_speed` [m/s] friction is
+  /// reduced.
   void set_step(double h, double stick_speed = numerics.contact.stick_velocity) { stick_slip_ = stick_speed * h; }
   std::span<const Contact> contacts() const { return contacts_; }
 
   /// Call before each linearisation, with the particles at the last iterate. The normal force λ is an unknown of its
-  /// own besides the depth d, with f⁻¹(λ) = d at the solution (a primal–dual method; λ starts from `depth`). The linear
-  /// system contains the tangent of the law at f⁻¹(λ), and λ follows that tangent, but never below zero. (Measured with
-  /// the tangent at the depth of the iterate instead: 1.25 times the iterations in sphere_drape.) Friction uses this λ.
-  /// This λ is constant within an iteration, and after Numerics::Newton::patience updates, so friction has a potential,
-  /// too.
+  /// own besides the depth d, with f⁻¹(λ) = d at the solution (a primal–dual method; λ starts as f(`depth`)). The
+  /// linear system contains the tangent of the law at f⁻¹(λ), and λ follows that tangent, but never below zero.
+  /// (Measured with the tangent at the depth of the iterate instead: 1.25 times the iterations in sphere_drape.)
+  /// Friction uses this λ. Its λ is constant within an iteration, and stays constant after Numerics::Newton::patience
+  /// updates, so friction has a potential, too.
   ///
   /// Sticking friction on an obstacle follows its tangent likewise. The contact starts to slide if the tangent exceeds
   /// static friction. It sticks again if the slip is within the stick slip, or if the slip has reversed (at most

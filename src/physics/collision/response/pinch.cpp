@@ -9,14 +9,14 @@
 namespace weft::collision {
 namespace {
 
-// Normal, at x, of the face nearest to p among `faces`, those that reached the cloth.
+// Normal at positions x of the face that is nearest to p. `faces`: those that reached the cloth.
 Vec3 outward(const Vec3& p, std::span<const Triangle> faces, std::span<const Vec3> x) {
   return face_normal(nearest_point(p, faces, x).face, x);
 }
 
 }  // namespace
 
-// Faces of the limb that need a separating plane. Bounding boxes separate the others.
+// Faces of the limb that need a separating plane from the cloth triangle. Bounding boxes separate the others.
 std::vector<Triangle> PinchedPairs::faces_near(const Key& key, const BroadPhase& surfaces,
                                                std::span<const Vec3> x) const {
   std::vector<Triangle> faces = triangles_near(key.cloth, surfaces, key.body, x, numerics.separation.least_gap);
@@ -30,7 +30,7 @@ bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::spa
   });
 }
 
-// Whether no obstacle contains the exit. For example, a hand inside a hip has its exit blocked by the hip.
+// Whether no obstacle contains `place`, the exit. For example, a hip blocks the exit from a hand that is inside it.
 bool PinchedPairs::is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces,
                                  std::span<const Vec3> x) const {
   for (std::size_t surface = 0; surface < surfaces.size(); ++surface)

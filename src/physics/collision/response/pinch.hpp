@@ -16,12 +16,12 @@
 
 namespace weft::collision {
 
-/// Set of cloth triangles, each exempt from one limb of an obstacle: the triangle may intersect the limb, and no
-/// separating plane is required. A triangle is removed once it is apart from the limb and back on its original side.
-/// Triangles that share a particle with an exempted one are exempt too, so that a limb moving along the cloth does not
-/// drag the cloth with it. Of these, renew() adds to the set those that the limb meets. If two limbs overlap, the cloth
-/// is exempt from the limb that reached it and rests on the other. When the former retreats, the cloth comes out on the
-/// side where it went in.
+/// Set of cloth triangles, each exempt from one limb of an obstacle (an obstacle without limbs counts as one): the
+/// triangle may intersect the limb, and no separating plane is required. A triangle is removed once it is apart from
+/// the limb and back on its original side. Triangles that share a particle with an exempted one are exempt too, so that
+/// a limb moving along the cloth does not drag the cloth with it. Of these, renew() adds to the set those that the limb
+/// meets. If two limbs overlap, the cloth is exempt from the limb that reached it and rests on the other. When the
+/// former retreats, the cloth comes out on the side where it went in.
 class PinchedPairs {
  public:
   struct Key {
@@ -37,7 +37,7 @@ class PinchedPairs {
     std::vector<Triangle> faces;  ///< faces of the limb that reached the cloth
   };
 
-  /// The pair of points that pushes a particle, or a point of a triangle, back to its side.
+  /// A pair of points for a contact that pushes a particle, or a point of a triangle, back to its side.
   struct Push {
     FeaturePair exit_pair;
     bool is_exit_clear = false;  ///< no obstacle lies at the exit

@@ -49,7 +49,7 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
   Triangles8 a = gather(false), b = gather(true);
   // Coordinates are rounded twice by 2^-24 of themselves, and dot products by a few times as much if the triangles are
   // no farther apart than the coordinates are large. Half of the minimum gap allows for the length of n. Only
-  // coordinates of the pair enter, so other bodies change nothing.
+  // coordinates of the pair enter, so other bodies do not affect the result.
   Lanes8 rounding = a.corner[0].axis[0];
   for (const Triangles8* side : {&a, &b})
     for (const Points8& corner : side->corner)

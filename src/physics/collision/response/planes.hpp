@@ -16,11 +16,11 @@
 
 namespace weft::collision {
 
-/// Stores for each watched pair of triangles a direction, and the gap along it at the reference positions. The gap
-/// shrinks by at most the sum of the motions of both triangles. While that sum is less than the gap, the pair is
-/// separated without a test, so cloth resting on cloth costs one comparison per pair and step. A pair whose corners are
-/// all where they were at its last successful test is not tested again either, because pushing apart tests all pairs
-/// again after it has moved a few vertices.
+/// Stores for each watched pair of triangles a direction, and the gap along it at the reference, the positions at
+/// watch(). The gap shrinks by at most the sum of the motions of both triangles since then. While that sum is less than
+/// the gap, the pair is separated without a test, so cloth resting on cloth costs one comparison per pair and step. A
+/// pair whose corners are all where they were at its last successful test is not tested again either, because pushing
+/// apart tests all pairs again after it has moved a few vertices.
 class Planes {
  public:
   Planes() = default;
@@ -63,7 +63,7 @@ class Planes {
  private:
   struct Plane {
     std::array<float, 3> n;
-    float gap;  // at the reference, less 1.5 minimum gaps and rounding [m]; may be negative
+    float gap;  // at the reference, less 1.5 times Numerics::Separation::least_gap and rounding [m]; may be negative
     bool is_known() const { return n[0] != 0 || n[1] != 0 || n[2] != 0; }
     bool operator==(const Plane&) const = default;
   };

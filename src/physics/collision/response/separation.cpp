@@ -95,7 +95,7 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
 // target / 2, without moving their common centre of mass (measured: a plane midway lost 1e-4 of the momentum).
 double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const {
   struct Corner {
-    double limit, mass;  // limit of c above which a corner of a is pushed, or below which one of b is [m]; [kg]
+    double limit, mass;  // c above which a corner of a is pushed, or below which a corner of b is [m]; mass [kg]
     bool is_of_a;
   };
   std::array<Corner, 6> all;
@@ -122,7 +122,8 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
   return below;
 }
 
-// Moves the ends of a pair apart. Returns false if the pair touches at the start or fixed vertices leave no space.
+// Moves the ends of a pair apart. If vertices that are fixed or belong to a rigid body leave no space, translates the
+// rigid bodies instead. Returns false if the pair touches at the start or neither is possible.
 bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const Vec3 direction = closest_features(pair, step.start_of(pair)).points.difference;
   const double start_gap = direction.norm();
@@ -302,8 +303,8 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
   if (!is_continued) carriers_.assign(x_t0.size(), kAtStart);
   test_again(step);
   step.report.corrected_pairs = static_cast<int>(failing_.size());
-  // Rounds of pushing, then half as many of backtracking by halves, then `rounds` of backtracking entirely. After that
-  // all vertices are backtracked.
+  // The first `rounds` rounds push, half as many then backtrack by halves, and `rounds` more backtrack entirely. After
+  // that all vertices are backtracked.
   const int rounds = numerics.separation.rounds, by_halves = rounds + rounds / 2;
   for (round_ = 1; !failing_.empty(); ++round_) {
     bool changed = round_ >= by_halves + rounds && backtrack_all(step);

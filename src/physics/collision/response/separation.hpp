@@ -39,17 +39,17 @@ struct RigidGroup {
   double mass;               ///< [kg]
 };
 
-/// Keeps triangles apart over the linear motion from x_t0 to x_t1 by moving separating planes (see `separates`). Pairs
-/// without a common vertex are tested one by one; pairs of a surface that share one vertex are tested by vertex stars.
-/// Triangles that share an edge are not tested: they meet only if folded exactly onto each other.
+/// Keeps triangles apart over the linear motion from x_t0 to x_t1, with separating planes that move (certificate.hpp).
+/// Pairs without a common vertex are tested one by one; pairs of a surface that share one vertex are tested by vertex
+/// stars. Triangles that share an edge are not tested: they meet only if folded exactly onto each other.
 ///
-/// If a pair has no separating plane, enforce() pushes its end positions apart along n, the closest direction at the
-/// start, until a gap remains; obstacles and held particles do not move. It then tests the moved vertices again, until
-/// no pair fails. Particles that keep failing are backtracked, finally all the way to their start or, if they fail with
-/// an obstacle that moves rigidly, to where the obstacle would have carried them. No pair met at the start. So two
-/// triangles whose vertices all end at their start, or where one obstacle carries them, are as far apart as they were.
-/// The set of backtracked particles grows until no pair fails. A pair that still fails is forced together by obstacles
-/// that move differently, or by held particles. Its cloth can then be exempted from the obstacle.
+/// If a pair has no separating plane, enforce() pushes its end positions apart along n, the direction between its
+/// closest points at the start, until a gap remains; obstacles and held particles do not move. It then tests the moved
+/// vertices again, until no pair fails. Particles that keep failing are backtracked, finally all the way to their start
+/// or, if they fail with an obstacle that moves rigidly, to where the obstacle would have carried them. No pair met at
+/// the start. So two triangles whose vertices all end at their start, or where one obstacle carries them, are as far
+/// apart as they were. The set of backtracked particles grows until no pair fails. A pair that still fails is forced
+/// together by obstacles that move differently, or by held particles. Its cloth can then be exempted from the obstacle.
 ///
 /// Between cloth and a rigid body, the cloth is pushed as by an obstacle. Rigid bodies are translated away from
 /// obstacles and from each other, the lighter one farther.

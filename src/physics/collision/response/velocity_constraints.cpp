@@ -30,7 +30,7 @@ bool feasible(std::span<const HalfSpace> all, const Vec3& u, double slack) {
   return std::all_of(all.begin(), all.end(), [&](const HalfSpace& h) { return h.normal.dot(u) >= h.bound - slack; });
 }
 
-// Friction divided by its limit and by the slip, for a slip in units of the stick slip.
+// Friction divided by its limit and by the slip, for a slip in units of the stick slip (stick velocity · h).
 double friction_over_slip(double slip) {
   return slip < 1 ? 2 - slip : 1 / slip;
 }
@@ -189,7 +189,8 @@ int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3
     particle.x_t0 = x_t0[i];
     Vec3 force = Vec3::Zero();
     if (particle.memory.state != State::away) {
-      // The walls also exert the force that stops an arriving particle: from its mean velocity in the step to v_end.
+      // The walls also exert the force that changes the velocity of an arriving particle from its mean in the step to
+      // v_end.
       const PrescribedParticle prescribed = prescription(particle);
       const Vec3 arrested = prescribed.v_end - (x_end[i] - x_t0[i]) / step_;
       force = force_on(particle.particle) + masses_[i] / step_ * (arrested - prescribed.constraint.free * arrested);
@@ -200,8 +201,8 @@ int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3
   return changed;
 }
 
-// Decides which walls hold the particle. `force`: of its walls in the last solve. Returns whether the solve must be
-// repeated; small changes take effect in the next step.
+// Decides which walls hold the particle. `force`: exerted by its walls in the last solve. Returns whether the solve
+// must be repeated; small changes take effect in the next step.
 bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, const Vec3& force) {
   Memory& memory = particle.memory;
   const Vec3 u = x_end - particle.x_t0;
@@ -214,7 +215,7 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
     return particle.constraint_changes++ < numerics.walls.flips;
   }
 
-  // Split the force into its components along the walls and the rest, which is tangential or pulls.
+  // Split the force into its components along the normals of the walls and the rest, which is tangential or pulls.
   ActiveWalls pushing;
   const double size = force.norm();
   const Vec3 left = size > 0 ? Vec3(-size * project(particle, -force / size, true, pushing)) : Vec3::Zero();

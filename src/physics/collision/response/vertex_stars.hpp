@@ -35,7 +35,7 @@ class VertexStars {
   void set_reference(std::span<const Vec3> x);
 
   /// Sets `vertices` to 1 at the centres of stars in which features without a common vertex are farther apart than
-  /// `distance` at x [m]. Sufficient: all altitudes of the star's triangles, projected along its axis, exceed
+  /// `distance` at x [m]. It suffices that all altitudes of the star's triangles, projected along its axis, exceed
   /// `distance`. Proof: the closest projected points of two such features of two triangles are a vertex and a point of
   /// the other triangle. The segment between them leads from the centre to an opposite edge; or, from another vertex,
   /// it crosses a neighbouring edge of the star or passes its end. In each case it is at least an altitude long.
@@ -52,8 +52,8 @@ class VertexStars {
   using Edge = std::array<Index, 2>;
   /// Measures of a star at the reference [m].
   struct StarMeasures {
-    float slack;      // how far its vertices may move; negative: it is not valid as a whole
-    float clearance;  // smallest altitude of its triangles, projected along the axis, if valid
+    float slack;      // how far its vertices may move; negative: it cannot be certified as a whole
+    float clearance;  // smallest altitude of its triangles, projected along the axis; negative if `slack` is
   };
   void add_star(Index vertex, std::span<const Triangle> triangles);
   StarMeasures measure_star(std::size_t star, std::span<const Vec3> x) const;

@@ -1,4 +1,5 @@
-// Keeps detection results while nothing moves much relative to its neighbours (seed, "Detection Process").
+// Keeps detection results while nothing moves much relative to its neighbours, as in the seed (the paper that README.md
+// names; "Detection Process").
 //
 //   CoherentDetection detection(surfaces, {{0, 0}, {0, 1}}, x, {.detection_distance = …, .budget = …});
 //   each step:  if (detection.update(broad_phase, finder, x_t0, x_t1) > 0) … detection.candidates() have changed

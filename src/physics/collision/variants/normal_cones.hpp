@@ -16,7 +16,8 @@ namespace weft::collision {
 /// Let P be the triangles below a node and P⁺ all triangles with at least one corner in P. Features of P without a
 /// common vertex are not near each other if an axis a exists such that, during the linear motion from x_t0 to x_t1,
 ///   1. no corner of P is on the border of the surface, so all triangles around it are in P⁺;
-///   2. the normals of P⁺ lie in a cone around a of less than 90°, so that, seen against a, all of P⁺ faces the viewer;
+///   2. the normals of P⁺ lie in a cone around a of less than 90°, so that, seen against a (in the direction −a), all
+///      of P⁺ faces the viewer;
 ///   3. the contour of P⁺, seen against a, runs counter-clockwise around its centre once (star-shaped: Schvartzman,
 ///      Pérez & Otaduy, "Star-Contours for Efficient Hierarchical Self-Collision Detection", 2010);
 ///   4. the altitudes of the triangles of P⁺, projected along a, exceed the detection distance.
@@ -30,9 +31,9 @@ namespace weft::collision {
 /// Bernstein coefficients (Tang, Curtis, Yoon & Manocha, "ICCD", 2009). A degenerate triangle does not meet condition
 /// 2.
 ///
-/// Provot (1997; the seed's choice) requires only condition 2, for P instead of P⁺. That would also skip near pairs of
-/// parts that overlap in projection (a spiral stair) or meet across a border or slit (measured: 0.6 to 25 % of the
-/// skipped pairs were near).
+/// Provot (1997; the choice of the seed, the paper that README.md names) requires only condition 2, for P instead of
+/// P⁺. That would also skip near pairs of parts that overlap in projection (a spiral stair) or meet across a border or
+/// slit (measured: 0.6 to 25 % of the skipped pairs were near).
 template <int K>
 class NormalCones {
  public:
@@ -54,7 +55,7 @@ class NormalCones {
   struct Cone {
     Vec3 axis = Vec3::Zero();
     double cosine = -1, sine = 0;
-    double altitude = 0;  ///< times `cosine`: lower bound of the projected altitudes in the step [m]
+    double altitude = 0;  ///< altitude · cosine is a lower bound of the projected altitudes in the step [m]
   };
 
   /// Connectivity of a subtree, which does not change.

@@ -1,5 +1,5 @@
 // Records where the last traversal of one or two hierarchies stopped (Li & Chen, "Incremental 3D collision detection
-// with hierarchical data structures", 1998; seed, "Detection Process").
+// with hierarchical data structures", 1998), as in the seed (the paper that README.md names; "Detection Process").
 #pragma once
 
 #include <cstdint>

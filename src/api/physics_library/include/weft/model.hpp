@@ -11,7 +11,7 @@ namespace weft {
 
 struct Mesh {
   std::vector<Vector> positions;    ///< per vertex [m]
-  std::vector<Triangle> triangles;  ///< counter-clockwise seen from the front; of cloth, one or two at each edge
+  std::vector<Triangle> triangles;  ///< counter-clockwise seen from the front; each edge of a cloth has one or two
 };
 
 /// A fabric in continuum units; the defaults are cotton.
@@ -81,7 +81,7 @@ struct Model {
   double fps = 25;     ///< frames per second
   double step = 0.01;  ///< maximum time step [s]; each frame is divided into equal steps no longer than this
   Method method = Method::implicit_euler;
-  double newton_tolerance = 0.4;  ///< error that the solver may leave / local truncation error of the step
+  double newton_tolerance = 0.4;  ///< error that the solver may leave, relative to the local truncation error
   Vector gravity{0, 0, -9.81};    ///< [m/s²]
   Vector wind{0, 0, 0};           ///< velocity of the air [m/s]
   double air_density = 1.2;       ///< [kg/m³]; 0: no air

@@ -40,8 +40,8 @@ class WEFT_API Simulation {
   const Frame& advance();
 
   /// Moves a driven body to `pose` at constant velocity during the next frame; it then stays there. Pins that follow it
-  /// move along: a body that does not collide is a handle that holds cloth. Throws std::invalid_argument if the body is
-  /// not driven, or the pose is not finite or has no unit quaternion.
+  /// move along, so a body that does not collide can serve as a handle for cloth. Throws std::invalid_argument if the
+  /// body is not driven, or the pose is not finite or has no unit quaternion.
   void move(std::string_view body, const Pose& pose);
 
   /// Returns everything on which later frames depend. It can be restored with the same model or scene, options, library
