@@ -93,9 +93,19 @@ TEST_F(Dependencies, PicturesAndCameraFilesCountButAreNotSimulated) {
   }
 }
 
+TEST_F(Dependencies, MasksOfPinsWeightsAndAttachments) {
+  for (const char* file : {"pin.png", "weight.png", "attach.png"}) put_picture(file);
+  const std::string scene =
+      "cloth = [{ name = 'c', pin = [{ mask = 'pin.png' }], weight = [{ mask = 'weight.png', mass = 0.1 }] }]\n"
+      "obstacle = [{ name = 'o', shape = 'sphere' }]\n"
+      "attach = [{ name = 'a', cloth = 'c', to = 'o', mask = 'attach.png' }]\n";
+  for (const char* file : {"pin.png", "weight.png", "attach.png"}) expect_counts(scene, file);
+}
+
 TEST_F(Dependencies, FoldersDoNotCount) {
   const std::string scene =
       "cloth = [{ name = 'c', look = { image = 'print.png' }, pin = [{ mask = 'mask.png' }] }]\n"
+      "obstacle = [{ name = 'o', shape = 'sphere' }]\nattach = [{ name = 'a', cloth = 'c', to = 'o', mask = 'mask.png' }]\n"
       "camera = [{ name = 'shot', kind = 'file', file = 'shot.gltf' }]\n";
   std::vector<std::uint64_t> hashes;
   for (const std::string folder : {"here", "there"}) {

@@ -131,6 +131,8 @@ void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
     for (const Weight& weight : cloth.weights)
       if (weight.mask) walk.visit_alone(*weight.mask, FileUse::simulation);
   }
+  for (const Attachment& attachment : scene.attachments)
+    if (attachment.mask) walk.visit_alone(*attachment.mask, FileUse::simulation);
   for (const Character& character : scene.characters) {
     if (const auto* file = std::get_if<CharacterFile>(&character.source)) walk.visit(file->path);
     if (const Acting* acting = acting_of(character); acting != nullptr && acting->motion) walk.visit(*acting->motion);

@@ -157,6 +157,7 @@ void keep_file_names(Scene& scene) {
     for (Weight& weight : cloth.weights) keep_name_if_any(weight.mask);
     keep_names_of_pictures(cloth.look);
   }
+  for (Attachment& attachment : scene.attachments) keep_name_if_any(attachment.mask);
   for (Character& character : scene.characters) {
     if (auto* file = std::get_if<CharacterFile>(&character.source)) keep_name(file->path);
     if (Acting* acting = acting_of(character)) keep_name_if_any(acting->motion);

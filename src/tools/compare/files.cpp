@@ -109,8 +109,8 @@ void compare_videos(FileComparison& result, const Limits& limits, const std::fil
   std::vector<Figures> figures;
   while ((a = reference.next()), (b = test.next()), a && b)
     figures.push_back(add_frame(result, std::move(*a), std::move(*b), limits, where));
-  result.outcome = outcome_of(result);
   if (reference.lossy() || test.lossy()) count_spill(result, figures, limits);
+  result.outcome = outcome_of(result);
   const int reference_frames = result.frames + (a ? 1 + count_rest(reference) : 0);
   const int test_frames = result.frames + (b ? 1 + count_rest(test) : 0);
   if (reference_frames != test_frames) {
