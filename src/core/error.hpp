@@ -13,7 +13,7 @@ namespace weft {
 enum class ExitCode : int {
   ok = 0,                 ///< success
   internal = 1,           ///< internal error
-  usage = 2,              ///< command line not understood, or packages missing
+  usage = 2,              ///< command line not understood, or software is missing, such as Mesa
   scene_invalid = 3,      ///< the scene file has mistakes
   asset_unreadable = 4,   ///< a mesh, motion or picture file cannot be used
   simulation_failed = 5,  ///< the simulation cannot continue; finished frames are kept

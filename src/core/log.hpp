@@ -13,7 +13,7 @@ void info(std::string_view line);
 /// Prints `warning: text` and keeps the text for the summary at the end; the same text again is ignored.
 void warn(std::string_view text);
 
-/// Like warn(), with `note: text`, for actions that are no mistake.
+/// Like warn(), with `note: text`, for intended changes that the user should know of.
 void note(std::string_view text);
 
 /// Sends following warnings and notes to `handle`, in the thread that reports them; they are neither printed nor kept.

@@ -47,6 +47,13 @@ TEST(SceneStability, TriesEachValueThatTheSceneHas) {
   EXPECT_DOUBLE_EQ(strip().find(with(VariedParameter::step, 8))->step, 0.05);
 }
 
+TEST(SceneStability, VariesTheFrictionOfObstaclesToo) {
+  const SceneStability stability = measure_scene_stability(support::scene_of_text(
+      kStrip + "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nposition = [5, 0, 0]\nfriction = 0.3\n",
+      {"time.duration=0.1", "contact.obstacles=true", "cloth.strip.material.friction=0"}));
+  EXPECT_NE(stability.find(with(VariedParameter::friction, 2)), nullptr);
+}
+
 TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
   const auto margins = margins_of(strip());
   const auto stiffer = std::ranges::find_if(margins, [](const Margin& margin) {

@@ -3,17 +3,17 @@
 // type; other numbers are f64 unless noted otherwise.
 //
 //   surfaces  the stage (surroundings); list of textures; list of surfaces; for each surface the positions in frame 0
-//             (count u64, then planes)
+//             (count u64, then byte planes, see below)
 //   frame     time; list of cameras; list of lights; the report; for each surface a byte, 0 if its positions are those
-//             of frame 0, or 1, followed by the positions (planes); then a byte, 0 if it has no heat, or 1, followed by
-//             the heat (planes of f32)
+//             of frame 0, or 1, followed by the positions (byte planes); then a byte, 0 if it has no values of the heat
+//             map, or 1, followed by these values (byte planes of f32)
 //   state     bytes of Simulation::save
 //
 // The serialize() functions in codec.cpp define the members of each part and their order. An optional value is stored
 // as a byte, 0 or 1, followed by the value if the byte is 1.
 //
-// Planes: the first byte of every entry, then the second byte of every entry, and so on (24 planes for positions of 3 ×
-// f64, 4 for heat). Neighbours have similar signs and exponents, so that planes compress well.
+// Byte planes: the first byte of every entry, then the second byte of every entry, and so on (24 planes for positions
+// of 3 × f64, 4 for the heat map). Neighbours have similar signs and exponents, so that planes compress well.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct Surfaces {
 struct CachedFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  std::uint64_t scene_hash = 0;  ///< of the scene whose colours, cameras and lights the frame has; set by Reader
+  std::uint64_t scene_hash = 0;  ///< of the scene for which the file of the frame was written; set by Reader
 };
 
 Surfaces surfaces_of(const frame::FrameSnapshot& first);

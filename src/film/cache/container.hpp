@@ -36,7 +36,8 @@ struct Content {
 
 std::string pack(const Label& label, std::string_view payload);
 
-/// Checks everything except the content of the payload, and decompresses it. Throws std::runtime_error with the defect.
+/// Checks what verify() checks and the size of the payload, and decompresses it; checks neither the label nor the
+/// content of the payload. Throws std::runtime_error with the defect.
 Content unpack(std::string_view bytes);
 
 /// Checks magic bytes, version, stored size and checksum without decompressing. Throws std::runtime_error.

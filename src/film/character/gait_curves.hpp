@@ -19,10 +19,10 @@ struct HarmonicCurve {
 /// at 120 Hz, two strides of the left foot and three of the right. A heel strikes when its ankle is farthest in front
 /// of the hips (Zeni et al., "Two simple methods for determining gait events", 2008); the phase is linear between
 /// strikes. The harmonics are a least-squares fit to all frames between the first and the last strike. Curves of one
-/// side are fitted to both sides, with the right side half a stride later. Yaw and roll have odd harmonics only, pitch
-/// has even ones. A fifth harmonic of 0.6° of the pelvis yaw is left out, since it shakes cloth on the hips. All angles
-/// are in degrees. Root mean square residual: 2.5° of foot pitch, 3.4° and 2.9° of arm and elbow, below 1.7° of all
-/// other angles.
+/// side are fitted to both sides, with the right side half a stride later. Yaw and roll of the trunk and head have odd
+/// harmonics only, pitch of the pelvis has even ones only. A fifth harmonic of 0.6° of the pelvis yaw is left out, since
+/// it shakes cloth on the hips. All angles are in degrees. Root mean square residual: 2.5° of foot pitch, 3.4° and 2.9°
+/// of arm and elbow, below 1.7° of all other angles.
 namespace walking {
 
 constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording: speed [m/s], stride time [s]
@@ -49,8 +49,8 @@ constexpr HarmonicCurve elbow{23.61, {-5.76, 4.14, -0.20, -0.05, 0.08, -0.17}, {
 
 /// Knee flexion: 5° at contact, 18° in loading response, 5.5° in terminal stance, 39° at toe-off and 60° in initial
 /// swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). A spline drawn by eye connects these
-/// values; the harmonics approximate it within 0.6°. The knees of the recording are not used: they are bent by 20° more
-/// in stance, and clipped at 0.
+/// values; the harmonics approximate it within 0.6°. The knee angles of the recording are not used: they are 20° larger
+/// in stance, and never below 0, where they are clipped.
 constexpr HarmonicCurve knee{22.99, {-3.24, -13.50, -0.53, -0.87, 0.13, -0.21}, {-20.21, 8.12, 3.68, 0.64, 0.49, 0.02}};
 
 }  // namespace walking

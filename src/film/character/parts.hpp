@@ -1,4 +1,4 @@
-// Parts of a body by common names (hands, one arm), or by the bones or materials of its file.
+// Parts of a body by common names (hands, torso), by names of joints, or by the bones or materials of its file.
 #pragma once
 
 #include <cstdint>

@@ -27,10 +27,10 @@ class TracedLight {
     static Surface of(const frame::Appearance& look, bool cloth);
   };
 
-  /// Traces the light of what the geometry buffer shows, and binds textures:
+  /// Traces the light that reaches the points that the geometry buffer shows, and binds textures:
   /// - unit 0: the visible fractions of up to four lamps
-  /// - unit 1: light that other surfaces reflect, as a matte white surface shows it; w: open fraction of the
-  /// surroundings
+  /// - unit 1: light from other surfaces, as the radiance that a matte white surface would reflect (irradiance / π); w:
+  /// open fraction of the surroundings
   /// - unit 2, if a surface mirrors: light of mirrored surfaces; w: fraction of the mirror image that they cover
   void draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Surface> surfaces,
             const View& view, const std::optional<Floor>& floor);

@@ -5,7 +5,7 @@
 
 // Units. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
 //   bending     B: 1 gf·cm²/cm = 98.07 µN·m; 2HB: 1 gf·cm/cm = 9.807 mN
-//   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; Material's mu is twice the shear modulus
+//   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; Material::shear is twice the shear modulus G
 //   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; linearity LT is 2 / (n + 1) if force ~ strainⁿ
 // FAST (Minazio, "FAST – Fabric Assurance by Simple Testing", Int. J. Clothing Sci. Tech. 7(2/3), 1995):
 //   shear       G = 123 / EB5 N/m, EB5 the bias extension in percent
@@ -15,8 +15,8 @@
 //   stretch      secant up to 19.6 N/m, the load of worn and hanging cloth. In fabrics with threads, force ~ strain²,
 //                so that LT is 2/3 (measured: 0.50 to 0.60 for suitings, 0.66 to 0.78 for denims) and the secant is
 //                98.0 N/m / EMT. Without threads, force ~ strain, and the secant is 490.3 N/m / EMT.
-//   max_stretch  such that the force at the mean EMT of weft and warp is the measured 490 N/m, by `stretch` and the law
-//                of forces/stretch_limit.hpp, whose threads carry 4 kN/m at the limit.
+//   max_stretch  such that the force at the mean EMT of weft and warp is the measured 490 N/m: the sum of the force of
+//                `stretch` and that of forces/stretch_limit.hpp, which is 4 kN/m at the limit
 //   shear        2 G
 //   bend         √(weft · warp): bending is isotropic here
 //   bend_friction   HB
@@ -27,11 +27,11 @@
 //                weight from 30 to 490 g/m², by cantilever (data set of Feng et al., "Learning-Based Bending Stiffness
 //                Parameter Estimation by a Drape Tester", 2022). Softer or firmer fabrics take another quantile of
 //                their class (Hand). The median ratio of warp to weft is 1.4 there.
-//   hysteresis   cotton 50, wool 25, filaments 18 1/m; measured: 53 and 43 of broadcloth and denim, 25 of a tropical,
-//                19 and 18 of polyesters
+//   hysteresis   HB / B: cotton 50, wool 25, filaments 18 m⁻¹; measured: 53 and 43 m⁻¹ of broadcloth and denim, 25 m⁻¹
+//                of a tropical (light worsted wool), 19 and 18 m⁻¹ of polyesters
 //   shear        cotton 65, wool 26, filaments and knits 30 N/m; measured for plain weaves: 65, 24 to 26, 30.
-//                Fabrics without threads: an isotropic sheet with Poisson's ratio 0.3. If weight, bending and drape are
-//                published but shear is not, it is fitted to the drape: faille, 7.5 N/m (30 would drape by 33 %)
+//                Fabrics without threads: an isotropic sheet with Poisson's ratio 0.3. Only for faille, G is fitted to
+//                the published drape: 7.5 N/m
 //   extension    weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, others 12 %
 //                and linear, since they have no crimp
 //   thickness    2.2 mm for 1 kg/m²; measured: 1.7 to 4
@@ -44,7 +44,7 @@ namespace weft::scene {
 
 namespace {
 
-// Bending viscosity / bending stiffness [s]: friction between yarns damps a fold within about this time.
+// Bending viscosity / bending stiffness [s]: viscosity alone damps a fold within about this time.
 constexpr double kBendingDampingTime = 0.1;
 
 enum class Fibre { cotton, wool, filament };
@@ -314,8 +314,8 @@ Measurements measurements(const Row& row) {
   return m;
 }
 
-// Value of max_stretch for which the force at strain `extension` is kExtensionLoad: locking threads carry the
-// difference to the force of the secant stiffness.
+// Value of max_stretch for which the force at strain `extension` is kExtensionLoad: the lock carries the part of this
+// load that exceeds the force of the secant stiffness.
 double max_stretch_for(Weave weave, double extension) {
   constexpr double kOnset = 0.7, kTension = 4e3;  // constants of forces::Lock
   const double rest = kExtensionLoad - secant_stiffness(weave, extension) * extension;

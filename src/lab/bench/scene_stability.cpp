@@ -21,6 +21,23 @@ constexpr std::size_t index_of(VariedParameter axis) {
   return static_cast<std::size_t>(axis);
 }
 
+// All coefficients of friction of a scene.
+std::vector<double*> frictions(scene::Scene& scene) {
+  std::vector<double*> all;
+  for (scene::Cloth& cloth : scene.cloths) all.push_back(&cloth.material.friction);
+  for (scene::Obstacle& obstacle : scene.obstacles) all.push_back(&obstacle.friction);
+  for (scene::Character& character : scene.characters) {
+    all.push_back(&character.friction);
+    for (scene::BodyPart& part : character.parts)
+      if (part.friction) all.push_back(&*part.friction);
+  }
+  for (scene::FrictionPair& pair : scene.contact.pairs) {
+    all.push_back(&pair.friction);
+    if (pair.static_friction) all.push_back(&*pair.static_friction);
+  }
+  return all;
+}
+
 void scale_materials(scene::Scene& scene, const Factors& factors) {
   const double stiffness = factors[index_of(VariedParameter::stiffness)],
                mass = factors[index_of(VariedParameter::mass)], friction = factors[index_of(VariedParameter::friction)],
@@ -34,18 +51,8 @@ void scale_materials(scene::Scene& scene, const Factors& factors) {
       *value *= damping;
     material.density *= mass;
     for (scene::Weight& weight : cloth.weights) weight.mass *= mass;
-    material.friction *= friction;
   }
-  for (scene::Obstacle& obstacle : scene.obstacles) obstacle.friction *= friction;
-  for (scene::Character& character : scene.characters) {
-    character.friction *= friction;
-    for (scene::BodyPart& part : character.parts)
-      if (part.friction) *part.friction *= friction;
-  }
-  for (scene::FrictionPair& pair : scene.contact.pairs) {
-    pair.friction *= friction;
-    if (pair.static_friction) *pair.static_friction *= friction;
-  }
+  for (double* value : frictions(scene)) *value *= friction;
 }
 
 // Multiplies the cells along each side; returns false if they cannot be multiplied by this factor.
@@ -80,7 +87,8 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
       return !same(&Material::stretch_viscosity, &Material::shear_viscosity, &Material::bend_viscosity,
                    &Material::bend_friction, &Material::drag);
     case VariedParameter::friction:
-      return !same(&Material::friction) && (scene.contact.self || scene.contact.obstacles);
+      return std::ranges::any_of(frictions(varied), [](const double* value) { return *value != 0; }) &&
+             (scene.contact.self || scene.contact.obstacles);
     // A step is never longer than a frame, so a larger time.step has no effect beyond that.
     case VariedParameter::step:
       return scene.time.tolerance || scene.time.step * (factor > 1 ? 0.5 * factor : factor) < 1 / scene.time.fps;

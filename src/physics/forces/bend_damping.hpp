@@ -1,4 +1,4 @@
-// Dissipation of bending, the same for every mesh.
+// Viscosity and dry friction of bending, shared by the forces of grids, triangles and cords.
 #pragma once
 
 #include <cmath>
@@ -13,11 +13,11 @@ struct BendParameters {
   double friction = 0;   ///< τ, moment per width against a change of curvature [N]; half of 2HB of Kawabata's KES
 };
 
-/// Viscosity and friction act on each curvature κ: the second derivatives s_uu, s_uv and s_vv of the surface s(u, v).
-/// Only the part of the rate κ̇ along the curvature counts, so that a curved piece turns rigidly without loss. Friction
-/// models Kawabata's bending hysteresis ("The Standardization and Analysis of Hand Evaluation", 1980): a moment of
-/// constant magnitude against the change, smoothed below a rate of kStickRate. It brings cloth to rest: without
-/// friction the hem of a draped sheet keeps moving at centimetres per second.
+/// Viscosity and friction act on each curvature vector κ separately: on the second derivatives s_uu, s_uv and s_vv of
+/// the surface s(u, v). Only the part of the rate κ̇ along κ counts, so that a curved piece turns rigidly without loss.
+/// Friction models Kawabata's bending hysteresis ("The Standardization and Analysis of Hand Evaluation", 1980): a
+/// moment of constant magnitude against the change, smoothed below a rate of kStickRate. It brings cloth to rest:
+/// without friction the hem of a draped sheet keeps moving at centimetres per second.
 ///
 /// Moment per width [N]:
 ///
@@ -31,8 +31,8 @@ struct BendParameters {
 /// ms would tremble at 1 to 10 mm/s.
 ///
 /// Damping fades out if the sheet is flat: viscosity below kFlatCurvature, friction below the larger of kFlatCurvature
-/// and the curvature τ / B that friction can hold against bending. A full moment about an axis that turns with every
-/// ripple would be stiffer than the bending itself.
+/// and the curvature τ / B that friction can hold against bending. If it kept its full size, the moment would change
+/// direction with every ripple, and its stiffness would exceed that of bending.
 class BendDamping {
   // Curvature below which the direction of κ is too uncertain for damping [1/m]: a sheet of radius 10 m looks flat.
   static constexpr double kFlatCurvature = 0.1;

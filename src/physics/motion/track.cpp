@@ -15,7 +15,7 @@ constexpr double kHalfTurnTolerance = 1e-6;
 
 Quat exp(const Vec3& w) {
   const double angle = w.norm();
-  // sin(angle / 2) / angle; by its series for small angles, where the quotient loses digits.
+  // sin(angle / 2) / angle; by its series for small angles, since the quotient is 0 / 0 at angle 0.
   const double factor = angle > 1e-4 ? std::sin(0.5 * angle) / angle : 0.5 - angle * angle / 48;
   return Quat(std::cos(0.5 * angle), factor * w.x(), factor * w.y(), factor * w.z());
 }

@@ -92,7 +92,8 @@ bool Solid::inside(const Vec3& p) const {
   return turns < 0;
 }
 
-// Points whose nearest point is on the border are next to the cloth, and so outside.
+// Points whose nearest point is on the border lie beside the cloth, neither in front of it nor behind it; they count as
+// outside.
 Solid::Exit Solid::exit_of_layer(const Vec3& p) const {
   const collision::SurfacePoint point = collision::nearest_point(p, surfaces_, number_, x_);
   const Vec3 place = p - point.height * point.normal;

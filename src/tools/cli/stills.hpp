@@ -21,8 +21,9 @@ class Stills {
  public:
   virtual ~Stills() = default;
 
-  /// Description and default drawing settings of the scene.
+  /// Description of the scene.
   const cache::Manifest& scene() const { return scene_; }
+  /// Settings for drawing: those of the command line; if it gives no size or camera, those of the scene.
   const render::Settings& settings() const { return settings_; }
   /// The available frames, ascending; at least one.
   const std::vector<int>& frames() const { return frames_; }
@@ -37,7 +38,7 @@ class Stills {
   render::CameraPath camera();
   /// Whether SIGINT or a similar signal has requested an end.
   bool is_stopped() const { return signals_.requested(); }
-  /// Overrides the size of the scene. Call it before the first frame.
+  /// Replaces the picture size in settings(). Call it before the first frame.
   void set_size(const PictureSize& size);
 
  protected:

@@ -7,9 +7,10 @@
 //
 // Each surface is divided into groups of triangles. A velocity cone bounds the motion of each group since a common
 // reference. For two groups, let R be the bound, by these cones, of how far a point of one has moved relative to a
-// point of the other since their pair of surfaces was searched. Distances, and gaps of bounds along any direction, have
-// then changed by at most R. Let D be the detection distance. A result is valid while for each two groups R ≤ budget,
-// or their boxes were more than D + R apart at that search. While a result is valid:
+// point of the other since their pair of surfaces was last searched. Since then, the distance of any point of one group
+// from any point of the other, and the gap between their bounding volumes along any direction, have changed by at most
+// R. Let D be the detection distance. A result is valid while every two groups have R ≤ budget, or had boxes more than
+// D + R apart at that search. While a result is valid:
 //   - every two triangles whose bounds with margin D / 2 overlap now are among the candidates;
 //   - the kept closest points of two features, with unchanged weights, are at most 2 R farther apart than the features,
 //     and never closer;
