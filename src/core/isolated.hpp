@@ -17,9 +17,9 @@ struct Isolation {
 };
 
 /// Calls `work` in a child process and returns the bytes that `work` returned. This process survives whatever happens
-/// to the child (a crash, an endless loop, a runaway allocation). Then run_isolated() throws std::runtime_error with
-/// the reason, or with the text of the exception that `work` threw; Error(interrupted) if `stop` became true. Other
-/// threads of this process do not exist in the child: `work` must not wait for them.
+/// to the child (a crash, an endless loop, a runaway allocation). If the child fails, run_isolated() throws
+/// std::runtime_error with the reason, or with the text of the exception that `work` threw; if `stop` became true, it
+/// throws Error(interrupted). Other threads of this process do not exist in the child: `work` must not wait for them.
 std::string run_isolated(const std::function<std::string()>& work, const Isolation& isolation);
 
 }  // namespace weft

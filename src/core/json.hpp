@@ -19,8 +19,9 @@ Json parse_json(std::string_view text);
 extern template nlohmann::ordered_json parse_json(std::string_view);
 extern template nlohmann::json parse_json(std::string_view);
 
-/// The value of a key; `otherwise` if `json` is no object, lacks the key, or has a value of another type there. The
-/// value() of nlohmann::json throws in the first and last case, which becomes an internal error if nobody catches it.
+/// The value of a key; `otherwise` if `json` is no object, lacks the key, or has a value of another type there (or one
+/// out of the range of int). The value() of nlohmann::json throws if `json` is no object or the type differs, which
+/// becomes an internal error if nobody catches it.
 template <class T, class Json>
 T value_or(const Json& json, const char* key, T otherwise) {
   if (!json.is_object()) return otherwise;
@@ -45,7 +46,7 @@ nlohmann::ordered_json read_json_or_null(const std::filesystem::path& file);
 enum class JsonLetters { all, ascii };
 
 /// JSON as text, on one line if `indent` is negative. Bytes that are not UTF-8, as in names of files, become U+FFFD, as
-/// JSON cannot hold them.
+/// JSON cannot hold them. JsonLetters::ascii escapes all letters beyond ASCII.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1, JsonLetters letters = JsonLetters::all);
 
 /// The same for JSON with sorted keys.

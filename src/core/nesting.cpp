@@ -29,9 +29,9 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
 }  // namespace
 
 bool nests_too_deep(std::string_view text) {
-  std::vector<int> open;  // levels of each open bracket: itself, and the dots of the key before it
+  std::vector<int> open;  // levels that each open bracket adds: one, and one per dot of the key before it
   int depth = 0;          // sum of `open`
-  int dots = 0;           // of the current key, and of a number after it
+  int dots = 0;           // number of dots in the current key, and in a number after it
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     if (c == '"' || c == '\'') {

@@ -5,35 +5,39 @@
 namespace weft {
 
 /// Tuned on the shipped scenes and those of tests/bench/scenes: cloth of 0.05 to 1 kg/m², spacings of 1 cm to 1 m,
-/// steps of 1 to 40 ms. Comments give meaning, unit, and the effect of other values, as far as it was measured. Members
-/// without a unit are ratios or counts. `tests/tools/change_numerics.sh` shows which tests fail if a member is ten
-/// times as large.
+/// steps of 1 to 40 ms. Comments give meaning, unit, and the effect of other values, as far as it was measured
+/// ("Larger:" precedes the effect of a larger value, "0:" that of 0). Members without a unit are ratios or counts.
+/// `tests/tools/change_numerics.sh` shows which tests fail if a member is ten times as large.
 struct Numerics {
   /// The linear solver (src/physics/solver).
   struct Linear {
     /// Trace of a particle's 3×3 block of the matrix, relative to the sum of `LinearSystem::norm_weights` over the rows
     /// of its cloth. If any particle exceeds it, the multigrid levels do not interpolate (Preconditioner). Larger:
-    /// slender cells, and a viscosity of 1e4 N·s/m, are not solved; smaller: soft cloth takes twice as many iterations.
+    /// systems with slender cells or a viscosity of 1e4 N·s/m are not solved; smaller: soft cloth takes twice as many
+    /// iterations.
     double stiff_particle = 1e3;
     /// Number of last iterations from which the error is estimated: `least_delay`, or all so far divided by
-    /// `delay_fraction` if that is more. Fewer: solves end on a plateau, and a viscosity of 1e4 N·s/m gains energy.
+    /// `delay_fraction` if that is more. Fewer: solves end on a plateau, and cloth with a viscosity of 1e4 N·s/m gains
+    /// energy.
     int least_delay = 3;
     int delay_fraction = 5;
-    /// Maximum number n of aggregates of cloth on the coarsest level (or one per cloth); its dense factorisation takes
-    /// 9 n³ multiplications.
+    /// Maximum number n of aggregates of cloth on the coarsest level, or one per cloth if there are more cloths; its
+    /// dense factorisation takes 9 n³ multiplications.
     int coarsest_aggregates = 70;
   } linear;
 
   /// Newton's method (src/physics/integrator).
   struct Newton {
     /// Allowed linear error, relative to the allowed Newton error. A diagonal block (a cloth or rigid body) whose error
-    /// is below it is not solved again. 1: fewer iterations, but more strain.
+    /// is below this fraction of the allowed Newton error is not solved again (but see `patience`). 1: fewer
+    /// iterations, but more strain.
     double linear_fraction = 0.8;
     /// Factor on `linear_fraction` and on the linear tolerance for the midpoint rule, which damps nothing. Larger: flat
     /// sheets fold in free fall.
     double undamped = 0.1;
-    /// `slope_left`: slope at which a line search ends, relative to that at its start (smaller: more evaluations; 0.7:
-    /// eight sheets that settle take a fifth more iterations). `line_trials`: maximum number of evaluations.
+    /// `slope_left`: slope (residual · direction) at which a line search ends, relative to that at its start (smaller:
+    /// more evaluations; 0.7: eight sheets that settle take a fifth more iterations). `line_trials`: maximum number of
+    /// evaluations.
     double slope_left = 0.5;
     int line_trials = 6;
     /// Newton iterations after which the trajectory is checked for contacts that only the solve reveals.
@@ -49,7 +53,7 @@ struct Numerics {
     /// longer: more iterations.
     double lasting_time = 0.15;
     /// Visibility threshold of acceleration [m/s²], and of the velocity that it leads to in `lasting_time` [m/s]. As
-    /// bounds of errors, both are multiplied by the tolerance.
+    /// bounds of errors, both are multiplied by `solver.newton_tolerance`.
     double unseen_acceleration = 0.01;
     double unseen_velocity() const { return unseen_acceleration * lasting_time; }
     /// Friction, relative to its limit, above which a diagonal block counts as about to slide.
@@ -63,7 +67,8 @@ struct Numerics {
   struct Steps {
     /// Error that the controller aims at, relative to the tolerance. Nearer to 1: more steps are rejected.
     double aim = 0.7;
-    /// Minimum and maximum factor between successive steps, also after a rejection. Larger: BDF2 propagates its error.
+    /// Minimum and maximum factor between successive steps; after a rejection, the maximum is 1. Larger: BDF2
+    /// propagates its error.
     double least_factor = 0.2;
     double largest_factor = 1.5;
     /// Minimum step size [s]: at 10 m/s, cloth moves 1e-4 m in it. Errors do not reduce a step below it, and a step
@@ -82,18 +87,20 @@ struct Numerics {
     /// Larger: longer lists; smaller: more searches. Also the distance between an obstacle's arc and its chord above
     /// which a step is halved, and the motion of an obstacle in a step below which shorter steps find no more space.
     double margin = 0.25;
-    /// Maximum contact thickness, in particle spacings. Larger: a sheared sheet collides with itself.
+    /// Maximum contact thickness of cloth other than ropes, in particle spacings. Larger: a sheared sheet collides with
+    /// itself.
     double thickness_of_spacing = 0.25;
-    /// Minimum contact stiffness in m/h² (m: mean particle mass, h: `time.step`). A particle then stops within a
-    /// hundredth of the distance that it would cover in a step.
+    /// Minimum contact stiffness in m/h² (m: weighted mean mass of the contact's particles, or of the lighter side
+    /// against a rigid body; h: `time.step`). A particle then stops within a hundredth of the distance that it would
+    /// cover in a step.
     double inertial_stiffness = 100;
     /// Stiffening of the normal force k d (1 + stiffening (d/r)⁴) at depth d, with stiffness k and activation distance
     /// r. 10: tips penetrate; 1000: more iterations.
     double stiffening = 100;
-    /// Where the stiffness of an edge pair falls from full to zero: from a fold (−Σ `Proximity::outside_wedge`) of
-    /// twice `fade` to one of half of it; from the border of a wedge to the sine `fade` outside of it; and along an
-    /// edge, from the fraction `fade` to its end. 0: contacts switch on and off; larger: only separating planes keep
-    /// crossing creases apart.
+    /// Where the stiffness of an edge pair falls from full to zero: from the border of a wedge to the sine `fade`
+    /// outside of it; and, if cloth takes part, also from a fold (−Σ `Proximity::outside_wedge`) of twice `fade` to one
+    /// of half of it, and along an edge, from the fraction `fade` to its end. 0: contacts switch on and off; larger:
+    /// only separating planes keep crossing creases apart.
     double fade = 0.1;
     double flat_fold() const { return 0.5 * fade; }
     /// Slip velocity below which friction sticks [m/s]; for springs, `stick_spacings` particle spacings per second if
@@ -102,9 +109,9 @@ struct Numerics {
     double stick_spacings = 0.002;
     /// Slip velocity, in stick velocities, at which the coefficient has fallen from static to sliding friction.
     double slide_velocity = 5;
-    /// Closing velocity from which a contact is an impact [m/s]; a slower contact counts as one in proportion (BDF2
-    /// only). Larger: impacts in short steps rebound; 0.1: five balls that meet keep a quarter of the energy, not a
-    /// fifth.
+    /// Closing velocity from which a contact is an impact [m/s]; a slower contact counts as one in proportion to its
+    /// velocity (BDF2 only). Larger: impacts in short steps rebound; 0.1: five balls that meet keep a quarter of the
+    /// energy, not a fifth.
     double impact_velocity = 0.05;
     /// How often in a step a contact that has begun to slide may stick again when it slides back. 0: ribbons take 1.4
     /// times the iterations; 20: friction of 10 does not settle.
@@ -122,7 +129,7 @@ struct Numerics {
     /// rounding decides; larger: thin cloth fails.
     double least_gap = 1e-6;
     /// Gap that pushing apart restores [m], a tenth of the default thickness of a fabric; at most half of the gap at
-    /// the start.
+    /// the start, but at least twice `least_gap`.
     double restored_gap = 2e-4;
     /// Rounds of pushing apart. `rounds` / 2 rounds of backtracking by halves follow, then `rounds` of backtracking
     /// entirely. Fewer: particles move back farther than necessary.
@@ -148,9 +155,9 @@ struct Numerics {
 
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
-    /// Number of halvings before another remedy. Of a step: before cloth may count as pinched, and before an
-    /// overstretched solve is accepted. Of a trajectory: in the search for separating planes (0: a tenth more
-    /// iterations). Also the number of attempts at a step that release obstructed pins; the next attempt may move
+    /// Number of halvings before another remedy: halvings of a step before cloth may count as pinched and before an
+    /// overstretched solve is accepted, and halvings of a trajectory in the search for separating planes (0: a tenth
+    /// more iterations). Also the number of attempts at a step that release obstructed pins; the next attempt may move
     /// pinned particles.
     int halvings = 3;
     /// Strain that pushing apart may add (energy: Energy::doubtful_gain). Above either, the solve continues; if it
@@ -188,8 +195,9 @@ struct Numerics {
 
   /// Energy without a source (src/physics/simulation/energy_bound.cpp), relative to the energy in play.
   struct Energy {
-    /// `failing_gain`: gain above which a run fails; also the work of the residual above which it warns.
-    /// `doubtful_gain`: gain above which a run warns; also the gain that pushing apart may add to a step.
+    /// `failing_gain`: gain above which a run fails (with contact only for the midpoint rule, as the others damp
+    /// contact); also the work of the residual above which it warns. `doubtful_gain`: gain above which a run warns;
+    /// also the gain that pushing apart may add to a step.
     double failing_gain = 0.3;
     double doubtful_gain = 0.1;
     /// Energy that is never an error [J/kg]: enough to lift cloth by 1 cm.

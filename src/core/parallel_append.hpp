@@ -16,7 +16,7 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
 
 /// Calls body(begin, end, list) for consecutive chunks of [0, count) with `chunk` items each; with one thread, once for
 /// all of [0, count). The body appends its results to `list`; `out` receives all of them in the order of items.
-/// append(out, list) must append one list to another.
+/// A function append(List&, const List&) must append the second list to the first.
 template <class List, class Body>
 void parallel_append(std::size_t count, std::size_t chunk, List& out, const Body& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;

@@ -40,7 +40,7 @@ class TemporaryName {
 /// A temporary file. Unless committed, the destructor or remove_temporary_files() removes it.
 class TemporaryFile {
  public:
-  /// As TemporaryName. Throws Error(output_failed) if the final name is a folder or a device.
+  /// Throws like TemporaryName(), and Error(output_failed) if the final name is a folder or a device.
   explicit TemporaryFile(std::filesystem::path final_name);
 
   const std::filesystem::path& path() const { return temporary_.path(); }
@@ -65,7 +65,8 @@ std::string_view final_name_of(std::string_view temporary_name);
 /// Whether a file has exactly this content.
 bool holds(const std::filesystem::path& file, std::string_view content);
 
-/// Removes the temporary files that have a slot, but no folders. For the moment before _exit(). Async-signal-safe.
+/// Removes the temporary files that have a slot (TemporaryName::slot_), but no folders. Call it right before _exit().
+/// Async-signal-safe.
 void remove_temporary_files() noexcept;
 
 /// Writes `content` to `file` through a TemporaryFile. Throws Error(output_failed) with the system's reason.

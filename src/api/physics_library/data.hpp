@@ -27,8 +27,8 @@ struct Frame::Data {
   std::vector<std::vector<Vec3>> velocities;             ///< per cloth
   std::vector<std::vector<float>> strains;               ///< per cloth
   std::vector<std::vector<Vec3>> contact_forces;         ///< per cloth
-  std::vector<Object> objects;                           ///< views of the members, and of `viewed`
-  std::shared_ptr<const void> viewed;                    ///< positions and meshes
+  std::vector<Object> objects;                           ///< views of the members, and of `viewed` or `snapshot`
+  std::shared_ptr<const void> viewed;                    ///< positions and meshes; null for a simulation of a Scene
   std::shared_ptr<const frame::FrameSnapshot> snapshot;  ///< for drawing; null for a simulation of a Model
 };
 

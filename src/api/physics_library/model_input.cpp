@@ -37,7 +37,8 @@ void check_range(double value, double low, double high, const std::string& objec
   if (!(value >= low && value <= high)) refuse(object, "{} from {:g} to {:g}, got {:g}", what, low, high, value);
 }
 
-// Bodies may have edges of any number of triangles, as meshes of others often do.
+// The edges of a cloth must have one or two triangles. Those of a body may have any number, as is common in meshes from
+// other programs.
 enum class Edges { any, of_a_sheet };
 
 mesh::Mesh mesh_of(const Mesh& given, Edges edges, const std::string& object) {

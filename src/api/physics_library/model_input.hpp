@@ -9,10 +9,12 @@
 
 namespace weft::library {
 
-/// Throws std::invalid_argument that names the object if the position is not finite or the rotation no unit quaternion.
+/// Converts a pose. Throws std::invalid_argument that names `object` if a coordinate is not finite or beyond ±1e5 m, or
+/// the rotation is no unit quaternion.
 motion::Pose pose_of(const Pose& given, const std::string& object);
 
-/// Throws std::invalid_argument that names the object and the value. `driven`: bodies that count as moving.
+/// Converts a model. `driven`: names of bodies that count as moving. If a value is out of range, throws
+/// std::invalid_argument that names the object and the value.
 model::Model physics_of(const Model& given, const std::vector<std::string>& driven);
 
 }  // namespace weft::library

@@ -23,7 +23,7 @@ struct ClipTargets {
 
 /// Converts an animation. Warns if it skips channels of unknown objects or second channels of a node, and if it extends
 /// the clip to keys past its end (by more than rounding errors). Throws std::runtime_error that names clip and channel
-/// if times run backwards or numbers are not finite.
+/// if times run backwards or exceed a day, or numbers are not finite.
 character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets, std::vector<std::string>& warnings);
 
 }  // namespace weft::assets

@@ -168,7 +168,7 @@ std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) 
 }
 
 /// Detaches triangles that `joints` do not join at edges of more than two triangles, or of two that face opposite ways:
-/// gives them vertices of their own, and moves these away.
+/// gives them vertices of their own, and moves these away. Removes small detached pieces.
 void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& mended) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
@@ -323,7 +323,7 @@ class EdgeCollapser {
   }
 
   /// Merges vertex b into a and removes the triangles that contain both. Does nothing and returns false if this would
-  /// change the border, join separate parts, or leave a triangle without its UVs.
+  /// change the border, join separate parts, flip or flatten a triangle, or leave a triangle without its UVs.
   bool collapse(Index a, Index b, std::vector<std::uint8_t>& kept) {
     const bool border_edge = on_border_.contains(std::minmax(a, b));
     if (is_on_border(b) && !border_edge) return false;

@@ -30,7 +30,8 @@ struct Source {
 
   /// Throws for files that are missing, empty, too large, or known to block the reader for ever.
   void check() const;
-  /// Calls `read` in a child process and returns its result. If the child fails, throws like fail() with its reason.
+  /// Calls check(), then `read` in a child process, and returns its result. If the child fails or exceeds its limits of
+  /// time and memory, throws like fail() with the reason.
   std::string read(const std::function<std::string()>& read) const;
   /// Returns the result of `work`. Any exception that is not an Error becomes fail(), since it is caused by the file.
   template <class Work>

@@ -37,8 +37,8 @@ void serialize_flag(Archive& archive, bool& flag) {
 // finite. For comparison, an object that falls for an hour is 6.4e7 m away.
 constexpr double kFarthest = 1e9;
 
-// Throws if a number exceeds kFarthest. Used for all numbers (angles, fractions, intensities) except those of the
-// report.
+// Throws if a number is not finite or its magnitude exceeds kFarthest. Used for all numbers (also angles, fractions,
+// intensities) except (u, v) and heat, which need only be finite, and those of the report, which are not checked.
 void check_finite(double number) {
   if (!(std::abs(number) <= kFarthest))
     throw std::runtime_error(fmt::format("a number is not finite, or beyond {:g}", kFarthest));
@@ -70,7 +70,7 @@ void serialize_optional(Archive& archive, std::optional<Value>& value) {
   serialize_finite(archive, *value);
 }
 
-// Serialises entries in planes (codec.hpp); the list already has its length.
+// Serialises entries as byte planes (codec.hpp), without their number: for reading, the caller has sized the list.
 template <class Entry>
 void serialize_planes(ByteWriter& archive, std::vector<Entry>& list) {
   const std::size_t count = list.size(), start = archive.bytes.size();

@@ -46,7 +46,7 @@ std::string encode_surfaces(const Surfaces& surfaces);
 /// Throws std::runtime_error with the defect.
 Surfaces decode_surfaces(std::string_view payload);
 
-/// `surfaces` must belong to the snapshot.
+/// `surfaces`: those of frame 0 of the same run.
 std::string encode_frame(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report,
                          const Surfaces& surfaces);
 

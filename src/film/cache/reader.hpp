@@ -33,7 +33,7 @@ class Reader {
   /// The effective scene as TOML, for people.
   std::string scene_text() const;
 
-  /// Frames whose files exist now, ascending. Each call reads the folder again.
+  /// Frames below frame_count whose files exist now, ascending. Each call reads the folder again.
   std::vector<int> frames() const;
   bool has(int frame) const;
 

@@ -46,8 +46,9 @@ bool begins_as_written(const fs::path& file) {
   return start == *beginning || (!start.empty() && start.find_first_not_of('\0') == std::string::npos);
 }
 
-/// Whether the first bytes of a file show that Weft has written it; for the scene, the first bytes of the files beside
-/// it do. Empty files count too, as nothing is lost with them.
+/// Whether Weft has written a file. The first bytes of the file show this; for the scene, the first bytes of the
+/// manifest or of the surfaces do. Empty files count too, as nothing is lost with them, and so do temporary files of a
+/// cache, by their names.
 bool is_ours(const fs::path& folder, const std::string& name) {
   const std::string_view kept = final_name_of(name);
   if (!kept.empty()) return is_name_of_cache(kept);

@@ -38,7 +38,7 @@ class Lock {
   int descriptor_ = -1;
 };
 
-/// All functions throw Error(output_failed).
+/// All functions throw Error(output_failed); add() also throws Error(asset_unreadable) if it cannot read back frame 0.
 class Writer {
  public:
   /// Writes the manifest and the scene. The folder must be empty, or a cache of the same simulation.

@@ -33,20 +33,21 @@ class Skeleton {
   bool has(Joint joint) const { return rig_.joints[place_of(joint)] >= 0; }
   Posture at(const Pose& pose) const;
 
-  /// Vector from a joint to the next existing one: outward along limbs, upward along the trunk. At the end of a limb,
-  /// vector to the mean of the child nodes; zero if there are none.
+  /// Vector from a joint to the next existing one: outward along limbs, upward along the trunk. From the last joint of
+  /// a limb or of the trunk, vector to the mean of its child nodes; zero if there are none.
   Vec3 bone(const Posture& posture, Joint joint) const;
   /// Vector from the right hip joint to the left one; zero if one is missing.
   Vec3 across_hips(const Posture& posture) const;
+  /// Likewise between the upper-arm joints; if one of these is missing, between the shoulder joints.
   Vec3 across_shoulders(const Posture& posture) const;
   /// Midpoint between the hip joints; the position of the hips if one of them is missing.
   Vec3 middle_of_hips(const Posture& posture) const;
-  /// Vector from middle_of_hips() to the midpoint of the upper-arm joints; if one of these is missing, to the neck,
-  /// head, chest or spine, the first that exists.
+  /// Vector from middle_of_hips() to the midpoint of the upper-arm joints. If one of these is missing: to the first
+  /// that exists of neck, head, chest and spine; without these, bone() of the hips.
   Vec3 trunk(const Posture& posture) const;
-  /// Mean length from hip to ankle of the complete legs; 0 if none is complete.
+  /// Mean length of the complete legs, thigh plus shin; 0 if none is complete.
   double leg_length(const Posture& posture) const;
-  /// Mean length of the arms from shoulder to wrist; 0 if an arm is incomplete.
+  /// Mean length of the arms, upper arm plus forearm; 0 if an arm is incomplete.
   double arm_length(const Posture& posture) const;
 
  private:
@@ -63,8 +64,8 @@ using Flat = std::array<double, 2>;
 /// Finds, for each joint, the axes of its body part, as a rotation from the coordinates of the part to those of the
 /// joint. Axes of body parts:
 /// - Hips, spine, chest, neck and head: x to their left, z up when the body stands upright. Shoulders: as the chest.
-/// - Arms and legs: z along the bone, x along the hinge axis of elbow or knee. Hands likewise, with x out of the left
-///   palm and out of the back of the right hand.
+/// - Arms and legs: z along the bone, x along the hinge axis of elbow or knee.
+/// - Hands: z along the bone, x out of the left palm and out of the back of the right hand.
 /// - Feet and toes: z up when they are flat on the floor, x toward the toes.
 /// The axes follow from positions alone, as means over all postures that determine them: the trunk in upright postures,
 /// hinges weighted by their bend, feet in postures in which they are flat. Neither the first pose of a file nor the

@@ -1,4 +1,4 @@
-// Colours painted on the mannequin so that it looks like a person: hair, brows, lids, lips, fingers and shoes.
+// Colours painted on the mannequin so that it looks like a person: hair, ears, brows, eyes, lips, cheeks and shoes.
 #pragma once
 
 #include "film/character/character.hpp"

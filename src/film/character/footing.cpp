@@ -8,9 +8,9 @@
 namespace weft::character {
 namespace {
 
-// A foot is in contact if its ball is slower and lower than these bounds [leg lengths/s], [leg lengths] (0.85 m in an
-// adult, so 0.3 m/s and 4 cm). Toes in swing pass at 3 to 5 m/s; noise moves standing feet in recordings at 0.05 to
-// 0.15 m/s.
+// A foot is in contact if its ball is slower than kMaxContactSpeed [leg lengths/s] and less than kMaxContactHeight [leg
+// lengths] above the floor: 0.3 m/s and 4 cm for an adult's leg of 0.85 m. Toes in swing pass at 3 to 5 m/s; noise
+// moves standing feet in recordings at 0.05 to 0.15 m/s.
 constexpr double kMaxContactSpeed = 0.35, kMaxContactHeight = 0.05;
 /// Maximum height of the ankle of a flat foot above the standing height of ankles [leg lengths].
 constexpr double kMaxFlatAnkleHeight = 0.03;
@@ -20,8 +20,8 @@ constexpr double kSpeedWindow = 1.0 / 30;
 constexpr double kMinContactTime = 0.08;
 /// Movement of the ball that ends a contact and begins the next one, as in a shuffle [leg lengths].
 constexpr double kMaxBallMotion = 0.08;
-/// The floor is the lowest height at which the number of slow feet is at least this fraction of the number at the most
-/// frequent height. Initial poses of recordings and outliers lie below the floor, steps and chairs above.
+/// The number of slow feet is counted over height. The floor is the lowest peak of this number that is at least this
+/// fraction of the maximum. Initial poses of recordings and outliers lie below the floor, steps and chairs above.
 constexpr double kMinFrequencyRatio = 0.5;
 /// Time in which feet blend from a contact into their own motion [s]; a step takes 0.4 s or more.
 constexpr double kFootBlendTime = 0.15;

@@ -22,8 +22,8 @@ struct Footsteps {
 };
 
 /// Finds the contacts of a motion from the speed and the height of the toes, or of the ankles of feet without toes.
-/// `times`: of the postures, increasing [s]. `up`: unit vector. Without feet or steps there are no contacts, and
-/// ankle_height is the height of the lowest ankle; infinite without feet.
+/// `times`: of the postures, increasing [s]. `up`: unit vector. Without a complete leg or without steps there are no
+/// contacts, and ankle_height is the height of the lowest ankle; infinite without feet.
 Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
                          const Vec3& up);
 
@@ -46,15 +46,16 @@ struct Stance {
 
 /// Keeps the ball of each foot at its mean position during a contact, with the sole on the floor. Outside contacts no
 /// foot goes below the floor, and feet return to the motion within 0.15 s. Hips move down if a leg is too short to
-/// reach its ankle, and up if a knee would bend too far. `floor`: height of the sole at rest [m].
+/// reach its shifted ankle, and up if a knee would bend too far. `floor`: height of the sole at rest [m].
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up);
 
-/// Rotations of the upper and the lower leg from the present pose, in world axes. They bring the ankle to a given
-/// position, or as near to it as the leg reaches. The knee bends in the plane of the leg.
+/// Rotations of the upper and the lower leg from the present pose, in world axes.
 struct LegTurns {
   Quat upper, lower;
 };
+/// The rotations that bring the ankle to a given position, or as near to it as the leg reaches. The knee bends in the
+/// present plane of the leg.
 LegTurns reach(const Leg& leg, const Vec3& ankle);
 
 }  // namespace weft::character

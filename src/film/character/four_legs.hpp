@@ -9,7 +9,8 @@
 
 namespace weft::character {
 
-/// Warning text for a motion that is on all fours for at least half of its time; empty for others. `up`: unit vector.
+/// Warning text for a motion on all fours: the trunk slopes by at most 30° on average, and a hand is near the floor for
+/// at least half of the time. None for other motions. `up`: unit vector.
 std::optional<std::string> warn_if_on_all_fours(const Skeleton& skeleton, std::span<const Posture> postures,
                                                 const Vec3& up);
 

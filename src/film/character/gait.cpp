@@ -14,7 +14,7 @@ namespace {
 constexpr double kHipSwing = 1.6;       ///< factor on the recorded pelvis yaw, for longer legs and a catwalk gait
 constexpr double kShoulderSwing = 1.5;  ///< factor on the chest yaw, which is opposite to that of the pelvis
 constexpr double kChestNod = 0.8, kHeadNod = -0.4,
-                 kHeadRoll = -0.4;           ///< chest and head pitch / pelvis pitch, head roll / chest roll
+                 kHeadRoll = -0.4;           ///< ratios of pitch (chest and head to pelvis) and of roll (head to chest)
 constexpr double kShoulderTurnRatio = 0.12;  ///< rotation of a shoulder / rotation of its arm
 // Hanging arms have bent elbows; walking adds kElbowRatio of the recorded difference from kElbowAtRest. The upper arms
 // keep an angle from the vertical; the forearms turn back toward the vertical by the fraction kForearmTurnRatio of this
@@ -33,7 +33,7 @@ Quat axis_rotation(double angle, const Vec3& axis) {
 /// Phase and relative size of the walking motion at one key.
 struct Sway {
   double phase = 0;
-  double size = 0;  ///< 0: standing, 1: walking as fast as recorded
+  double size = 0;  ///< 0: standing, 1: steps as long as recorded, relative to the leg; at most 1.3
 };
 
 /// Builds a walk, key by key, from feet, track and curves.

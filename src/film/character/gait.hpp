@@ -15,8 +15,8 @@ struct Walk {
 };
 
 /// Makes a walk. Feet keep their footholds (see Feet), the body balances above them (see balance_body), and all else
-/// follows the curves of `walking`. `mannequin`: made by make_mannequin, of any build. About sixty keys per second,
-/// such that a step has a whole number of them.
+/// follows the curves of namespace walking (gait_curves.hpp). `mannequin`: made by make_mannequin, of any build. The
+/// clip has about sixty keys per second, such that a step has a whole number of them.
 Clip make_walk(const Character& mannequin, const Walk& walk);
 
 }  // namespace weft::character

@@ -21,10 +21,11 @@ using HipOffsets = std::vector<std::array<Vec3, 2>>;
 /// Computes the paths of both feet and the height of the pelvis, such that knees bend as in human walking.
 ///
 /// From shortly after its strike until shortly before the strike of the other foot, the stance leg determines the
-/// height of the pelvis: its knee follows the curve `knee`. In between, the height is interpolated. The trailing leg
-/// raises its heel as far as this curve requires. In swing, knee bend and leg direction are interpolated from toe-off
-/// to the strike, with matching velocities and accelerations. A foot in stance rolls without sliding: over its round
-/// heel, then flat, then bending about the ball with flat toes.
+/// height of the pelvis: its knee follows the curve walking::knee. In between, the height is interpolated. The trailing
+/// leg raises its heel as far as this curve requires. In swing, knee bend, leg direction and foot pitch are
+/// interpolated from toe-off to the strike, with matching velocities and accelerations, except for the knee at the
+/// strike and the acceleration of the pitch at toe-off. A foot in stance rolls without sliding: over its round heel,
+/// then flat, then bending about the ball, first with flat toes, then over the toe tips.
 class Feet {
  public:
   /// All arguments must outlive the object.

@@ -19,7 +19,7 @@ struct Physique {
   double ankle_height = 0;
   double ball_forward = 0, ball_height = 0;  ///< joint of the toes, relative to the point on the floor below the ankle
   double heel_back = 0, heel_radius = 0;     ///< radius of the round heel; its centre is `heel_back` behind the ankle
-  double toe_length = 0, toe_radius = 0;     ///< from the ball to the centre of the round toe tips
+  double toe_length = 0, toe_radius = 0;     ///< ball to centre of the round toe tips; their radius
   double thigh = 0, shin = 0;
   double hips_half_width = 0;  ///< of the trunk at the height of the hanging hands
   double stance_forward = 0;   ///< distance of the hips in front of the ankles when standing

@@ -17,7 +17,7 @@ struct Track {
 
   std::size_t index(int key) const { return static_cast<std::size_t>(key - first); }
   int last() const { return first + static_cast<int>(place.size()) - 1; }
-  double yaw_at(int key) const;  ///< clamped to the ends
+  double yaw_at(int key) const;  ///< beyond the ends, the value at the nearer end
 };
 
 /// Treats the body as an inverted pendulum on the feet: x'' = ω² (x - p), where x is the middle of the hips, p the

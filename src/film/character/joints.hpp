@@ -59,12 +59,13 @@ const std::vector<std::string>& joint_names();
 Index joint_number(const std::string& name);
 
 /// For each of joint_names(), the node with that role, found by the names of common rigs (a table in joints.cpp); -1 if
-/// there is none. Prefixes, case, spaces and underscores are ignored. The places at which limbs branch off determine
-/// hips, spine and chest.
+/// there is none. Case, separators, a rig's name before a colon and words such as Bip01 or bone are ignored. The places
+/// at which limbs branch off determine hips, spine and chest.
 std::vector<Index> find_named_joints(std::span<const Node> nodes);
 
 /// Like find_named_joints(), but also handles rigs whose node names have a prefix or suffix in common, such as the name
-/// of the rig. If upper or lower arms or legs are not found by name, the tree determines the joints (nameless.hpp).
+/// of the rig. If upper or lower arms or legs are not found by name, the tree determines the missing joints
+/// (nameless.hpp).
 std::vector<Index> find_joints(const Character& character);
 
 }  // namespace weft::character

@@ -35,7 +35,7 @@ void add_torso(BlendedBody& body, const Scale& s) {
   body.add(Loft({}, scaled(rows, s), 3 * s.length, 6 * s.length), 0.01, false);
 }
 
-/// An ellipsoid with its centre given to the left, forward and up; it scales with the girth.
+/// An ellipsoid with its centre given to the left, forward and up; its half axes scale with the girth.
 Loft ball(const Scale& s, const Vec3& middle, double side, double depth, double half_height) {
   const LoftFrame frame{s.length * Vec3(middle.x(), -middle.y(), middle.z())};
   const double cap = half_height * s.girth;

@@ -7,7 +7,7 @@
 
 namespace weft::character {
 
-/// Weight of each joint at a point of the left half, x >= 0. They sum to 1 and vary smoothly; at most four are > 0.
+/// Weight of each joint at a point of the left half, x >= 0. Weights sum to 1 and vary smoothly; at most four are > 0.
 std::array<double, kJointCount> mannequin_weights(const std::array<Vec3, kJointCount>& joints, double height,
                                                   const Vec3& p);
 

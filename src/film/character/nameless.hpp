@@ -9,9 +9,10 @@
 namespace weft::character {
 
 /// For each of joint_names() except the trunk below the neck, the node with that role; -1 if there is none.
-/// - Legs and arms are the two pairs of longest chains that leave a common node and have equal lengths left and right.
-///   The legs are the pair whose common node is an ancestor of that of the other pair, else the longer pair.
-/// - In a limb, upper and lower bone are the two longest consecutive bones before the fingers branch off.
+/// - Legs and arms are the two pairs of longest chains that leave a common node and have nearly equal lengths left and
+///   right. The legs are the pair whose common node is an ancestor of that of the other pair, else the longer pair.
+/// - In a limb, upper and lower bone are the consecutive bones whose shorter one is longest, before the fingers branch
+///   off. In arms, a pair farther out is preferred if its bones are not much shorter.
 /// - Toes, knees and the vector from hips to shoulders determine the left side, as a mean over the first clip, or at
 ///   rest if there is none.
 /// - Neck and head: the chain that reaches highest among the other children of the arms' common node.

@@ -215,7 +215,8 @@ class Retargeter {
     return can_stand() ? ankles / 2 + ratio_ * (up_.dot(place) - steps_.ankle_height) - travelled : 0;
   }
 
-  /// Transforms from node to world of all nodes of the body. Writes the transforms to the parents to `locals`.
+  /// Transforms from node to world of all nodes of the body. Appends the transform of each node to its parent to
+  /// `locals`, if given.
   std::vector<Affine> globals(const Frame& frame, std::vector<Placement>* locals = nullptr) const {
     std::vector<Affine> globals;
     for (std::size_t n = 0; n < joint_of_.size(); ++n) {

@@ -47,7 +47,8 @@ constexpr double kMaxMoveWithoutCloth = 0.004;
 /// overlap afterwards, since larger moves would be visible.
 constexpr double kMaxMoveNearCloth = 0.03;
 
-/// Skin without cloth of its own counts as near the cloth of the other limb up to this depth in that limb [m].
+/// Skin without cloth of its own counts as near the cloth of the other limb up to this depth in that limb [m]: fully in
+/// the first half, then less and less.
 constexpr double kMaxNearClothDepth = 0.05;
 
 /// Over edges up to this length [m] skin fully follows its neighbours, over longer ones less, so that dents in coarse
@@ -141,8 +142,8 @@ Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cl
   for (std::size_t v = 0; v < missing.size(); ++v) missing_at_rest_[v] = missing[v].distance;
 }
 
-// Computes how much of the line from bone to skin, extended by the clearance, lies in another limb.
-// `skin` defines the lines, `x` is the current position of the skin.
+// Computes how much of the line from bone to skin, extended by the clearance, lies in another limb, beyond what lies
+// there at rest. `skin` defines the lines, `x` is the current position of the skin.
 void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
                         std::vector<Missing>& missing) const {
   Box3 box;

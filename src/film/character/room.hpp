@@ -25,13 +25,14 @@ struct Moved {
   double distance = 0;  ///< [m]; 0: nothing moved
   Index vertex = -1;
   std::string limb;       ///< limb that the vertex belongs to
-  std::string away_from;  ///< the other limb, or "the ground"
+  std::string away_from;  ///< the other limb; else "the ground", even if the vertex only followed neighbours
 };
 
 /// Moves skin along the lines from its bones. Limbs are upper and lower arms, upper and lower legs, and the trunk with
-/// the head; each of two limbs moves by at most half of the missing clearance, and only if cloth is near one of them.
-/// Skin that is closer at rest, as at the joint of two limbs, keeps its clearance at rest; limbs that cross at rest are
-/// not changed. Skin near cloth is lifted out of the ground, except that of feet.
+/// the head; each of two limbs moves by at most half of the missing clearance (farther only to follow its neighbours),
+/// and only if cloth is near one of them. Skin that is closer at rest, as at the joint of two limbs, keeps its
+/// clearance at rest; limbs that cross at rest are not changed. Skin near cloth is lifted out of the ground, except
+/// that of feet.
 class Room {
  public:
   /// Weight of each limb at a vertex.
@@ -49,7 +50,7 @@ class Room {
   /// Missing clearance of one vertex in one round.
   struct Missing {
     double distance = 0;  // missing clearance [m]
-    float near = 0;       // proximity to cloth, the larger one of both limbs
+    float near = 0;       // proximity to cloth: own or, if larger, that of the other limb, fading with depth
     Index triangle = -1;  // of the other limb; -1: none
   };
 

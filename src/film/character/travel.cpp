@@ -96,7 +96,8 @@ class Path {
     return axes;
   }
 
-  /// Mean over a window around t. Beyond its ends, the path is continued by point reflection at the end points.
+  /// Mean over the times within `window` of t. Beyond its ends, the path is continued by point reflection at the end
+  /// points.
   Vec3 smoothed(const std::vector<Vec3>& path, double t, double window) const {
     const auto at = [&](double s) -> Vec3 {
       const auto next = std::ranges::upper_bound(times_, s);

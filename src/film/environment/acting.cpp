@@ -31,10 +31,10 @@
 namespace weft::environment {
 namespace {
 
-/// Bounds of the rate of key frames that follows from the rate of a clip [1/s].
+/// Bounds of the rate of key frames, if it follows from the rate of a clip [1/s].
 constexpr double kMinKeyRate = 10, kMaxKeyRate = 120;
 
-/// Smallest rate of key frames of a body that grows or lowers its arms [1/s].
+/// Smallest rate of key frames of a body that grows or lowers its arms, if the scene does not set the rate [1/s].
 constexpr double kDressingRate = 25;
 
 /// Largest size of the key frames of one character [bytes]; a larger one suggests a mistyped rate.
@@ -218,7 +218,7 @@ Body make_playing_body(const Cast& cast, const Source& source) {
   return body;
 }
 
-/// Adds the particles of a pin to the vertices of the body. `vertices`: number of vertices without those of pins.
+/// Adds the points of a FollowingPin to the `vertices` vertices of the body. `start`: pose at the start of the run.
 void add_following_pin(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& parts,
                        const character::Pose& start, std::size_t vertices, character::Character& body) {
   character::VertexMask mask(vertices, 1);
@@ -246,7 +246,7 @@ struct KeyTimes {
   }
 };
 
-/// `clip_rate`: key frames per second of the sampled motion; 0 if nothing moves.
+/// `clip_rate`: key frames per second of the motion; 0: there is none. `changes_stance`: arms move after dressing.
 KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   const scene::Character& settings = cast.settings;
   KeyTimes times;
@@ -345,7 +345,7 @@ StandingBody make_standing(const Cast& cast, const scene::MeshSequence& /*source
               where, cast.settings.name);
 }
 
-/// Space for cloth between the limbs and under the body; none if no cloth is near.
+/// Space for cloth between the limbs and under the body; none without a clip, clearance or near cloth.
 template <class Source>
 std::optional<character::Room> room_of(const Cast& cast, const Source& source, const Body& body,
                                        const character::Performance& performance, const std::vector<Part>& parts,

@@ -18,7 +18,7 @@ namespace weft::environment {
 
 using motion::KeyFrames;
 
-/// A part of a character that pins follow, or that has contact settings of its own.
+/// A part of a character that pins, obstacles or cameras follow, or that has contact settings of its own.
 struct Part {
   std::string name;
   character::VertexMask vertices;  ///< of the body's mesh
@@ -46,7 +46,7 @@ struct ClothAtStart {
 struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
   KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the places of each FollowingPin
-  std::vector<Part> parts;   ///< parts that the scene lists, or that pins follow
+  std::vector<Part> parts;   ///< see parts_of()
   std::vector<Index> limbs;  ///< per vertex: number of its character::Limb; of a sequence: its connected component
   std::vector<std::string> warnings;
   std::vector<std::string> notes;                                 ///< for the summary: changes made to the body
@@ -54,9 +54,9 @@ struct Actor {
 };
 
 /// Reads the files of a character and computes its key frames. They begin when the character begins to grow or move.
-/// They end when it has grown or, if it moves, at the end of the scene. A character that does neither has one key.
-/// Moves its skin to leave space for the `cloths` on it. Throws Error(asset_unreadable, scene_invalid) that names scene
-/// line, file and the mesh, bone or clip.
+/// They end when it has grown or, if it moves, at the end of the scene. A character that does neither has one key. If a
+/// body with bones plays a clip, its skin is moved to leave space for `cloths` near it. Throws Error(asset_unreadable,
+/// scene_invalid) that names scene line, file and the mesh, bone or clip.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowingPin> following = {}, std::span<const ClothAtStart> cloths = {});
 

@@ -1,4 +1,5 @@
-// Parts of a character: those of the scene, those that pins follow, and hands that do not collide by default.
+// Parts of a character: those that the scene lists, those that pins, obstacles or cameras follow, and hands, which do
+// not collide by default if they have fingers.
 #pragma once
 
 #include <span>

@@ -42,12 +42,14 @@ Cast make_cast(const scene::Scene& scene, const scene::Character& settings);
 /// "; did you mean ...?", or an empty text.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known);
 
-/// The node of a file that a [[character.joint]] names. Throws Error(scene_invalid) if there is none.
+/// The node of a file that a [[character.joint]] or the `bone` of a [[character.part]] names. Throws
+/// Error(scene_invalid) if there is none.
 Index named_node(const Cast& cast, const std::string& key, const std::string& name,
                  const std::vector<character::Node>& nodes, const std::string& source);
 
 /// The nodes of a skeleton that are the joints of joint_names(), found by their usual names or as the scene says; −1
-/// for a joint that is not found. Throws Error(scene_invalid) for names of the scene that do not exist.
+/// for a joint that is not found. `name`: the member of JointNames for this file; `source`: the file, for messages.
+/// Throws Error(scene_invalid) for names of the scene that do not exist.
 std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
                              std::optional<std::string> scene::JointNames::*name, const character::Character& character,
                              const std::string& source);

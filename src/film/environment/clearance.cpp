@@ -21,10 +21,11 @@ constexpr double kLayersBetweenLimbs = 8;
 /// them.
 constexpr double kNearCloth = 0.05;
 
-/// Largest distance between samples on cloth [m].
+/// Largest distance between samples on cloth [m], except on edges longer than kMaxEdgeSamples times this distance.
 constexpr double kSampleDistance = 0.02;
 
-/// Largest number of samples along an edge of a triangle: keeps sheets of few large triangles cheap.
+/// Largest number of intervals between samples along an edge of a triangle. It limits the cost of sheets of few large
+/// triangles.
 constexpr int kMaxEdgeSamples = 64;
 
 /// Vertices per task.

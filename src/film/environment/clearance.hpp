@@ -17,8 +17,9 @@ std::vector<character::Ground> grounds_below(const Cast& cast);
 /// Height of the lowest of these points over the ground [m].
 double height_over(const character::Ground& ground, std::span<const Vec3> x);
 
-/// Clearance between limbs [m]: as the scene sets it, else as its thickest cloth needs. If not set, it is 0 for
-/// characters that do not collide, and for the mannequin without a motion file, whose walk keeps its arms off its body.
+/// Clearance between limbs [m]: as the scene sets it, else as its thickest cloth needs. If the scene does not set it,
+/// it is 0 for characters that do not collide, and for the mannequin without a motion file, whose walk keeps its arms
+/// off its body.
 double clearance_between_limbs(const Cast& cast);
 
 /// Nearness of cloth to each point of the skin: 1 up to a distance of 2.5 cm, then falling linearly to 0 at 5 cm.

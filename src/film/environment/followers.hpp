@@ -25,7 +25,7 @@ struct PinFollower {
 };
 
 struct Followers {
-  std::vector<FollowingPin> points;  ///< of the pins, then four points on the skin for each obstacle or camera
+  std::vector<FollowingPin> points;  ///< of the pins, then four points for each obstacle or camera (see kFrameAxis)
   std::vector<PinFollower> pins;
   std::vector<PartFollower> rigid;
 };

@@ -33,7 +33,8 @@ double noise(std::uint64_t z) {
   return static_cast<double>(z >> 11) * 0x1p-52 - 1;
 }
 
-// Positions of the particles at the start: the rest shape, scaled about the position of the cloth's pose, with noise.
+// Positions of the particles at the start: those of `rest`, the mesh placed in the scene, scaled about the position of
+// the cloth's pose, with noise.
 std::vector<Vec3> start_positions(const scene::Cloth& cloth, const mesh::Mesh& rest) {
   std::vector<Vec3> x = rest.positions;
   if (cloth.start_scale == Vec2(1, 1) && cloth.start_noise == 0) return x;

@@ -28,7 +28,8 @@ struct ClothDetails {
   std::vector<std::string> warnings;
 };
 
-/// A cloth made from its table in the scene alone: `over` and the motions of its pins are still to be filled in.
+/// A cloth made from its table in the scene alone: `put_on`, `over`, and the bodies and motions of its pins are still
+/// to be filled in.
 struct MadeCloth {
   model::Cloth cloth;
   ClothDetails details;
@@ -38,8 +39,8 @@ struct MadeCloth {
 /// Rest positions of the particles of a rectangular cloth.
 mesh::Grid grid_of(const scene::Cloth& cloth);
 
-/// Throws Error(scene_invalid) if the cells of a rectangle are too uneven for contact with obstacles. make_cloth()
-/// calls this, and also checks the triangles of all other cloths.
+/// Throws Error(scene_invalid) if cloth can touch obstacles and the cells of a rectangle are too uneven for this
+/// contact. make_cloth() calls this function, and makes the same check for the triangles of all other cloths.
 void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 
 /// Makes a cloth as it starts. Throws Error(asset_unreadable, scene_invalid) with the scene line.

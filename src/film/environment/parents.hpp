@@ -9,8 +9,8 @@
 
 namespace weft::environment {
 
-/// Distance [m] from the origin of a frame, which lies on the skin, to each of its other three points. It is so small
-/// that all four follow the same skin.
+/// Distance [m] from the origin of a frame, which is the start position of the follower, to each of its other three
+/// points. It is so small that all four follow the same skin.
 inline constexpr double kFrameAxis = 1e-3;
 
 /// Rigid motion closest to that of a frame (an origin and three points along the axes, from vertex `first` on), with

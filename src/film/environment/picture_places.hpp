@@ -16,7 +16,7 @@ namespace weft::environment {
 using PicturePlaces = std::vector<std::array<Vec2, 3>>;
 
 /// `shape`: as environment::mesh_of() makes it for this scene. `tile`: size of one repetition [m], measured along the
-/// surface; if none, the picture lies once around the shape, once on each side of a box, or according to the UVs of a
+/// surface; if none, the picture lies once around a round shape, once on each flat side, or according to the UVs of a
 /// file. Seen from outside, with the front toward −y and z up, pictures are upright, and on round shapes their middle
 /// is at the front. A picture that goes around a shape is scaled to a whole number of repetitions. Throws
 /// Error(asset_unreadable) with the scene line if a file has no UVs.

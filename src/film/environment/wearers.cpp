@@ -16,7 +16,8 @@ const std::optional<Vec3>& joint(const Joints& joints, const std::string& name) 
   return joints[character::joint_number(name)];
 }
 
-/// Axes of a wearer: x to its left, z up, origin on the floor below the middle of its legs, or of its arms.
+/// Axes of a wearer: x to its left, z up, origin at the height of its lowest vertex, below the middle between its upper
+/// legs or, if these joints are unknown, its upper arms.
 Eigen::Isometry3d axes_of(const StandingBody& standing, const Vec3& up, const std::string& where) {
   for (const char* name : {"UpperLeg", "UpperArm"}) {
     const auto &left = joint(standing.joints, std::string("Left") + name),

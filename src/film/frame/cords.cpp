@@ -15,7 +15,7 @@ constexpr double kHalfGrooveDepth = 0.1;  // half the depth of the furrows betwe
 constexpr int kSidesOfStrands = 15, kSidesOfCord = 10;
 constexpr int kRingsPerStrandTurn = 8;  // number of rings per turn of the strands
 constexpr int kMaxRingsPerPiece = 12;
-constexpr std::size_t kMaxRings = 8000;  // of a rope with strands; if it needs more, strands are too fine to be visible
+constexpr std::size_t kMaxRings = 8000;  // if strands need more, they are too fine to see: a round cord is drawn
 
 bool is_closed(const Surface& chain) {
   return chain.triangles.back()[1] == chain.triangles.front()[0];
@@ -124,8 +124,9 @@ SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
   for (std::size_t r = 1; r < middles.size(); ++r)
     normals.push_back(transport_normal(normals[r - 1], middles[r - 1], tangents[r - 1], middles[r], tangents[r]));
 
-  // On a closed rope, the transported normal comes back rotated, and the strands must meet their beginnings: an added
-  // twist corrects both.
+  // `turn`: rotation of the cross-section from the start to the end of the rope, which winds the strands. On a closed
+  // rope, the strands must meet their beginnings, so the strands make whole turns; `off` makes up for the rotation of
+  // the transported normal.
   const double lay = look.thread_spacing, length = tube.chain->uv[1].x() * pieces;
   const bool has_strands = tube.sides == kSidesOfStrands && lay > 0;
   double turn = has_strands ? kTurn * length / lay : 0;

@@ -54,14 +54,14 @@ struct Appearance {
   Vec3 color{0.8, 0.8, 0.8};
   Vec3 back_color{0.8, 0.8, 0.8};  ///< cloth only: colour of the side away from weft × warp
   double roughness = 0.6;          ///< 0 mirror-like to 1 matte
-  double thread_spacing = 0;       ///< between drawn threads, or lay length of a rope [m]; 0: draws no threads
+  double thread_spacing = 0;       ///< distance of drawn threads, or lay length of a rope [m]; 0: draws no threads
   Finish finish;                   ///< cloth only
-  double metal = 0;                ///< not for cloth; at 1, all light is reflected, in `color`; none is scattered
+  double metal = 0;                ///< not for cloth: fraction of metal; at 1, all light is reflected, in `color`
   double coat = 0;                 ///< not for cloth: strength of a clear coat, 1 as glass
   double thickness = 0;            ///< thickness of cloth, visible at its borders, or diameter of a rope [m]; 0: none
-  double hem = 0;                  ///< width of borders of cloth that is folded back and sewn [m]; 0: borders are cut
+  double hem = 0;                  ///< width of the folded and sewn borders of cloth [m]; 0: borders are cut
   bool checker = false;            ///< faint grid of 0.5 m tiles on the floor, to give scale
-  Paint paint;                     ///< its picture is multiplied by `color`, or lies over `color` (Alpha::over_color)
+  Paint paint;                     ///< multiplied by `color`, or over it: Alpha::over_color, or ignored with Wrap::once
   /// true: the back shows the picture too, paler by `back_paleness`; false: the back has back_color
   bool back_painted = true;
   double back_paleness = 0;  ///< 0: as the front, 1: white
@@ -86,7 +86,8 @@ struct Surface {
   /// Bounding box in world space [m]: for a body, of its motion from time 0 to the end of the scene; for a cloth, of
   /// its start. Absent: unknown.
   std::optional<Box3> run_bounds;
-  /// Edges with a larger angle are drawn sharp [degrees] (180: all are smooth, as for cloth).
+  /// Edges at which the normals of the two faces differ by more are drawn sharp [degrees] (180: all are smooth, as for
+  /// cloth).
   double crease_angle = 30;
   Appearance appearance;
   std::vector<SurfacePart> parts;              ///< empty: all triangles have `appearance`
@@ -116,7 +117,7 @@ struct Camera {
   std::string name;
   Vec3 position{0, -3, 1.5};  ///< [m]
   Vec3 target{0, 0, 0.5};     ///< point in the middle of the picture [m]
-  double field_of_view = 35;  ///< vertical [degrees]; 0: computed
+  double field_of_view = 35;  ///< vertical [degrees]; 0: computed (`track` only)
   double aperture = 0;        ///< f-number for a film 24 mm high; 0: everything is sharp
   double focus = 0;           ///< distance of the plane in focus along the view axis [m]; 0: that of the target
 
@@ -125,7 +126,8 @@ struct Camera {
   /// with them as close as they allow. track: stands at `position` and turns toward the subjects.
   enum class Kind { placed, whole, follow, close, track };
   Kind kind = Kind::placed;
-  /// Names of surfaces; empty: all characters or, if there are none, all cloths; for `whole`: everything.
+  /// Names of surfaces. If empty: for `whole` all visible surfaces except infinite floors; for the other kinds all
+  /// characters, else all cloths, else the same as for `whole`.
   std::vector<std::string> subjects = {};
   double azimuth = 33;     ///< of the camera position at this time, from the front to the right [degrees]
   double elevation = 17;   ///< of the camera position above the subjects [degrees]

@@ -181,7 +181,8 @@ std::string unfold(const std::string& fold, Outline& outline, std::vector<std::s
   return {};
 }
 
-/// Copies from the original all properties that the mirror image does not state itself.
+/// Copies from the original the properties that the mirror image leaves at their defaults, with left and right
+/// exchanged. The fabric is not copied.
 void copy_from_original(const Panel& from, Panel& panel) {
   panel.path = from.path, panel.file = from.file, panel.id = from.id;
   if (panel.edge_names.empty()) panel.edge_names = from.edge_names;

@@ -26,7 +26,7 @@ struct PanelEdge {
 /// A flat piece of cloth. It is drawn as seen from in front of the wearer if it has a side, else from outside.
 struct Panel {
   std::string name;
-  std::optional<Side> side;    ///< empty: the front, or as `angle` states
+  std::optional<Side> side;    ///< empty: as `angle` states, else the front (on arms the outside)
   std::string path;            ///< SVG path data of the outline in metres, y upward; empty: see `file`
   std::filesystem::path file;  ///< SVG drawing that holds the outline; empty: see `path`
   std::string id;              ///< id of the element of the drawing
@@ -100,7 +100,8 @@ struct Pattern {
 
   /// Whether panels start bent around parts of a wearer; otherwise they start in front of and behind the wearer.
   bool wraps() const;
-  /// Scales outlines and start positions by `factors` (across and up the drawings); seams and hems keep their values.
+  /// Scales outlines and start positions by `factors` (across and up the drawings) and `depth` by the factor across;
+  /// all other members keep their values.
   void scale_by(const Vec2& factors);
   /// Indices of panel and edge of the edge named "panel.edge". The name exists in a checked pattern; throws
   /// Error(internal) otherwise.

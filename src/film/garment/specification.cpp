@@ -30,8 +30,9 @@ constexpr double kDefaultUnitsPerMetre = 100;  // of files that state no unit: c
 constexpr double kPredecessorOrigin = 1.12;
 // Measures of the body that the dataset's patterns are drawn for [m].
 constexpr double kChest = 0.998, kWaist = 0.843, kHip = 1.035, kHeight = 1.72;
-// If the lowest point of a pattern is below this height [m], its heights count from the predecessor's origin, else from
-// the floor. The limit is negative since flat trousers end below the heel.
+// If a pattern has the predecessor's format of curves, or if its lowest point is below this height [m], its heights
+// count from the predecessor's origin, else from the floor. The limit is negative since flat trousers end below the
+// heel.
 constexpr double kMinLowestPanel = -0.2;
 // Minimum height of the lowest point above the floor at the start [m].
 constexpr double kMinStartHeight = 0.02;

@@ -33,7 +33,7 @@ struct SpecPanel {
   Mat3 rotation = Mat3::Identity();
   Vec3 translation{0, 0, 0};  // [m]
   // Derived from the members above.
-  std::vector<std::vector<Vec2>> points;  // along each edge
+  std::vector<std::vector<Vec2>> points;  // along each edge, without its end
   bool mirrored = false;                  // drawn as seen from the inside
   Vec3 outward{0, 0, 1};
   Vec3 middle{0, 0, 0};  // of the bounding box of the outline, in space [m]

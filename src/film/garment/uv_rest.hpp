@@ -21,10 +21,10 @@ struct UvRest {
   std::string unit;  ///< name of the unit, such as "centimetres"; empty: measured against the mesh, or given
   std::size_t islands = 0;
   std::size_t mirrored = 0;  ///< number of triangles that are mirrored in the UV plane; `material` mirrors them back
-  /// Number of triangles without UVs, without an area in the UV plane, or a hundred times longer or shorter there than
-  /// in the mesh. They keep their shape in the mesh.
+  /// Number of triangles without UVs, without an area in the UV plane, a hundred times longer or shorter there than in
+  /// the mesh, or too flat there (`flattest` of rest_from_uv). They keep their shape in the mesh.
   std::size_t unusable = 0;
-  double unusable_area = 0;  ///< fraction of the area of the mesh
+  double unusable_area = 0;  ///< of unusable triangles except those too flat, as a fraction of the mesh's area
   /// Largest relative difference in length between a triangle of the mesh and its panel, over all directions: the
   /// median over the area, and the 95 % quantile.
   double median_stretch = 0, stretch_quantile_95 = 0;
@@ -40,9 +40,9 @@ struct UvRest {
 
 /// Derives the rest shape from UVs. `uv`: one entry per mesh triangle, or none. If `scale` is not given, it is the unit
 /// (metres, centimetres, millimetres or inches) at which most edges are as long as in the mesh, if a fifth of them are;
-/// else the median scale of all edges, separate for u and v if these differ by more than 5 %. `flattest`: minimum
-/// height of a triangle in the UVs, relative to the longest edge of all triangles there. Flatter triangles are unusable
-/// if they are higher in the mesh.
+/// else the median scale of all edges, or separate fitted scales for u and v if these differ by more than 5 %.
+/// `flattest`: minimum height of a triangle in the UVs, relative to the longest edge of all triangles there. Flatter
+/// triangles are unusable if they are higher in the mesh.
 UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale,
                     double flattest = 0);
 

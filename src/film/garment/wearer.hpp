@@ -46,6 +46,7 @@ class Tube {
   Tube(const Wearer& wearer, Around part);
 
   /// Girth at s, with sections moved outward by a distance [m]. The end sections continue beyond the ends of the tube.
+  /// In the dome of a hood, the girth is that of the section before it narrows.
   double girth(double s, double outward) const;
   /// The point at a length along the section from the point that faces an angle [rad]: 0 to the front, π/2 to the
   /// wearer's left.

@@ -106,7 +106,7 @@ void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {
   items.push_back(item_if("force: springs that fade around pins", fading > 0, groups(fading), "no pin has a fade"));
 }
 
-// The parts of collision detection that a scene can switch on and off.
+// The bounding volume hierarchy, and the parts of collision detection that a scene can switch on and off.
 void plan_search(const scene::Search& search, bool any, std::vector<PlanItem>& items) {
   constexpr std::array kBounds{"boxes", "18-DOPs", "26-DOPs"};
   constexpr std::array kTrees{"binary trees", "quadtrees", "octrees"};

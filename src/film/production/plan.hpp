@@ -15,9 +15,9 @@ struct PlanItem {
   std::string reason;
 };
 
-/// Lists the parts of which a simulation of this scene consists, without building it. Reads only the files of
-/// characters (size of key frames), meshes and fitted patterns (rest shapes). Throws Error(asset_unreadable,
-/// scene_invalid) if they cannot be used.
+/// Lists the parts of which a simulation of this scene can consist, without building it. Reads only the files of
+/// characters (size of key frames), and of cloths from meshes and fitted patterns (rest shapes). Throws
+/// Error(asset_unreadable, scene_invalid) if they cannot be used.
 std::vector<PlanItem> plan(const scene::Scene& scene);
 
 /// Whether anything in the scene can collide.

@@ -14,7 +14,7 @@ namespace weft::production {
 
 class SceneSimulation : public simulation::Simulation {
  public:
-  /// Throws Error(asset_unreadable, scene_invalid). Warns of pins that jump.
+  /// Throws Error(asset_unreadable, scene_invalid). Warns of pins that jump or move too fast.
   explicit SceneSimulation(const scene::Scene& scene);
 
   /// The current frame. After construction: frame 0, or the first frame of the preroll (with a negative number). Made

@@ -47,11 +47,12 @@ frame::Appearance appearance(const scene::Look& look) {
 constexpr double kGarmentHem = 0.015, kHem = 0.010;
 // Thickness per density of fabrics without a name, estimated from the named ones [m per kg/m²].
 constexpr double kThicknessPerDensity = 2.2e-3;
-// Lay length of a rope (along which a strand turns once), in diameters. Smallest diameter with strands [m]: strands
-// finer than pixels would flicker.
+// kStrandTurnLength: lay length of a rope, along which a strand turns once [diameters]. kMinTwistedDiameter: smallest
+// diameter of ropes drawn with strands [m], since strands finer than pixels would flicker.
 constexpr double kStrandTurnLength = 3.2, kMinTwistedDiameter = 0.009;
 
-/// The look of a cloth. Values that the scene does not set come from the finish of its fabric.
+/// The look of a cloth or rope. For cloth, values that the scene does not set come from the fabric, and the width of
+/// hems also from the shape.
 scene::Look look_of(const scene::Cloth& cloth) {
   scene::Look look = cloth.look;
   if (cloth.rope) {

@@ -18,7 +18,7 @@ constexpr double kClothRange = 1.5;
 constexpr double kKernelSigmas = 3;
 
 constexpr double kMaxFieldOfView = 100;   // maximum of computed fields of view [degrees]
-constexpr double kMinEyeDistance = 0.05;  // minimum distance of an eye from the centre of its subjects [m]
+constexpr double kMinEyeDistance = 0.05;  // minimum distance of orbiting and following cameras from their target [m]
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   return snapshot.stage ? snapshot.stage->up : Vec3(Vec3::UnitZ());
@@ -209,7 +209,7 @@ void CameraPath::compute_following_camera() {
 }
 
 /// Keeps the camera in place and turns it towards the centre of the subjects. If the scene gives no field of view,
-/// chooses one that shows the subjects' boxes in all frames.
+/// chooses one that shows the subjects' boxes in all frames, at most kMaxFieldOfView.
 void CameraPath::compute_tracking_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   double tangent = 0;

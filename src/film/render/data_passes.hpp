@@ -33,7 +33,7 @@ class DataPasses {
   ///   surface, 0 if it has no parts
   /// - uv.U, .V: rest coordinates (weft, warp) [m]
   /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the motion of the
-  ///   camera; a surface that `before` does not contain counts as still
+  ///   camera; a surface that `before` does not contain counts as still; 0 without `before`
   /// - heat.V: strain or speed, if Stage::heat selects one; otherwise there is no such layer
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
             const std::optional<Before>& before, image::Layers& layers);

@@ -6,7 +6,7 @@
 namespace weft::render {
 namespace {
 
-constexpr double kLineOpacity = 0.62;  // fraction of a pixel's light that a line removes
+constexpr double kLineOpacity = 0.62;  // fraction by which a line lowers sRGB values
 constexpr double kDepthTolerance =
     4e-3;  // relative depth tolerance: an edge farther behind the visible surface is hidden
 

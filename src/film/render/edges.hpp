@@ -10,8 +10,8 @@
 
 namespace weft::render {
 
-/// Darkens `picture` (format as in Outlines) along the edges of the faces that are visible according to `seen`. Lines
-/// are one pixel wide and antialiased. Surface i has the number kFirstSurface + i.
+/// Darkens `picture` (format as for Outlines::smooth()) along the edges of the faces that are visible according to
+/// `seen`. Lines are one pixel wide and antialiased. In `seen`, surface i has the number kFirstSurface + i.
 void draw_edges(std::span<const SurfaceBuffers> surfaces, const View& view, int width, int height,
                 std::span<const Seen> seen, std::span<std::uint64_t> picture);
 

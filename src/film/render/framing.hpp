@@ -17,8 +17,8 @@ bool is_subject(const frame::Surface& surface);
 /// Smallest box around all subjects [m]; a cube of 1 m around the origin if there are none.
 Box3 subject_bounds(const frame::FrameSnapshot& snapshot);
 
-/// Box around all places that the subjects reach during the run [m]; the same in all frames. Backdrop and floor
-/// depend on it. If the snapshot stores no such box: subject_bounds().
+/// Box around Surface::run_bounds of all subjects [m]: the motion of bodies and the start of cloth. It is the same in
+/// all frames, since backdrop and floor depend on it. If no subject has such bounds: subject_bounds().
 Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot);
 
 /// The camera for scenes that name none: it shows the whole run.

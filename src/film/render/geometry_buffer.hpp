@@ -33,7 +33,7 @@ class GeometryBuffer {
 
   /// Whether a surface of the last picture has a texture, or parts of different colours.
   bool painted() const { return painted_; }
-  /// Whether some cloth has visible hems or seams.
+  /// Whether some surface of the last picture is drawn with hems and seams.
   bool trimmed() const { return trimmed_; }
   /// For each range of a painted mesh: the opacity of its picture, or null if it has no holes. Class Holes needs it.
   std::vector<const Opacity*> opacity_of(const PaintedMesh& mesh);

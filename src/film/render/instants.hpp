@@ -19,13 +19,14 @@ struct Instant {
 /// Empty if there is no blur: if `shutter` is 0 and `lens` is false.
 std::vector<Instant> instants(double shutter, bool lens, int count);
 
-/// Interpolates positions and lights linearly between a frame (back = 0) and the one before (back = 1). What `before`
-/// lacks stays as in `now`.
+/// Interpolates linearly between a frame (back = 0) and the one before (back = 1): time, positions, and direction,
+/// position, target and intensity of lights. What `before` lacks stays as in `now`.
 frame::FrameSnapshot between(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before, double back);
+/// The same for position, target and field of view of a camera.
 frame::Camera between(const frame::Camera& now, const frame::Camera& before, double back);
 
-/// The camera with its eye moved to a point of its lens, and turned so that points in focus stay at the same place of
-/// the picture.
+/// The camera with its eye moved to a point of its lens, and turned so that the point in focus on its view axis stays
+/// in the middle of the picture. A camera without aperture stays unchanged.
 frame::Camera through_lens(const frame::Camera& camera, const Vec3& up, const Vec2& lens);
 
 }  // namespace weft::render

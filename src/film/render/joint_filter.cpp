@@ -9,11 +9,11 @@ namespace weft::render {
 namespace {
 
 constexpr int kFilterReach = 2;      // points to either side
-constexpr float kNarrow = 1.5f;      // like kWide, but for shadows, whose edges may be sharp [steps]
+constexpr float kNarrow = 1.5f;      // like kWide below, but in smooth_where(), for edges of shadows [steps]
 constexpr float kAny = 1e9f;         // value of `wide` for which the distance does not matter
 constexpr float kNoise = 0.05f;      // difference of values that halves a weight
 constexpr float kPlaneSlack = 0.5f;  // distance from the tangent plane that halves a weight [points]
-constexpr float kWide = 6;           // in-plane distance that halves a weight [steps]; large for oblique floors
+constexpr float kWide = 6;           // distance in space that halves a weight [steps]; large for oblique floors
 
 /// Data of one row of points.
 struct Rows {
@@ -34,7 +34,7 @@ template <int kCount>
 using Values = Eigen::Array<float, kCount, 1>;
 
 /// Weights of kCount points of row `there`, from k on, in the means at kCount points of row `here`, from i on. `wide`:
-/// distance along the surface that halves the weight [points].
+/// distance in space that halves the weight [points].
 template <int kCount>
 Values<kCount> likeness(const Rows& here, int i, const Rows& there, int k, float wide) {
   using Real = Values<kCount>;

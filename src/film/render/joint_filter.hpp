@@ -14,12 +14,13 @@ namespace weft::render {
 /// `scratch`: as many planes as `planes`; their content is overwritten.
 void smooth(std::span<Plane> planes, std::span<Plane> scratch, const PixelPoints& points, int step);
 
-/// Averages one plane in the same way, but over shorter distances, and only at points whose `wanted` is above 0.
-/// Neighbours count if their `known` is above 0.
+/// Averages one plane over 5 x 5 points in a single pass, with weights as in smooth() that decrease over shorter
+/// distances, and only at points whose `wanted` is above 0. Only neighbours whose `known` is above 0 count. `scratch`
+/// is overwritten.
 void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane& known, const PixelPoints& points,
                   int step);
 
-/// Interpolates the values at the points `few` (row by row) to rows `begin` to `end` of `many`, the denser points of
+/// Interpolates the values at the points `few` (row by row) to rows [`begin`, `end`) of `many`, the denser points of
 /// the same picture.
 void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few, const PixelPoints& many, int begin,
                  int end, std::span<Eigen::Vector4f> results);

@@ -6,7 +6,8 @@
 
 namespace weft::render {
 
-/// Directions from eight points toward a lamp, and the intensity at these points: 1 for a sun, and at a spot's target.
+/// Directions from eight points toward a lamp, and its relative intensity at these points: 1 for a sun; for a spot, 1
+/// at its target.
 struct Toward {
   Lanes3 direction;  ///< unit length
   Lanes distance;    ///< of a spot [m]; 1e30 for suns

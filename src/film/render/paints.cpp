@@ -33,7 +33,7 @@ GLint gl_wrap(Wrap wrap) {
   return GL_REPEAT;
 }
 
-/// Converts linear light to the bytes of an sRGB texture, with an error below half a byte.
+/// Converts linear light to a byte of an sRGB texture, with an error below one level of 255.
 std::uint8_t srgb_byte(float linear) {
   constexpr int kSteps = 8192;  // adjacent bytes are 2.5 steps apart near black, more elsewhere
   static const auto kTable = [] {

@@ -48,7 +48,7 @@ class PixelPoints {
   int height() const { return height_; }
   int divisor() const { return divisor_; }
 
-  /// What a point shows; beyond the picture: Kind::nothing.
+  /// What a point of row y shows; beyond the ends of the row, up to Plane::kBorder: Kind::nothing.
   Kind kind(int x, int y) const { return static_cast<Kind>(static_cast<int>(kinds_.row(y)[x])); }
   /// The functions below return values of eight points of row y, from x on. kinds(): numbers of the enumeration.
   Lanes kinds(int x, int y) const { return Eigen::Map<const Lanes>(kinds_.row(y) + x); }
@@ -57,11 +57,11 @@ class PixelPoints {
   /// Height of the smooth surface above the drawn one, along the normal [m].
   Lanes rises(int x, int y) const { return Eigen::Map<const Lanes>(rise_.row(y) + x); }
 
-  /// The functions below return a row. surfaces(): number as in Seen; -1 beyond the picture.
+  /// The functions below return a row. surfaces(): number as in Seen; -1 beyond the ends of the row.
   const float* surfaces(int y) const { return surface_.row(y); }
   const float* position(int axis, int y) const { return position_[axis].row(y); }
   const float* normal(int axis, int y) const { return normal_[axis].row(y); }
-  /// Points per metre, perpendicular to the line of sight.
+  /// Points per metre, perpendicular to the view axis.
   const float* densities(int y) const { return density_.row(y); }
 
  private:

@@ -17,6 +17,7 @@ std::uint64_t encoded(const Eigen::Vector3f& linear);
 
 /// 8-bit image, top row first. Dithers by half a level either way, so that wide gradients show no bands.
 image::Image to_image(std::span<const std::uint64_t> rgba, int width, int height);
+/// 16-bit image, top row first, not dithered.
 image::Image16 to_image16(std::span<const std::uint64_t> rgba, int width, int height);
 
 }  // namespace weft::render

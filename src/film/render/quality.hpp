@@ -11,7 +11,7 @@ struct QualitySettings {
   int ambient_divisor;  ///< ratio of picture size to that of the light from surroundings and surfaces
   int shadow_rays;      ///< rays per lamp for each shadow point in a penumbra; no multiple of 5, see trace_lamp()
   int ambient_rays;     ///< rays per point for the light from surroundings and surfaces
-  int instants;         ///< sharp pictures averaged for motion blur or depth of field
+  int instants;         ///< sharp pictures averaged for depth of field; at most this number for motion blur alone
   bool refines;         ///< draws cloth that has few triangles with four times as many
   bool trims;           ///< draws hems, seams and edges of cloth, and translucent cloth
   bool mirrors;         ///< glossy floors reflect the subjects

@@ -20,7 +20,7 @@ float random_fraction(unsigned ray, unsigned triangle) {
   return static_cast<float>(((state >> 22u) ^ state) >> 8) / 16777216.0f;
 }
 
-/// Opacity of a triangle at barycentric coordinates u, v, from the picture that cuts holes into it.
+/// Opacity of a triangle at barycentric coordinates u, v: that of the mesh, times that of a picture that cuts holes.
 float opacity_at(const DrawnMesh& mesh, std::size_t triangle, float u, float v) {
   if (mesh.holes == nullptr) return mesh.opacity;
   const auto ranges = mesh.holes->ranges();
@@ -63,7 +63,7 @@ void put(const Rays& rays, RTCRay8& to) {
 
 }  // namespace
 
-// Embree uses the same kernels on every processor, so that pictures do not depend on the processor.
+// One build uses the same Embree kernels on every processor, so that its pictures do not depend on the processor.
 #ifdef __AVX2__
 constexpr const char* kKernels = "isa=avx2";
 #else

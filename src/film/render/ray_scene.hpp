@@ -65,7 +65,7 @@ class RayScene {
   /// 1 for each wanted ray that meets a surface, else 0. A surface with holes or an opacity below 1 stops a random
   /// fraction of the rays, equal to its opacity at that point.
   Lanes blocked(const Rays& rays) const;
-  /// The nearest surface that each wanted ray meets.
+  /// The nearest surface that stops each wanted ray; which rays pass is random as in blocked().
   Hits nearest(const Rays& rays) const;
 
  private:

@@ -51,9 +51,8 @@ ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame:
   };
   if (plain || surface.painted() == nullptr) return {{range(look, 0)}};
   ReflectingSurface result;
-  const std::size_t pieces = surface.refined() ? 4 : 1;  // triangles drawn for each one
   for (const PaintedRange& each : surface.painted()->ranges)
-    result.ranges.push_back(range(*each.look, pieces * (each.first + each.count)));
+    result.ranges.push_back(range(*each.look, each.first + each.count));
   return result;
 }
 

@@ -26,7 +26,7 @@
 namespace weft::render {
 namespace {
 
-// Cloth with at most this number of triangles is refined; the triangles of finer meshes are small enough.
+// Cloth is refined if all cloths together have at most this number of triangles: those of finer meshes are small.
 constexpr std::size_t kMaxRefinedTriangles = 20000;
 constexpr std::size_t kMaxPeeledLayers = 4;  // overlapping layers of translucent cloth
 constexpr double kMaxMotionPerPicture =
@@ -180,7 +180,7 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const
       next.push_back(std::move(*known));
       passes->surfaces.erase(known);
     } else {
-      // With layers for compositors, cloth is drawn without refinement: the layers show the simulated faces.
+      // With layers for compositors, cloth is drawn without refinement and rims: the layers show the simulated faces.
       const bool cloth = surface->kind == frame::ObjectKind::cloth;
       const bool free = cloth && !settings.layers;
       next.emplace_back(gl, surface,
@@ -391,8 +391,8 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
     return make_view(between(camera, camera_before, back), up_of(moved), settings.aspect(), subject_bounds(moved),
                      find_floor(moved, up_of(moved)));
   };
-  // Without depth of field: draws so many pictures that the motion in each is at most kMaxMotionPerPicture pixels, and
-  // smears each picture along its motion.
+  // Without depth of field: draws so many pictures, up to `instants`, that the motion in each is at most
+  // kMaxMotionPerPicture pixels, and smears each picture along its motion.
   int count = quality.instants;
   const bool smears = camera.aperture <= 0;
   if (smears) {

@@ -21,7 +21,7 @@ struct Settings {
   Backend backend = Backend::automatic;
   std::string camera;   ///< name; empty: the first or, if there is none, one that shows the whole run
   int threads = 0;      ///< number of threads of the software rasteriser; 0: its default
-  bool layers = false;  ///< whether layers() will be called
+  bool layers = false;  ///< whether layers() will be called; pictures are then sharp, without blur
   bool deep = false;    ///< whether deep() will be called
   std::optional<frame::Stage::Look> look;  ///< overrides that of the scene
   std::optional<double> motion_blur;       ///< shutter angle [degrees]; overrides that of the scene
@@ -29,7 +29,7 @@ struct Settings {
   double aspect() const { return static_cast<double>(width) / height; }
 };
 
-/// Time that one picture took; other work of the process does not count.
+/// Time that one picture took. The CPU time excludes other work of the process.
 struct DrawTimes {
   double wall_seconds = 0, cpu_seconds = 0;
 };

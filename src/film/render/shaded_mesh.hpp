@@ -53,8 +53,8 @@ struct ShadedMesh {
 
 /// The normal of a corner is the area-weighted mean over the triangles of its vertex star whose normals differ from
 /// that of its own triangle by less than `crease_angle` [degrees, 0 to 180]. With 180 no vertex is split, and under
-/// mesh refinement the normals converge to those of the smooth surface. If all these triangles are degenerate, it is
-/// +z.
+/// mesh refinement the normals converge to those of the smooth surface. If the mean is zero, as for degenerate
+/// triangles, the normal is +z.
 ShadedMesh shade(std::span<const Triangle> triangles, const CornerMap& corners, std::span<const Vec3> positions,
                  double crease_angle);
 

@@ -132,7 +132,8 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
 }
 
 // The light of a sun on open floor, and the fading of the floor into the backdrop, vary so slowly over the picture that
-// they can be interpolated on a grid. The edges of spots and checkers cannot.
+// they can be interpolated on a grid. The edges of checkers, pictures and reflections cannot, nor can those of spots,
+// except in qualities with spots_on_grid.
 Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const Features& features)
     : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.tiled &&
                     !features.reflecting) {

@@ -31,7 +31,7 @@ class Shading {
     bool checker = false;     ///< checkered floor
     bool tiled = false;       ///< the floor shows the picture of set_floor()
     bool painted = false;     ///< the geometry buffer has colours
-    bool trimmed = false;     ///< the geometry buffer has hems
+    bool trimmed = false;     ///< the geometry buffer has hems and seams
     bool shiny = false;       ///< the floor mirrors lamps
     bool reflecting = false;  ///< the whole floor shows the picture of a Mirror
     bool sheer = false;       ///< cloth writes its opacity
@@ -88,8 +88,8 @@ class Shading {
   Eigen::Matrix<float, 2, 4> floor_picture_from_world_ = Eigen::Matrix<float, 2, 4>::Zero();
 };
 
-/// Fraction of the light that cloth stops at normal incidence: 1 for dense weaves, which scatter light to the other
-/// side, but through which nothing is visible.
+/// Fraction of the light that a surface stops at normal incidence. It is below 1 only for sheer cloth: dense weaves
+/// scatter light to the other side, but nothing is visible through them.
 double opacity_of(const frame::Surface& surface);
 
 /// Whether a body, such as the mannequin, shows skin where no picture covers its colour.

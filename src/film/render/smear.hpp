@@ -16,7 +16,8 @@ struct PixelMotion {
   float nearness = 0;
 };
 
-/// Length of the longest path in the picture that a visible vertex of a subject moves between two frames [pixels].
+/// Largest displacement in the picture between two frames [pixels], of all vertices of subjects that are beyond the
+/// near plane in both frames and inside the picture in the frame `to`, occluded or not.
 double longest_motion(const frame::FrameSnapshot& from, const View& from_view, const frame::FrameSnapshot& to,
                       const View& to_view, int width, int height);
 

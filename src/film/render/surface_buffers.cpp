@@ -190,7 +190,7 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
   }
 }
 
-/// Trims depend on rest coordinates only, so one upload suffices.
+/// Trims depend on rest coordinates only, so one upload suffices until the number of drawn vertices changes.
 void SurfaceBuffers::upload_trims() {
   std::vector<Trim> trims;
   for (const Index v : mesh_.source) trims.push_back(trims_->at(v));

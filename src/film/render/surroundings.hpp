@@ -18,7 +18,7 @@ struct Style {
   Vec3 zenith = Vec3::Ones();     ///< backdrop straight above, relative to fully lit floor
   double glow = 0;                ///< the backdrop is brighter by this fraction behind the subjects
   double floor_tint = 1;          ///< factor on the colour of the floor
-  double floor_roughness = 1;     ///< upper limit of the floor's roughness
+  double floor_roughness = 1;     ///< upper limit of the roughness of a floor, unless the floor is fully matte (1)
   double toe = 0;                 ///< linear light below which tones are darkened, as film does; 0: unchanged
   bool exposes = true;            ///< direct light is increased until floor shows its own colour
   bool plain = false;             ///< all surfaces are clay, without own colours

@@ -20,8 +20,8 @@ constexpr int kFirstRays = 1;     // rays per point of the first pass, which fin
 constexpr int kFloorTile = 16;    // side of a tile of shaded floor [pixels]
 constexpr int kPenumbraTile = 8;  // side of a tile in which penumbrae are searched [points]
 constexpr int kMirrorRays = 4;
-// No rays start where the cosine between normal and light is below this value, except from cloth, which lets light
-// through. Skin shows light slightly beyond the terminator (surface.frag).
+// No shadow rays start where the cosine between normal and light is below this value (on the floor: 0). From cloth,
+// which lets light through, they always start. Skin shows light slightly beyond the terminator (surface.frag).
 constexpr float kLeastCosine = -0.2f;
 // Changes of the floor's light below this fraction are ignored: half a level of 255.
 constexpr float kUnseen = 0.002f;

@@ -152,7 +152,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   const double radius = 0.5 * surroundings.diagonal().norm();
   const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
   const Vec3 shown = style.floor_tint * lighting.exposure.floor;
-  // A sky has its own colour, a backdrop the colour of the floor.
+  // A style with a coloured horizon has a sky with colours of its own; a grey backdrop takes the colour of the floor.
   const auto behind = [&](const Vec3& color) -> Vec3 { return sky ? color : shown.cwiseProduct(color); };
 
   FrameUniform frame;

@@ -41,8 +41,8 @@ struct PixelArea {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Smallest area that contains the points in view, with a margin of one pixel; the whole picture if a point is not in
-/// front of the viewer.
+/// Smallest area that contains the points in view, with a margin of one pixel; the whole picture if a point is nearer
+/// than the near plane; empty without points.
 PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height);
 
 /// The frame block of shaders/frame.glsl, in the layout std140.
@@ -59,7 +59,7 @@ static_assert(offsetof(FrameUniform, eye_world) == 2 * 64 && offsetof(FrameUnifo
 /// Strength of the direct light, and the light that open floor shows.
 struct Exposure {
   Vec3 direct = Vec3::Ones();  ///< factor on every light for each channel
-  Vec3 floor = Vec3::Zero();   ///< linear colour that open floor shows; without a floor, that of the environment light
+  Vec3 floor = Vec3::Zero();   ///< linear colour that open floor shows; without a floor, 0.8 times Style::sky_color
 };
 
 /// Exposes for the floor, as product photographers do for a white ground. Direct light is increased, never decreased,

@@ -12,7 +12,8 @@ namespace {
 
 // Displacement of the start that should not affect the result [m].
 constexpr double kStartDisplacement = 1e-6;
-// The motion is chaotic if kStartDisplacement grows to more than this fraction of the step and solver errors.
+// The motion is chaotic if kStartDisplacement grows more than tenfold and to more than this fraction of the step and
+// solver errors.
 constexpr double kChaosRatio = 0.3;
 // It is also chaotic if the displacement grows more than a thousandfold, however large those errors are.
 constexpr double kMaxAmplification = 1e3;
@@ -89,7 +90,7 @@ class Companions {
   Change change_with_step(double ratio);
 
   scene::Scene scene_;
-  Trajectory run_;  // in `scene_`
+  Trajectory run_;  // run of `scene_`, with which companions are compared
   const CompanionOptions& options_;
   ErrorEstimate result_;
 };
@@ -118,7 +119,7 @@ ErrorPart Companions::part(ErrorSource source, const std::function<Errors()>& me
 }
 
 // Difference to a companion with the shortest step that is at least `ratio` times the step of the run and divides a
-// frame evenly.
+// frame evenly; for time.tolerance, to one with a tolerance that multiplies the steps by `ratio`.
 Change Companions::change_with_step(double ratio) {
   scene::Scene companion = scene_;
   if (scene_.time.tolerance) {

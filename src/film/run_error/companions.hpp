@@ -48,10 +48,11 @@ struct CompanionOptions {
 /// Estimates the distance of a run from the limit of infinitely short, exactly solved steps, and with options.mesh of
 /// infinitely small cells. Companions: particles moved at random by up to a micrometre at the start; a tenth of
 /// solver.newton_tolerance; and, with that tolerance, half and twice the step (time.tolerance accordingly), and half
-/// and a quarter of the cells along each side. Differences between steps and between meshes are extrapolated by
-/// Richardson's method with the observed order, clamped to between 0.5 and 1 times the expected order. Only the frames
-/// in `run` are compared. If a companion other than that with twice the step fails, its part is marked as missing.
-/// Throws Error(interrupted) if options.proceed returns false.
+/// and a quarter of the cells along each side. A fixed step as long as a frame is not doubled, and cells are quartered
+/// only if four remain along each side. Differences between steps and between meshes are extrapolated by Richardson's
+/// method with the observed order, clamped to between 0.5 and 1 times the expected order; with only one companion, with
+/// 0.75 times the expected order. Only the frames in `run` are compared. If a companion other than that with twice the
+/// step fails, its part is marked as missing. Throws Error(interrupted) if options.proceed returns false.
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options = {});
 
 }  // namespace weft::run_error

@@ -22,7 +22,7 @@ enum class Quantity : std::size_t {
   drift,        ///< error of the same energy in the last frame, likewise relative
   centre,       ///< centre of mass in the last frame [m]
   top,          ///< height of the highest particle in the last frame [m]
-  shadow,       ///< sum of all cloths' areas as seen from above in the last frame, relative to the area at the start
+  shadow,       ///< area of all cloths seen from above in the last frame, relative to their surface area at the start
   rest_energy,  ///< elastic + gravitational in the last frame, relative to energies_in_play
 };
 inline constexpr std::size_t kQuantities = 8;
@@ -42,7 +42,7 @@ inline double at(const Errors& errors, Quantity quantity) {
 struct Functionals {
   std::vector<double> energy;   ///< kinetic, elastic and gravitational, frame by frame [J]
   double energies_in_play = 0;  ///< largest kinetic + largest elastic + range of potential energy [J]
-  double shadow = 0;            ///< relative to the area at the start
+  double shadow = 0;            ///< see Quantity::shadow
   double top = 0;               ///< [m]
   double rest_energy = 0;       ///< [J]
   Vec3 centre{0, 0, 0};         ///< [m]
@@ -79,7 +79,7 @@ class Recorder {
  private:
   std::size_t cloths_;
   Vec3 up_;
-  // area of all cloths in frame 0 [m²]; largest kinetic, largest elastic, lowest and highest potential energy [J]
+  // surface area of all cloths in frame 0 [m²]; largest kinetic and elastic, lowest and highest potential energy [J]
   double start_area_, kinetic_, elastic_, low_, high_;
   frame::SnapshotPtr last_;
   Trajectory trajectory_;
@@ -102,14 +102,16 @@ Errors compare(const Functionals& run, const Functionals& reference);
 /// with particle i if `same` is empty. Velocities are compared only if both motions have them.
 Errors compare(const Trajectory& run, const Trajectory& reference, const std::vector<std::size_t>& same = {});
 
-/// Longest side of the box around the largest cloth [m].
+/// Longest side of the bounding box of the largest cloth or rope [m].
 double cloth_size(const frame::FrameSnapshot& snapshot);
 
 /// The median of each value.
 Functionals median(const std::vector<Functionals>& samples);
 
-/// can_refine: whether every cloth can have `refinement` times the cells along each side. refine: changes the scene.
+/// Whether every cloth is a grid that can have `refinement` times the cells along each side: a multiple of an eighth
+/// that gives a whole number of cells, at least two.
 bool can_refine(const scene::Scene& scene, double refinement);
+/// Gives all cloths that are grids `refinement` times the cells along each side.
 void refine(scene::Scene& scene, double refinement);
 
 /// For each particle of the scene, the particle at the same place in the scene with twice the cells along each side.

@@ -13,7 +13,7 @@ namespace weft::scene {
 struct CameraKey {
   double time = 0;                          ///< [s]
   Vec3 position{0, 0, 0}, target{0, 0, 0};  ///< [m]
-  double field_of_view = 35;                ///< vertical [degrees]
+  double field_of_view = 35;                ///< vertical [degrees]; 0 (kind `track`): as wide as the subject needs
   double focal_length = 0;                  ///< [mm]; replaces the field of view; 0: none
 };
 
@@ -24,13 +24,13 @@ inline bool is_computed(CameraKind kind) {
   return kind != CameraKind::placed && kind != CameraKind::file;
 }
 
-/// Vertical field of view of computed cameras [degrees]: a portrait lens, with little distortion.
+/// Default vertical field of view of computed cameras except `track` [degrees]: a portrait lens, little distortion.
 inline constexpr double kComputedFieldOfView = 30;
 
 struct Camera {
   std::string name;
   CameraKind kind = CameraKind::placed;
-  std::vector<CameraKey> keys;  ///< at least one; with one, placed cameras stand still and computed ones use its lens
+  std::vector<CameraKey> keys;  ///< at least one; computed cameras use its lens and, for `track`, its position
   motion::Interpolation interpolation = motion::Interpolation::cubic;
   std::vector<std::string> subjects =
       {};                  ///< names; if empty: for `whole` all but infinite floors, for others characters, else cloths
@@ -39,7 +39,7 @@ struct Camera {
   double orbit = 0;        ///< rate at which the azimuth grows [degrees/s]
   double margin = 0.14;    ///< width of the free margin around the subject / half of the picture's size
   double smoothing = 0.5;  ///< time over which the paths of subject and camera are smoothed [s]
-  double aperture = 0;     ///< f-number for 24 mm film; 0: everything is sharp
+  double aperture = 0;     ///< f-number, for a film 24 mm high or the given sensor; 0: everything is sharp
   double focus = 0;        ///< focus distance [m]; 0: that of the target
   std::filesystem::path file = {};  ///< file with the path and the lens of the camera
   std::string object = {};          ///< name of the camera's node in the file; empty: the only camera

@@ -22,7 +22,7 @@ namespace weft::scene {
 namespace {
 
 constexpr double kMaxFrames = 100000;
-constexpr long kMaxParticles = 4'000'000;  // of all cloths together: the solver's data fit into a large workstation
+constexpr long kMaxParticles = 4'000'000;  // of all rectangles; the solver's data then fit into a large workstation
 
 template <class Entries>
 std::vector<std::string> names_of(const Entries& entries) {
@@ -112,9 +112,9 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
       findings.report(path + ".vertex_group",
                       "expected none for a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
-  if (rectangle_particles(cloth) == 0) return;  // the number of particles is known only after the file is read
-  // A part between two rows of particles holds no particle, which is a mistake. The lambda returns the place of the
-  // nearest row if the part contains no row, else nothing.
+  if (rectangle_particles(cloth) == 0) return;  // other shapes have no rows of particles
+  // A part between two rows of particles holds no particle, which is a mistake. If the part contains no row, the lambda
+  // returns the position of the nearest row as a fraction of the cloth's size, else nothing.
   const auto nearest_missed_row = [](double low, double high, int count, double grading) {
     std::optional<double> nearest;
     const auto distance = [&](double at) { return std::max({low - at, at - high, 0.0}); };
@@ -207,7 +207,7 @@ void check_attachments(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reports an `over` that names no cloth, or that closes a cycle.
+/// Reports each `over` that names no cloth, and the first one that closes a cycle.
 void check_layers(const Scene& scene, Findings& findings) {
   const std::vector<std::string> names = names_of(scene.cloths);
   for (std::size_t i = 0; i < scene.cloths.size(); ++i)
@@ -270,7 +270,7 @@ void check_shape(const Shape& shape, const std::string& path, Findings& findings
   }
 }
 
-// Checks a body that forces move. For a body without mass or density, reports the keys that need one.
+// Checks an obstacle that forces move. If it has neither mass nor density, reports its keys that need one of them.
 void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::string& path, Findings& findings) {
   if (!is_dynamic(obstacle)) {
     for (const auto& [key, is_given] :
@@ -351,7 +351,8 @@ void check_characters(const Scene& scene, Findings& findings) {
   }
 }
 
-/// All keys of a camera must give the lens in the same way, by angle or focal length, since keys are interpolated.
+/// Reports keys that give the lens in another way than the camera itself (angle or focal length), since keys are
+/// interpolated, and settings without the key to which they belong.
 void check_lens(const Camera& camera, const std::string& path, Findings& findings) {
   const bool by_focal_length = has_focal_length(camera);
   if (!by_focal_length && findings.has(path + ".sensor_width"))

@@ -33,7 +33,7 @@ inline Look rope_look() {
 /// Rotation about the fixed x, then y, then z axis by the given angles [degrees].
 Quat from_angles(const Vec3& degrees);
 
-/// Rows for the rotation of a pose.
+/// Rows for the rotation of a pose. `otherwise`: text about the default.
 template <class S, class Member>
 void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherwise) {
   const auto of = [pose](S& s) -> Pose& { return std::invoke(pose, s); };
@@ -62,7 +62,7 @@ void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_o
   rotation_rows(rows, pose, otherwise);
 }
 
-/// Looks of objects other than cloth.
+/// Rows of the looks of obstacles and of characters.
 const Table& obstacle_look_rules();
 const Table& character_look_rules();
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /// Larger files are skipped: no reader accepts them.
 constexpr std::uintmax_t kMaxDependencyBytes = std::uintmax_t{256} << 20;
 
-/// Longer texts are not taken for file names: 255 bytes for the name itself, and more for its folders.
+/// Longer texts do not count as file names. The limit leaves 255 bytes for the name itself, the rest for its folders.
 constexpr std::size_t kMaxFileNameBytes = 1024;
 
 bool is_alphanumeric(char c) {
@@ -38,7 +38,7 @@ bool has_extension(std::string_view text) {
          !std::ranges::all_of(ending, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Decodes %20 and similar escapes of addresses in glTF and Collada files.
+/// Decodes %20 and similar escapes of addresses in glTF and Collada files, and replaces \ by /.
 std::string decode_escapes(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -98,7 +98,8 @@ class DependencyWalk {
     if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"), use);
   }
 
-  /// Visits a file that names no others, such as a picture. Returns its content if it has not been visited before.
+  /// Visits a file without the files that it names. Returns its content; nothing if the file was visited before, is
+  /// unreadable or too large.
   std::optional<std::string> visit_alone(const fs::path& file, FileUse use) {
     std::error_code error;
     if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return {};

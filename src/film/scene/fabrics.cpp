@@ -247,7 +247,8 @@ constexpr Row kRows[] = {
      .finish = Finish{0.35, 0.5, 0.1, 0, Threads::none}},
 };
 
-// Cotton scatters light, wool is fuzzy, filaments shine; transparency depends on weight and openness.
+// Cotton scatters light, wool is fuzzy, filaments shine. Fabrics that differ from this, for example in transparency,
+// have a finish in their row.
 Finish finish_of(const Row& row) {
   if (row.finish) return *row.finish;
   return row.fibre == Fibre::cotton ? Finish{0.1, 0.5, 0.4, 0.2}

@@ -28,7 +28,7 @@ struct Measurements {
 };
 
 struct Fabric {
-  Material material;  ///< derived from `measured`; its member `fabric` is the name
+  Material material;  ///< from `measured`, except contact, friction and drag; `fabric` is the name
   Measurements measured;
   Finish finish;       ///< chosen by fibre and weave, not measured
   bool frays;          ///< cut edges fray, so they are hemmed
@@ -36,8 +36,8 @@ struct Fabric {
   std::string source;  ///< publication of the measurements
 };
 
-/// Load of the KES extension test (500 gf/cm) [N/m], and the load of worn cloth (20 gf/cm, as in FAST) [N/m], up to
-/// which Material's `stretch` is the secant stiffness.
+/// kExtensionLoad: load of the KES extension test (500 gf/cm) [N/m]. kWornLoad: load of worn cloth (20 gf/cm, as in
+/// FAST) [N/m]; Material's `stretch` is the secant stiffness up to this load.
 inline constexpr double kExtensionLoad = 490.3, kWornLoad = 19.6;
 
 /// All named fabrics; the first is the default and equals Material{}.

@@ -6,12 +6,12 @@
 
 namespace weft::scene {
 
-/// Whether an obstacle moves by prescribed motion: by its own keys or, if it follows a body directly or through others,
-/// by the motion of that body. A character counts as moving. Motion by forces does not count.
+/// Whether an obstacle moves by prescribed motion: by two or more keys of its own or, if it follows a body directly or
+/// through others, by the motion of that body. A character counts as moving. Motion by forces does not count.
 bool moves(const Scene& scene, const Obstacle& obstacle);
 
 /// Reports each `follow` of an obstacle or camera that names no body, or a character without a part. For obstacles,
-/// also reports the first cycle, and each `follow` of a body that forces move.
+/// also reports the first cycle, and each `follow` of an obstacle that forces move.
 void check_following(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

@@ -13,13 +13,14 @@ namespace weft::scene {
 bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner);
 
 /// For each cloth, the number of layers below it: the length of the longest chain of cloths, each worn over the next. 0
-/// for cloth next to the skin.
+/// for cloth that is worn over no other.
 std::vector<std::size_t> layer_depths(const Scene& scene);
 
 using model::Layer;
 
 /// All layers from the skin outward, at least one. They are put on one after the other, each in an equal number of
-/// frames, from the start of the preroll until the first character with `dressing` moves.
+/// frames, from the start of the preroll until the first character with `dressing` moves or, if none moves earlier,
+/// until the end of the preroll.
 std::vector<Layer> list_layers(const Scene& scene);
 
 }  // namespace weft::scene

@@ -48,8 +48,8 @@ std::optional<toml::table> parse_value(std::string_view text, const std::string&
   return is_plain_word(text) ? parse(fmt::format("\"{}\"", text)) : std::nullopt;
 }
 
-/// The entry of a list with this name or index; null if there is none. Appends the names of the other entries to
-/// `names`.
+/// The entry of a list with this name, else with this index; null if there is none. If no entry has the name, `names`
+/// receives the names of all entries that have one.
 toml::node* find_entry(toml::array& list, const std::string& part, std::vector<std::string>& names) {
   for (toml::node& entry : list) {
     const auto* table = entry.as_table();

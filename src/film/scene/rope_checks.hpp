@@ -6,7 +6,8 @@
 
 namespace weft::scene {
 
-/// Reports ropes whose start shape is not defined, and ropes with pieces that are too short for contact.
+/// Reports ropes whose start shape is not defined, ropes with pieces that are too short for contact or with the name of
+/// a cloth, and too many particles.
 void check_ropes(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

@@ -65,7 +65,8 @@ struct Time {
   Integrator integrator = Integrator::implicit_euler;
 };
 
-/// Colours of a cloth or of one of its panels, and a picture on it, aligned with the grain.
+/// Colours of an object or of one panel of a cloth, and a picture on it. On cloth, the picture is aligned with the
+/// grain.
 struct Paint {
   Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
   std::optional<Vec3> back_color;              ///< sRGB, other side of cloth; absent: paler than the front
@@ -100,16 +101,16 @@ struct Look : Paint {
   Threads threads = Threads::plain;   ///< of the fabric
   double cloth_thickness = 0;         ///< thickness of the fabric itself, or of a rope [m]
   double thread_spacing = 0.0006;     ///< cloth only: spacing of the drawn threads [m]; 0: draws no threads
-  std::optional<double> hem;          ///< width of hems [m]; cloth only; 0: cut edges
+  std::optional<double> hem;          ///< cloth only: width of hems [m]; 0: cut edges; absent: by fabric and shape
   bool checker = false;               ///< floors only
   bool strands = true;                ///< ropes only: drawn with twisted strands
   bool visible = true;
 };
 
-/// Pose in which a pin holds its particles at one time. They rotate about their centroid.
+/// Pose in which a pin holds its particles at one time. The particles rotate about their centroid.
 struct PinKey {
   double time = 0;  ///< [s], strictly increasing
-  Pose pose;        ///< position: of the centroid, relative to its start or in the world
+  Pose pose;        ///< position: of the centroid, relative to its start; if `in_world`, in the world
   bool in_world = false;
 };
 
@@ -121,7 +122,8 @@ struct PinTrack {
 enum class VertexColor { none, red, green, blue, brightness };
 
 /// Particles of a cloth inside [low, high], in fractions of its rest size along weft and warp. `mask`, `vertex_color`
-/// and `vertex_group` give each particle a fraction from 0 to 1, its part in the effect; several are multiplied.
+/// and `vertex_group` give each particle a fraction from 0 to 1, its part in the effect; if several are given, their
+/// fractions are multiplied.
 struct ClothPart {
   std::string panel;  ///< of a pattern: only this panel, with fractions of its size; empty: all
   Vec2 low{0, 0}, high{1, 1};
@@ -223,10 +225,10 @@ struct Rope {
   std::optional<Vec3> from, to;                        ///< its ends, if it has no points [m]
   bool smooth = false;                                 ///< curved through its points; else straight between them
   bool closed = false;                                 ///< its end joins its beginning
-  std::optional<double> length;                        ///< rest length [m]; absent: length at the start
+  std::optional<double> length;                        ///< rest length [m]; absent: of the first key, else at the start
   Interpolation interpolation = Interpolation::cubic;  ///< between its keys
   std::vector<RopeKey> keys;                           ///< keys of its length; empty: constant length
-  std::optional<int> segments;                         ///< number of pieces between particles; absent: by diameter
+  std::optional<int> segments;                         ///< pieces between particles; absent: by length and diameter
   double diameter = 0.008;                             ///< contact diameter [m]
   int material = 0;                                    ///< index into rope_materials()
   std::optional<double> mass, stretch, bend;  ///< mass per length [kg/m], EA [N], EI [N·m²]; absent: by material
@@ -281,7 +283,7 @@ struct Travel {
 
 /// How a skinned body moves.
 struct Acting {
-  std::optional<std::string> clip;  ///< name of a clip in `motion` or, without, in the body; absent: the first
+  std::optional<std::string> clip;  ///< name of a clip in `motion` or, without it, in the body; absent: the first
   std::optional<std::filesystem::path> motion;  ///< file with the motion to transfer; absolute after checking
   FileUp motion_up = FileUp::as_file;           ///< up axis of `motion`
   std::vector<JointNames> joints;
@@ -341,8 +343,8 @@ struct Character {
   double grow = 0;             ///< first part of `dressing`: it grows from its bones to its size [s]
   double start = 0;            ///< time of the clip at which the motion begins [s]
   double speed = 1;            ///< factor on the speed of the clip
-  std::optional<double> room;  ///< clearance between limbs for cloth [m]; absent: from cloth thickness
-  std::optional<double> keys_per_second;  ///< key frames per second [Hz]; absent: those of the clip
+  std::optional<double> room;  ///< clearance between limbs [m]; absent: see clearance_between_limbs()
+  std::optional<double> keys_per_second;  ///< key frames per second [Hz]; absent: from the rate of the clip
   Interpolation interpolation = Interpolation::cubic;
   double friction = 0.3;
   bool collide = true;
@@ -394,8 +396,8 @@ struct Scene {
   std::filesystem::path file;
   std::string name;  ///< file name without extension; names the output
   std::string title;
-  std::uint64_t hash = 0;                    ///< hash of the checked values, independent of comments and order
-  std::uint64_t simulation_hash = 0;         ///< hash of only the values that affect the simulation
+  std::uint64_t hash = 0;                    ///< hash of values and files, independent of comments and order
+  std::uint64_t simulation_hash = 0;         ///< hash of only the values and files that affect the simulation
   std::vector<std::filesystem::path> files;  ///< files that for_each_dependency() visits
   UpAxis up = UpAxis::z;
   Time time;

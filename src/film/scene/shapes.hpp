@@ -1,4 +1,4 @@
-// Shapes of obstacles.
+// Shapes of obstacles. All lengths are in [m].
 #pragma once
 
 #include <filesystem>

@@ -17,7 +17,7 @@ enum class Codec { automatic, h264, h264_lossless, ffv1, prores };
 
 struct Settings {
   int width = 1280, height = 720;  ///< [pixels]; odd sizes are padded by one column or row unless the codec keeps RGB
-  double fps = 25;                 ///< frames per second; frame k is shown at exactly k / fps (23.976: 24000/1001)
+  double fps = 25;                 ///< [1/s] (23.976: 24000/1001); frame k is shown at k / fps (Matroska: to 1 ms)
   Codec codec = Codec::automatic;
   int crf = 18;                     ///< for h264: x264 constant quality, 1 to 51; smaller is better
   std::string preset = "veryfast";  ///< x264 preset
@@ -30,7 +30,8 @@ struct Settings {
 /// the process is killed.
 class Encoder {
  public:
-  /// Opens the temporary file. Throws Error(output_failed) if settings are out of range or the file cannot be written.
+  /// Opens the temporary file. Throws Error(output_failed) if settings are out of range or the file cannot be written,
+  /// Error(usage) as codec_of() does.
   Encoder(const std::filesystem::path& file, const Settings& wanted);
   ~Encoder();  ///< without finish(): removes the temporary file
   Encoder(const Encoder&) = delete;
@@ -42,7 +43,7 @@ class Encoder {
 
   /// Flushes the encoder, moves the index to the front, verifies by reading that each frame has its time, and renames
   /// the file to its final name. At least one frame must have been added. Throws Error(output_failed). If all frames
-  /// are encoded but the finished file cannot be made, partial_name(file) keeps them, which the error names.
+  /// are encoded but the finished file cannot be made, partial_name(file) keeps them, and the error names that file.
   void finish();
 
   int frames() const;

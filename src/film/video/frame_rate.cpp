@@ -7,8 +7,8 @@
 namespace weft::video {
 namespace {
 
-// Relative tolerance for broadcast rates. With two or three decimals, they are within 1.1e-6 of n * 1000/1001; the
-// nearest other decimals, such as 23.98, are 1e-4 away.
+// Relative tolerance for broadcast rates n * 1000/1001. Their usual decimals, such as 23.976, differ from them by at
+// most 1.1e-6; other numbers with three decimals differ by at least 7e-6 (119.881).
 constexpr double kBroadcastTolerance = 5e-6;
 
 // Maximum numerator and denominator. The time unit of MP4, a power of two times the numerator, then fits into 32 bits.

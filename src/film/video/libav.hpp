@@ -22,7 +22,7 @@ struct LibavDeleter {
   void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
 };
 
-/// Closes the file, ignoring errors, which Mp4Writer::close() reports, and frees the context.
+/// Closes the file and frees the context. Ignores errors; Mp4Writer::close() reports them.
 struct OutputDeleter {
   void operator()(AVFormatContext* output) const;
 };

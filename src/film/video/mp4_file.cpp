@@ -59,7 +59,7 @@ bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
 }
 
-// Delay between decoding and showing the first frame, in frames; 0 if the file has only one of these times.
+// Delay between decoding and showing the first frame [frames]; 0 if there is no frame or one of these times is missing.
 std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
   const InputPtr input = open_video(file, reported_file);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);

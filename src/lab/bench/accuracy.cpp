@@ -119,12 +119,12 @@ class Campaign {
   const EachRun& each_;
   const AccuracyPlan& plan_;
   Accuracy result_;
-  std::vector<double> steps_;  // descending [s]
+  std::vector<double> steps_;  // measured fixed steps, descending [s]
   std::vector<Integrator> integrators_;
-  double finest_ = 0, scene_step_ = 0;  // [s]
+  double finest_ = 0, scene_step_ = 0;  // shortest measured step, even_step() of the scene's step [s]
   Integrator best_, other_;             // integrators of the two references
   SamplePtr reference_;
-  double work_ = 0, work_done_ = 0;  // [steps]
+  double work_ = 0, work_done_ = 0;  // expected and finished; see work_of()
 };
 
 Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan)
@@ -232,7 +232,7 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
 // Repeatedly divides by ten the newton_tolerance of `twice`, the setting of a reference with twice its step. Stops at
 // kMinNewtonTolerance, if a run fails, or if a division changes the result by less than the starts differ or by less
 // than a tenth of what halving the step is expected to change. `coarse` becomes the last successful run. Returns the
-// last change.
+// last change. Throws if the first of these runs fails, or a run with twice the step of `twice`.
 Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
   const double order = expected_order({.setting = twice});
@@ -383,8 +383,8 @@ void Campaign::measure_linear() {
   }
 }
 
-// Runs meshes from fine to coarse and compares each with the mesh of twice the cells along each side. Lists the results
-// from coarse to fine.
+// Runs meshes from fine to coarse and compares each, except the finest, with the mesh of twice the cells along each
+// side. Lists the results from coarse to fine.
 void Campaign::measure_meshes() {
   std::map<double, SamplePtr> by_refinement;  // factors are multiples of an eighth, exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
@@ -404,7 +404,7 @@ void Campaign::measure_meshes() {
     by_refinement[refinement] =
         run(tried, against,
             against ? run_error::matching_particles_in_refined(scene_with(tried.setting)) : std::vector<std::size_t>{});
-    // Meshes that serve only as a comparison are not listed.
+    // Meshes that serve only as a comparison are not listed, unless they fail.
     const bool extra = plan_.meshes ? !asked.contains(refinement) : refinement == kRefinements[0];
     if (extra && !tried.failed()) continue;
     if (!against && !tried.failed()) tried.failure = "nothing finer to compare with";

@@ -30,7 +30,7 @@ struct Setting {
 
 /// The parameter that varies within a series of runs; the error is expected to fall along it.
 enum class Axis {
-  grid,       ///< fixed steps; for each, solver.newton_tolerance falls tenfold from run to run
+  grid,       ///< fixed steps; for each, solver.newton_tolerance falls tenfold from run to run until the step decides
   tolerance,  ///< time.tolerance varies, with the solver settings of the scene
   linear,     ///< solver.linear_tolerance varies, at the scene's step
   mesh,       ///< cells vary; the error is the difference to the mesh with twice the cells along each side
@@ -50,9 +50,9 @@ struct Run {
   /// `change` is at most a tenth of the error of the run with a tenth of this newton_tolerance, or at most the
   /// uncertainty of that error.
   bool step_decides = false;
-  Work work = {};  ///< CPU time is the minimum over all starts; a short single run is timed twice
+  Work work = {};  ///< of the first start; CPU time: minimum over all starts, or over two runs of a short single start
   int particles = 0;
-  std::vector<double> start_errors = {};  ///< error of each start alone, in the deciding quantity
+  std::vector<double> start_errors = {};  ///< error of each start alone, in the deciding quantity; empty for Axis::mesh
 
   bool failed() const { return !failure.empty(); }
 };
@@ -74,6 +74,7 @@ struct Candidate {
   Errors step{};    ///< error due to its step, extrapolated from the difference to the run with twice the step
   Errors solver{};  ///< change that a tenfold newton_tolerance causes, measured at twice the step
   Errors spread{};  ///< as Run::spread
+  /// As Functionals::energies_in_play [J].
   double energies_in_play = 0;
 
   /// Uncertainty of this run: root of the sum of squares of the three errors above.
@@ -81,12 +82,12 @@ struct Candidate {
 };
 
 /// Check of the reference by the run of an integrator with the shortest measured step. The check is made only if the
-/// step decides in that run.
+/// step decides in that run and in a run with a longer step.
 struct CrossCheck {
   Setting setting;
   Errors apart{};  ///< difference to the reference
-  Errors doubt{};  ///< uncertainty of this run: difference to the next longer step, extrapolated with half of the
-                   ///< order, plus the spread over the starts
+  Errors doubt{};  ///< uncertainty of this run: difference to the next longer step in which the step decides,
+                   ///< extrapolated with half of the order (with contact 0.5), plus the spread over the starts
 };
 
 struct Accuracy {
@@ -113,7 +114,7 @@ struct Accuracy {
   std::vector<const Run*> series(Axis axis, scene::Integrator integrator) const;
   /// The run with the scene's own settings; nullptr if there is none.
   const Run* scene_setting_run() const;
-  /// For Axis::grid: for each step the run in which the step decides.
+  /// For Axis::grid: for each step the run in which the step decides, if there is one.
   std::vector<const Run*> decided(scene::Integrator integrator) const;
 };
 
@@ -134,10 +135,10 @@ void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross
 /// Runs the scene some hundred times. With contact, each setting runs from several starts that differ by micrometres,
 /// and their median counts. Two references are computed independently: with midpoint and BDF2, or with contact with
 /// BDF2 and Euler, as midpoint does not damp contact. Their steps are an eighth (with contact half) of the shortest
-/// measured step. Their newton_tolerance is lowered until a tenfold decrease changes the result by less than a tenth of
-/// the step error, or by less than the starts differ. The more certain one becomes the reference, and is checked by the
-/// run of each integrator with the shortest step. Throws Error(simulation_failed) if both references fail, and
-/// Error(usage) if the plan does not suit the scene.
+/// measured step. Their newton_tolerance is lowered until, at twice their step, a tenfold decrease changes the result
+/// by less than a tenth of the step error or less than the starts differ, or until it is 1e-8 or a run fails. The more
+/// certain one becomes the reference, and is checked by the run of each integrator with the shortest step. Throws
+/// Error(simulation_failed) if both references fail, and Error(usage) if the plan does not suit the scene.
 Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each = {}, const AccuracyPlan& plan = {});
 
 }  // namespace weft::bench

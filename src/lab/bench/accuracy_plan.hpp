@@ -8,7 +8,8 @@
 
 namespace weft::bench {
 
-/// If a list is absent, the program chooses it; an empty list omits its axis.
+/// If a list is absent, the program chooses it; an empty list omits its runs, except that with the scene's own
+/// time.tolerance.
 struct AccuracyPlan {
   std::optional<std::vector<scene::Integrator>> integrators;
   std::optional<std::vector<double>> steps;       ///< relative to the scene's time.step

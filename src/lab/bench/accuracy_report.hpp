@@ -9,10 +9,11 @@
 
 namespace weft::bench {
 
-/// Runs of all integrators. runs_of_axis: all runs of one axis. deciding: the runs of Axis::grid in which the step
-/// decides. with_solver_of_scene: the runs of Axis::grid with the solver settings of the scene.
+/// All runs of one axis, of all integrators.
 std::vector<const Run*> runs_of_axis(const Accuracy& accuracy, Axis axis);
+/// The runs of Axis::grid in which the step decides, of all integrators.
 std::vector<const Run*> deciding(const Accuracy& accuracy);
+/// The runs of Axis::grid with the newton_tolerance of the scene, of all integrators.
 std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy);
 
 /// All runs with all errors, for other programs; an unknown value is an empty field.
@@ -23,10 +24,11 @@ std::string work_svg(const std::string& title, const Accuracy& accuracy);
 /// Errors against step, solver tolerance and mesh.
 std::string settings_svg(const std::string& title, const Accuracy& accuracy);
 
-/// The cheapest run whose error is certainly at most `target`, as are the errors of all finer runs of its axis and
-/// integrator; nullptr if there is none.
+/// The cheapest run of Axis::grid or Axis::tolerance whose error plus uncertainty is at most `target`, as for all finer
+/// runs of its axis and integrator; nullptr if there is none.
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target);
-/// The Pareto front: runs for which no other run is both cheaper and more exact, cheapest first.
+/// The Pareto front of Axis::grid and Axis::tolerance, cheapest first: runs for which no other run is both cheaper and
+/// more exact (by error plus uncertainty).
 std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity);
 
 /// One line: which setting to use, its cost, and the cost of the scene's setting. The target error is 1 % of the

@@ -31,8 +31,8 @@ bool is_candidate(const Run& run) {
   return !run.failed() && (run.axis == Axis::grid || run.axis == Axis::tolerance);
 }
 
-// Whether `a` is finer than `b`: the same axis and integrator, and a smaller time.tolerance, or of step and
-// newton_tolerance one smaller and none larger.
+// Whether `a` is finer than `b`. Both must have the same axis and integrator; `a` must have a smaller time.tolerance
+// or, with fixed steps, a smaller step or newton_tolerance and neither of them larger.
 bool is_finer(const Run& a, const Run& b) {
   if (a.axis != b.axis || a.setting.integrator != b.setting.integrator) return false;
   if (a.axis == Axis::tolerance) return a.setting.tolerance < b.setting.tolerance;
@@ -155,7 +155,8 @@ std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
       line.cost_of_a_digit(), each);
 }
 
-// Errors due to step and solver, at the scene's step and integrator, and due to the mesh of the scene.
+// Errors due to step and solver, at the scene's step and integrator, and due to the mesh of the scene. If the scene has
+// time.tolerance, the error of the solver alone is not known.
 std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
   std::map<std::string, double> left;
   for (const Run& run : accuracy.runs) {

@@ -16,9 +16,9 @@ inline constexpr std::array kLoads{4.9, 19.6, 98.07, scene::kExtensionLoad};
 
 struct FabricRun {
   scene::Fabric fabric;
-  std::array<double, 2> drape{}, drape_in_scenes{};  ///< of two specimens, exact and with default tolerance [1]
+  std::array<double, 2> drape{}, drape_in_scenes{};  ///< coefficients of two specimens; see cusick::Solved [1]
   Cantilever elastic = {}, as_it_is = {};            ///< without and with bending friction
-  std::array<double, kLoads.size()> weft{}, warp{};  ///< extension at each load [1]
+  std::array<double, kLoads.size()> weft{}, warp{};  ///< extension along weft and warp, at each load [1]
   double cpu_s = 0;
 
   double mean_drape() const { return 0.5 * (drape[0] + drape[1]); }

@@ -87,9 +87,11 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
       return !same(&Material::stretch_viscosity, &Material::shear_viscosity, &Material::bend_viscosity,
                    &Material::bend_friction, &Material::drag);
     case VariedParameter::friction:
+      varied = scene;
       return std::ranges::any_of(frictions(varied), [](const double* value) { return *value != 0; }) &&
              (scene.contact.self || scene.contact.obstacles);
-    // A step is never longer than a frame, so a larger time.step has no effect beyond that.
+    // A step is never longer than a frame. Successive factors differ by 2: if half of a factor already gives a step of
+    // at least a frame, that factor changes nothing.
     case VariedParameter::step:
       return scene.time.tolerance || scene.time.step * (factor > 1 ? 0.5 * factor : factor) < 1 / scene.time.fps;
     case VariedParameter::mesh:

@@ -14,9 +14,9 @@ namespace weft::bench {
 /// The varied parameter; the scene's own values are multiplied by a factor.
 enum class VariedParameter : std::size_t {
   stiffness,  ///< stretch, shear and bending of all cloths
-  step,       ///< time.step, or time.tolerance
+  step,       ///< time.step, and time.tolerance if the scene has it
   mass,       ///< density of all cloths, and their attached weights
-  friction,   ///< of all cloths, obstacles, characters and pairs
+  friction,   ///< coefficients of all cloths, obstacles, characters with their parts, and pairs
   damping,    ///< viscosities, bending friction and air drag of all cloths
   mesh,       ///< cells along each side
 };
@@ -25,10 +25,10 @@ std::string_view name_of(VariedParameter axis);
 
 using Factors = std::array<double, kVariedValues>;
 
-/// Faults: surfaces touch or pass through each other, cloth exceeds `max_stretch` or is pinched by an obstacle, pinned
-/// particles lag behind their targets, energy appears from nothing, or the solver leaves unbalanced forces. A trial
-/// breaks if it has a fault that the unchanged scene does not have, or does not run to the end. For the unchanged scene
-/// itself, every fault counts.
+/// Faults: surfaces touch or pass through each other, cloth exceeds `max_stretch` by more than a tenth or is pinched by
+/// an obstacle, pinned particles lag behind their targets, energy appears from nothing, or the solver leaves unbalanced
+/// forces. A trial breaks if it has a fault that the unchanged scene does not have, or starts but does not run to the
+/// end. For the unchanged scene itself, every fault counts.
 enum class TrialVerdict {
   holds,       ///< ran to the end, with no fault except those of the unchanged scene
   warned,      ///< ran to the end, with a fault that the unchanged scene does not have

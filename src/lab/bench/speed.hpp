@@ -59,16 +59,17 @@ struct SpeedRun {
   double largest_gain(std::size_t number) const;
 };
 
-/// Measured frames, half-open interval; earlier frames are simulated too. Frame 0, the initial state, takes no time.
+/// Measured frames `begin` to `end` − 1; earlier frames are simulated too. Frame 0, the initial state, takes no time.
 struct SpeedFrames {
   int begin = 1, end = 9;
 };
 
-/// Runs the scene with the given settings and returns its cost. Call it in a process of its own: it measures the memory
-/// of the process, and assigns the CPU time of all its threads to stages. If `open_drawing` is given, it is called
-/// after the preroll; the function that it returns then draws frame 0 and each measured frame. Throws what a simulation
-/// throws.
+/// Draws one frame.
 using Drawing = std::function<void(const frame::FrameSnapshot&)>;
+/// Runs the scene, to which the caller has applied the size and step of `setting` (overrides_of()), and returns its
+/// cost. Call it in a process of its own: it measures the memory of the process, and assigns the CPU time of all its
+/// threads to stages. If `open_drawing` is given, it is called after the preroll; the function that it returns then
+/// draws frame 0, which is not measured, and each measured frame. Throws what a simulation throws.
 SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, const SpeedFrames& frames,
                        const std::function<Drawing()>& open_drawing = {});
 
@@ -76,9 +77,10 @@ SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, c
 template <class Archive>
 void serialize(Archive& archive, SpeedRun& run);
 
-/// Lower bound on the bytes that one iteration moves through memory: each operation reads its inputs and writes its
-/// results once. A Newton iteration is counted without its linear iterations.
+/// Lower bound on the bytes that one linear iteration moves through memory: each operation reads its inputs and writes
+/// its results once.
 double bytes_of_linear_iteration(const SpeedRun& run);
+/// The same for one Newton iteration, without its linear iterations.
 double bytes_of_newton_iteration(const SpeedRun& run);
 /// Time that forces, preconditioner and linear solver would take if memory bandwidth were the only limit [s]; 0 if the
 /// bandwidth is unknown.

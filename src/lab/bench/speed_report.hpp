@@ -19,11 +19,12 @@ struct SpeedReport {
 /// One row per run, for other programs. Times are milliseconds per frame; an unknown value is an empty field.
 Table speed_table(const std::vector<SpeedRun>& runs);
 
-/// Successful runs that differ in one setting. over_sizes: ascending sizes, with the smallest number of threads and the
-/// scene's step. over_threads: ascending numbers of threads, at this size and the scene's step. over_steps: from the
-/// longest step to the shortest.
+/// Successful runs of ascending sizes, with the smallest number of threads and the scene's step.
 std::vector<const SpeedRun*> over_sizes(const std::vector<SpeedRun>& runs);
+/// Successful runs of ascending numbers of threads, at this size and the scene's step.
 std::vector<const SpeedRun*> over_threads(const std::vector<SpeedRun>& runs, double size);
+/// Successful runs from the longest step to the shortest, at the size and number of threads of the first run with
+/// another step than the scene's; empty if there is none.
 std::vector<const SpeedRun*> over_steps(const std::vector<SpeedRun>& runs);
 
 /// Exponent with which a value grows with the number of particles between two runs; nullopt unless the particles

@@ -114,7 +114,7 @@ Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limi
 
 namespace {
 
-// A square sheet, held at two corners [m, kg/m²].
+// Side [m], density [kg/m²], and particles along each side of the square sheet.
 constexpr double kWidth = 0.5, kDensity = 0.2;
 constexpr int kParticles = 11;
 

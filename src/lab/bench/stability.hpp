@@ -55,13 +55,13 @@ struct MapCell {
   double stiffness;  ///< of stretch [N/m]
   double step;       ///< [s]
   Outcome outcome = {};
-  /// Simulated duration in periods of the swinging sheet and of the stiffest mode of the mesh.
+  /// Simulated duration, relative to swing_period() and to stiffest_period().
   double swings = 0, stiffest_periods = 0;
 };
 
-/// Periods of the map's sheet [s]. swing_period: of the sheet as a rigid plate that swings about its upper edge.
-/// stiffest_period: of neighbouring particles of a thread that vibrate against each other.
+/// Period of the map's sheet as a rigid plate that swings about its upper edge [s].
 double swing_period();
+/// Period of neighbouring particles of a thread of the map's sheet that vibrate against each other [s].
 double stiffest_period(double stiffness);
 
 /// Simulates a sheet of 11 × 11 particles, held at two corners, that swings down, for each combination of eleven powers

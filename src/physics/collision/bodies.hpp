@@ -16,7 +16,7 @@ namespace weft::collision {
 struct BodyTraits {
   bool deformable = false;  ///< its vertices are particles, which the solve moves
   double thickness = 0;     ///< half of it adds to the activation distance of a pair [m]; 0 for obstacles
-  double friction = 0;      ///< Coulomb coefficient; a pair uses the geometric mean
+  double friction = 0;      ///< Coulomb coefficient; see ContactMaterial
   bool moving = true;       ///< false: its vertices never leave their start positions
   bool rigid = false;       ///< its vertices keep their distances from each other
   Index frame = -1;         ///< if deformable and rigid: first of its four frame particles; −1: none
@@ -26,10 +26,11 @@ struct BodyTraits {
 struct Patch {
   std::span<const std::uint8_t> vertices;  ///< one flag per vertex of the body; 1: belongs to the patch
   double thickness = 0;                    ///< [m]
-  double friction = 0;                     ///< Coulomb coefficient; a pair uses the geometric mean
+  double friction = 0;                     ///< Coulomb coefficient; see ContactMaterial
 };
 
-/// Contact material of a vertex. Each body has one, followed by one for each of its patches.
+/// Contact material of a vertex. Each body has one, followed by one for each of its patches. Two materials in contact
+/// use the geometric mean of their friction, unless ContactParameters::friction has coefficients for their bodies.
 struct ContactMaterial {
   std::size_t body = 0;
   double thickness = 0, friction = 0;
@@ -72,10 +73,10 @@ class Bodies {
   std::size_t material_of(Index vertex) const { return material_of_[vertex]; }
 
   /// Number, within its body, of the first triangle that has these corners in any order. For an edge, repeat its second
-  /// end: the result is the first triangle at that edge.
+  /// end: the result is the first triangle at that edge. If there is none, the result is the number of triangles.
   Index triangle_of(const Triangle& corners) const;
 
-  /// The section of a global array that belongs to this body.
+  /// The section of an array over all vertices that belongs to this body.
   template <class T>
   std::span<T> part(std::size_t body, std::span<T> values) const {
     return values.subspan(surfaces_[body].first_vertex, surfaces_[body].vertex_count);

@@ -81,7 +81,7 @@ void CandidateCache::cover(const Motion& motion, double margin) {
   margin_ = margin;
 }
 
-// Finds the obstacles that an axis-aligned plane separates from all cloth, by bounding boxes. The clearance of two
+// Finds the obstacles that an axis-aligned plane separates from all particles, by bounding boxes. The clearance of two
 // detection distances allows for the margins of both sides.
 void CandidateCache::find_clear_bodies(const Motion& motion) {
   const auto extend = [&](std::size_t body, Box3& box) {
@@ -104,7 +104,8 @@ void CandidateCache::find_clear_bodies(const Motion& motion) {
   }
 }
 
-// Refits the bounds of all bodies except obstacles that stay where they are.
+// Refits the bounds of all bodies except obstacles that rest where they rested at the last fit, if the margin is the
+// same.
 void CandidateCache::refit(const Motion& motion, double margin) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto stays = [&](std::span<const Vec3> x) {

@@ -15,7 +15,7 @@ namespace weft::collision {
 
 struct SearchParameters {
   bool self = true;        ///< cloth against itself and other cloth
-  bool obstacles = true;   ///< cloth against obstacles
+  bool obstacles = true;   ///< cloth or rigid bodies against obstacles or rigid bodies
   bool reuse = true;       ///< keep candidate pairs while no vertex has moved far
   bool coherence = false;  ///< keep closest points instead, by velocity cones (see CoherentDetection)
   BroadPhaseOptions broad_phase = {};
@@ -23,12 +23,13 @@ struct SearchParameters {
 
 /// Collects candidate pairs for the trajectories of all vertices from x_t0 to x_t1, with bounds enlarged by a margin at
 /// both ends. The pairs stay valid for all trajectories whose ends lie inside these bounds. The margin is half the
-/// detection distance. In a slow step, a Verlet margin is added; a step is slow if no vertex moves farther than the
-/// Verlet margin along an axis. As long as no vertex has moved farther than that since the pairs were collected, all
-/// features that are near now were within radius() of each other at that time. Cloth at rest is searched once.
+/// detection distance. If SearchParameters::reuse is set and the step is slow, a Verlet margin of 2 ·
+/// Numerics::Contact::margin detection distances is added; a step is slow if no vertex moves as far as the Verlet
+/// margin along an axis. As long as no vertex has moved farther than that since the pairs were collected, all features
+/// that are near now were within radius() of each other at that time. Cloth at rest is searched once.
 ///
-/// An obstacle that an axis-aligned plane separates from all cloth may move on its side of that plane without
-/// invalidating the pairs.
+/// A clear obstacle is one that an axis-aligned plane separates from all particles. It may move on its side of that
+/// plane without invalidating the pairs, and its motion does not count above.
 ///
 /// Bounds at the start and at the end are compared separately, so surfaces that move together with a gap between them
 /// are not listed (measured: 4 instead of 70 pairs per particle in sphere_drape at 256²).
@@ -57,7 +58,8 @@ class CandidateCache {
   double radius() const { return 2 * margin_; }
   double detection_distance() const { return detection_distance_; }
 
-  /// Whether each vertex is within the Verlet margin of its collected start (see radius()), or is_kept_clear().
+  /// Whether each vertex at x is within the Verlet margin of the start for which the pairs were collected (exactly
+  /// there if no margin was added), or is_kept_clear(). Like the next two functions, false if no pairs are valid.
   bool covers_start(std::span<const Vec3> x) const;
   /// Whether each vertex at x is inside the bounds of its end, or is_kept_clear(). If so, the pairs include all that
   /// can meet on the trajectory from a covered start to x.
@@ -66,21 +68,22 @@ class CandidateCache {
   /// True only if the pairs contain all features that are near each other at x, an end of the trajectory.
   bool lists_near(std::span<const Vec3> x) const;
 
-  /// Whether a vertex at x lies in the half-space that contains its obstacle and no cloth.
+  /// Whether a vertex at x lies in the half-space that contains its obstacle and no particle; false if there is none.
   bool is_kept_clear(std::size_t vertex, const Vec3& x) const;
 
-  /// For callers that collect pairs themselves: declares them valid within `margin` [m] of the given trajectory.
+  /// For callers that collect pairs themselves: declares them valid for ends within `margin` [m] of x_t1, and for
+  /// starts within `margin` less half the detection distance of x_t0.
   void cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     find_clear_bodies(Motion(x_t0, x_t1));
     cover(Motion(x_t0, x_t1), margin);
   }
 
-  /// Whether cloth cannot meet this body while covers_start() and covers_end() are true.
+  /// Whether no particle can meet this body, an obstacle, while covers_start() and covers_end() are true.
   bool is_clear(std::size_t body) const { return clear_[body].sign != 0; }
 
   /// The pairs of surfaces that are searched.
   const std::vector<SurfacePair>& wanted() const { return wanted_; }
-  /// The hierarchies. Their bounds contain the vertices on every covered trajectory.
+  /// The hierarchies. Their bounds contain the vertices on every covered trajectory, except those of clear obstacles.
   BroadPhase& hierarchies() { return broad_phase_; }
   const BroadPhase& hierarchies() const { return broad_phase_; }
 
@@ -111,7 +114,7 @@ class CandidateCache {
   // Positions for which the pairs were collected [m]: starts, and boxes of the ends.
   std::vector<Vec3> from_, low_, high_;  // high_ is empty if it equals low_
   double margin_ = -1;                   // [m]; negative: no pairs
-  /// Half-space without cloth: sign · x[axis] >= from. A trajectory with both ends inside stays inside.
+  /// Half-space without particles: sign · x[axis] >= from. A trajectory with both ends inside stays inside.
   struct HalfSpace {
     int axis = 0;
     double sign = 0;                                        // ±1; 0: no such half-space

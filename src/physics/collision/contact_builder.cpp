@@ -192,7 +192,7 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double fra
     }
   }
   if (mass_weight == 0) return std::nullopt;
-  // Between cloth and a heavy body the lighter side decides the stiffness.
+  // If a rigid body touches cloth or another rigid body, the lighter side decides the stiffness.
   if (is_rigid && side_weight[0] > 0 && side_weight[1] > 0) {
     const std::size_t lighter = side_mass[0] * side_weight[1] < side_mass[1] * side_weight[0] ? 0 : 1;
     mass = side_mass[lighter], mass_weight = side_weight[lighter];

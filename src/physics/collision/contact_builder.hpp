@@ -26,7 +26,7 @@ struct PairFriction {
 };
 
 struct ContactParameters {
-  double stiffness = 100;                   ///< minimum stiffness, which stiffness_fraction() then multiplies [N/m]
+  double stiffness = 100;                   ///< minimum of the full stiffness, see stiffness_fraction() [N/m]
   double step = 0.01;                       ///< h in Numerics::Contact::inertial_stiffness [s]
   std::vector<PairFriction> friction = {};  ///< pairs with coefficients of their own
 };
@@ -43,8 +43,9 @@ struct StepMotion {
 ///     suffices for 1, such as a box edge on smooth cloth);
 ///   - as the contact direction leaves a wedge (see Proximity): a neighbouring face is then closer;
 ///   - as a closest point approaches the end of an edge.
-/// Because it fades, no contact switches on or off while cloth rests. Without cloth (two rigid bodies) only the second
-/// condition counts, because the rims of stacked boxes may cross where no vertex is near.
+/// Because it fades, no contact switches on or off while cloth rests. Without cloth (a rigid body against another one
+/// or an obstacle) only the second condition counts, because the rims of stacked boxes may cross where no vertex is
+/// near.
 double stiffness_fraction(const Proximity& proximity, bool with_cloth = true);
 
 class ContactBuilder {
@@ -66,11 +67,11 @@ class ContactBuilder {
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts for a failing pair: two triangles without a separating plane. `features`: their closest features at
-  /// x_from. If motion.is_straight(), adds one contact of these features, which only prevents them from coming closer.
-  /// In a continued step, that contact restores the activation distance. Further contacts then keep each corner on its
-  /// side of the plane between the triangles, because other features could slide past the closest ones. With velocity
-  /// constraints, a pair of cloth and obstacle gets walls (see VelocityConstraints) for the corners of the cloth
-  /// instead. Returns false if the features had a contact of full stiffness before.
+  /// x_from. Adds one contact of these features, unless they have one of full stiffness already; it then returns false.
+  /// If motion.is_straight(), that contact only prevents them from coming closer. In a continued step, it restores the
+  /// activation distance, and further contacts keep each particle on its side of the plane between the triangles,
+  /// because other features could slide past the closest ones. With velocity constraints, a pair with an obstacle gets
+  /// walls (see VelocityConstraints) for the corners of the other triangle instead.
   bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
                    ContactResponse& response);
 

@@ -12,7 +12,7 @@
 namespace weft::collision {
 namespace {
 
-// Distance below which features get contacts [m].
+// Distance below which features are near, so that they may get contacts [m].
 double detection_distance_of(const Bodies& bodies) {
   double max_thickness = 0;
   for (const ContactMaterial& material : bodies.materials())
@@ -159,8 +159,8 @@ bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, st
 }
 
 // Finds near pairs at the expected end of the step. On a curved surface, contact directions found at the start would
-// oppose sliding and take energy. A pair that no plane separates on the trajectory is searched at the start, where its
-// features are still on their own sides.
+// oppose sliding and take energy. A pair that no plane of constant direction separates on the trajectory is searched at
+// the start, where its features are still on their own sides.
 void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<FeatureKey> failing;
   for (const auto& [a, b] : failing_)

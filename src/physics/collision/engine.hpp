@@ -2,7 +2,7 @@
 //
 //   CandidateCache     broad phase: candidate pairs of triangles, kept while valid
 //   Separation         a separating plane for each pair, which also bounds its distance from below
-//   ProximityFinder    narrow phase: near pairs of features at the expected end of the step
+//   ProximityFinder    narrow phase: near pairs of features at the expected end of the step, or at its start
 //   ContactBuilder     near pairs -> contacts with stiffness, activation distance, friction
 //   ContactResponse    contacts in the solve, as springs or as velocity constraints
 //   Separation         checks the solved step; pairs that would meet get contacts or are pushed apart
@@ -50,8 +50,9 @@ class Engine {
                   std::span<const RigidMotion> motions = {});
 
   /// Continues the step from x [m], which was reached without an intersection and has the obstacles at their end. Finds
-  /// contacts anew around x, and adds contacts for all pairs that were pushed apart in this step. Friction still
-  /// measures slip from the start of the step. x replaces x_t0 in the calls that follow and must outlive the step.
+  /// contacts anew around x, and adds contacts for all pairs for which push_apart() was called since begin_step().
+  /// Friction still measures slip from the start of the step. x replaces x_t0 in the calls that follow and must outlive
+  /// the step.
   void continue_from(std::span<const Vec3> x);
   /// Pairs for which is_separated() found no separating plane. Valid until the next call that tests or pushes apart.
   std::span<const CornerPair> failing() const { return failing_; }
@@ -78,9 +79,9 @@ class Engine {
   void accept() { response_.accept(); }
 
   /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a pair of cloth and
-  /// obstacle cannot be separated, exempts the cloth from the obstacle; unless `may_pinch`, only cloth that this
-  /// obstacle pinches already. If `may_move_pins` is false and a pinned particle had to move, the result is not
-  /// separated and nothing is exempted. Only planes of the kinds `which` count.
+  /// obstacle cannot be separated, exempts the cloth from the obstacle. Unless `may_pinch`, only cloth that this
+  /// obstacle pinches already may be exempted; otherwise the result is not separated. If `may_move_pins` is false and a
+  /// pinned particle had to move, the result is not separated and nothing is exempted. `which`: see Planes::kinds_of().
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                               bool may_pinch = false, bool may_move_pins = true, PlaneKinds which = PlaneKinds::all);
 
@@ -96,7 +97,8 @@ class Engine {
   void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
 
   /// Number of near pairs within the detection distance at the expected end of the last step. Some pairs are searched
-  /// at the start of the step instead: with springs, those without a separating plane; with velocity constraints, all.
+  /// at the start of the step instead: with springs, those that no plane of constant direction separates; with velocity
+  /// constraints, all.
   int proximities() const { return static_cast<int>(proximities_.size()); }
   /// Smallest distance of these pairs [m]; infinite if there are none.
   double min_distance() const;
@@ -108,7 +110,7 @@ class Engine {
   const Bodies& bodies() const { return bodies_; }
   /// Detection distance: features closer than this are near [m].
   double detection_distance() const { return candidates_.detection_distance(); }
-  /// Whether cloth cannot meet a body in the current step. If so, the motion of the body has no effect.
+  /// Whether no particle can meet a body, an obstacle, in the current step. If so, its motion has no effect.
   bool is_clear(std::size_t body) const { return candidates_.is_clear(body); }
 
  private:
@@ -144,10 +146,10 @@ class Engine {
   double step_ = 0;                                 // h [s]
   std::span<const Vec3> x_t0_;                      // start of the step
   std::vector<PinchedPairs::Push> pinched_pushes_;  // contacts that push pinched cloth out, in this step
-  std::vector<CornerPair> pushed_pairs_;            // pairs that were pushed apart in this step
+  std::vector<CornerPair> pushed_pairs_;            // pairs for which push_apart() was called since begin_step()
   std::vector<Proximity> proximities_;              // near pairs at the expected end of the step, or at its start
   std::vector<Proximity> near_continuation_;        // near pairs at the positions of continue_from()
-  std::span<const CornerPair> failing_;             // of the last call of is_separated()
+  std::span<const CornerPair> failing_;             // of the last call of find_failing()
 };
 
 }  // namespace weft::collision

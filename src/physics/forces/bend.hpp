@@ -10,17 +10,17 @@
 namespace weft::forces {
 
 /// The bending force of the seed (the paper that README.md names, section "Elastic Model"), f = −B Δ² s along the
-/// normal N, is the restoring force of a plate with rigidity B, ν = 0 and energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² +
-/// ‖s_vv‖²). This class discretises the energy by central differences on lines and in cells. The energy also determines
-/// the forces at free edges.
+/// normal N, is the restoring force of a plate with rigidity B, Poisson's ratio ν = 0 and energy density ½ B (‖s_uu‖² +
+/// 2 ‖s_uv‖² + ‖s_vv‖²). This class discretises the energy by central differences on grid lines (s_uu, s_vv) and in
+/// cells (s_uv). The energy also determines the forces at free edges.
 ///
 /// The full second differences are used, not their component along N. On an inextensible sheet both are equal, and the
 /// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,
 /// "A Quadratic Bending Model for Inextensible Surfaces", 2006). The in-plane components add B/l² to the stretch
 /// stiffness: for cotton at a spacing l = 1 cm, 0.5 N/m are added to 1000 N/m.
 ///
-/// A difference covers half a spacing on either side of its middle particle. If the middle and one end are held, that
-/// side keeps its direction, and the other half spacing contains the whole turn: the clamp acts at the last held
+/// A difference covers half a spacing on either side of its middle particle. If the middle and only one end are held,
+/// that side keeps its direction, and the other half spacing contains the whole turn: the clamp acts at the last held
 /// particle. If both halves counted, the clamp would act half a spacing behind it, an error of first order. For
 /// viscosity and friction see BendDamping.
 class Bend final : public Force {

@@ -128,7 +128,7 @@ void Cord::add_air(const Piece& piece, const Evaluation& at) const {
   const Vec3 n = d / length, across = v - n.dot(v) * n;
   const double speed = across.norm();
   if (!(speed > 0)) return;
-  // for one end [kg/m]
+  // Drag of one end, divided by the squared speed [kg/m].
   const double coefficient = 0.25 * parameters_.air_density * parameters_.drag * parameters_.diameter * length;
   const auto drag = solver::padded<double>(coefficient * speed * across);
   at.force.subtract(a, drag);

@@ -76,7 +76,7 @@ class Cord final : public Membrane {
   std::vector<Turn> turns_;
 };
 
-/// Lumped masses [kg]: half of each piece at either end. `mass`: [kg/m].
+/// Lumped masses [kg]: half of each piece at either end. `mass`: per length [kg/m].
 std::vector<double> lumped_masses(std::span<const double> lengths, bool closed, double mass);
 
 }  // namespace weft::forces

@@ -18,8 +18,9 @@ constexpr double kCollapsed = 1e-12;
 // are −0.7, −3.5 and −8.1 % at 1; 0.1, −0.5 and −2.8 % at a quarter; 0.2, 0.1 and −0.8 % at a tenth). Smaller values
 // flatten cells less under tension.
 constexpr double kHeightFraction = 0.1;
-// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. The normal turns in proportion to 1 / ‖D₁ × D₂‖, below S₀ too fast to
-// be a reference for the middle (measured: with S₀ at a tenth, a pin that pulls leather reduces steps to 1 µs).
+// S₀ relative to ‖D₁ × D₂‖ of the cell at rest, times its reinforcement. The normal turns in proportion to 1 / ‖D₁ ×
+// D₂‖, below S₀ too fast to be a reference for the middle (measured: with S₀ at a tenth, a pin that pulls leather
+// reduces steps to 1 µs).
 constexpr double kFoldedSize = 0.5;
 
 // Indices of the corners of triangle k among the five particles of a cell.
@@ -30,7 +31,8 @@ std::array<std::size_t, 3> corners_of(std::size_t k) {
 // Weights of the corners in the twist; the middle has none.
 constexpr std::array<double, 5> kTwist{1, -1, 1, -1, 0};
 
-// Stiffness across a thread due to tension: exact; clamped to at least 0 for a positive semidefinite matrix (Stretch).
+// Stiffness across a thread due to tension (see Lateral). clamped_lateral() keeps it at 0 or above, so that the matrix
+// is positive semidefinite (as in Stretch).
 double exact_lateral(double length) {
   return 1 - 1 / length;
 }
@@ -230,10 +232,10 @@ Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& stat
   return {length.x(), length.y(), s.u.dot(s.v)};
 }
 
-// Sums stiffness (1 − lateral) ∂L ∂Lᵀ over the relative lengths L, and likewise for shear. Then adds the geometric
-// stiffness, that of the stresses. Across n, it uses the gradients of the flat cell. Along n, it uses those of a cell
-// with its middle at the mean of the corners, and adds the stiffness of the height. In all directions, it adds the
-// stiffness of the twist.
+// Sums (k (1 − lateral) + rate η) ∂L ∂Lᵀ over the relative lengths L, with stretch stiffness k and viscosity η. For
+// shear, sums the same outer product, without `lateral`. Then adds the geometric stiffness, that of the stresses.
+// Across n, it uses the gradients of the flat cell. Along n, it uses those of a cell with its middle at the mean of the
+// corners, and adds the stiffness of the height. In all directions, it adds the stiffness of the twist.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];

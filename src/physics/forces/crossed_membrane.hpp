@@ -31,7 +31,7 @@ class CrossedMembrane final : public TriangleMembrane {
   void attach(const solver::Assembly& assembly) override;
   void cut(std::span<const Index> bounds) override;
   /// The matrix and add_jacobian() contain the Gauss-Newton part and the stiffness of elastic stresses, but neither the
-  /// force that stresses exert by a change of n nor the stiffness of viscous stresses.
+  /// stiffness that stresses add because n changes, nor the stiffness of viscous stresses.
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;

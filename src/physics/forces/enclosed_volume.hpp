@@ -26,7 +26,7 @@ class EnclosedVolume {
   /// size; its entries sum to zero.
   double evaluate(std::span<const Vec3> x, std::span<Vec3> gradient) const;
 
-  /// Whether this volume [m³] is zero up to rounding.
+  /// Whether this volume [m³] is zero up to rounding, or negative.
   bool is_flat(double volume) const { return volume <= flat_; }
 
   std::size_t openings() const { return borders_.size(); }

@@ -43,17 +43,17 @@ struct Evaluation {
   std::span<const solver::PaddedVec3<double>> v;  ///< velocities [m/s]
   ForceRows force;                                ///< receives the forces f [N]
   /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m], made symmetric and positive semidefinite term by term, as conjugate
-  /// gradients and line search require. Empty: forces only.
+  /// gradients and line search require, without the part that add_constant_stiffness() adds. Empty: forces only.
   solver::AssemblyRows assembly = {};
-  double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂), x̂ fixed in a step [1/s]; 0: v is fixed
-  /// Earlier positions from which v is computed. Empty: rates of strain follow from v at x.
+  double rate = 0;  ///< dv/dx of the integration scheme [1/s]: v = rate (x − x̂), x̂ fixed in a step; 0: fixed v
+  /// Earlier positions whose weighted sum is x̂ (see Past). Empty: rates of strain q are ∂q/∂x v.
   std::span<const Past> past = {};
   /// Range of Force::cut() to evaluate; kAll: everything.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   std::size_t range = kAll;
   /// Velocity of the air at each particle [m/s]. If empty, each force uses its own uniform wind.
   std::span<const solver::PaddedVec3<double>> air = {};
-  /// Linearisation points of the locks of the threads; null: linearise at x.
+  /// Extensions at which StretchLimit linearises its matrix, but not its forces; null: linearise at x.
   const LockLinearisation* locks = nullptr;
 
   /// Rate of a quantity q of the positions. `now` is q(x), of_places(y) returns q at earlier positions y, and
@@ -89,12 +89,13 @@ class Force {
   /// Elastic energy [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
-  /// Adds the part of −∂f/∂x that does not depend on x, if there is one. `add` omits it, and only hold() changes it.
+  /// Adds the part of −∂f/∂x that does not depend on x, if there is one. add() adds its force, but not its matrix. Only
+  /// hold() changes it.
   virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
 
   /// Adds the exact −(∂f/∂x + rate ∂f/∂v), with the rates of an empty `Evaluation::past`. It is indefinite under
-  /// compression and unsymmetric with viscosity. For vibrations and tests. Exceptions: CrossedMembrane omits parts; air
-  /// and Rigidity add nothing.
+  /// compression and unsymmetric with viscosity. For vibrations and tests. Exceptions: CrossedMembrane omits parts, and
+  /// Cord its air drag; Air and Rigidity add nothing.
   virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
                             solver::BlockMatrix& /*jacobian*/) const {}
 
@@ -106,7 +107,7 @@ class Force {
 /// A force that resists deformation within the sheet or along a cord, and measures its strain.
 class Membrane : public Force {
  public:
-  /// Largest relative change of length of a piece of weft, warp or cord.
+  /// Largest relative change of length of a piece of weft, warp or cord, in absolute value.
   virtual double max_strain(std::span<const Vec3> x) const = 0;
   /// Raises heat[particle − first] to the largest strain of the pieces or triangles at the particle.
   virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const = 0;

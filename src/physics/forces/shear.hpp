@@ -16,11 +16,12 @@ struct ShearParameters {
 /// Eq. (1), entry 12, of the seed (the paper that README.md names): stress ½ μ ⟨s_u, s_v⟩ [N/m], from the energy
 /// density ¼ μ ⟨s_u, s_v⟩².
 ///
-/// s_u and s_v are central differences in the middle of each cell, each the mean over two opposite edges, with an error
-/// of O(l²) for spacing l. The seed uses central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), also
-/// with four particles per term. Those vanish for any pattern that repeats at every second particle in one direction;
-/// the differences here vanish only for the checkerboard, which stretches the edges. The seed prints O(l³) for its
-/// difference; a test measures order 2 for this one.
+/// s_u and s_v are the derivatives of the positions along weft and warp: central differences in the middle of each
+/// cell, each the mean over two opposite edges, with an error of O(l²) for spacing l. The seed uses central differences
+/// at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), also with four particles per term. Each of those vanishes for any
+/// pattern that repeats at every second particle in its direction. Of patterns that alternate from particle to
+/// particle, only the checkerboard, which stretches the edges, makes both differences of this class vanish. The seed
+/// prints O(l³) for its difference; a test measures order 2 for this one.
 class Shear final : public Force {
  public:
   Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters);

@@ -34,7 +34,7 @@ class Stretch final : public Membrane {
 
   /// Largest |‖d‖/l − 1| of all edges.
   double max_strain(std::span<const Vec3> x) const override;
-  /// Raises heat[particle − first] to the largest strain of its edges.
+  /// Raises heat[particle − first] to the largest |‖d‖/l − 1| of the particle's edges.
   void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
 
  private:

@@ -100,8 +100,8 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights,
   return solver::vec3_of(s);
 }
 
-// Calls body(piece, corner_forces, block_of) for each piece beyond its onset; block_of(a, b): block of −∂f/∂x for
-// corners a and b.
+// Calls body(piece, corner_forces, block_of) for each piece that is beyond its onset, at x or (threads only) in `lag`.
+// block_of(a, b) returns the block of −∂f/∂x for corners a and b, linearised at `lag` if there is one.
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
                                  const Body& body) const {

@@ -55,7 +55,7 @@ class Lock {
 /// linearised at the iterate, a piece would lose only a third of its excess over the onset per iteration.
 struct LockLinearisation {
   std::vector<double> extensions;   ///< per piece of a thread
-  std::vector<std::uint32_t> near;  ///< pieces whose extension, here or at the iterate, exceeds the onset
+  std::vector<std::uint32_t> near;  ///< pieces beyond the onset, in `extensions` or at the iterate
 };
 
 /// The energy of each piece of weft and warp is A · Lock::energy() at its extension ‖s‖ − 1, where A is the area that
@@ -78,14 +78,15 @@ class StretchLimit final : public Force {
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  /// Initialises `lag` before the first iteration of a step, which starts at x.
+  /// Sets the extensions of `lag` to those at x, before the first iteration of a step.
   void begin(std::span<const Vec3> x, LockLinearisation& lag) const;
-  /// Updates `lag` before the linearisation at x. `first`: first iteration of a step, without a predicted tension.
+  /// Updates `lag` before the linearisation at x. `first`: whether this is the first iteration of a step; as no tension
+  /// is predicted, the extensions then stay.
   void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
-  /// Adds the force linearised at `lag` minus the exact force, at any x.
+  /// For the pieces in `lag.near`: adds the force linearised at `lag` minus the exact force, at any x.
   void add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
 
-  /// Copies the current rest shape of the membrane, which must be that of the constructor.
+  /// Copies the current rest shape of `membrane`, the one that the constructor received.
   void follow(const TriangleMembrane& membrane);
 
   /// The piece with the largest extension; zero if none is extended.
@@ -118,7 +119,7 @@ class StretchLimit final : public Force {
   /// Derivative of a piece's energy with respect to its corners: minus its forces [N].
   using CornerForces = std::array<Vec3, kMaxCorners>;
 
-  /// Stress at e and stiffness of the Lock's tangent at `lag` [N/m].
+  /// Stress at e and stiffness of the Lock's tangent at `lag` [N/m]; both 0 if that stress is not positive.
   struct Tangent {
     double stress, stiffness;
   };

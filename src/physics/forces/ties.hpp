@@ -10,8 +10,8 @@ namespace weft::forces {
 
 /// The ties of a sheet. Both particles of a tie, at a distance l, pull each other with F min(l / r − 1, 1) if l > r =
 /// kRest. At smaller distances they do not pull; contact keeps them apart. F is the strength [N]. It grows from zero
-/// during sewing, and after a tie closes. A tie of a tearable seam holds once it has full strength and pulls with less
-/// than F. If it pulls with F after that, it tears permanently.
+/// during sewing, and for kClosing after a tie closes. A tie of a tearable seam holds once it has full strength and
+/// pulls with less than F. If it pulls with F after that, it tears permanently.
 class Ties final : public Force {
  public:
   /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press.
@@ -26,7 +26,7 @@ class Ties final : public Force {
 
   /// Accepts the end of a step, with particles at x [m]: ties of tearable seams begin to hold, or tear.
   void accept(std::span<const Vec3> x);
-  /// Total pull of a tearable seam [N], and whether any of its ties has a strength now (is neither torn nor open).
+  /// Total pull of a tearable seam [N], and whether any of its ties has strength now (is closed and not torn).
   struct SeamLoad {
     double load = 0;
     bool holds = false;
@@ -46,7 +46,7 @@ class Ties final : public Force {
   double energy(std::span<const Vec3> x) const override;
 
  private:
-  enum class State : std::uint8_t { open, holds, torn };  // of a tie of a tearable seam
+  enum class State : std::uint8_t { open, holds, torn };  // of a tearable tie; `open`: cannot tear yet
   struct Piece {
     mesh::Tie tie;        // particles in the global numbering
     double strength = 0;  // current [N]

@@ -17,7 +17,7 @@ using Point = std::complex<double>;
 // near a border, or if the vertices are nearly on a conic, two or three are necessary.
 constexpr int kMaxRings = 3;
 // Largest norm of the corrections of a slope's weights, relative to that of the uncorrected ones (across_opposite). A
-// larger correction makes the slope a small difference of large numbers; the fit then adds a ring.
+// larger correction makes the slope a small difference of large numbers; fit_quadratic() then adds a ring.
 constexpr double kMaxCorrection = 1;
 // Tolerance for rounding of the moments of a stencil whose coordinates are about one.
 constexpr double kMomentTolerance = 1e-9;
@@ -177,8 +177,8 @@ Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const 
   return std::isinf(nearest) ? Eigen::VectorXd() : fit_in_front_of_clamp(patch, axes, clamp);
 }
 
-// Slope that is exact for linear functions and for s², where s is the distance from a clamp whose held triangle lies on
-// its left.
+// Slope that is exact for linear functions and for s², where s is the distance in front of a clamp whose held triangle
+// lies on its left, and 0 at held triangles.
 Eigen::VectorXd Slopes::fit_in_front_of_clamp(const Patch& patch, const Axes& axes,
                                               const std::array<Point, 2>& clamp) const {
   const Point line = clamp[1] - clamp[0];

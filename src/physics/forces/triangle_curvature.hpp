@@ -32,8 +32,8 @@ struct CurvatureStencil {
 ///
 /// A triangle with three held corners is a clamp: at its edges the slope is the triangle's own. At other edges near a
 /// clamp, the slope is exact for linear functions, and for the squared distance in front of the clamp (0 inside it).
-/// `held`: per vertex, whether it is held now. `pinned`: whether it may be held at any time; so the vertices of
-/// stencils do not depend on `held`. Empty: no vertex.
+/// `held`: per vertex, whether it is held now. `pinned`: per vertex, whether it may be held at any time. The vertices
+/// of the stencils depend on `pinned`, but not on `held`; only weights do. Empty: no vertex.
 std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::span<const char> pinned = {},
                                                  std::span<const char> held = {});
 

@@ -47,7 +47,7 @@ class StepControl {
 
   double order_plus_one_, tolerance_, wanted_;
   double last_ratio_ = 1;       // aimed error / error, of the last accepted step
-  bool after_failure_ = false;  // the last step was rejected: do not grow yet
+  bool after_failure_ = false;  // the last step was rejected or not solved: do not grow yet
 };
 
 }  // namespace weft::integrator

@@ -103,9 +103,11 @@ void Stepper::residual(System& system, const State& now, const Stage& stage, Equ
   gather_residual(system.masses(), stage);
 }
 
-// Sets the velocity error [m/s], root mean square over the mass of a block, that the solver may leave: it displaces the
-// block by `tolerance` times the local error of positions within `lasting_time`. If that displacement were allowed in
-// each step, adaptive step sizes would lose one order.
+// Sets `allowed` of each block, the velocity error [m/s], root mean square over its mass, that the solver may leave.
+// Within `lasting_time`, this error displaces the block by `tolerance` times the larger of the local error of positions
+// and the visibility threshold. If that displacement were allowed in each step, adaptive step sizes would lose one
+// order. From `patience` iterations on, the local velocity error of implicit Euler may raise the bound. The bound never
+// falls below rounding.
 void Stepper::update_tolerances(double h, int iterations) {
   const double time = numerics.newton.lasting_time;
   double unseen = numerics.newton.unseen_acceleration * h * time;
@@ -152,9 +154,9 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
       blocks_[p].left = std::hypot(blocks_[p].left, solved.errors[p] / std::sqrt(blocks_[p].mass));
 }
 
-// Estimates the velocity error of whole blocks due to wrong friction; only for blocks that otherwise count as solved.
-// Friction can at most stop a block, so the error is bounded by the velocity that the block has or gains in the step,
-// however large the force of a stiff contact is.
+// Estimates the velocity error of whole blocks due to wrong friction; only for blocks that otherwise count as solved
+// and that no constraint holds against sliding. Friction can at most stop a block, so the error is bounded by the
+// velocity that the block has or gains in the step, however large the force of a stiff contact is.
 void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) {
   const auto masses = system.masses();
   const auto needs_check = [](const BlockState& part) { return !part.holds_sliding && part.left <= part.allowed; };
@@ -223,7 +225,7 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
   return fraction;
 }
 
-// Initial guess: unchanged velocity.
+// Sets the initial guess, unchanged velocity, and the constant forces, weight included.
 void Stepper::prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity) {
   const auto masses = system.masses();
   for_each_particle(x_.size(), [&](std::size_t i) {
@@ -342,7 +344,7 @@ void Stepper::collect_blocks(std::span<const double> masses, const State& now, c
   }
 }
 
-// Restores the momentum of cloth on which nothing acts from outside.
+// Restores the momentum of cloth on which only weight and air act from outside.
 void Stepper::balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage) {
   const std::vector<Vec3> missing = missing_accelerations(linear, masses, residual_);
   for (std::size_t p = 0; p < blocks_.size(); ++p) {
@@ -421,7 +423,7 @@ Vec3 Stepper::v_end(const State& now, const Stage& stage, std::size_t i) const {
   return stage.end_rate == 1 ? v_[i] : Vec3(2 * v_[i] - now.v[i]);
 }
 
-// Estimates local errors at the current iterate. For the formulas see the class.
+// Estimates local errors at the current iterate. For the formulas of positions see the class.
 void Stepper::estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h) {
   const bool first_order = is_first_order(h);
   const double r = first_order ? 1 : h / history_.h;

@@ -64,11 +64,11 @@ struct StepReport {
 /// BDF2 assumes a smooth trajectory. Without further measures, cloth rebounds from obstacles with up to half of its
 /// energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's method,
 /// and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls, Int. J. Numer.
-/// Meth. Engng 96, 2013). Impacts move particles by δ with A δ = F, where F are the forces of impacts, and A is the
-/// matrix of the step, whose contact terms are only those of friction in impacts and of contacts that transmit impacts.
-/// Positions do not change; velocities change by δ/h instead of δ/β. The start velocity in the history also changes by
-/// δ/h, so that the next step starts from a smooth trajectory. Changes of velocity by corrections after a solve count
-/// as impacts, too.
+/// Meth. Engng 96, 2013). In the solve, impacts displace particles by δ with A δ = F, where F are the forces of
+/// impacts, and A is the matrix of the step, whose contact terms are only those of friction in impacts and of contacts
+/// that transmit impacts. Positions keep this displacement, but velocities change by δ/h instead of δ/β. The start
+/// velocity in the history also changes by δ/h, so that the next step starts from a smooth trajectory. Changes of
+/// velocity by corrections after a solve count as impacts, too.
 ///
 /// The local error of positions is estimated from known velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of
 /// the mean acceleration from the last step to this one; then the leading terms of the error are
@@ -78,11 +78,12 @@ struct StepReport {
 ///     BDF2       3/2 h³ (1+r)² / (6 r (1+2r)) x'''  ≈ h² (1+r) / (2 (1+2r)) D
 ///
 /// (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, III.2 and III.5). The factor 3/2 of BDF2
-/// accounts for the following steps, which propagate a third of each change of the error. Steps without a history use
-/// Euler's estimate (BDF2: 3/2 of it, as its first step is Euler's; midpoint: an upper bound). Errors of velocity are
-/// not included; they affect positions only in later steps. The error is the root mean square over the mass of each
-/// diagonal block (a cloth or a rigid body), so that it depends neither on the mesh resolution nor on a single particle
-/// in contact; the error of a step is the largest of all blocks. Held directions have no error.
+/// accounts for the following steps, which propagate a third of each change of the error. Steps without a history, and
+/// BDF2 steps beyond longest_step(), use Euler's estimate (BDF2: 3/2 of it, as such a step is Euler's; midpoint: an
+/// upper bound). Errors of velocity are not included; they affect positions only in later steps. The error is the root
+/// mean square over the mass of each diagonal block (a cloth or a rigid body), so that it depends neither on the mesh
+/// resolution nor on a single particle in contact; the error of a step is the largest of all blocks. Held directions
+/// have no error.
 class Stepper {
  public:
   /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I, III.5). At
@@ -95,7 +96,8 @@ class Stepper {
   /// the history is an Euler step.
   void set_method(Method method) { method_ = method; }
 
-  /// Start of Newton's method: unchanged velocity, or the state in `next`, to solve a step again with other contacts.
+  /// Start of Newton's method: unchanged velocity, or the state in `next`, to continue an unfinished step or to solve a
+  /// step again with other contacts.
   enum class Start { unchanged_velocity, next };
 
   /// Computes `next` from `now` over h [s]. Does not change the history: see accept(). `gravity` [m/s²] acts on all
@@ -113,7 +115,7 @@ class Stepper {
   void accept(const State& before, const State& after, double h);
 
   struct History {
-    State before;  ///< start of the last accepted step
+    State before;  ///< start of the last accepted step; BDF2: v includes impacts (see above)
     double h = 0;  ///< its length [s]; 0: no history
   };
   const History& history() const { return history_; }

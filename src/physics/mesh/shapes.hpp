@@ -15,7 +15,8 @@ Mesh make_sphere(double radius, int segments);
 /// 0.49 of the smallest edge length; a quarter turn gets segments / 8 faces, at least one.
 Mesh make_box(const Vec3& size, double bevel, int segments);
 
-/// Base at z = -height / 2, tip at +height / 2.
+/// Base at z = -height / 2, tip at +height / 2. `segments`: number of edges around the axis, at least 3; the same for
+/// torus and cylinder.
 Mesh make_cone(double radius, double height, int segments);
 
 /// Ring around the z axis. `radius` is the distance of the tube's centre line from the axis; `tube_radius` < `radius`.

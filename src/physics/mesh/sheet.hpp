@@ -84,7 +84,8 @@ enum class Pattern {
   crossed,  ///< along both diagonals, with a vertex in the middle
 };
 
-/// As make_sheet, but made of triangles; the middle vertices of crossed cells follow the vertices of the grid.
+/// As make_sheet (quads.hpp), but made of triangles; the middle vertices of crossed cells follow the vertices of the
+/// grid.
 Mesh make_triangle_sheet(const Grid& grid, Pattern pattern);
 
 }  // namespace weft::mesh

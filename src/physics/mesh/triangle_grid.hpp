@@ -44,7 +44,7 @@ class TriangleGrid {
   std::span<const Index> in_cell(const std::array<int, 3>& cell) const;
 
   /// Calls `visit(triangles of the cell, fraction of the path at which the path leaves the cell)` for the cells along
-  /// the path, until a call returns true.
+  /// the path, until a call returns true or the path ends.
   template <class Visit>
   void walk(const Vec3& from, const Vec3& to, const Visit& visit) const;
 

@@ -18,8 +18,8 @@ struct Gusts {
 };
 
 struct PhysicsKey {
-  double time = 0;  ///< [s], strictly increasing
-  Vec3 gravity, wind;
+  double time = 0;     ///< [s], strictly increasing
+  Vec3 gravity, wind;  ///< [m/s²]; [m/s]
 };
 
 struct Physics {

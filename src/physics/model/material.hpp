@@ -14,7 +14,7 @@ struct Material {
   double shear = 130;             ///< mu: shear stiffness [N/m]; the shear modulus of linear elasticity is mu / 2
   double bend = 1e-5;             ///< B: bending stiffness [N·m]
   double max_stretch = 0.1;       ///< extension at which threads lock (stiffen) [1]; 0: never
-  double max_shear = 0;           ///< change of the angle between weft and warp at which they lock [degrees]; 0: never
+  double max_shear = 0;           ///< change of the weft-warp angle at which threads lock [degrees]; 0: never
   double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
   double shear_viscosity = 0;     ///< [N·s/m]
   double bend_viscosity = 1e-6;   ///< [N·m·s]

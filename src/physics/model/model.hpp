@@ -29,7 +29,7 @@ namespace weft::model {
 /// A particle of a region of a cloth; `particle` is its index within the cloth.
 struct Chosen {
   Index particle = 0;
-  double share = 1;    ///< in (0, 1]: factor on the strength; the mass of a weight is distributed in proportion to it
+  double share = 1;    ///< in (0, 1]: factor on the stiffness of a pin or attachment; relative part of a weight
   bool faded = false;  ///< in the fade around the region of a pin, not in the region itself
 };
 
@@ -40,7 +40,7 @@ struct Pin {
   motion::PoseTrack motion;         ///< of `middle`, in the world, if the pin follows nothing
   std::optional<std::size_t> body;  ///< number of the body whose motion the particles share
   /// Index, for Model::vertex(), of the point of that body that moves as the first particle; the points of the others
-  /// come next. Absent: the particles follow the nearest triangles of the body, or its pose.
+  /// come next. Absent: the particles follow the nearest triangles of a deforming body, or the pose of a rigid one.
   std::optional<std::size_t> first_vertex;
   double release = -1;             ///< time of release [s]; negative: never
   std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
@@ -84,8 +84,8 @@ struct Cloth {
 struct Dynamics {
   mesh::RigidFrame frame;
   double mass = 0;                 ///< [kg]
-  Vec3 velocity{0, 0, 0};          ///< at the start [m/s]
-  Vec3 angular_velocity{0, 0, 0};  ///< at the start [rad/s]
+  Vec3 velocity{0, 0, 0};          ///< when forces begin to move it, added to that of its keys [m/s]
+  Vec3 angular_velocity{0, 0, 0};  ///< likewise, about the centre of mass [rad/s]
   double release = 0;  ///< from this time on, forces move it instead of its keys [s]; minus infinity: always
 };
 
@@ -151,7 +151,7 @@ struct Layer {
   std::vector<std::size_t> dressed;  ///< numbers of the cloths of this and all lower layers, ascending
 };
 
-/// Only set_motion() changes the motion of a body, so a pose computed for a given time stays valid.
+/// Only set_motion() changes the motion of a body; until then, a pose computed for a given time stays valid.
 struct Model {
   std::string source;  ///< names the scene in error messages: its file
   Vec3 up{0, 0, 1};
@@ -173,7 +173,8 @@ struct Model {
   /// Whether the start may move any cloth.
   bool may_be_untangled() const;
 
-  /// A copy with these cloths alone (ascending numbers). It shares the motions and has no layers.
+  /// A copy with these cloths alone (ascending numbers). It shares the motions and has no layers, and no attachments of
+  /// or to other cloths.
   Model with_cloths(std::span<const std::size_t> numbers) const;
 
   /// Writes the positions of all vertices of a body at time t [s]; `positions` has the size of its mesh. Takes time

@@ -7,7 +7,8 @@
 
 namespace weft::model {
 
-/// Smallest time step, and smallest time between two keys [s]; largest number of steps in a frame, which an int counts.
+/// kMinStep: smallest time step, and smallest time between two keys [s]. kMaxStepsInFrame: largest number of steps in a
+/// frame, which an int counts.
 inline constexpr double kMinStep = 1e-7, kMaxStepsInFrame = 1e9;
 
 struct Time {

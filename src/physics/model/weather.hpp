@@ -20,14 +20,15 @@ namespace weft::model {
 /// where s and a are the distances of the point and of the disc from the apex along the axis, and q is the distance
 /// from the axis relative to the radius of the cone there. A free round jet has an opening angle of about 24 degrees,
 /// and its speed falls as 1 / s (Pope, Turbulent Flows, 2000, section 5.1). (1 − q²)² is the profile of such a jet
-/// except at the edge, where (1 − q²)² falls to 0 with zero slope. Behind the disc and outside the cone, the air rests.
+/// except at the edge, where (1 − q²)² falls to 0 with zero slope. Behind the disc and outside the cone, a fan adds
+/// nothing.
 class Weather {
  public:
   explicit Weather(const Model& model);
 
   /// Gravity at time t [s], in [m/s²].
   Vec3 gravity(double t) const { return keys_ ? Vec3(keys_->at(t).value.head<3>()) : gravity_; }
-  /// Whether the velocity of the air differs from Model::physics.wind at any time or place.
+  /// Whether the velocity of the air may differ from Model::physics.wind at any time or place.
   bool varies_in_space() const { return keys_.has_value() || gusts_.has_value() || !fans_.empty(); }
   /// Velocity of the air at x [m] and time t [s], in [m/s].
   Vec3 air(const Vec3& x, double t) const;

@@ -16,7 +16,7 @@ struct VertexMotion {
 };
 
 /// Interpolates vertices between equally spaced key frames linearly, or by cubic splines with a continuous second
-/// derivative. Before the first key and after the last one, the body stands still.
+/// derivative. Before the first key and from the last one on, the body stands still.
 class KeyFrames {
  public:
   /// `from_rest`: the spline starts with zero velocity, because the body stands still before the first key. Otherwise
@@ -36,7 +36,7 @@ class KeyFrames {
   std::size_t bytes() const;
 
  private:
-  /// Position of a time among the keys: `s` [s] after key i; `stands`: before the first or after the last key.
+  /// Position of a time among the keys: `s` [s] after key i; `stands`: before the first key, or from the last one on.
   struct Piece {
     std::size_t i;
     double s;

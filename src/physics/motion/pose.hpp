@@ -16,7 +16,8 @@ struct Pose {
   std::optional<Vec3> angles{};  ///< of `rotation`, about fixed x, then y, then z [degrees]; may contain whole turns
 };
 
-/// Difference of the angles of two poses [degrees]; empty if one of them has no angles.
+/// Difference of the angles of two poses [degrees]; empty if one of them has no angles. The identity rotation has the
+/// angles 0, even if they are not given.
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to);
 
 struct PoseKey {

@@ -32,10 +32,10 @@ std::vector<Value> natural_second_derivatives(std::span<const double> h, std::sp
 }
 
 /// Slopes at the keys of the natural cubic spline, limited per component so that the curve stays between the values of
-/// neighbouring keys. If the slopes d on both sides of a key differ in sign, the slope at the key is 0; otherwise its
-/// magnitude is at most three times the smaller of theirs (Fritsch & Carlson, "Monotone piecewise cubic interpolation",
-/// SIAM J. Numer. Anal. 17, 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). Without the limit,
-/// an object moves backward before it begins to move forward.
+/// neighbouring keys. If the slopes d on both sides of a key differ in sign, the slope at the key is 0; otherwise it
+/// has their sign, and its magnitude is at most three times the smaller of theirs (Fritsch & Carlson, "Monotone
+/// piecewise cubic interpolation", SIAM J. Numer. Anal. 17, 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat.
+/// Comput. 4, 1983). Without the limit, an object moves backward before it begins to move forward.
 template <class Value>
 std::vector<Value> slopes_between_keys(std::span<const double> h, std::span<const Value> d) {
   const std::size_t n = h.size();
@@ -59,7 +59,8 @@ inline std::size_t find_segment(std::span<const double> times, double t) {
 
 /// A vector-valued function of time through keys: piecewise linear, or cubic with limited slopes
 /// (slopes_between_keys()). The cubic has a continuous first derivative, and a continuous second derivative where no
-/// slope is limited. Outside the keys, the end value holds and derivatives are zero.
+/// slope is limited. Before the first key and from the last one on, the value is that of this key, and derivatives are
+/// zero.
 template <int Dim>
 class Spline {
  public:

@@ -30,13 +30,13 @@ struct PoseSample {
 /// exact derivatives. `own` is the motion that the object has if the parent stays at `parent_start`.
 PoseSample compose(const PoseSample& parent, const Pose& parent_start, const PoseSample& own);
 
-/// Interpolates rotations through keys. If both keys give Euler angles and at most one of the three differs, the
-/// rotation turns by that difference, including whole turns. Otherwise it turns by the smallest angle; a half turn
-/// continues the direction of the turn before it. Linear: constant angular velocity between keys (slerp). Cubic: a
-/// chain of cubic Bézier curves of unit quaternions with derivatives in closed form (Kim, Kim & Shin, "A general
-/// construction scheme for unit quaternion curves with simple high order derivatives", SIGGRAPH 1995); angular velocity
-/// is continuous. Angular velocities at the keys are slopes_between_keys() (spline.hpp) of the rotation vectors between
-/// keys, so rotation about one axis is the Spline of the angle.
+/// Interpolates rotations through keys. If two successive keys have Euler angles (see change_of_angles()) and at most
+/// one of the three differs, the rotation turns by that difference, including whole turns. Otherwise it turns by the
+/// smallest angle; a half turn continues the direction of the turn before it. Linear: constant angular velocity between
+/// keys (slerp). Cubic: a chain of cubic Bézier curves of unit quaternions with derivatives in closed form (Kim, Kim &
+/// Shin, "A general construction scheme for unit quaternion curves with simple high order derivatives", SIGGRAPH 1995);
+/// angular velocity is continuous. Angular velocities at the keys are slopes_between_keys() (spline.hpp) of the
+/// rotation vectors between keys, so rotation about one axis is the Spline of the angle.
 class RotationSpline {
  public:
   struct Sample {

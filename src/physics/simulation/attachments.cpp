@@ -110,7 +110,7 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
 
 void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x, std::span<const double> masses) {
   for (Attachment& attachment : attachments_) {
-    // A longer, rejected attempt has tied the attachment, but this step ends before it begins.
+    // A longer, rejected attempt has tied the attachment, but this step ends before the attachment begins.
     if (attachment.state == State::tied && t1 < attachment.begin) attachment.state = State::open;
     attachment.holds = holds_at(attachment, t1);
     if (!attachment.holds) continue;

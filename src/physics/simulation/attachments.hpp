@@ -14,11 +14,11 @@
 
 namespace weft::simulation {
 
-/// When an attachment begins, it ties each of its particles to the nearest point on its target: a point of a triangle
-/// that moves with the corners, or, on a body that forces move, a weighted sum of the four particles of its frame. If
-/// the distance l of particle and point exceeds L, a spring pulls with k (l − L), k = Spring::stiffness. L is the
-/// `length` of the model, or else the distance at which the particle was tied. A shorter distance causes no force:
-/// contact keeps surfaces apart.
+/// When an attachment begins, it ties each of its particles to the nearest point on its target: a weighted sum of the
+/// corners of a triangle or, on a body that forces move, of the four particles of its frame, with fixed weights. If the
+/// distance l of particle and point exceeds L, a spring pulls with k (l − L), k = Spring::stiffness. L is the `length`
+/// of the model, or else the distance at which the particle was tied. A shorter distance causes no force: contact keeps
+/// surfaces apart.
 ///
 /// The spring forces follow from the positions at the end of the step, as contact forces do.
 class Attachments {
@@ -81,9 +81,9 @@ class Attachments {
     double load = 0;     // sum of the spring forces at the end of the last accepted step [N]
   };
   struct Tension {
-    Vec3 direction;    // unit vector from the particle to its point
-    double force = 0;  // [N]; 0: the spring is slack
-    double length = 0;
+    Vec3 direction;     // unit vector from the particle to its point
+    double force = 0;   // [N]; 0: the spring is slack
+    double length = 0;  // distance of the particle from its point [m]; 0 if the spring is slack
   };
   Vec3 place_of(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const;
   Tension compute_tension(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const;

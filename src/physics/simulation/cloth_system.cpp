@@ -23,8 +23,9 @@
 namespace weft::simulation {
 namespace {
 
-// Minimum number of particles in a range. Maximum number of ranges per part and thread: several balance the load.
+// Minimum number of particles in a range, if its part is divided.
 constexpr Index kMinRangeSize = 512;
+// Maximum number of ranges per part and thread; several per thread balance the load.
 constexpr Index kMaxRangesPerThread = 2;
 
 bool has_drag(const model::Material& m, const model::Physics& physics) {
@@ -51,7 +52,8 @@ double max_extension(const model::Material& m) {
   return m.max_stretch > 0 ? m.max_stretch : std::numeric_limits<double>::infinity();
 }
 
-/// A box of a lattice over the rest shape: indices along the normal, warp and weft.
+/// A box of a lattice over the rest shape: indices along the normal, warp and weft of a grid, or along z, y and x for
+/// triangles.
 using Box = std::array<int, 3>;
 struct Lattice {
   std::vector<Box> boxes;       // of each particle, or of each box of the finer lattice
@@ -77,8 +79,8 @@ Lattice lattice_of(const model::Cloth& cloth) {
   return lattice;
 }
 
-// Doubles each side of the boxes that is at most √2 times the shortest one, so that sides become more equal. Cloth is
-// stiffest between close particles, so these are merged first.
+// Doubles each side of the boxes that is at most √2 times the shortest one, so that sides become more equal; only axes
+// with several boxes count for the shortest. Cloth is stiffest between close particles, so these are merged first.
 void coarsen(Lattice& lattice) {
   Box last{0, 0, 0};
   for (const Box& box : lattice.boxes)
@@ -262,8 +264,9 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const model::Cloth& of,
     forces_[cloth].push_back(std::make_unique<forces::Air>(sheet, first, air_of(material, physics)));
 }
 
-// Divides each part into ranges that threads evaluate in parallel, the same number for each thread. Forces across the
-// border of two ranges are evaluated twice: a tenth of all if a range has 1,024 particles in 16 rows.
+// Divides each part into ranges that threads evaluate in parallel; if there are more ranges than threads, each thread
+// gets the same number. Forces across the border of two ranges are evaluated twice: a tenth of all if a range has 1,024
+// particles in 16 rows.
 void ClothSystem::divide_into_ranges() {
   const Index threads = thread_count();
   for (std::size_t c = 0; c < parts(); ++c) {

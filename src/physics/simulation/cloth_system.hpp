@@ -51,7 +51,7 @@ class ClothSystem {
 
   /// Particles of one part whose forces can be evaluated in parallel with those of other ranges.
   struct Range {
-    std::size_t cloth;
+    std::size_t cloth;  ///< number of the part, a cloth or a frame
     Index begin, end;
     std::size_t number;  ///< as in forces::Evaluation::range
   };
@@ -66,6 +66,7 @@ class ClothSystem {
   /// Where the thread locks (forces::StretchLimit) are linearised, per cloth; empty for cloths without a limit to
   /// stretch.
   using LockLinearisations = std::vector<forces::LockLinearisation>;
+  /// Call StretchLimit::begin(), update() and add_lag() for all cloths with a limit to stretch.
   void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
   void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
   void add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const;
@@ -76,10 +77,11 @@ class ClothSystem {
   /// An empty system with the sparsity pattern of these forces.
   solver::LinearSystem make_linear_system() const;
 
-  /// Updates rope lengths and the rest shapes of cloth that is being sewn to time t [s since the start of the run].
+  /// Updates rope lengths, ties, and the rest shapes of cloth that is being sewn to time t [s since the start of the
+  /// run].
   void sew(double t);
 
-  /// Whether the key-framed rope lengths are equal at times t0 and t1 [s].
+  /// Whether the key-framed rope lengths are equal at the scene times t0 and t1 [s], which differ from those of sew().
   bool lengths_are_constant(double t0, double t1) const;
 
   /// Updates the enclosed air for the step that ends at time t [s since the start of the run]; call it after sew(t).
@@ -140,7 +142,7 @@ class ClothSystem {
   /// A cloth that is sewn during the run.
   struct Sewing {
     std::size_t cloth;
-    double begin, duration;  // [s]
+    double begin, duration;  // [s]; begin: since the start of the run
     double progress = -1;    // rest shape from the start (0) to flat panels (1); −1: not set yet
     forces::TriangleMembrane* membrane;
     forces::Bands* bands;                      // nullptr if the cloth has none

@@ -340,7 +340,8 @@ bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, doub
   });
 }
 
-// Rigid motion of a body from t to t + h; the identity for characters, which deform, and for bodies that forces move.
+// Rigid motion of a body from t to t + h; the identity for still bodies, for characters, which deform, and for bodies
+// that forces move.
 collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, double h) const {
   collision::RigidMotion motion;
   const model::Body& object = model_.bodies[body];

@@ -38,9 +38,9 @@ class CollisionStage {
   std::vector<IntersectionPlace> find_intersections(const SystemState& start);
 
   /// Lifts dynamic bodies (moved by forces) that touch something at the start, because scenes place a box exactly on
-  /// its support. Of two bodies that touch, the upper one rises by 0.2 mm along the unit vector `up`, at most 33 times.
-  /// Bodies that keys hold at t [s] stay. Returns the largest lift [m]. If surfaces still touch afterwards, changes
-  /// nothing and returns 0.
+  /// its support. Of two such bodies that touch, the upper one rises by 0.2 mm along the unit vector `up`, at most 33
+  /// times; a body that touches anything else rises itself. Bodies that keys hold at t [s] stay. Returns the largest
+  /// lift [m]. If surfaces still touch afterwards, changes nothing and returns 0.
   double lift_bodies(const Vec3& up, double t, SystemState& start);
 
   /// Moves cloth that touches or crosses something at the start, if Cloth::may_be_untangled(). Particles
@@ -150,12 +150,12 @@ class CollisionStage {
   const model::Model& model_;
   std::vector<std::string> names_;   // of all cloths, then of all bodies_
   std::vector<std::size_t> bodies_;  // colliding bodies of the model; those that forces move come first
-  std::vector<double> radii_;  // per body: largest distance from its origin if it is a moving obstacle, else 0 [m]
+  std::vector<double> radii_;  // per body: largest distance of a vertex from its origin [m]; 0: still or deforming
   std::vector<Box3> boxes_;    // bounding box of each body in its own coordinates
   std::size_t particles_;
   RigidVertices rigid_;
-  std::vector<double> masses_;  // of particles, then of the vertices of bodies that forces move [kg]
-  std::vector<std::uint8_t> movable_;
+  std::vector<double> masses_;                   // of particles, then of the vertices of bodies that forces move [kg]
+  std::vector<std::uint8_t> movable_;            // per vertex: collision::kFree, kPinned or kFixed
   std::vector<collision::RigidMotion> motions_;  // of the current step, per cloth and body
   std::vector<collision::ObstructedPin> obstructed_pins_;
   std::vector<Vec3> x_restart_;  // where the trajectory of the step was last restarted; empty: it was not

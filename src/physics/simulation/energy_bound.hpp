@@ -36,8 +36,10 @@ class EnergyBound {
   std::optional<std::string> check_gain(const FrameReport& energies);
   std::optional<std::string> check_solver(int frame);
 
-  bool applies_, damped_contact_;
-  bool has_lagged_ = false;  // a pin has lagged: the force that pulls it does work that is not counted
+  bool applies_, damped_contact_;  // whether pins alone drive the model; whether a gain only warns
+  // Whether pinned particles have lagged. Gains are then not checked, as the work of the force that pulls these
+  // particles is not counted.
+  bool has_lagged_ = false;
   bool warned_ = false, warned_of_solver_ = false;
   integrator::Method integrator_;
   double negligible_energy_;               // smaller differences are no error [J]

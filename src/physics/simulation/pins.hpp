@@ -29,7 +29,7 @@ class Pins {
   };
   std::size_t size() const { return groups_.size(); }
   const Info& info(std::size_t pin) const { return groups_[pin].info; }
-  /// The pin that has this particle. The particle must belong to a pin.
+  /// Index of the pin that has this particle. The particle must belong to a pin.
   std::size_t pin_of(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].pin; }
   /// Fraction of that pin's strength for this particle, in (0, 1]; 0 for a particle without a pin.
   double strength_fraction(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].fraction; }
@@ -66,7 +66,7 @@ class Pins {
     std::vector<Anchor> anchors;  // in place of `arms`, if it follows a body without bones
     // In place of `arms`, if it follows a body with bones: the vertices that represent its particles.
     std::vector<std::size_t> skinned;
-    std::optional<motion::Track> track;  // of the mean position of the particles
+    std::optional<motion::Track> track;  // of model::Pin::middle, if it follows no body
   };
 
   std::vector<Group> groups_;

@@ -145,8 +145,8 @@ void Simulation::Impl::put_on_next() {
   }
 }
 
-// Lifts bodies and untangles cloth at the start of a layer. Throws Error(scene_invalid) if surfaces still touch or
-// cross.
+// Untangles cloth at the start of a layer, if the model allows it; for the first layer, lifts bodies before. Throws
+// Error(scene_invalid) if surfaces still touch or cross.
 void Simulation::Impl::make_start() const {
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)
     log::info(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));

@@ -72,7 +72,8 @@ class Simulation {
   /// with the reason, or Error(scene_invalid) if a cloth that is put on or closed in this frame does not fit.
   FrameReport advance();
 
-  /// The report of frame 0: energies and distances of the start.
+  /// The report of frame 0. If there is a preroll that run_preroll() has not simulated, the report has the energies and
+  /// distances at its start instead.
   FrameReport initial_report() const;
 
   /// Simulates time.preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before

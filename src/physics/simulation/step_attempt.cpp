@@ -13,7 +13,7 @@
 namespace weft::simulation {
 
 // If obstacles or other cloth keep pinned particles from their targets, repeats the attempt with these particles
-// released.
+// released; after numerics.repair.halvings tries, lets push_apart() move pinned particles.
 StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool is_last, FrameReport& report) {
   for (int tries = 1;; ++tries) {
     const Attempt attempt{t, h, rejections, is_last, tries > numerics.repair.halvings};
@@ -68,8 +68,10 @@ void StepLoop::update_weather(double t, double h) {
   problem_.set_air_velocity(std::move(air));
 }
 
-// Solves the step and checks it. If pairs would meet, pushes particles apart and continues the solve from the corrected
-// positions, with contacts found anew, until every candidate pair has a separating plane.
+// Solves the step and checks it. If pairs would meet, pushes particles apart. If the solve had ended and this adds
+// little energy and strain, accepts the result. Otherwise continues the solve from the corrected positions, with
+// contacts found anew, until every candidate pair has a separating plane; after numerics.newton.patience continuations,
+// only pushes.
 StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
   const SystemState& now = progress_.now;
   int continuations = 0;
@@ -179,7 +181,8 @@ integrator::Method StepLoop::method() const {
   return needs_damping ? integrator::Method::bdf2 : chosen;
 }
 
-// Pushes particles of `next_` apart without solving again. Rejects the step if this adds much energy.
+// Pushes particles of `next_` apart without solving again. Rejects the step if some pairs stay stuck, or if this adds
+// much energy and the step may still be shortened.
 StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
   const double energy_before = energy(next_);
   const bool may_pinch = is_short_enough(attempt);
@@ -203,7 +206,7 @@ bool StepLoop::is_short_enough(const Attempt& attempt) const {
          (attempt.rejections >= numerics.repair.halvings && collisions_->obstacles_move_little(progress_.now, next_));
 }
 
-// Rejects a step that stretches threads far beyond their limit.
+// Rejects a step that stretches threads far beyond their limit and far beyond their stretch at its start.
 StepLoop::Rejection StepLoop::check_overstretch(double h) {
   const double ratio = cloth_.overstretch(next_.particles()).ratio;
   const double most = numerics.repair.overstretch;

@@ -14,7 +14,7 @@
 namespace weft::simulation {
 namespace {
 
-// A cloth is reported again once its stretch is this many times the last reported one.
+// A cloth is reported again only if its stretch is at least this many times the last reported one.
 constexpr double kReportAgainRatio = 1.5;
 
 }  // namespace
@@ -117,9 +117,10 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, model_.solver.halvings, report);
 }
 
-// Whether one long step may replace the next `steps` steps of length h [s]: all cloth is slow and has settled in its
-// last step, and everything that keys move is in the same place at t and at the end of each of these steps. If
-// something moves, the long step is not even tried: contacts that only the long step needs would remain in later steps.
+// Whether one long step may replace the next `steps` steps of length h [s]: the method is implicit Euler, contacts are
+// springs, all cloth is slow and has settled in its last step, no rejection forbids the length, and everything that
+// keys move or set is the same at t and at the end of each of these steps. If something changes, the long step is not
+// even tried: contacts that only the long step needs would remain in later steps.
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints release and stick again from step to step.
@@ -156,8 +157,8 @@ bool StepLoop::is_slow(const SystemState& moment) {
   });
 }
 
-// Takes one step in place of several. Returns false if something begins to move; the step is then discarded, and not
-// counted.
+// Takes one step in place of several. Returns false if the step is rejected or something begins to move; the step is
+// then discarded, and not counted.
 bool StepLoop::rest(double t, double h, FrameReport& report) {
   if (attempt(t, h, 0, false, report)) return false;
   if (!is_slow(next_) || local_error_ > 0.5 * h * h * numerics.newton.unseen_acceleration) return false;
@@ -242,8 +243,9 @@ void StepLoop::accept(double h, FrameReport& report) {
   report.solver_error += solver_error_;
 }
 
-// Measures the accepted step, whose start is in `next_`. Warns when a cloth exceeds kMaxStretchRatio, and again once it
-// exceeds the last report by half: a tight waist would otherwise be reported with every breath.
+// Measures the accepted step, whose start is in `next_`. Warns when the largest stretch rises above kMaxStretchRatio.
+// If that cloth was reported before, warns only if it exceeds the last report by half: a tight waist would otherwise be
+// reported with every breath.
 void StepLoop::measure_stretch(FrameReport& report) {
   report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
   const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());

@@ -197,7 +197,8 @@ bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoi
 // Evaluates forces within the active parts at the remembered positions; with `assemble`, also their matrix rows.
 void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
   const auto ranges = cloth_.ranges();
-  const CountedLoop counted(cloth_.largest_range_count());  // one thread has one range for each part
+  // Counts chunks as on many threads: loops are counted on one thread, which has one range for each part.
+  const CountedLoop counted(cloth_.largest_range_count());
   parallel_for(ranges.size(), 1, [&](std::size_t r, std::size_t) {
     const auto& [cloth, begin, end, number] = ranges[r];
     if (!is_active_[cloth]) return;

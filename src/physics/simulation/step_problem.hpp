@@ -37,7 +37,7 @@ struct SolveMemory {
 struct PinSpring {
   Index particle;
   Vec3 x, v;         ///< the point and its velocity at the end of the step [m], [m/s]
-  double stiffness;  ///< [N/m]
+  double stiffness;  ///< [N/m]; 0 for a particle that lags, which only the damper pulls
   double damping;    ///< [N·s/m]
 };
 

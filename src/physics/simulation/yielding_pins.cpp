@@ -12,7 +12,8 @@
 namespace weft::simulation {
 namespace {
 
-// Distance from its target at which a particle is held again [m].
+// Distance from its target within which a lagging particle is always held again [m]; fast targets allow more, see
+// begin_step().
 double arrived_distance() {
   return 0.5 * numerics.separation.restored_gap;
 }

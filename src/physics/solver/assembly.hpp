@@ -13,7 +13,7 @@ namespace weft::solver {
 /// A symmetric matrix of forces that do not change if all particles translate together. It stores block (i, j) for each
 /// pair of particles i < j, and the own block of each particle (its mass, drag of air). Block (j, i) is the transpose.
 /// The diagonal block follows from the condition that each row sums to its particle's own block. Forces between
-/// particles therefore add nothing to it, and only about a third of the blocks that a full matrix needs.
+/// particles therefore add no diagonal blocks: a triangle adds three blocks instead of nine.
 ///
 /// Bending adds scalar multiples of the identity; each pair stores that scalar, part of which is constant.
 class Assembly {

@@ -18,9 +18,10 @@ struct LinearReport {
 
 /// Solves A x = b on the free directions, with the Preconditioner P of particles and multigrid levels.
 ///
-/// Single precision is used if `relative` is at least kSmallestSingleGoal, and no particle exceeds kMaxSingleStiffness.
-/// Single precision is safe because Newton's method evaluates its residual in double, so that the next solve corrects
-/// errors of rounding.
+/// solve() uses single precision if LinearGoal::relative is at least kSmallestSingleGoal, the system has
+/// `norm_weights`, and no particle's relative stiffness exceeds kMaxSingleStiffness (conjugate_gradient.cpp). Single
+/// precision is safe because Newton's method evaluates its residual in double, so that the next solve corrects errors
+/// of rounding.
 class ConjugateGradient {
  public:
   /// Prepares the preconditioner for `system`, which must outlive the following calls. With AggregateSums::reuse, sums

@@ -89,14 +89,14 @@ void for_each_term(const LinearSystem& system, const Visit& visit) {
   for (const WideTerm& term : system.wide_terms) visit(term);
 }
 
-/// A term of any kind.
+/// A DiagonalTerm, StencilTerm or WideTerm.
 struct AnyTerm {
   std::span<const Index> particles;
   std::span<const double> weights;
   const Mat3& stiffness;
 };
 
-/// Number of terms of all kinds.
+/// Number of terms of these three kinds.
 inline std::size_t term_count(const LinearSystem& system) {
   return system.diagonal_terms.size() + system.terms.size() + system.wide_terms.size();
 }

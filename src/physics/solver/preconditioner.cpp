@@ -235,7 +235,7 @@ void Preconditioner<Real>::invert_particles() {
 }
 
 // Sums the stiffness of one diagonal block (its matrix without the mass part): each 3×3 block into the finest aggregate
-// that contains both its row and its column, and from there into coarser ones.
+// that contains both its row and its column, and from there into coarser ones. If none does: into the coarsest matrix.
 template <class Real>
 void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
   const std::size_t depth = levels_.size();
@@ -437,7 +437,7 @@ void Preconditioner<Real>::factorise_coarsest() {
   coarse_factor_ = coarse_matrix_.template cast<Real>();
 }
 
-// Sums the residual from particles into the finest aggregates, then into coarser ones.
+// Sums the residual, by interpolation weights, from particles into the finest aggregates, then into coarser ones.
 template <class Real>
 void Preconditioner<Real>::restrict_residual(std::span<const PaddedVec3<Real>> r) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {

@@ -28,14 +28,15 @@ enum class AggregateSums { recompute, reuse };
 /// is built from R_l A R_lᵀ, where R_l sums over each aggregate. If each aggregate moves as a whole, all strain is at
 /// the boundaries of aggregates. If the same motion is spread over the width of an aggregate, its stiffness halves with
 /// each doubling of that width. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters with
-/// the factor 1/2 per level, the mass part with factor 1. Contact terms are not part of the matrix. For each particle
-/// of a contact term, the particle's stiffness enters the aggregates from which it interpolates. The sum bounds the
-/// contact part of the diagonal of T_lᵀ A T_l from above. The last level has T_lᵀ A T_l of the contact terms exactly.
+/// the factor 1/2 per level (small diagonal blocks: 1), the mass part with factor 1. Contact terms are not part of the
+/// matrix. For each particle of a contact term, the particle's stiffness enters the aggregates from which it
+/// interpolates. The sum bounds the contact part of the diagonal of T_lᵀ A T_l from above. The last level has T_lᵀ A
+/// T_l of the contact terms exactly.
 ///
 /// If threads are so stiff that the trace of a particle's block exceeds `stiff_particle` times the sum of
-/// `norm_weights` over its diagonal block, levels do not interpolate: T_l = R_lᵀ, and the factor per level is 1.
-/// Interpolated motion would stretch threads across folds, and R_l A R_lᵀ, which contains only the boundaries of
-/// aggregates, lacks the threads inside of them.
+/// `norm_weights` over its diagonal block (small ones excepted), no level interpolates: T_l = R_lᵀ, and the factor per
+/// level is 1. Interpolated motion would stretch threads across folds, and R_l A R_lᵀ, which contains only the
+/// boundaries of aggregates, lacks the threads inside of them.
 ///
 /// Set up in double, applied in `Real`.
 template <class Real>

@@ -112,7 +112,8 @@ double Recurrence<Real>::apply_preconditioner(std::span<PaddedVec3<Real>> z) {
   return std::accumulate(rz_.begin(), rz_.end(), 0.0);
 }
 
-// Sets r = b − A x, and x_, the sum of the following steps, to zero; there is no search direction yet.
+// Sets r = b − A x, and x_, the sum of the following steps, to zero. If the solve has no iterations yet, also takes the
+// step along `start`.
 template <class Real>
 void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start,
                              Progress& progress) {

@@ -18,7 +18,8 @@ namespace weft::solver {
 inline constexpr double kSmallestSingleGoal = 1e-3;
 
 /// Allowed error of the solution, per diagonal block. It must meet one of two bounds: in the energy norm, `relative`
-/// times the norm of the solution without its step along Directions::start; or, in the mass-weighted norm, `absolute`.
+/// times the norm of the solution without its step along Directions::start; or, in the mass-weighted norm, `absolute`
+/// (in the energy norm if the system has no `norm_weights`).
 struct LinearGoal {
   double relative = 0;
   std::span<const double> absolute = {};  ///< per diagonal block; empty: none
@@ -29,9 +30,9 @@ struct Directions {
   /// The first step of a solve is along this direction, of the length that is best in the energy norm. It costs one
   /// product with the matrix.
   std::span<const Vec3> start = {};
-  /// Motion to which the solution is added. At the end, the residual does no work along the sum of both, and the
-  /// residual sums to zero over each diagonal block that no constraint holds (Galerkin's condition for these directions
-  /// of each diagonal block).
+  /// Motion to which the solution is added. At the end of a solve with at least one iteration, the residual does no
+  /// work along the sum of both, and the residual sums to zero over each diagonal block that no constraint holds
+  /// (Galerkin's condition for these directions of each diagonal block).
   std::span<const Vec3> motion = {};
   /// Second motion along which the residual does no work at the end; ignored without `motion`.
   std::span<const Vec3> drift = {};
@@ -43,8 +44,8 @@ struct Progress {
   struct OfPart {
     double energy = 0;  ///< ‖x‖²_A of the solution x without its step along Directions::start
     std::vector<double> gains,
-        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step / that decrease
-    double error_energy() const;  ///< estimate of ‖e‖²_A
+        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step per decrease
+    double error_energy() const;  ///< estimate of ‖e‖²_A, where e is the error
     double error_norm_ratio() const;
 
    private:

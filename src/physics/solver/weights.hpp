@@ -22,8 +22,9 @@ struct Weights {
     for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
     return result;
   }
-  /// Interpolation from aggregates to their members. The aggregates of a member's neighbours together have the weight
-  /// `smoothing`, its own has the rest. Replaces `neighbours`, those of each member, by those of each aggregate.
+  /// Interpolation from aggregates to their members. The neighbours of a member share the weight `smoothing` equally,
+  /// each for its aggregate; the member's own aggregate gets the rest in addition. Without neighbours, its weight is 1.
+  /// Replaces `neighbours`, those of each member, by those of each aggregate.
   static Weights make_interpolation(const Aggregates& grouping, double smoothing,
                                     std::vector<std::vector<Index>>& neighbours);
   /// The transpose, with `rows` rows: the number of columns of this matrix.

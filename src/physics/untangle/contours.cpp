@@ -17,7 +17,8 @@ namespace {
 // Slope of a folded island on the surface that it crossed: sine and cosine of 15 degrees.
 constexpr double kFoldSine = 0.2588, kFoldCosine = 0.9659;
 
-// Returns the island of each particle: a set that is connected without the `cut` edges.
+// Returns the number of the island of each particle. An island is a maximal set of particles that are connected without
+// the `cut` edges.
 std::vector<Index> label_islands(const Fabric& fabric, const std::set<std::array<Index, 2>>& cut) {
   std::vector<Index> island(static_cast<std::size_t>(fabric.particles()), -1);
   std::vector<Index> open;
@@ -40,7 +41,8 @@ std::vector<Index> label_islands(const Fabric& fabric, const std::set<std::array
   return island;
 }
 
-/// A point of the line of crossing, and the normal of the other surface there, towards the rest of the cloth.
+/// A point of the line of crossing, and the normal of the other surface there; for an island, the normal points towards
+/// the rest of the cloth.
 struct CutPoint {
   Vec3 place, normal;
 };
@@ -50,7 +52,7 @@ struct Island {
   std::set<Index> beside;  // particles of other islands across the line
   std::vector<CutPoint> line;
   std::set<Index> through;           // corners of the triangles that cut it off
-  std::optional<std::size_t> other;  // the body of `through`, if that is a single one, other than the island's
+  std::optional<std::size_t> other;  // the crossed body; empty if there are several, or if it is the island's own
 };
 
 const CutPoint& nearest(std::span<const CutPoint> line, const Vec3& p) {
@@ -85,8 +87,9 @@ void extend_cut(const Fabric& fabric, std::span<const Crossing> crossings, std::
   }
 }
 
-// Raises the island's particles along `up` to `height` above the plane through the nearest point of the line, then
-// along the normal of the other surface to `height` above that surface.
+// Raises the island's particles along `up` to `height` above the plane that is perpendicular to `up` and contains the
+// nearest point of the line. If the island has a single other surface, then raises them along the normal of that
+// surface to `height` above it.
 std::vector<Move> flatten(const Island& island, const Vec3& up, double height, const collision::BroadPhase& surfaces,
                           std::span<const Vec3> x) {
   std::vector<Move> moves;
@@ -106,7 +109,8 @@ std::vector<Move> flatten(const Island& island, const Vec3& up, double height, c
   return moves;
 }
 
-// Rotates each particle around the line towards `away`, keeping its distance from the line, and raises it by `height`.
+// Rotates each particle around the line, keeping its distance from it, until the particle is 15 degrees above the
+// direction `away`; then raises it by `height` along `up`.
 std::vector<Move> fold(const Island& island, const Vec3& up, const Vec3& away, double height, std::span<const Vec3> x) {
   std::vector<Move> moves;
   const Vec3 along = up.cross(away);
@@ -293,7 +297,8 @@ void push_out_of_solids(const Fabric& fabric, std::span<const Crossing> crossing
       for (const double fraction : {0.5, 0.25, 0.75, c.fraction})
         raise(*solid, edge, std::array{1 - fraction, fraction}, above[cloth]);
     } else {
-      // Raise by the length of the shorter part of the edge, at most by half the longest side of the triangle.
+      // Raise the crossing point farther than `above`: by the length of the shorter part of the edge, but at most by
+      // half the longest side of the triangle.
       const double out = std::min(c.fraction, 1 - c.fraction) * (x[edge[1]] - x[edge[0]]).norm();
       const double longest =
           std::max({(x[t[1]] - x[t[0]]).norm(), (x[t[2]] - x[t[1]]).norm(), (x[t[0]] - x[t[2]]).norm()});

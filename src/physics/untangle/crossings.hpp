@@ -11,8 +11,8 @@
 namespace weft::untangle {
 
 struct Crossing {
-  Index edge;                     ///< of Fabric::edges
-  Index triangle;                 ///< global number
+  Index edge;                     ///< index into Fabric::edges.edges
+  Index triangle;                 ///< index into Bodies::triangles()
   double fraction;                ///< position on the edge, from its first vertex (0) to its second (1)
   std::array<double, 3> weights;  ///< of the corners of the triangle
 };
@@ -23,7 +23,7 @@ bool involves_solid(const Fabric& fabric, const Crossing& crossing);
 /// Crossings between surfaces of which at least one is cloth.
 class CrossingFinder {
  public:
-  /// `self`: cloth with cloth. `obstacles`: cloth with obstacles. The fabric must outlive it.
+  /// `self`: cloth with cloth. `obstacles`: cloth with obstacles. The fabric must outlive the finder.
   CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles);
 
   /// All crossings at x [m], sorted by edge and triangle, each once. Touching counts, except if the edge lies in the

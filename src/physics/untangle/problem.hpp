@@ -14,17 +14,17 @@ namespace weft::untangle {
 
 /// On which sides of a body cloth may be.
 enum class Kind : std::uint8_t {
-  cloth,
+  cloth,  ///< to be untangled; has two sides, both allowed
   solid,  ///< has an inside, where cloth may not be
   floor,  ///< cloth may not be below it
   open,   ///< has two sides, both allowed
-  layer,  ///< worn cloth: its inner side belongs to the body below it
+  layer,  ///< worn cloth; other cloth may only be on its outer side
 };
 
 /// Connectivity of surfaces and allowed lengths of threads (links between neighbours); constant.
 struct Fabric {
   /// `x`: positions of all vertices as given; `rest`: stress-free positions of particles [m]. `may_move`: per vertex.
-  /// `of_bodies` and `may_move` must outlive it.
+  /// `of_bodies` and `may_move` must outlive this object.
   Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, std::span<const Vec3> x,
          std::span<const Vec3> rest, std::span<const std::uint8_t> may_move);
 

@@ -14,10 +14,11 @@ namespace weft::untangle {
 void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, int sweeps,
            std::span<Vec3> x);
 
-/// Raises particles that are lower than `above` over a solid to that height, the nearest way.
+/// Raises movable particles that are lower than `above` over a solid to that height, the nearest way.
 void raise(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, std::span<Vec3> x);
 
-/// Moves movable particles within `rings` edges of the given ones to the centre of their neighbours, `times` times.
+/// Moves movable particles within `rings` edges of the given ones to the centre of their neighbours, `times` times. For
+/// a particle on the border, only neighbours on the border count.
 void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, int times, std::span<Vec3> x);
 
 }  // namespace weft::untangle

@@ -60,7 +60,7 @@ bool Solid::is_near(const Vec3& p, double distance) const {
   return box_.squaredExteriorDistance(p) <= distance * distance;
 }
 
-// Where the segment from p along `way` crosses faces, in order.
+// Where the segment from p to p + `way` crosses faces, in order.
 std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
   const collision::Surface& surface = surfaces_.surface(number_);
   std::vector<Index> numbers;

@@ -30,7 +30,7 @@ class Solid {
 
   /// The nearest point of the outer surface. Faces buried in another shell do not count.
   struct Exit {
-    Vec3 place, normal;  ///< unit, outward
+    Vec3 place, normal;  ///< the point [m], and the unit normal there, outward
     double height;       ///< signed distance of p [m], negative inside
   };
   Exit exit(const Vec3& p) const;

@@ -29,8 +29,8 @@ constexpr int kSweepsAfterMove = 120, kSweeps = 8;
 constexpr double kMaxDisplacementRatio = 1.5;
 // Maximum number of passes: a region that leaves one body may enter another.
 constexpr int kMaxPasses = 3;
-// If the particles of a region move by less than this, its way out is always tried: only strain after the move locks
-// the region. In heights over the obstacle (kHeightInThicknesses).
+// Displacement of a region, in heights over the obstacle (kHeightInThicknesses), below which its way out is always
+// tried: then only strain after the move locks the region.
 constexpr double kShallowDepth = 4;
 // Maximum strain of a thread after the move; beyond it the body goes through the cloth and the region is locked
 // (measured: 0.44 for a tube 4 cm too small, the largest of the valid starts; 4.9 for trousers with a leg through the
@@ -121,7 +121,7 @@ class Untangling {
   }
 
   // Separates coincident cloths, of which neither is on a side of the other: moves the later cloth to the front of the
-  // earlier one, or the earlier one if the later is not movable.
+  // earlier one or, if the later one is not movable, the earlier cloth to the front of the later one.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
     for (const collision::TrianglePair& pair : finder_.near(x_, kTouchDistance)) {
@@ -162,7 +162,8 @@ class Untangling {
   }
 
   // Tries to move cut-off islands: first all at once; then, for each cloth and each surface that it crosses, those of
-  // this pair at once, then each of them alone. Returns whether fewer triangles cross; if not, nothing has changed.
+  // this pair at once, then up to kMaxSingleIslands of them one by one. Stops at the first try after which fewer pairs
+  // of triangles cross than ever before. Returns whether there was one; if not, nothing has changed.
   bool move_islands() {
     const std::vector<Vec3> before(x_.begin(), x_.end());
     const auto try_moves = [&](std::span<const std::vector<Move>> islands) {
@@ -189,7 +190,8 @@ class Untangling {
     return false;
   }
 
-  // Smooths cloth around its crossings with cloth, over a growing area. Not around bodies: cloth would go back inside.
+  // Smooths cloth around its crossings with cloth, over an area that grows with `smoothings`. Leaves out crossings with
+  // solids, because smoothing would move cloth back inside.
   void smooth_around(int smoothings) {
     std::vector<Index> around;
     for (const Crossing& c : crossings_) {

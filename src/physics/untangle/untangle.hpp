@@ -31,7 +31,7 @@ struct Report {
 };
 
 /// Moves particles in x [m] until no triangle of cloth crosses another one or an obstacle, or is closer to it than a
-/// tenth of the cloth's thickness. The number of rounds is bounded; the best state is kept. Deterministic.
+/// tenth of the larger thickness of the two. The number of rounds is bounded; the best state is kept. Deterministic.
 Report untangle(const Fabric& fabric, const Options& options, std::span<Vec3> x);
 
 }  // namespace weft::untangle

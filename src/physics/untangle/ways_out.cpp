@@ -137,7 +137,8 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
       const Solid::Exit exit = solid.exit(p);
       return exit.place + height * exit.normal;
     });
-    // Move the whole mesh of the region, if that takes the region out of the body and no other particle into it.
+    // Considers moving the whole mesh of the region along d, if that takes the region out of the body and no other
+    // particle into it.
     const auto consider_whole_mesh = [&](const Vec3& d) {
       double way = 0;
       for (const Index i : members) way = std::max(way, solid.distance_out(x[i], d) + height);

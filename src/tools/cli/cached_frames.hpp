@@ -7,10 +7,10 @@
 
 namespace weft::cli {
 
-/// Returns the selected frames, or all frames of the scene if `selection` names none. Reads each frame first, so that a
-/// damaged one is found before anything is written. If frames are missing or broken, throws Error(frames_missing) with
-/// their numbers; with `partial`, warns and returns the frames before the first missing one, and throws only if there
-/// are none. Throws Error(usage) for a selection without frames.
+/// Returns the selected frames, or all frames of the scene if `selection` names none. Verifies each frame first, so
+/// that a damaged one is found before anything is written. If frames are missing or broken, throws
+/// Error(frames_missing) with their numbers. With `partial`, warns and returns the frames before the first missing or
+/// broken one, and throws only if there are none. Throws Error(usage) if the selection is empty or exceeds the scene.
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial);
 
 /// Passes to the camera all frames of the cache that have the scene's current looks.

@@ -9,7 +9,7 @@
 
 namespace weft::cli {
 
-/// File name of the tools program, which has the commands that do not make films.
+/// File name of the tools program, which has the commands of run_tool().
 inline constexpr const char* kToolsName = "weft-tools";
 
 /// Path of the program `weft`: the running one, or if this is the tools program, the one beside it.
@@ -21,11 +21,11 @@ std::filesystem::path own_program();
 pid_t start_process(const std::vector<std::string>& words, const std::filesystem::path& log);
 
 struct ProcessResult {
-  int exit_code = 0;   ///< 127: program not found; 128 and above: ended by a signal
+  int exit_code = 0;   ///< 127: program not started; 128 and above: ended by a signal
   std::string output;  ///< of standard output; standard error goes to that of this process
 };
 
-/// Runs a program and waits for its end.
+/// Runs a program and waits for its end. Throws Error(output_failed) only if no pipe can be made for the output.
 ProcessResult run_process(const std::vector<std::string>& words);
 
 }  // namespace weft::cli

@@ -28,31 +28,31 @@ ExitCode sheet(const SheetOptions& options);
 /// Joins the parts of a film to one video.
 ExitCode join(const JoinOptions& options);
 
-/// Runs a scene with many values; returns the exit code of the first failed run in the order of the sweep, 0 if none
-/// failed.
+/// Runs a scene with many values. Returns the exit code of the first failed run in the order of the sweep, 0 if none
+/// failed, ExitCode::interrupted after a stop request.
 ExitCode sweep(const SweepOptions& options);
 
 /// Submits runs and sweeps to a Slurm cluster, reports their progress, or cancels them.
 ExitCode farm(const FarmOptions& options);
 
-/// Writes a template scene.
+/// Writes a template: a scene, or a folder of scenes for a repository.
 ExitCode make_new(const NewOptions& options);
 
 /// Names of the templates that make_new() accepts.
 std::vector<std::string> template_names();
 
-/// Draws a scene again whenever one of its files changes, until it is interrupted.
+/// Draws a scene again whenever one of its files changes, until it is interrupted or has made `options.times` drawings.
 ExitCode watch(const WatchOptions& options);
 
 /// Prints processor, libraries and OpenGL of this machine, and tests them.
 ExitCode doctor(const DoctorOptions& options);
 
-/// Measures the program and writes tables and plots. Returns exit code 1 if a stability case is wrong (unbounded energy
-/// or not finite).
+/// Measures the program and writes tables and plots. Without a scene, `bench stability` returns exit code 1 if any
+/// result is wrong (unbounded energy or not finite).
 ExitCode bench(const BenchOptions& options);
 
-/// Prints the difference of each pair. Exit code 4 if a file cannot be read, else 7 if a pair differs, else 8 if a
-/// picture has no reference.
+/// Prints the difference of each pair. Exit code 4 if a file cannot be read, else 7 if a pair differs or a reference
+/// has no counterpart, else 8 if a picture has no reference.
 ExitCode diff(const DiffOptions& options);
 
 /// Writes the reason to the log, then replaces references by the named files.

@@ -7,8 +7,9 @@
 
 namespace weft::cli {
 
-/// One self-contained HTML file without scripts. It shows each differing pair (of videos, the worst frame) as
-/// reference, test and map of the differences; other pairs are only listed.
+/// One self-contained HTML file without scripts. It shows each pair that differs or lacks a readable file as reference,
+/// test and, if compared, map of the differences (of videos, the worst frame), without pictures beyond about 100 MB.
+/// Other pairs are only listed.
 class DiffPage {
  public:
   /// `description`: text of the result.

@@ -20,8 +20,8 @@ Json describe_json(const compare::Limits& limits);
 Json describe_json(const compare::FileComparison& result, const compare::Limits& limits,
                    const std::filesystem::path& heatmap);
 
-/// A workflow annotation of GitHub Actions, attached to the reference, or to the test if there is no reference. Paths
-/// are relative to GITHUB_WORKSPACE if that is set. `description`: text of the result.
+/// A workflow annotation of GitHub Actions, attached to the reference, or to the test if there is no reference. The
+/// path is relative to GITHUB_WORKSPACE if it lies inside. `description`: text of the result.
 std::string annotation(const compare::FileComparison& result, const std::string& description);
 
 /// JUnit XML with one test case per pair: different or missing pictures are failures, unreadable ones are errors.

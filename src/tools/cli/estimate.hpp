@@ -22,9 +22,9 @@ struct Estimate {
   double draw_total() const { return draw * drawn; }
 };
 
-/// Simulates frames for `seconds` [s of wall time], but at least one and at most kMaxTrialFrames, and draws one. Frames
-/// before the first contact take less time than later ones: the true cost may be two to three times the estimate.
-/// Throws what a run throws.
+/// Simulates frames until `seconds` of wall time [s] have passed since the start of the set-up, but at least one and at
+/// most ten (kMaxTrialFrames), and draws one. Frames before the first contact take less time than later ones: the true
+/// cost may be two to three times the estimate. Throws what a run throws.
 Estimate estimate_run(const scene::Scene& scene, const render::Settings& settings, double seconds = 5);
 
 /// One line, for people.

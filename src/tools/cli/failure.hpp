@@ -13,7 +13,8 @@ struct Failure {
   std::string text;
 };
 
-/// Accepts any exception; those that are not an Error count as internal errors.
+/// Accepts any exception. An error of std::filesystem counts as output_failed, or as usage if a name is too long; other
+/// exceptions that are not an Error count as internal errors.
 Failure describe_failure(const std::exception_ptr& exception);
 
 /// Prints the message on standard error.

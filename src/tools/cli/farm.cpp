@@ -207,8 +207,8 @@ class Farm {
     return lines;
   }
 
-  // Estimates the resources from the first and the last run, which usually have the smallest and the largest values of
-  // the sweep.
+  // Estimates the resources from the first and the last submitted run, which usually have the smallest and the largest
+  // values of the sweep.
   void find_needs() {
     plan_.needs.simulate_minutes = plan_.needs.draw_minutes = options_.minutes.value_or(0);
     plan_.needs.memory = options_.memory.value_or(0);

@@ -76,7 +76,8 @@ class Film {
     }
   }
 
-  /// Makes frames, and passes the wanted ones on to drawing. With `only_show`, passes all frames to the camera instead.
+  /// Makes frames, and passes the wanted ones that are not drawn yet on to drawing. With `only_show`, passes all frames
+  /// to the camera instead.
   void make_frames(FrameSource& source, bool only_show) {
     const int last = only_show ? made_.last() : wanted_.last();
     // The first frame is made even after a stop request: it costs little, and gives the run a picture.
@@ -104,7 +105,7 @@ class Film {
     if (parts_.store) parts_.store->keep_last_state();
   }
 
-  /// Passes a frame to drawing, with the previous wanted frame if motion blur needs it. Returns false if drawing has
+  /// Passes a frame to drawing, with the previous wanted frame if the painter needs it. Returns false if drawing has
   /// ended.
   bool hand_on(const frame::SnapshotPtr& snapshot, const FrameSource* source) {
     const int frame = snapshot->frame - wanted_.step;

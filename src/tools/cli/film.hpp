@@ -36,7 +36,7 @@ struct FilmParts {
   std::filesystem::path meshes;      ///< folder; empty: none
   std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn already
   bool keeps_partial_output = true;  ///< if source or painter fails, the output is finished with the earlier frames
-  bool motion = false;               ///< whether the painter also needs the previous frame, for motion blur
+  bool motion = false;               ///< the painter also gets the previous wanted frame, for motion blur or layers
   std::function<void(const MadeFrame&)> on_frame = {};  ///< called after each frame is made, in order; may be empty
 };
 
@@ -44,6 +44,7 @@ struct FilmResult {
   std::vector<frame::ObjectInfo> objects;
   StageTime setup;                  ///< opening the source
   std::vector<FrameRecord> frames;  ///< all frames that were made, in order
+  /// Number of frames that all stages have completed.
   int written = 0;
   double cloth_size = 0;         ///< longest side of the box around the largest cloth, in the first frame [m]
   bool interrupted = false;      ///< stopped by request before the last wanted frame
@@ -53,9 +54,9 @@ struct FilmResult {
 };
 
 /// Makes the frames `made` and draws and writes the frames `wanted`, a subset of them. Ends with the last frame of
-/// `wanted` (of `made` if the camera path is computed from them), or earlier at `stop` or a failure. The output is then
-/// completed with the frames written so far, unless the writer fails, or another stage fails and `keeps_partial_output`
-/// is false. Does not throw if a stage fails; see `failure`.
+/// `wanted` (of `made` if the camera path is computed from the frames made), or earlier at `stop` or a failure. The
+/// output is then completed with the frames written so far, unless the writer fails, or another stage fails and
+/// `keeps_partial_output` is false. Does not throw if a stage fails; see FilmResult::failure.
 FilmResult make_film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted,
                      const std::atomic<bool>& stop, Progress& progress, EventLog& log);
 

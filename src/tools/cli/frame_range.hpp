@@ -30,7 +30,8 @@ std::string frames_text(const std::vector<int>& frames);
 /// Parses `A:B`, `A:B:STEP`, `A:`, `:B` or `:`. Throws Error(usage).
 FrameSelection parse_frames(std::string_view text);
 
-/// The selected frames of a scene with `frame_count` frames. Throws Error(usage) if there are none.
+/// The selected frames of a scene with `frame_count` frames. Throws Error(usage) if the selection is empty or exceeds
+/// the scene.
 FrameRange resolve_frames(const FrameSelection& selection, int frame_count);
 
 }  // namespace weft::cli

@@ -30,7 +30,7 @@ class FrameSource {
   virtual frame::SnapshotPtr earlier(int) const { return nullptr; }
 };
 
-/// Frames of a scene: first those that the store has from an earlier run, with the scene's current looks, then
+/// Frames of a scene: first those that the store has from an earlier run, which get the scene's current looks, then
 /// simulated ones.
 class SceneSource : public FrameSource {
  public:

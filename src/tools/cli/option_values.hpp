@@ -1,4 +1,5 @@
-// Conversion of command-line texts to checked values. All functions throw Error(usage) with what was expected.
+// Conversion of command-line texts to checked values. The functions that parse or check throw Error(usage) with what
+// was expected.
 #pragma once
 
 #include <array>
@@ -32,7 +33,7 @@ Value parse_choice(const char* option, const std::string& text, const std::array
 int parse_integer(const char* option, const std::string& text, int low, int high);
 /// From 0 to 1.
 double parse_fraction(const char* option, const std::string& text);
-/// A factor above 0, with a generous upper bound.
+/// A factor from 0.01 to 100.
 double parse_factor(const char* option, const std::string& text);
 /// A length in metres, from a nanometre to a metre.
 double parse_length(const char* option, const std::string& text);

@@ -58,7 +58,7 @@ struct SimulateOptions : RunOptions {
 
 /// `common.scene` is the folder of a cache.
 struct RenderOptions : RunOptions {
-  bool partial = false;  ///< use the frames before the first missing one
+  bool partial = false;  ///< use the frames before the first missing or broken one
 };
 
 struct CheckOptions {
@@ -72,7 +72,8 @@ struct CheckOptions {
 struct ThumbnailOptions {
   SceneOptions common;                        ///< `scene` is set for each scene in turn
   std::vector<std::filesystem::path> scenes;  ///< scenes or caches, at least one
-  /// A picture, or without an extension a folder that gets <scene>.png for each; empty: output/<scene>.png.
+  /// A picture; without an extension, or if it exists as a folder and there are several scenes, a folder that gets
+  /// <scene>.png (.start.png with `start`) for each. Empty: such files in the folder output.
   std::filesystem::path output;
   std::optional<int> frame;  ///< default: the most informative one
   bool start = false;        ///< draw the start of the scene instead of a frame, even if the simulation refuses it
@@ -92,7 +93,7 @@ struct JoinOptions {
   std::filesystem::path output;
   VideoOptions video;  ///< used if the parts are pictures
   FrameSelection frames;
-  bool partial = false;  ///< use the frames before the first missing one
+  bool partial = false;  ///< use the frames before the first missing or broken one
   bool overwrite = false;
 };
 
@@ -110,7 +111,7 @@ struct SweepOptions {
 struct FarmOptions {
   enum class Action { submit, status, cancel };
   Action action = Action::status;
-  SweepOptions sweep;  ///< submit: `scene`, and as `output` the folder of the runs; otherwise both are this folder
+  SweepOptions sweep;  ///< `output`: folder of the runs; `scene`: for submit the scene, otherwise this folder too
   FrameSelection frames;
   int part = 50;                           ///< frames per drawing task
   int threads = 1;                         ///< per task
@@ -148,7 +149,7 @@ struct BenchOptions {
   Kind kind = Kind::stability;
   std::filesystem::path scene;         ///< for stability, accuracy and speed; empty: built-in ones
   std::vector<std::string> overrides;  ///< of --set
-  /// For speed: varied values, ascending.
+  /// For speed: factors on the particles along each side, and on the time step; ascending.
   std::vector<double> sizes{0.5, 1, 2, 4}, steps{0.5, 1, 2};
   std::vector<int> threads;  ///< empty: 1, and all cores
   FrameSelection frames;     ///< for speed: the measured frames, as typed
@@ -192,7 +193,7 @@ struct ExportOptions {
   std::filesystem::path cache, output;  ///< folders
   exporter::Format format = exporter::Format::gltf;
   FrameSelection frames;
-  bool partial = false;  ///< use the frames before the first missing one
+  bool partial = false;  ///< use the frames before the first missing or broken one
   bool overwrite = false;
 };
 

@@ -48,7 +48,7 @@ class FramePattern {
 struct OutputTarget {
   enum class Kind { video, images, none };
   Kind kind = Kind::video;
-  std::string text;  ///< as typed, or the default; a pattern if kind is images
+  std::string text;  ///< as typed, or the default; images: a pattern; none: the folder of the cache
 
   /// Whether pictures are written as OpenEXR with all layers of a frame.
   bool layered() const { return kind == Kind::images && std::filesystem::path(text).extension() == ".exr"; }
@@ -57,7 +57,8 @@ struct OutputTarget {
   std::vector<std::filesystem::path> files(const FrameRange& frames) const;
 };
 
-/// Parses `-o`; empty: `output/<scene>.mp4`. Throws Error(usage) for unsupported extensions.
+/// Parses `-o`; empty: `output/<scene>.mp4`. Throws Error(usage) for an unsupported extension, and for a frame number
+/// that is missing in the name of pictures or present in that of a video.
 OutputTarget parse_output(const std::string& text, const std::string& scene_name);
 
 }  // namespace weft::cli

@@ -12,8 +12,8 @@
 namespace weft::cli {
 
 /// All paths of one command. The command registers them before any work, inputs first. Functions that register throw
-/// Error(usage) if an output is an input, another output, or inside of either. Symbolic links, hard links and `..` are
-/// followed.
+/// Error(usage) if an output is an input or another output, or if it lies inside of either or contains one. Symbolic
+/// links, hard links and `..` are followed.
 class PathLedger {
  public:
   /// Registers an input file; `what` names it in messages: "the scene".
@@ -32,14 +32,14 @@ class PathLedger {
   /// Registers a folder that the command uses exclusively. The code that creates the folder checks what it contains.
   void fills(const std::string& option, const std::filesystem::path& folder);
 
-  /// Throws Error(output_failed) if an output file exists and `overwrite` is false, or if a folder has its name. Files
-  /// that appear after this call are protected too. `own`: outputs() of an interrupted run that is resumed; existing
-  /// files of these outputs may be replaced if `is_own` accepts them.
+  /// Throws Error(output_failed) if an output file exists and `overwrite` is false, or if a folder has its name.
+  /// Without `overwrite`, files that appear after this call are protected too. `own`: outputs() of an interrupted run
+  /// that is resumed; existing files of these outputs may be replaced if `is_own` accepts them.
   void check_absent(bool overwrite, const std::set<std::string>& own = {},
                     const std::function<bool(const std::filesystem::path&)>& is_own = {}) const;
   /// Throws Error(output_failed) if the first file of an output cannot be written.
   void check_writable() const;
-  /// Option and place of each output.
+  /// Option and place of each output, without the folders of fills().
   std::set<std::string> outputs() const;
 
  private:

@@ -17,11 +17,11 @@ namespace weft::cli {
 /// The outcome of one frame.
 struct FrameRecord {
   simulation::FrameReport report;
-  bool written = false;  ///< whether it is drawn and written; false for frames that are not wanted or after a failure
+  bool written = false;  ///< wanted, and completed by all stages; false again if its video is not finished
   StageTime render, encode, meshes;
 };
 
-/// Number of particles of all cloths.
+/// Number of particles of all cloths and ropes.
 std::size_t count_particles(const std::vector<frame::ObjectInfo>& objects);
 
 struct RunReport {
@@ -35,7 +35,7 @@ struct RunReport {
   std::string gl;
   int width = 0, height = 0;  ///< [pixels]; 0 if nothing is drawn
   double fps = 0;
-  std::string output;               ///< as the user named it
+  std::string output;               ///< as the user named it, or the default
   std::uintmax_t output_bytes = 0;  ///< of a video; 0 for pictures or none
   bool replayed = false;            ///< frames were read from a cache, not simulated
   FrameRange wanted;
@@ -63,8 +63,8 @@ StageTotals total_times(const std::vector<FrameRecord>& frames);
 struct StepTotals {
   long long accepted = 0, rejected = 0;
   long long inexact = 0;      ///< accepted steps with an error above the tolerance
-  double error_estimate = 0;  ///< of the time steps [m]
-  double solver_error = 0;    ///< residual error of the solver [m]
+  double error_estimate = 0;  ///< of the time steps, sum over the frames [m]
+  double solver_error = 0;    ///< residual error of the solver, sum over the frames [m]
 };
 
 StepTotals total_steps(const std::vector<FrameRecord>& frames);

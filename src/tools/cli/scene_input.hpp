@@ -34,7 +34,7 @@ render::Settings render_settings(const scene::Scene& scene, const SceneOptions& 
 /// render` draws the cache.
 cache::Manifest manifest_of(const scene::Scene& scene, const render::Settings& settings);
 
-/// "1 cloth, 2 obstacles, 2091 particles, 126 frames at 25 fps"; `particles`: of all cloths.
+/// "1 cloth, 2 obstacles, 2091 particles, 126 frames at 25 fps"; `particles`: of all cloths and ropes.
 std::string describe_scene(const scene::Scene& scene, std::size_t particles);
 
 }  // namespace weft::cli

@@ -6,11 +6,11 @@
 
 namespace weft::cli {
 
-/// While an object lives, SIGINT, SIGTERM and SIGHUP only set `requested()`. A simulation step that still runs
-/// kStopGrace (core/stop.hpp) after the signal throws Error(interrupted). A second signal removes temporary files and
-/// exits at once with code 75. Signals within a second count as one, since terminals and tools such as timeout(1)
-/// signal both the process and its group. Signals that the parent process ignores (nohup, background jobs) stay
-/// ignored. Only one object may exist at a time.
+/// While an object lives, a first SIGINT, SIGTERM or SIGHUP only prints the promise and sets `requested()`. A
+/// simulation step that still runs kStopGrace (core/stop.hpp) after the signal throws Error(interrupted). A second
+/// signal removes temporary files and exits at once with code 75. Signals within a second count as one, since terminals
+/// and tools such as timeout(1) signal both the process and its group. Signals that the parent process ignores (nohup,
+/// background jobs) stay ignored. Only one object may exist at a time.
 class StopSignals {
  public:
   /// `promise`: what is printed at the first signal; must be a string literal.

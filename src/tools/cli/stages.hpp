@@ -31,7 +31,7 @@ class FramePainter {
   virtual ~FramePainter() = default;
   /// Sets the camera path. Without one, a computed camera is derived from the first drawn frame alone.
   virtual void set_camera_path(render::CameraPath) {}
-  /// `before`: the previous frame if motion blur is on and there is one; else null.
+  /// `before`: the previous wanted frame, for motion blur and layers; null if there is none or it is not needed.
   virtual Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) = 0;
   virtual StageTime last_time() const = 0;
   virtual std::string description() const = 0;

@@ -8,7 +8,7 @@
 
 namespace weft::cli {
 
-/// The values of one frame: run times in ms, everything else in SI units. An infinite distance becomes null.
+/// The values of one frame: run times in ms, everything else in SI units. Infinite values and NaN become null.
 nlohmann::ordered_json frame_json(const FrameRecord& record);
 
 /// The content of the --stats file.

@@ -42,7 +42,7 @@ class Stills {
   void set_size(const PictureSize& size);
 
  protected:
-  /// Passes a frame to the camera, in order.
+  /// Passes a frame to the camera if the camera is computed. Call it in the order of frames.
   void show(const frame::FrameSnapshot& snapshot);
 
   const StopSignals signals_;
@@ -56,7 +56,7 @@ class Stills {
 std::unique_ptr<Stills> open_stills(const SceneOptions& options);
 
 /// The file that `-o` names, or output/<default_name>, checked before any work. Throws Error(usage) if it is not a PNG
-/// or is an input, Error(output_failed) if it cannot be written.
+/// or is an input, Error(output_failed) if it exists and `overwrite` is false, or cannot be written.
 std::filesystem::path still_file(const Stills& stills, const std::filesystem::path& output,
                                  const std::string& default_name, bool overwrite);
 

@@ -42,8 +42,9 @@ class Store {
   std::size_t leftover_frames() const;
   bool has_leftover() const { return cache::is_cache(lock_.folder()); }
 
-  /// Finds the frame from which the earlier run can be resumed. Damaged files are reported and not used. Throws
-  /// Error(output_failed) if the earlier run has another scene or was made by another program.
+  /// Finds the frame from which the earlier run can be resumed. If its files are damaged, reports them and starts at
+  /// the beginning. Throws Error(output_failed) if the scene of the earlier run differs in more than looks, or if
+  /// another build of the program made it.
   void find_start();
   /// Whether find_start() found a state to resume from.
   bool resumes() const { return reader_ != nullptr; }
@@ -62,7 +63,8 @@ class Store {
   /// The stored state, from which the simulation continues; call it only if resumes().
   const cache::SolverState& start() const { return start_; }
 
-  /// Only the simulating thread may call the functions from here on.
+  /// Starts storing frames of these objects. While a film is made, only the simulating thread may call open() and the
+  /// functions below.
   void open(std::vector<frame::ObjectInfo> objects);
   /// Stores the frame if it is fresh, and from time to time the state of the simulation.
   void keep(const MadeFrame& frame);
@@ -70,7 +72,7 @@ class Store {
   frame::SnapshotPtr stored(int frame);
   /// Saves the state of the last frame. If this fails, an earlier state remains.
   void keep_last_state();
-  /// Saves the state if the last save took at most 1 % of the wall time since then.
+  /// Saves the state if this run has saved none yet, or if the last save took at most 1 % of the wall time since then.
   void save_if_cheap(const production::SceneSimulation& simulation, int frame);
   void save(const production::SceneSimulation& simulation, int frame);
 

@@ -6,8 +6,8 @@
 
 namespace weft::cli {
 
-/// Result and cost of a run, for people: several lines, without a line feed at the end. The last lines are warnings
-/// about suspicious figures.
+/// Result and cost of a run, for people: several lines, without a line feed at the end. The last lines are the notes
+/// and warnings of the report.
 std::string summary(const RunReport& report);
 
 /// Warnings about suspicious figures, such as large strain, many rejected steps, or touching surfaces.

@@ -37,7 +37,8 @@ struct SweepJob {
 /// list of runs, if there is one, and the input files of the first run's scene.
 std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths);
 
-/// Throws Error(output_failed) unless the folder is new, empty, or of the same sweep.
+/// Registers the output folder in `paths`. Throws Error(output_failed) unless the folder is new, empty, or of a sweep
+/// with the same `passed_on` options (of any sweep with `overwrite`), or if its page cannot be replaced.
 void check_sweep_folder(const SweepOptions& options, PathLedger& paths);
 
 /// Writes the index of the folder, which also marks it as the folder of a sweep.

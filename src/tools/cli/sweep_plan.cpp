@@ -216,7 +216,7 @@ std::vector<Changes> parse_list(const fs::path& file, const std::string& raw) {
 std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::vector<Axis>& axes) {
   std::vector<SweepRun> runs;
   std::set<Changes> known;
-  std::map<std::string, std::set<std::string>> values;  // by key; "" if a run keeps the scene's value
+  std::map<std::string, std::set<std::string>> values;  // by key: the values that runs set
   for (Changes& changes : combine(list, axes)) {
     std::set<std::string> keys;
     for (const auto& [key, value] : changes)

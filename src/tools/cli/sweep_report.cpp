@@ -54,8 +54,8 @@ std::string comparable_of(const Json& stats) {
   return comparable.get<bool>() ? "yes" : "no";
 }
 
-/// Newton iterations, rejected steps, largest strain, energy at the end, error, and whether the error is comparable.
-/// The texts are empty if there is no frame.
+/// Newton iterations, rejected steps, largest strain, kinetic energy at the end, error, and whether the error is
+/// comparable. The texts are empty if there is no frame.
 std::vector<std::string> figures_of(const Json& stats) {
   const Json& frames = frames_of(stats);
   if (frames.empty()) return std::vector<std::string>(6);
@@ -92,7 +92,8 @@ std::optional<image::Image> picture_of(const std::filesystem::path& file, std::o
 }
 
 /// Number of columns of the sheet. Runs with the same values of the first keys form a row, along which the last keys
-/// vary, if such a row has at most kMaxSheetColumns runs.
+/// vary, if such a row has 2 to kMaxSheetColumns runs. Otherwise the sheet is about square, with at most
+/// kMaxSheetColumns columns.
 int columns_of(const std::vector<SweepResult>& results) {
   const Changes& first = results.front().run.difference;
   for (std::size_t keys = 1; keys < first.size(); ++keys) {

@@ -1,4 +1,4 @@
-// The commands that make no film.
+// The commands that only the tools program has.
 #include <variant>
 
 #include "core/error.hpp"

@@ -68,7 +68,8 @@ class Watch {
  private:
   bool changed() const { return stamps_of(files_) != drawn_; }
 
-  /// Draws in a separate process, which reports its own errors; kills it if a file changes in the meantime.
+  /// Draws in a separate process, which reports its own errors. Kills it if a file changes or a stop is requested in
+  /// the meantime.
   void draw() const {
     std::vector<std::string> words{own_program().string(),
                                    options_.film ? "run" : "thumbnail",

@@ -26,6 +26,7 @@ struct Acceptance {
 
 /// SHA-256 of a file, the first 16 hexadecimal digits. Throws Error(asset_unreadable).
 std::string short_hash(const std::filesystem::path& file);
+/// The same hash of `bytes`.
 std::string short_hash_of(const std::string& bytes);
 
 }  // namespace weft::compare

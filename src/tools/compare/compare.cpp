@@ -57,6 +57,12 @@ bool has_default_budget(const Limits& limits) {
   return limits.pixel_budget == Limits{}.pixel_budget;
 }
 
+// Sets the mean and the largest value of the FLIP map.
+void read_flip(Comparison& result) {
+  result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
+  result.figures.spot = static_cast<double>(*std::max_element(result.flip.values.begin(), result.flip.values.end()));
+}
+
 }  // namespace
 
 Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance, const Mask* mask) {
@@ -72,7 +78,7 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
     // FLIP also spreads a difference to pixels outside the mask, where it must not count.
     for (std::size_t i = 0; i < mask->values.size(); ++i)
       if (mask->values[i] == 0) result.flip.values[i] = 0;
-    result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
+    read_flip(result);
     return result;
   }
   Comparison result;
@@ -84,8 +90,7 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
   if (result.figures.pixels_over > 0) result.figures.pixels_at_edges = count_at_edges(reference, test, pixel_tolerance);
   result.figures.ssim = structural_similarity(reference, test);
   result.flip = flip_map(reference, test);
-  result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
-  result.figures.spot = static_cast<double>(*std::max_element(result.flip.values.begin(), result.flip.values.end()));
+  read_flip(result);
   return result;
 }
 

@@ -70,16 +70,17 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
 /// larger fraction of the pixels; there, the limit is multiplied by √(640 · 360 / number of pixels).
 Limits for_size(Limits limits, const Figures& figures);
 
-/// Number of pixels that count against the budget, and number that the budget allows; both can be fractional.
+/// Number of pixels that count against the budget; fractional if edge pixels count as 1/40.
 double counted_pixels(const Figures& figures, const Limits& limits);
+/// Number of pixels that the budget allows; can be fractional.
 double allowed_pixels(const Figures& figures, const Limits& limits);
 
 Verdict verdict(const Figures& figures, const Limits& limits);
 
 /// Whether frame k of a lossy video, whose verdict is `differs`, counts as spill: the encoder predicted it from a
 /// changed frame at most 12 frames away. Conditions: its pixels over the tolerance and its mean FLIP are at most twice
-/// the limits, its spot is within the limit, and its mean FLIP is at most a third of that of the changed frame.
-/// `frames`: all frames of the video, in order.
+/// the limits, its spot is within the limit, and its mean FLIP is at most a third of the largest mean FLIP of these
+/// neighbouring frames. `frames`: all frames of the video, in order.
 bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits);
 
 /// The FLIP map in the colours of `image::heat_color`, with dark blue for 0. The position on the scale is the square

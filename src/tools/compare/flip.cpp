@@ -43,8 +43,8 @@ float lab_curve(float t) {
 }
 
 // Kernel a1 sqrt(pi/b1) exp(-pi² x²/b1) + a2 sqrt(pi/b2) exp(-pi² x²/b2), x in degrees. In one dimension, this is the
-// Fourier transform of a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree. Like the paper, uses it in two
-// dimensions.
+// Fourier transform of a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree. Like the paper, as_seen() uses the
+// kernel in two dimensions.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };

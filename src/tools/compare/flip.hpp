@@ -20,11 +20,12 @@ Plane<float> flip_map(const image::Image& reference, const image::Image& test);
 namespace flip {
 
 using Color = Eigen::Vector3f;
-/// Achromatic, red-green and blue-yellow.
+/// Three planes: achromatic, red-green and blue-yellow (Y C_x C_z), or L*, a* and b*.
 using Channels = std::array<Plane<float>, 3>;
 
-/// Linear sRGB to Y C_x C_z, an opponent colour space that is linear in the light (Section 4.1.1), and back.
+/// Linear sRGB to Y C_x C_z, an opponent colour space that is linear in the light (Section 4.1.1).
 Color opponent_from_linear(const Color& linear);
+/// Inverse of opponent_from_linear().
 Color linear_from_opponent(const Color& opponent);
 
 /// Linear sRGB to L*a*b* with the white of sRGB. After Hunt, a* and b* are multiplied by L* / 100, which reduces them

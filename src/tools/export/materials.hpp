@@ -53,7 +53,7 @@ Materials materials_of(const frame::Surface& surface);
 
 /// Triangles with the same look.
 struct MaterialGroup {
-  std::size_t material = 0;  ///< index in `all`
+  std::size_t material = 0;  ///< index in Materials::all of the first material with this look
   std::vector<std::size_t> triangles;
 };
 

@@ -36,8 +36,8 @@ class Decisions {
 /// Describes the defect of an entry; empty if it is valid.
 std::string mistake_of_decision(const Json& entry);
 
-/// Hash of the bytes of the run's video or pictures: 16 hexadecimal digits; empty if it has none. Throws
-/// Error(asset_unreadable).
+/// Hash of the bytes of the run's video, or of the hashes of its pictures: 16 hexadecimal digits; empty if it has none.
+/// Throws Error(asset_unreadable).
 std::string fingerprint(const RunFiles& run);
 
 /// Modification time of the video, else the first picture, else the statistics: ISO 8601 in UTC; empty if none exists.

@@ -148,7 +148,7 @@ class Search {
   /// A run of a sweep. `place` defines the order, since names with numbers do not sort by value (10 before 2).
   struct Swept {
     std::string sweep;      // folder of the sweep
-    std::size_t place = 0;  // index among its runs
+    std::size_t place = 0;  // rank among the runs of all sweeps, in the order of their lists
     Json values;
   };
 
@@ -225,7 +225,8 @@ class Search {
     return true;
   }
 
-  // Whether the pictures are in a subfolder of a run that has a video: then a farm has joined them to this video.
+  // Whether the pictures are in a subfolder of a sweep's run that has a video: then a farm has joined them to this
+  // video.
   bool are_in_a_video(const fs::path& prefix) const {
     const fs::path run = prefix.parent_path().parent_path();
     return swept_.contains(run.lexically_relative(folder_)) && std::ranges::any_of(runs_, [&](const RunFiles& other) {
@@ -266,7 +267,7 @@ class Search {
   std::set<fs::path> videos_, effective_;               // videos not yet assigned to a run
   std::map<fs::path, std::vector<fs::path>> pictures_;  // by prefix before the number; not yet assigned to a run
   std::map<fs::path, Swept> swept_;                     // by the folder of the run
-  std::map<std::string, std::string> unusable_;         // unusable JSON files by name, with the reason
+  std::map<std::string, std::string> unusable_;         // by name of a run: why its JSON file is unusable
   std::vector<RunFiles> runs_;
 };
 

@@ -29,8 +29,8 @@ struct RunFiles {
 /// that were `set`.
 inline constexpr const char* kSweepName = "sweep.json";
 
-/// All runs below `folder`, ordered by name; runs of a sweep in the order of the sweep. Skips hidden files and review
-/// pages. Throws Error(asset_unreadable) if `folder` is not a folder or cannot be listed.
+/// All runs below `folder`, ordered by name; runs of a sweep in the order of the sweep. Skips hidden files, links and
+/// review pages. Throws Error(asset_unreadable) if `folder` is not a folder or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
 
 /// Returns whether `run.stats_json` is the statistics of a run. Removes values that the page cannot show, and adds

@@ -12,8 +12,8 @@ namespace weft::review {
 /// files.
 inline constexpr const char* kFileList = "files.txt";
 
-/// Throws Error(output_failed) if `folder` holds a page and `overwrite` is not set, or in any case if it holds a file
-/// that does not belong to a page.
+/// Throws Error(output_failed) unless `folder` is new, empty, or a page that may be replaced: `overwrite` is set, and
+/// the list of the page names all files in the folder.
 void check_replaceable(const std::filesystem::path& folder, bool overwrite);
 
 /// A hidden temporary folder beside the final one. The destructor removes it unless commit() has succeeded.
@@ -24,8 +24,8 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return temporary_->path(); }
 
-  /// Flushes everything to disk and gives the folder its final name. An existing page is exchanged with it atomically,
-  /// then removed. Throws Error(output_failed).
+  /// Flushes everything to disk and gives the folder its final name. An existing page is exchanged with it (atomically,
+  /// if the file system supports this), then removed. Throws Error(output_failed).
   void commit();
 
  private:

@@ -25,7 +25,7 @@ struct Survey {
   int width = 0, height = 0;
 };
 
-/// Throws Error(asset_unreadable) if any picture cannot be read.
+/// Reads all pictures of a run. Throws Error(asset_unreadable) if any picture cannot be read.
 Survey survey(const RunFiles& run);
 
 /// Comparison of one picture with that of the reference at the same time.

@@ -38,7 +38,7 @@ class Context {
   std::string description_;
 };
 
-/// Makes a context, bound to the calling thread. `automatic` takes OSMesa, or EGL if there is no OSMesa. `threads`:
+/// Makes a context, bound to the calling thread. `automatic` takes OSMesa, or EGL if OSMesa fails. `threads`:
 /// number of threads of the software rasteriser (0: its default); the driver reads it once per process, so the first
 /// context decides. Throws Error(usage) if a library is absent, Error(internal) if a call fails. If `automatic` finds
 /// that neither library works, it throws Error(usage), which names each library and its error.

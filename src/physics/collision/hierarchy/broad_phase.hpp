@@ -26,8 +26,8 @@ namespace weft::collision {
 /// Measured on falling_band and multi_sheet (tests/bench): leaves of 8 instead of 1 make the search 3 times faster, and
 /// 8 children instead of 2 save a fifth. Separation lists save at most a tenth. Velocity and normal cones cost at least
 /// as much as they save. 18 directions take longer to refit and traverse than 6, but list a quarter fewer candidates.
-/// Of broad and narrow phase together, 18 directions save 4 to 9 %, or a fifth if layers are slanted to the axes. 26
-/// directions, the choice of the seed (the paper that README.md names), list the fewest.
+/// They save 4 to 9 % of the time of broad and narrow phase together, or a fifth if layers are slanted to the axes. 26
+/// directions, the choice of the seed (the paper that README.md names), list the fewest candidates.
 struct BroadPhaseOptions {
   /// Directions of the bounds: 6, 18 or 26. More directions cost more and list fewer pairs. Boxes (6) list every pair
   /// that 18 or 26 directions list.

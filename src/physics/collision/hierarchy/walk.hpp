@@ -9,7 +9,7 @@
 
 namespace weft::collision {
 
-// For the use of threads: minimum number of leaves of both trees together, and minimum number of tasks.
+// Minimum number of leaves of both trees together for which threads are used, and number of tasks to aim for.
 constexpr std::size_t kMinLeavesForThreads = 512, kMinThreadTasks = 64;
 
 /// One traversal of two trees, which may be the same. kLonger: of two nodes, descend only into the one with the longer

@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxCorners = 8;
 /// Closest points x_a = Σ weights_a x and x_b = Σ weights_b x of the convex hulls of two small sets of points.
 struct ConvexClosest {
   std::array<double, kMaxCorners> weights_a, weights_b;  ///< ≥ 0, each summing to 1; zero past the corners
-  Vec3 difference;                                       ///< x_a - x_b [m]; zero if the hulls intersect
+  Vec3 difference;                                       ///< x_a - x_b [m]; zero, up to rounding, if the hulls meet
   double distance;     ///< length of `difference` [m]; never less than the true distance
   double lower_bound;  ///< never more than the true distance [m]: a plane separates the hulls by this much
   int iterations;

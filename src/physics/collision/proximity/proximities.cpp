@@ -70,7 +70,7 @@ class ProximityFinder::Gathering {
     std::array<Boxes, 3> edge;  // edge i goes from corner i to corner i + 1
     Boxes face;
     std::array<IntLanes8, 3> corner;     // vertex numbers
-    std::array<std::uint32_t, 6> owned;  // bit l: the triangle in lane l owns corner 0 to 2, edge 0 to 2
+    std::array<std::uint32_t, 6> owned;  // of corners 0 to 2, then edges 0 to 2; bit l: the triangle in lane l owns it
 
     Side(const Features& features, const std::vector<Rounded>& rounded, const std::array<Index, 8>& triangles) {
       for (std::size_t c = 0; c < 3; ++c) {

@@ -17,7 +17,7 @@ namespace weft::collision {
 struct SurfacePoint {
   Triangle face{};
   std::array<double, 3> weights{};  ///< of the corners of the face
-  Vec3 normal = Vec3::UnitZ();      ///< unit, outward, along the line through the point and p
+  Vec3 normal = Vec3::UnitZ();      ///< unit, outward, along the line through p; angle-weighted if p is on the surface
   double height = 0;                ///< signed distance of p [m], negative inside; infinite if there are no triangles
 };
 
@@ -26,11 +26,12 @@ struct SurfacePoint {
 /// "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005).
 SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, std::span<const Vec3> x);
 
-/// Nearest point of a surface of the broad phase, at x [m] inside the bounds of its last refit. Gives the same bits as
-/// the search over all its triangles (unless a thousand nearly equidistant faces, each within rounding of the next,
-/// span kNearestTolerance). `counts`: if given, excludes faces for which it is false. `towards`: unit or zero; if not
-/// zero and some counted faces have a normal within 60 degrees of it, excludes all other faces.
+/// Whether a face takes part in a search.
 using CountsFace = std::function<bool(const Triangle& face)>;
+/// Nearest point of a surface of the broad phase, at x [m] inside the bounds of its last refit. Gives the same bits as
+/// a search over all triangles that are not excluded (unless a thousand nearly equidistant faces, each within rounding
+/// of the next, span kNearestTolerance). `counts`: if given, excludes faces for which it is false. `towards`: unit or
+/// zero; if not zero and some counted faces have a normal within 60 degrees of it, excludes all other faces.
 SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
                            const Vec3& towards = Vec3::Zero(), const CountsFace& counts = nullptr);
 

@@ -33,8 +33,9 @@ bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0
 enum class PlaneKinds { constant, turning, all };
 
 /// Searches for a separating plane, cheap ones first:
-///   1. constant directions: face normals (for layers) and the line between the centres (for neighbours in one plane);
-///   2. the same directions, turning with the pair;
+///   1. constant directions: face normals at the start and at the end (for layers), and the line between the centres at
+///      the start (for neighbours in one plane);
+///   2. the same directions, turning from start to end;
 ///   3. the line between the closest points, constant, then turning;
 ///   4. all again in each half of the trajectory, which is halved at most Numerics::Repair::halvings times.
 ///

@@ -16,8 +16,8 @@ namespace weft::collision {
 enum class ResponseForm { springs, velocity_constraints };
 
 /// The contacts of one step in the form that the solver uses. With velocity constraints, a contact of a single particle
-/// with an obstacle is a wall (see VelocityConstraints), which is set and released between the solves of a step. All
-/// other contacts are springs.
+/// in front of an obstacle is a wall (see VelocityConstraints), which is set and released between the solves of a step.
+/// All other contacts are springs.
 class ContactResponse {
  public:
   /// `masses`: of the particles [kg]. `stick_speed`: as in ContactSet::set_step() [m/s].
@@ -28,7 +28,8 @@ class ContactResponse {
   /// Call before adding the contacts of a step over h [s].
   void begin_step(double h);
   void add(const Contact& contact, std::span<const Vec3> x_t0);
-  /// Adds a wall for a corner of a cloth triangle that would meet an obstacle. Only with velocity constraints.
+  /// Adds a wall for a corner of a triangle that would meet an obstacle, if the corner is in front of the obstacle.
+  /// Only with velocity constraints.
   void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
   /// As VelocityConstraints::predict_wall_contacts; false with springs.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
@@ -44,7 +45,8 @@ class ContactResponse {
   /// Keeps the state of the walls for the next step.
   void accept();
 
-  /// As the functions of ContactSet.
+  /// As the functions of ContactSet. Forces and derivatives include the friction of the walls; update(), add_impacts()
+  /// and active() concern springs only.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const { springs_.update(x_end, lag); }
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,

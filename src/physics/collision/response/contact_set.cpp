@@ -100,7 +100,8 @@ Vec3 slip_of(const Contact& contact, const Vec3& relative) {
   return slip - contact.normal.dot(slip) * contact.normal;
 }
 
-// Fraction of a contact that is an impact, 0 to 1, by its motion without contact forces; see add_impacts().
+// Degree to which a contact is an impact, 0 to 1, estimated from the motion of its particles up to the start of the
+// step and of the obstacle in the step; see add_impacts().
 double impact_fraction(const Contact& contact, const StepStart& start) {
   const auto along_normal = [&](std::span<const Vec3> of) { return contact.normal.dot(weighted_sum(contact, of)); };
   const double velocity = along_normal(start.v);

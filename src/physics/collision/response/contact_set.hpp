@@ -24,7 +24,7 @@ struct Contact {
   Vec3 normal = Vec3::UnitZ();                ///< unit, from b to a where the pair was found
   double depth = 0;            ///< initial depth, at which the law is first linearised; negative: out of range [m]
   double range = 0;            ///< activation distance: the spring acts below it [m]
-  double full_range = 0;       ///< r, activation distance of the surfaces [m]; `range` may be smaller
+  double full_range = 0;       ///< r ≥ `range`, activation distance of the surfaces [m]; infinite: a linear spring
   double stiffness = 0;        ///< k [N/m]
   double friction = 0;         ///< Coulomb coefficient while the pair slides
   double static_friction = 0;  ///< before it slides; not less than `friction`
@@ -70,13 +70,13 @@ class ContactSet {
   /// own besides the depth d, with f⁻¹(λ) = d at the solution (a primal–dual method; λ starts as f(`depth`)). The
   /// linear system contains the tangent of the law at f⁻¹(λ), and λ follows that tangent, but never below zero.
   /// (Measured with the tangent at the depth of the iterate instead: 1.25 times the iterations in sphere_drape.)
-  /// Friction uses this λ. Its λ is constant within an iteration, and stays constant after Numerics::Newton::patience
+  /// Friction uses this λ as a constant within an iteration, and does not renew it after Numerics::Newton::patience
   /// updates, so friction has a potential, too.
   ///
-  /// Sticking friction on an obstacle follows its tangent likewise. The contact starts to slide if the tangent exceeds
-  /// static friction. It sticks again if the slip is within the stick slip, or if the slip has reversed (at most
-  /// Numerics::Contact::returns times). Between cloths, where this brings no gain, friction does not follow its
-  /// tangent.
+  /// Up to that number of updates, sticking friction on an obstacle follows its tangent likewise. The contact starts to
+  /// slide if the tangent exceeds static friction. It sticks again if the slip is within the stick slip, or if the slip
+  /// has reversed (at most Numerics::Contact::returns times). Between cloths, where this brings no gain, friction does
+  /// not follow its tangent.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const;
 
   /// force += contact forces [N] with the particles at x_end. Friction uses the normal forces at x_end during the first

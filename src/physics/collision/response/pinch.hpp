@@ -19,9 +19,9 @@ namespace weft::collision {
 /// Set of cloth triangles, each exempt from one limb of an obstacle (an obstacle without limbs counts as one): the
 /// triangle may intersect the limb, and no separating plane is required. A triangle is removed once it is apart from
 /// the limb and back on its original side. Triangles that share a particle with an exempted one are exempt too, so that
-/// a limb moving along the cloth does not drag the cloth with it. Of these, renew() adds to the set those that the limb
-/// meets. If two limbs overlap, the cloth is exempt from the limb that reached it and rests on the other. When the
-/// former retreats, the cloth comes out on the side where it went in.
+/// a limb moving along the cloth does not drag the cloth with it. Of these, renew() adds to the set those that meet the
+/// limb or are on the wrong side of it. If two limbs overlap, the cloth is exempt from the limb that reached it and
+/// rests on the other. When the former retreats, the cloth comes out on the side where it went in.
 class PinchedPairs {
  public:
   struct Key {
@@ -76,11 +76,12 @@ class PinchedPairs {
   /// `triangles`: of all surfaces, cloth first.
   void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x);
 
-  /// Finds how pinched cloth returns to its side at x [m]. Lists each particle that is less than `max_height` [m] above
-  /// the limb's surface, with the direction to the nearest point of the surface. For a particle on the wrong side,
-  /// faces that point the same way as those that reached it take precedence. If all corners of a triangle are on the
-  /// right side but it still crosses a face of the limb, lists the middle of that crossing, with the normal of the
-  /// face. Side a is the cloth; the normal points to the side where the cloth belongs.
+  /// Finds how pinched cloth returns to its side at x [m]. Lists each corner of an exempted triangle whose height above
+  /// the limb's surface (negative on the wrong side) is less than `max_height` [m], with the nearest point of the
+  /// surface. For a corner on the wrong side, faces that point the same way as those that reached it take precedence.
+  /// If all corners of a triangle are on the right side but it still crosses a face of the limb, lists the middle of
+  /// that crossing, with the normal of the face. Side a is the cloth; the normal points to the side where the cloth
+  /// belongs.
   std::vector<Push> find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x, double max_height) const;
 
   bool empty() const { return origins_.empty(); }

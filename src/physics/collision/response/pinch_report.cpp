@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kNoFaces = std::numeric_limits<double>::infinity();
 
-// Distance [m] from the place to those faces of the obstacle that point in this direction; infinite if there are none.
+// Distance [m] from the place to the faces of the obstacle with a normal within 60° of this direction. If there are
+// none, the nearest face counts; if that one points the other way, the distance is infinite.
 double distance_facing(const Vec3& place, const Vec3& direction, const BroadPhase& surfaces, std::size_t obstacle,
                        std::span<const Vec3> x) {
   const SurfacePoint point = nearest_point(place, surfaces, obstacle, x, direction);

@@ -15,7 +15,8 @@
 
 namespace weft::collision {
 
-/// Mobility of a vertex: obstacles are fixed, particles are free, and pinned particles move only if nothing else can.
+/// Mobility of a vertex: obstacles, and rigid bodies that are held, are fixed; other particles are free; pinned
+/// particles move only if nothing else can.
 enum Movable : std::uint8_t { kFixed = 0, kFree = 1, kPinned = 2 };
 
 /// A pinned particle that had to move, and the pair that would have met otherwise.
@@ -25,9 +26,9 @@ struct ObstructedPin {
 };
 
 struct SeparationReport {
-  bool separated = false;                      ///< every pair has a separating plane
+  bool separated = false;                      ///< no pair fails: each has a plane, is exempt, or is fully backtracked
   int corrected_pairs = 0;                     ///< pairs that needed a correction
-  double largest_push = 0;                     ///< [m]
+  double largest_push = 0;                     ///< longest single push or backtrack [m]
   std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that could not be held in place
   CornerPair stuck{};                          ///< if not `separated`: a pair that could not be separated
 };
@@ -82,15 +83,15 @@ class Separation {
 
   /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1; changes no positions. x_t0 must
   /// be free of intersections except those of `pinched`, which are skipped. Pairs with an obstacle that turns are
-  /// tested in its frame (`carried`). `which` restricts the planes of pairs that must be tested. For pairs whose
-  /// vertices have not moved since the last call, the result of that call is reused.
+  /// tested in its frame (`carried`). `which` restricts the planes of pairs that must be tested. Pairs that the last
+  /// call found separated, and whose vertices have not moved since, are not tested again.
   std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                            const PinchedPairs* pinched = nullptr,
                                            const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
 
-  /// Changes x_t1 of movable vertices until every pair has a separating plane. If that fails, adds pairs of cloth and
-  /// obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last call; vertices
-  /// then keep the obstacles that carry them.
+  /// Changes x_t1 of movable vertices until no pair fails (see SeparationReport). If that is impossible, adds pairs of
+  /// cloth and obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last
+  /// call; vertices then keep the obstacles that carry them.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                            PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
                            bool is_continued = false, PlaneKinds which = PlaneKinds::all);

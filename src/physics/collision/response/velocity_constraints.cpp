@@ -9,11 +9,11 @@
 namespace weft::collision {
 namespace {
 
-// Distance beyond a wall at which to probe whether the wall holds, and smallest penetration that is worth another solve
-// [m].
+// Distance beyond a wall at which to probe whether the wall holds [m].
 double probe_distance() {
   return 0.5 * numerics.separation.restored_gap;
 }
+// Smallest penetration that is worth another solve [m].
 double tolerated_penetration() {
   return 0.1 * numerics.separation.restored_gap;
 }

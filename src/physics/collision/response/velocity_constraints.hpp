@@ -34,9 +34,10 @@ struct PrescribedParticle {
 /// less. The wall releases the particle if the residual shows that the wall would pull. Up to three walls hold a
 /// particle at once. A held particle also sticks in the tangent plane, moving with the obstacle, while the force
 /// required for that lies in the friction cone. Otherwise it slides, with friction μ times the normal force against the
-/// slip, smooth below the stick velocity as in ContactSet. If it ends a step slower than the stick velocity, it sticks
-/// from the next step on. Friction is implicit: an explicit friction force would reverse the motion of neighbours that
-/// begin to slide together.
+/// slip, smooth below the stick velocity as in ContactSet. If it ends a step slower than the stick velocity, with the
+/// same walls and nearly the same normal force as before, it sticks from the next step on (exception: see accept() in
+/// the .cpp). Friction is implicit: an explicit friction force would reverse the motion of neighbours that begin to
+/// slide together.
 ///
 /// The state is revised between the solves of a step (revise) and kept for the next step (accept).
 class VelocityConstraints {

@@ -16,8 +16,8 @@ namespace weft::collision {
 /// Let P be the triangles below a node and P⁺ all triangles with at least one corner in P. Features of P without a
 /// common vertex are not near each other if an axis a exists such that, during the linear motion from x_t0 to x_t1,
 ///   1. no corner of P is on the border of the surface, so all triangles around it are in P⁺;
-///   2. the normals of P⁺ lie in a cone around a of less than 90°, so that, seen against a (in the direction −a), all
-///      of P⁺ faces the viewer;
+///   2. the normals of P⁺ lie in a cone around a with a half-angle below 90°, so that, seen against a (in the direction
+///      −a), all of P⁺ faces the viewer;
 ///   3. the contour of P⁺, seen against a, runs counter-clockwise around its centre once (star-shaped: Schvartzman,
 ///      Pérez & Otaduy, "Star-Contours for Efficient Hierarchical Self-Collision Detection", 2010);
 ///   4. the altitudes of the triangles of P⁺, projected along a, exceed the detection distance.

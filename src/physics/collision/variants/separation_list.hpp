@@ -26,7 +26,7 @@ class SeparationList {
     bool query_in_a;
   };
 
-  /// Two leaves whose bounds overlap.
+  /// Two leaves whose bounds overlapped when the entry was added.
   struct LeafPair {
     Ref a, b;
   };

@@ -49,7 +49,7 @@ struct Report {
   int linear_iterations = 0;    ///< of conjugate gradients
   int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, in the last step
   int constraints = 0;          ///< contacts that push, and held particles, in the last step
-  double min_distance = 0;      ///< between two surfaces [m]; infinite if none is within the detection distance
+  double min_distance = 0;      ///< smallest distance of the near pairs [m]; infinite if there are none
   double max_strain = 0;        ///< largest |length / rest length - 1|, in all steps
   double stretch_ratio = 0;     ///< largest ratio of extension to the fabric's `max_stretch`, in all steps
   double kinetic_energy = 0;    ///< [J]
@@ -59,7 +59,7 @@ struct Report {
   double pin_work = 0;          ///< work of pins on the cloth in this frame [J]
   double error_estimate = 0;    ///< estimated sum, over the steps, of the local errors of positions [m]
   double solver_error = 0;      ///< the same sum of the errors due to the solver [m]
-  int pinched_pairs = 0;        ///< largest simultaneous number of cloth triangles that bodies pinch, per obstacle limb
+  int pinched_pairs = 0;        ///< largest number of pinched cloth triangles at once, each counted once per limb
   int lagging_particles = 0;    ///< largest simultaneous number of pinned particles that lag behind their targets
   std::vector<EnclosedAir> enclosed_air;  ///< of each cloth with pressure
   std::vector<std::string> warnings;

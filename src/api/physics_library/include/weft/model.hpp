@@ -22,7 +22,7 @@ struct Material {
   double shear = 130;            ///< [N/m]
   double bend = 1e-5;            ///< bending stiffness [N·m]
   double max_stretch = 0.1;      ///< extension at which threads lock [1]; 0: never
-  double max_shear = 0;          ///< change of the angle between weft and warp at which they lock [degrees]; 0: never
+  double max_shear = 0;          ///< change of the weft-warp angle at which threads lock [degrees]; 0: never
   double stretch_viscosity = 0;  ///< [N·s/m]
   double shear_viscosity = 0;    ///< [N·s/m]
   double bend_viscosity = 1e-6;  ///< [N·m·s]
@@ -37,7 +37,7 @@ struct Cloth {
   std::string name;
   Mesh mesh;  ///< shape at the start
   /// Per particle: its place in the flat fabric, along weft and warp [m]. If empty, the mesh is the rest shape, and the
-  /// weft of each triangle runs along the projection of x.
+  /// weft of each triangle runs along the projection of the x axis onto it.
   std::vector<RestPoint> rest;
   Material material;
   Vector velocity{0, 0, 0};  ///< of all particles at the start [m/s]
@@ -70,7 +70,7 @@ struct Body {
 struct Pin {
   std::string cloth;
   std::vector<int> particles;
-  std::string body;                                          ///< body that they follow; empty: they stay
+  std::string body;                                          ///< body without mass that they follow; empty: they stay
   double release = std::numeric_limits<double>::infinity();  ///< time from which they are free [s]
 };
 

@@ -26,9 +26,10 @@ class WEFT_API Simulation {
   /// Builds the simulation. Throws std::invalid_argument if a value of the model is out of range, or the options do not
   /// fit the model; SceneError if surfaces touch at the start.
   explicit Simulation(const Model& model, const SimulationOptions& options = {});
-  /// Only in the library with scenes (weft/scene.hpp). Builds the simulation and computes `time.preroll`, if the scene
-  /// has one. Throws SceneError if surfaces touch at the start, FileError, SimulationError; std::invalid_argument if
-  /// the options do not fit the scene.
+  /// Only in the library with scenes (weft/scene.hpp). Builds the simulation and, if `options.state` is empty, computes
+  /// the scene's `time.preroll`. Throws SceneError if surfaces touch at the start, FileError if a file of the scene
+  /// cannot be used, SimulationError if the preroll fails, and std::invalid_argument if the options do not fit the
+  /// scene.
   explicit Simulation(const Scene& scene, const SimulationOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
