@@ -105,7 +105,8 @@ TEST_F(Dependencies, MasksOfPinsWeightsAndAttachments) {
 TEST_F(Dependencies, FoldersDoNotCount) {
   const std::string scene =
       "cloth = [{ name = 'c', look = { image = 'print.png' }, pin = [{ mask = 'mask.png' }] }]\n"
-      "obstacle = [{ name = 'o', shape = 'sphere' }]\nattach = [{ name = 'a', cloth = 'c', to = 'o', mask = 'mask.png' }]\n"
+      "obstacle = [{ name = 'o', shape = 'sphere' }]\nattach = [{ name = 'a', cloth = 'c', to = 'o', mask = 'mask.png' "
+      "}]\n"
       "camera = [{ name = 'shot', kind = 'file', file = 'shot.gltf' }]\n";
   std::vector<std::uint64_t> hashes;
   for (const std::string folder : {"here", "there"}) {

@@ -20,9 +20,9 @@ struct HarmonicCurve {
 /// of the hips (Zeni et al., "Two simple methods for determining gait events", 2008); the phase is linear between
 /// strikes. The harmonics are a least-squares fit to all frames between the first and the last strike. Curves of one
 /// side are fitted to both sides, with the right side half a stride later. Yaw and roll of the trunk and head have odd
-/// harmonics only, pitch of the pelvis has even ones only. A fifth harmonic of 0.6° of the pelvis yaw is left out, since
-/// it shakes cloth on the hips. All angles are in degrees. Root mean square residual: 2.5° of foot pitch, 3.4° and 2.9°
-/// of arm and elbow, below 1.7° of all other angles.
+/// harmonics only, pitch of the pelvis has even ones only. A fifth harmonic of 0.6° of the pelvis yaw is left out,
+/// since it shakes cloth on the hips. All angles are in degrees. Root mean square residual: 2.5° of foot pitch, 3.4°
+/// and 2.9° of arm and elbow, below 1.7° of all other angles.
 namespace walking {
 
 constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording: speed [m/s], stride time [s]
