@@ -87,7 +87,7 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
       return !same(&Material::stretch_viscosity, &Material::shear_viscosity, &Material::bend_viscosity,
                    &Material::bend_friction, &Material::drag);
     case VariedParameter::friction:
-      varied = scene;
+      varied = scene;  // unscaled: a factor of 0 leaves no friction
       return std::ranges::any_of(frictions(varied), [](const double* value) { return *value != 0; }) &&
              (scene.contact.self || scene.contact.obstacles);
     // A step is never longer than a frame. Successive factors differ by 2: if half of a factor already gives a step of
