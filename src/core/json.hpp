@@ -1,12 +1,13 @@
 // Parses and writes JSON. Only json.cpp instantiates the parser and the writer of nlohmann::json.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 namespace weft {
 
@@ -34,8 +35,10 @@ T value_or(const Json& json, const char* key, T otherwise) {
     fits = found->is_number();
   } else {
     static_assert(std::is_same_v<T, int>);
-    fits = found->is_number_integer() && *found >= std::numeric_limits<int>::min() &&
-           *found <= std::numeric_limits<int>::max();
+    // nlohmann::json compares unsigned numbers as signed ones: from 2^63 they would count as negative.
+    fits = found->is_number_unsigned()
+               ? std::in_range<int>(found->template get<std::uint64_t>())
+               : found->is_number_integer() && std::in_range<int>(found->template get<std::int64_t>());
   }
   return fits ? found->template get<T>() : otherwise;
 }

@@ -55,15 +55,17 @@ std::optional<double> RemainingTime::seconds() const {
   if (samples_.size() < 2) return std::nullopt;
   const Sample &first = samples_.front(), &last = samples_.back();
   const double span = last.seconds - first.seconds;
+  bool all_done = true;
   std::optional<double> slowest;
   for (std::size_t stage = 0; stage < kStages; ++stage) {
     const int left = totals_[stage] - last.done[stage];
     const int advanced = last.done[stage] - first.done[stage];
+    if (left <= 0) continue;
+    all_done = false;
     // A stage without progress, such as drawing before the first wanted frame, has no known pace.
-    if (advanced <= 0 && left > 0) continue;
-    slowest = std::max(slowest.value_or(0.0), left > 0 ? left * span / advanced : 0.0);
+    if (advanced > 0) slowest = std::max(slowest.value_or(0.0), left * span / advanced);
   }
-  return slowest;
+  return all_done ? 0.0 : slowest;
 }
 
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,

@@ -30,7 +30,8 @@ class RemainingTime {
   /// Records that `done` frames were finished `seconds` after the start. Times must not decrease.
   void sample(double seconds, const StageCounts& done);
 
-  /// Seconds left: those of the slowest stage, because stages overlap. Returns nothing until two samples show a pace.
+  /// Seconds left: those of the slowest stage, because stages overlap. Stages without a frame in the last half minute
+  /// have no known pace; returns nothing if no stage that has frames left has one. 0 if all frames are done.
   std::optional<double> seconds() const;
 
  private:

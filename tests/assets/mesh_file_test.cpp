@@ -13,6 +13,7 @@
 
 #include "assets/small_files.hpp"
 #include "core/error.hpp"
+#include "film/assets/sequence_file.hpp"
 #include "physics/mesh/geometry.hpp"
 #include "physics/mesh/ply.hpp"
 #include "support/mesh_measures.hpp"
@@ -202,6 +203,21 @@ TEST_F(MeshFiles, ThatSayWhichAxisIsUpAreTurnedToThatOfTheScene) {
     for (const Vec3& x : loaded.mesh.positions) nearest = std::min(nearest, (x - c.corner).norm());
     EXPECT_LT(nearest, 1e-5) << c.name << ", expected a corner at " << c.corner.transpose();
   }
+}
+
+TEST_F(MeshFiles, OfASequenceAreTurnedAsTheyStateElseFromY) {
+  const auto farthest = [&](const char* name, const std::string& bytes, scene::FileUp up) {
+    const std::filesystem::path file = put(name, bytes);
+    const LoadedSequence loaded = load_sequence({&file, 1}, {{}, up, scene::UpAxis::z}, "here");
+    return Vec3(mesh::bounding_box(loaded.positions.front()).max());
+  };
+  const Vec3 level(1, 1, 0), upright(1, 0, 1);
+  using scene::FileUp;
+  EXPECT_LT((farthest("z.fbx", with_up_axis_of_fbx(fbx_square(), 2), FileUp::as_file) - level).norm(), 1e-5);
+  EXPECT_LT((farthest("z.fbx", with_up_axis_of_fbx(fbx_square(), 2), FileUp::y) - upright).norm(), 1e-5);
+  EXPECT_LT((farthest("y.fbx", with_up_axis_of_fbx(fbx_square(), 1), FileUp::as_file) - upright).norm(), 1e-5);
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  EXPECT_LT((farthest("a.obj", obj, FileUp::as_file) - upright).norm(), 1e-5);
 }
 
 TEST_F(MeshFiles, CountVerticesThatNoTriangleHas) {

@@ -83,6 +83,7 @@ TEST_F(CacheFolder, FramesAreReadWhileOthersAreMissing) {
   fs::remove(cache() / frame_file(1));
   support::write_bytes(cache() / "frame_1.weft", "");
   support::write_bytes(cache() / "frame_00099.weft", "beyond the scene");
+  fs::create_symlink("nowhere", cache() / frame_file(1));
   const Reader reader(cache());
   EXPECT_EQ(reader.frames(), (std::vector<int>{0, 2, 3, 4}));
   EXPECT_EQ(reader.snapshot(3)->frame, 3);

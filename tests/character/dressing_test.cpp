@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "film/character/mannequin.hpp"
 #include "film/character/room.hpp"
@@ -206,6 +208,52 @@ TEST_F(RoomOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
   EXPECT_EQ(moved.distance, most);
   EXPECT_EQ((after[moved.vertex] - before[moved.vertex]).norm(), most);
   EXPECT_TRUE((moved.limb == "trunk") != (moved.away_from == "trunk")) << moved.limb << ", " << moved.away_from;
+}
+
+/// A wall at z = 0, which belongs to the trunk, and above it a leg with a tip at either end, each inside a ring of six
+/// vertices. The lines of all its skin start at its middle.
+Character leg_above_wall() {
+  const auto at = [](double z) { return Affine(Eigen::Translation3d(0, 0, z)); };
+  Character body;
+  body.nodes = {{"hips", -1, at(-0.3)}, {"leg", 0, at(1.3)}};
+  for (Index n = 0; n < 2; ++n)
+    body.bones.push_back({n, Affine(global_transforms(body, rest_pose(body))[n].inverse())});
+  std::vector<Vec3>& x = body.mesh.positions;
+  x = {{-1, -1, 0}, {1, -1, 0}, {0, 1.5, 0}};
+  body.mesh.topology.triangles = {{0, 1, 2}};
+  for (const int side : {-1, 1}) {
+    const auto tip = static_cast<Index>(x.size());
+    x.emplace_back(0, 0, 1 + 0.05 * side);
+    for (Index k = 0; k < 6; ++k) {
+      const double angle = k * std::numbers::pi / 3;
+      x.emplace_back(0.015 * std::cos(angle), 0.015 * std::sin(angle), 1 + 0.04 * side);
+      body.mesh.topology.triangles.push_back({tip, tip + 1 + k, tip + 1 + (k + 1) % 6});
+    }
+  }
+  for (Index v = 0; v < std::ssize(x); ++v) {
+    body.first_influence.push_back(v);
+    body.influences.push_back({v < 3 ? 0 : 1, 1});
+  }
+  body.first_influence.push_back(static_cast<Index>(x.size()));
+  return body;
+}
+
+// Cloth is around the lower tip of the leg: its ring moves back from the trunk, the tip itself only follows, but moves
+// farther, as it is farther from the bone.
+TEST(RoomOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
+  const Character body = leg_above_wall();
+  std::vector<Index> joints(kJointCount, -1);
+  joints[place_of(Joint::hips)] = 0, joints[place_of(Joint::left_upper_leg)] = 1;
+  Pose pose = rest_pose(body);
+  pose.nodes[1].position.z() = 0.3454;  // 4.2 mm of the clearance of 10 mm are missing
+  std::vector<Vec3> x(body.mesh.positions.size());
+  skin(body, pose, x);
+  std::vector<float> near_cloth(x.size(), 0);
+  std::fill_n(near_cloth.begin() + 4, 6, 1.0F);
+  const Moved moved = Room({body, joints}, VertexMask(x.size(), 1), near_cloth, 0.01, {}).make(pose, x);
+  EXPECT_EQ(moved.vertex, 3);
+  EXPECT_EQ(moved.limb, "left upper leg");
+  EXPECT_EQ(moved.away_from, "trunk");
 }
 
 // If a limb is deep inside another, e.g. a thigh in the belly, it must not shrink to a thin peg.

@@ -100,5 +100,20 @@ TEST(Performance, TurnsTheTravelIntoTheDirectionsOfTheRootsParent) {
   EXPECT_LT((world(2.5) - (world(0.5) + Vec3(3, -1, 0))).norm(), 1e-12);
 }
 
+TEST(Performance, TravelsInTheWorldAlsoIfTheClipTurnsTheRootsParent) {
+  Slider slider;
+  slider.body.nodes = {{"scene", -1, Affine::Identity()}, {"root", 0, Affine::Identity()}};
+  slider.clip.channels[0].node = 1;
+  Channel turning;
+  turning.rotation = {{0, 2}, {Quat::Identity(), Quat(Eigen::AngleAxisd(std::acos(0.0), Vec3::UnitZ()))}};
+  slider.clip.channels.push_back(turning);
+  const Performance performance(slider.body, slider.clip, {.timing = {}, .loop = true}, Vec3::UnitZ());
+  const auto world = [&](double t) -> Vec3 {
+    return global_transforms(slider.body, performance.at(t))[1].translation();
+  };
+  EXPECT_LT((world(2 - 1e-12) - Vec3(0, 8, 1)).norm(), 1e-10) << "a quarter turn from x to y";
+  EXPECT_LT((world(2) - Vec3(0, 8, 0)).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace weft::character

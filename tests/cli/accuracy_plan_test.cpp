@@ -208,6 +208,13 @@ TEST(Html, HasHeadingsTablesPlotsAndNoMarkup) {
   EXPECT_NE(page.find("<svg>p.svg</svg>"), std::string::npos);
 }
 
+TEST(Html, KeepsTheOrderOfTablesAndParagraphsWithoutBlankLines) {
+  const std::string page = html_page("a", "before\n| h |\n|---|\n| c |\nafter\n", {});
+  const std::string body =
+      "<p>before</p>\n<table>\n<tr><th> h </th></tr>\n<tr><td> c </td></tr>\n</table>\n<p>after</p>";
+  EXPECT_NE(page.find(body), std::string::npos) << page;
+}
+
 class BenchAccuracyPlan : public support::TestFolder {};
 
 TEST_F(BenchAccuracyPlan, OptionsDecideWhatThePageHas) {

@@ -61,6 +61,8 @@ TEST_F(EnclosedCloth, IsNamedByCheckAndByTheRun) {
     return contains(check.out, words);
   };
   EXPECT_TRUE(is_reported("shape = 'sphere'\nradius = 0.5"));
+  EXPECT_TRUE(
+      contains(run_weft({"check", "--estimate", "s.toml"}, folder_).out, "note: cloth.c: starts wholly inside"));
   EXPECT_TRUE(is_reported("shape = 'box'\nsize = [1, 1, 1]"));
   EXPECT_FALSE(is_reported("shape = 'sphere'\nradius = 0.5\nposition = [0, 0, -0.6]"));
   EXPECT_FALSE(is_reported("shape = 'sphere'\nradius = 0.5\ncollide = false"));

@@ -76,7 +76,7 @@ TEST_F(NothingLost, ARunThatIsGoneOnWithReplacesItsOwnOutputsOnly) {
   if (process.wait().exit_code == 0) GTEST_SKIP() << "it was done before the signal came";
   Arguments resumed = run;
   resumed.push_back("--resume");
-  for (const char* file : {"a.mp4", "s.json", "m/cloth_00002.ply"}) {
+  for (const char* file : {"a.mp4", "a.effective.toml", "s.json", "m/cloth_00002.ply"}) {
     const std::string own = support::read_bytes(folder_ / file);
     write(file);
     const Outcome outcome = run_weft(with(resumed), folder_);
@@ -84,6 +84,7 @@ TEST_F(NothingLost, ARunThatIsGoneOnWithReplacesItsOwnOutputsOnly) {
     expect_kept(file);
     write(file, own);
   }
+  resumed.insert(resumed.end(), {"--set", "cloth.cloth.look.color=[1,0,0]"});  // then its effective scene differs
   const Outcome outcome = run_weft(with(resumed), folder_);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }

@@ -218,6 +218,16 @@ TEST(Compare, SpillExceedsOnlyLimitsOfMeansAndByLessThanTwice) {
   EXPECT_FALSE(is_spill_of(scattered, 1));
 }
 
+TEST(Compare, SpillIsMeasuredByTheLimitsOfTheVerdict) {
+  Figures frame = mild(1.5 * 4 * Limits{}.flip), changed = mild(1);  // in small pictures, the limit is 4 times as large
+  for (Figures* figures : {&frame, &changed}) figures->width = 160, figures->height = 90, figures->pixels = 160 * 90;
+  frame.pixels_over = frame.pixels_at_edges = 20;  // half a pixel
+  EXPECT_EQ(verdict(frame, {}), Verdict::differs);
+  EXPECT_TRUE(is_spill(std::array{frame, changed}, 0, {}));
+  frame.flip *= 2;
+  EXPECT_FALSE(is_spill(std::array{frame, changed}, 0, {}));
+}
+
 TEST(Compare, HeatMapShowsTheSquareRootOfTheMapOnTheHeatScale) {
   Plane<float> map(3, 1);
   map.values = {0, 0.25f, 1};

@@ -33,9 +33,7 @@ FileComparison compared(const std::filesystem::path& folder, const std::string& 
     return folder / name;
   };
   const auto reference = write("a" + ending, 1, 0), test = write("b" + ending, 77, brighter);
-  Limits limits;
-  if (is_lossy_video(reference)) limits = with_encoder_noise(limits);
-  return compare_files(reference, test, limits);
+  return compare_files(reference, test, limits_for({}, reference, test));
 }
 
 TEST_F(EncoderNoiseTest, NoisePassesAndBrighterLightDoesNot) {

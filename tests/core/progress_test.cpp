@@ -47,6 +47,19 @@ TEST(RemainingTime, IgnoresAStageThatHasNotBegun) {
   EXPECT_DOUBLE_EQ(*remaining.seconds(), 10);
 }
 
+TEST(RemainingTime, IsNotThatOfStagesWithNothingLeft) {
+  for (const StageCounts& totals : {StageCounts{100, 0, 0}, StageCounts{0, 100, 100}}) {
+    RemainingTime remaining(totals);
+    remaining.sample(0, {0, 0, 0});
+    remaining.sample(5, {0, 0, 0});
+    EXPECT_EQ(remaining.seconds(), std::nullopt) << "before the first frame";
+  }
+  RemainingTime remaining({2, 2, 2});
+  remaining.sample(0, {0, 0, 0});
+  for (const double t : {1.0, 20.0, 40.0}) remaining.sample(t, {2, 0, 0});
+  EXPECT_EQ(remaining.seconds(), std::nullopt) << "a picture that takes longer than half a minute";
+}
+
 TEST(RemainingTime, IsZeroWhenAllIsDone) {
   RemainingTime remaining({2, 2, 2});
   remaining.sample(0, {0, 0, 0});

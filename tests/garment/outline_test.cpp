@@ -66,6 +66,7 @@ TEST(Outlines, WhatIsNoOutlineIsRefusedWithItsPlace) {
       {"M0 0L1 x Z", "expected a number, got \"x\" at character 8"},
       {"M0 0L1 ", "expected a number, got the end"},
       {"M0 0L1e999 0Z", "number from"},
+      {"M0 0L+-1 0Z", "got \"+\" at character 6"},
       {"M0 0Lnan 0Z", "expected a number"},
       {"M0 0A1 1 0 2 0 1 1Z", "expected 0 or 1"},
       {"M0 0B1 1Z", "a command"},

@@ -104,6 +104,21 @@ TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
   refused("odd", "text: expected edge: and a name of letters");
 }
 
+TEST_F(Drawings, SeamAllowancesOfAnyShapeDoNotCount) {
+  const std::string allowance = "x='-1' y='-1' width='4' height='5'";
+  for (const std::string& sa :
+       {"<rect class='fabric sa' " + allowance + "/>", std::string("<polygon class='sa' points='-1,-1 3,-1 3,4'/>"),
+        "<g class='sa'><rect " + allowance + "/></g>"})
+    EXPECT_EQ(load("<svg><g id='p'>" + sa + "<path d='M0 0L1 0L0 1Z'/></g></svg>").size(), 3u) << sa;
+}
+
+TEST_F(Drawings, NumbersHaveOneSign) {
+  expect_corners("<svg width='+10mm' viewBox='0 0 +10 10'><polygon id='p' points='+1,-0 +2,0 2,+1'/></svg>",
+                 {{0.001, 0}, {0.002, 0}, {0.002, -0.001}});
+  expect_refused("<svg viewBox='+-5 0 10 10'><path id='p' d='M0 0L1 0L0 1Z'/></svg>", "viewBox");
+  expect_refused("<svg><rect id='p' x='+-5' width='1' height='1'/></svg>", "numbers");
+}
+
 // Valentina and Seamly write paths without ids.
 TEST_F(Drawings, WithoutIdsGiveTheirPathsByNumber) {
   support::write_bytes(folder_ / "d.svg",
@@ -111,7 +126,7 @@ TEST_F(Drawings, WithoutIdsGiveTheirPathsByNumber) {
                        "<rect x='1' y='2' width='3' height='4'/></svg>");
   EXPECT_LT((load_svg_panel(folder_ / "d.svg", "path:2").outline[0].start().cwiseAbs() - Vec2(0.005, 0)).norm(), 1e-12);
   EXPECT_EQ(load_svg_panel(folder_ / "d.svg", "rect:1").outline.size(), 4u);
-  for (const char* id : {"path:3", "path:0", "path:x", "front"})
+  for (const char* id : {"path:3", "path:0", "path:x", "front", ""})
     support::expect_error(ExitCode::asset_unreadable,
                           "got none; none of its 2 paths has one: \"path:1\" is the first of them",
                           [&] { load_svg_panel(folder_ / "d.svg", id); });

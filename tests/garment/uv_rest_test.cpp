@@ -116,6 +116,21 @@ TEST(UvRest, TrianglesWithoutAreaKeepThatOfTheMesh) {
   EXPECT_NEAR((rest.material[0][1] - rest.material[0][0]).norm(), 0.02, kRounding);
 }
 
+TEST(UvRest, TheAreaThatFlatTrianglesLackIsUnusable) {
+  const Textured tube = pleated_tube();
+  std::vector<UvCorners> pressed = tube.uv;
+  for (std::size_t t = 0; t < pressed.size() / 2; ++t)
+    for (Vec2& c : pressed[t]) c.y() /= 85;  // 0.24 mm high, less than 1/80 of 28 mm
+  const UvRest rest = rest_from_uv(tube.mesh, pressed, Vec2(1, 1), 1.0 / 80);
+  EXPECT_EQ(rest.unusable, pressed.size() / 2);
+  EXPECT_NEAR(rest.unusable_area, 0.5 * (1 - 1.0 / 85), 1e-9);
+  EXPECT_FALSE(rest.has_panel_lengths());
+  const UvRest fitting = rest_from_uv(tube.mesh, tube.scaled({0.999, 0.999}), Vec2(1, 1), 1);
+  EXPECT_EQ(fitting.unusable, tube.uv.size());
+  EXPECT_NEAR(fitting.unusable_area, 1 - 0.999 * 0.999, 1e-9);
+  EXPECT_TRUE(fitting.has_panel_lengths());
+}
+
 TEST(UvRest, ChartsOfABodyAreNoPanels) {
   Textured ball;
   ball.mesh = mesh::make_sphere(0.5, 48);

@@ -159,6 +159,26 @@ TEST_F(Wrapping, MirrorImagesHaveTheOtherSide) {
   EXPECT_EQ(panel, 1U);
 }
 
+TEST_F(Wrapping, MirrorImagesHaveTheKeysOfTheirOriginalThatAreNotGiven) {
+  const std::string original =
+      "[[panel]]\nname = 'a'\naround = 'left_leg'\nlayer = 2\ngrain = 20\nrotation = 30\nscale = 0.5\n"
+      "fabric = { stretch = 2, bend = 8, density = 1.5 }\npath = 'M 0 0 L 0.3 0 L 0 0.2 Z'\n";
+  const Pattern pattern = pattern_of(original +
+                                     "[[panel]]\nname = 'b'\nmirror_of = 'a'\n"
+                                     "[[panel]]\nname = 'c'\nmirror_of = 'a'\nlayer = 0\ngrain = 0\nrotation = 0\n"
+                                     "scale = 1\nfabric = { bend = 1 }\n");
+  const Panel &a = pattern.panels[0], &b = pattern.panels[1], &c = pattern.panels[2];
+  EXPECT_EQ(b.layer, a.layer);
+  EXPECT_EQ(b.rotation, -a.rotation);
+  EXPECT_EQ(b.scale, a.scale);
+  EXPECT_EQ(b.reinforcement, a.reinforcement);
+  EXPECT_EQ(c.layer, 0);
+  EXPECT_EQ(c.grain, 0);
+  EXPECT_EQ(c.rotation, 0);
+  EXPECT_EQ(c.scale, Vec2(1, 1));
+  EXPECT_EQ(c.reinforcement, (mesh::Reinforcement{2, 1, 1.5}));
+}
+
 TEST_F(Wrapping, ClosuresAreTiesBetweenEdgesThatStayApart) {
   const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
   std::string buttoned = kVest;
@@ -173,6 +193,24 @@ TEST_F(Wrapping, ClosuresAreTiesBetweenEdgesThatStayApart) {
     const Vec3 &a = closed.sheet.rest[tie.a], &b = closed.sheet.rest[tie.b];
     EXPECT_NEAR(a.z(), b.z(), 0.02);  // the ends that are sewn together
     EXPECT_GT((a - b).norm(), 0.005);
+  }
+}
+
+// A closure widens a ring by 3 cm, and its radius by 4.8 mm. A closure between trunk and sleeve is in the ring of
+// neither, whichever of its edges is named first.
+TEST_F(Wrapping, ClosuresBetweenTwoPartsWidenNoRing) {
+  std::string from_sleeve = kVest, from_trunk = kVest;
+  for (const std::string side : {"front", "back"}) {
+    const std::string cap = "\"sleeve.cap_" + side + "\"\n", hole = "\"" + side + ".hole\"\n";
+    const std::string seam = "a = " + cap + "b = " + hole;
+    from_sleeve.replace(from_sleeve.find(seam), seam.size(), seam + "tearing_load = 300\n");
+    from_trunk.replace(from_trunk.find(seam), seam.size(), "a = " + hole + "b = " + cap + "tearing_load = 300\n");
+  }
+  const Garment sleeve_first = sew_text(from_sleeve), trunk_first = sew_text(from_trunk);
+  for (const std::string edge : {"front.hem", "sleeve.cuff"}) {
+    const std::vector<Index>&a = sleeve_first.edges.at(edge), &b = trunk_first.edges.at(edge);
+    EXPECT_LT((sleeve_first.sheet.rest[a[a.size() / 2]] - trunk_first.sheet.rest[b[b.size() / 2]]).norm(), 1e-3)
+        << edge;
   }
 }
 

@@ -83,6 +83,19 @@ TEST_F(ExrTest, HeaderIsReadBackAndBrokenFilesAreRefused) {
   expect_error(ExitCode::asset_unreadable, "c.exr", [&] { read_exr_header(folder_ / "c.exr"); });
 }
 
+// Other programs may store the lines from the bottom up.
+TEST_F(ExrTest, AFileThatIsCutOffIsRefusedWhateverTheOrderOfItsLines) {
+  write_exr(folder_ / "a.exr", patterned_layers(8, 64));
+  for (const std::string order : {"increasingY", "decreasingY"}) {
+    const std::string file = (folder_ / (order + ".exr")).string();
+    run_oiiotool(fmt::format("'{}' --attrib openexr:lineOrder {} -o '{}'", (folder_ / "a.exr").string(), order, file));
+    EXPECT_EQ(read_exr_header(file).height, 64);
+    const std::string whole = read_bytes(file);
+    support::write_bytes(file, whole.substr(0, whole.size() - 40));
+    expect_error(ExitCode::asset_unreadable, order, [&] { read_exr_header(file); });
+  }
+}
+
 TEST_F(ExrTest, NothingIsLeftOfWhatCannotBeWritten) {
   Layers layers = patterned_layers(4, 4);
   layers.channels[1].values.pop_back();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <string>
 
 #include "film/environment/environment.hpp"
@@ -22,6 +23,18 @@ TEST(Plan, SaysThatAScenesObjectsCanCollideWhereTheyCan) {
     const scene::Scene scene = support::scene_of_text(text);
     EXPECT_EQ(can_collide(scene), simulation::CollisionStage::needed(environment::Environment(scene).model)) << text;
   }
+}
+
+TEST(Plan, BlamesNoKeyOfContactOrMaterialInASceneWithoutCloth) {
+  const scene::Scene scene = support::scene_of_text(
+      "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nposition = [0, 0, 2]\n"
+      "[[obstacle]]\nname = 'floor'\nshape = 'plane'\n");
+  std::map<std::string, std::string> reasons;
+  for (const PlanItem& item : plan(scene)) reasons[item.part] = item.reason;
+  EXPECT_EQ(reasons.at("collision: cloth and obstacles"), "no cloth, and forces move no obstacle");
+  EXPECT_EQ(reasons.at("collision: velocity constraints"), "no cloth, and forces move no obstacle");
+  EXPECT_EQ(reasons.at("collision: cloth and cloth"), "no cloth");
+  EXPECT_EQ(reasons.at("force: bending"), "no cloth");
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "film/image/png.hpp"
 #include "review/made_runs.hpp"
 
@@ -107,6 +110,31 @@ TEST_F(Pictures, VideoAndStillsCanBeCompared) {
   const auto pairs = compare_with_reference(video, times, stills("s", 6), times, {0, 3, 5});
   ASSERT_EQ(pairs.size(), 3u);
   for (const PairComparison& pair : pairs) EXPECT_GT(pair.figures.ssim, 0.9) << pair.picture;
+}
+
+// Two levels on a fifth of the picture: more than stills may differ, less than encoders change.
+TEST_F(Pictures, OfLossyVideosHaveTheLimitsOfDiff) {
+  const auto film = [&](const std::string& name, std::uint8_t above) {
+    image::Image image(320, 180);
+    std::fill(std::fill_n(image.rgb.begin(), image.rgb.size() / 5, above), image.rgb.end(), std::uint8_t{150});
+    video::Settings settings;
+    settings.width = image.width;
+    settings.height = image.height;
+    video::Encoder encoder(folder_ / name, settings);
+    encoder.add(image);
+    encoder.finish();
+    RunFiles run;
+    run.video = folder_ / name;
+    return run;
+  };
+  const PictureTimes times{0, 1, 1, 25};
+  for (const auto& [ending, verdict] :
+       {std::pair(".mp4", compare::Verdict::within), std::pair(".mkv", compare::Verdict::differs)}) {
+    const auto pairs = compare_with_reference(film(std::string("a") + ending, 152), times,
+                                              film(std::string("b") + ending, 150), times, {0});
+    ASSERT_EQ(pairs.size(), 1u);
+    EXPECT_EQ(pairs[0].verdict, verdict) << ending;
+  }
 }
 
 TEST_F(Pictures, HeatOfWidePicturesKeepsItsBrightestPixel) {

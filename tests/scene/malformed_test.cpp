@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "film/scene/findings.hpp"
 #include "film/scene/loader.hpp"
 
 namespace weft::scene {
@@ -393,6 +394,13 @@ TEST(Mistakes, BeyondTheFirstTwoHundredAreCounted) {
   ASSERT_EQ(result.mistakes.size(), kMaxMistakes + 1);
   for (std::size_t i = 0; i < kMaxMistakes; ++i) EXPECT_EQ(result.mistakes[i].line, static_cast<int>(i) + 2);
   EXPECT_EQ(result.mistakes.back().text, "4800 further mistakes are not listed");
+}
+
+TEST(Mistakes, AreClearedAlsoThoseThatAreOnlyCounted) {
+  Findings findings;
+  for (std::size_t i = 0; i <= kMaxMistakes; ++i) findings.report("k" + std::to_string(i), "expected none");
+  EXPECT_EQ(findings.take_mistakes().back().text, "1 further mistakes are not listed");
+  EXPECT_TRUE(findings.take_mistakes().empty());
 }
 
 TEST(Mistakes, OfADeeplyDottedKeyDoNotExhaustTheStack) {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "film/scene/effective.hpp"
 #include "film/scene/loader.hpp"
@@ -51,6 +53,22 @@ TEST(RopeScenes, SlackRopesStartAsCatenariesOfTheirLength) {
     return before.norm() / (slope(after) - slope(before));
   };
   EXPECT_NEAR(ratio(5) / ratio(shape.places.size() - 6), 1, 0.01);
+}
+
+// Both lengths are the next double above the distance of the ends.
+TEST(RopeScenes, RopesOfTheLengthOfTheirChordStartStraight) {
+  for (const auto& [to, length] :
+       {std::pair("[0.5, 1, 0.5]", "1.2247448713915892"), std::pair("[2, 1, 1]", "2.4494897427831783")}) {
+    const LoadResult loaded = load_rope(std::string("from = [0, 0, 0]\nto = ") + to + "\nlength = " + length + "\n");
+    ASSERT_EQ(loaded.describe(), "");
+    const RopeShape shape = start_shape(loaded.scene.ropes[0], UpAxis::z);
+    const Vec3 chord = shape.places.back();
+    for (std::size_t i = 0; i < shape.places.size(); ++i)
+      EXPECT_LT(
+          (shape.places[i] - static_cast<double>(i) / static_cast<double>(shape.places.size() - 1) * chord).norm(),
+          1e-6)
+          << i;
+  }
 }
 
 TEST(RopeScenes, PiecesAreEvenAlongPoints) {

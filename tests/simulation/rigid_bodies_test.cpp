@@ -198,6 +198,20 @@ TEST(RigidBodies, AreThrownAtTheirReleaseWithEachMethod) {
   }
 }
 
+TEST(RigidBodies, RestUntilTheirReleaseIfLongerStepsAreRejected) {
+  // The step to 0.2 s contains the release and is rejected; shorter steps before 0.19 s still hold the body, at rest.
+  production::SceneSimulation simulation(support::scene_of_text(
+      "[time]\nduration = 0.4\ntolerance = 1e-3\nintegrator = \"bdf2\"\n" +
+      box("box", "size = [0.1, 0.1, 0.1]\nmass = 1\nrelease = 0.19\nvelocity = [5, 0, 0]\nposition = [0, 0, 1]\n")));
+  FrameReport report;
+  for (int frame = 0; frame < 5; ++frame) {
+    report = simulation.advance();
+    EXPECT_EQ(report.pin_work, 0) << frame;
+  }
+  EXPECT_GT(report.rejected_steps, 0);
+  EXPECT_NEAR(report.kinetic_energy, 12.5, 0.1);
+}
+
 /// A ball and a block fall on a sheet on a floor, by BDF2.
 scene::Scene busy_scene() {
   return support::scene_of_text(

@@ -127,6 +127,18 @@ TEST(UntangledStart, CrossedSheetsAreOnOneSideOfEachOther) {
   EXPECT_LT(max_displacement(*first, *production::view_start(scene).snapshot), 0.25);
 }
 
+TEST(UntangledStart, ASheetThatLiesOnAnotherGoesInFrontOfItAlsoWhereItIsPinned) {
+  scene::Scene scene = empty_scene();
+  scene.cloths = {sheet("a", {0, 0, 1}, 0.4, 9), sheet("b", {0, 0, 1}, 0.4, 9)};
+  scene::Pin pin;
+  pin.high = {0.13, 1};  // two rows
+  scene.cloths[1].pins = {pin};
+  const frame::SnapshotPtr first = production::SceneSimulation(scene).snapshot();
+  const std::vector<Vec3>&a = first->states[0].positions, &b = first->states[1].positions;
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_GT(b[i].z(), a[i].z()) << i;
+  EXPECT_LT(max_displacement(*first, *production::view_start(scene).snapshot), scene.cloths[0].material.thickness);
+}
+
 TEST(UntangledStart, ACrumpledSheetThatCrossesItselfIsSmoothedWhereItDoes) {
   scene::Scene scene = empty_scene();
   scene.cloths.push_back(sheet("sheet", Vec3::Zero(), 0.3));

@@ -112,7 +112,8 @@ const char* kind_of(const FrameObject& object) {
 void bind_errors(py::module_& module) {
   py::class_<Mistake>(module, "Mistake", "One mistake in a scene, with its place in the file.")
       .def_readonly("file", &Mistake::file, "Path of the scene file, as it was given.")
-      .def_readonly("line", &Mistake::line, "Line, counted from 1; 0 for the file as a whole or for a change.")
+      .def_readonly("line", &Mistake::line,
+                    "Line, counted from 1; 0 for mistakes that are not in the text of the file.")
       .def_readonly("column", &Mistake::column, "Column, counted from 1; 0 likewise.")
       .def_readonly("change", &Mistake::change,
                     "\"key=value\" of the change that contains the mistake; empty if the mistake is in the file.")

@@ -91,7 +91,8 @@ Difference compare_files(const std::filesystem::path& reference, const std::file
   Difference result;
   if (!exists(reference)) return {"no reference", reference.string() + ": no such file", {}};
   if (!exists(test)) return {"no test", test.string() + ": no such file", {}};
-  result.files = with_public_errors([&] { return compare::compare_files(reference, test, limits, mask); });
+  result.files = with_public_errors(
+      [&] { return compare::compare_files(reference, test, compare::limits_for(limits, reference, test), mask); });
   result.outcome = kNames[static_cast<std::size_t>(result.files.outcome)];
   result.problem = result.files.problem;
   return result;

@@ -68,14 +68,16 @@ std::vector<Vec3> kept_of(const std::vector<Vec3>& positions, const std::vector<
 
 LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const FileAxes& axes,
                              const std::string& where) {
-  const Mat3 turn = axes.scale.value_or(1) *
-                    turn_up(axes.up == scene::FileUp::as_file ? 1 : static_cast<int>(axes.up) - 1, axes.scene_up);
   Soup first;
   std::vector<Index> groups;
   LoadedSequence loaded;
   for (const std::filesystem::path& file : files) {
     const Source source{file, where, "mesh"};
     Soup soup = source.checked([&] { return from_bytes(source.read([&] { return to_bytes(read_soup(file)); })); });
+    constexpr int kUsualUp = 1;  // y
+    const int stated_up = soup.up.empty() ? kUsualUp : soup.up.front();
+    const int up = axes.up == scene::FileUp::as_file ? stated_up : static_cast<int>(axes.up) - 1;
+    const Mat3 turn = axes.scale.value_or(1) * turn_up(up, axes.scene_up);
     for (Vec3& x : soup.positions) {
       x = turn * x;
       if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))

@@ -17,9 +17,9 @@ struct LoadedSequence {
 };
 
 /// Reads files with the same faces and the same order of vertices. Vertices that coincide in all of them are merged. If
-/// `axes.up` is as_file, y is up, whatever the files state. `axes.scale` multiplies lengths after their conversion to
-/// metres by the unit that the file states, if any. Throws Error(asset_unreadable) with `where` and the file that
-/// differs from the first or cannot be used.
+/// `axes.up` is as_file, the axis that the file states is up, else y. `axes.scale` multiplies lengths after their
+/// conversion to metres by the unit that the file states, if any. Throws Error(asset_unreadable) with `where` and the
+/// file that differs from the first or cannot be used.
 LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const FileAxes& axes,
                              const std::string& where);
 

@@ -90,7 +90,8 @@ std::vector<int> Reader::frames() const {
   std::error_code error;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
     const std::optional<int> frame = frame_of(entry->path().filename().string());
-    if (frame && *frame < manifest_.frame_count) frames.push_back(*frame);
+    std::error_code ignored;
+    if (frame && *frame < manifest_.frame_count && entry->is_regular_file(ignored)) frames.push_back(*frame);
   }
   if (error) throw Error(ExitCode::asset_unreadable, "{}: cannot be read: {}", folder_.string(), error.message());
   std::sort(frames.begin(), frames.end());

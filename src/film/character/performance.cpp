@@ -18,10 +18,6 @@ double clip_time(const Timing& timing, double t) {
 Performance::Performance(const Character& character, const Clip& clip, const Playing& playing, const Vec3& up)
     : character_(character), clip_(clip), playing_(playing), up_(up) {
   root_ = traveling_node(clip);
-  if (root_ >= 0) {
-    const Index parent = character.nodes[root_].parent;
-    if (parent >= 0) root_to_world_ = global_transforms(character, rest_pose(character))[parent].linear();
-  }
   const double fade = std::min(playing.crossfade, clip.duration / 2);
   playing_.crossfade = fade;
   period_ = clip.duration - fade;
@@ -30,15 +26,26 @@ Performance::Performance(const Character& character, const Clip& clip, const Pla
   if (playing.stance) shift_ = displacement_between(at_clip_time(playing.timing.start), *playing.stance);
 }
 
+Affine Performance::parent_of_root(const Pose& pose) const {
+  const Index parent = character_.nodes[root_].parent;
+  return parent < 0 ? Affine::Identity() : global_transforms(character_, pose)[parent];
+}
+
 Vec3 Performance::displacement_between(const Pose& a, const Pose& b) const {
   if (root_ < 0) return Vec3::Zero();
   const auto node = static_cast<std::size_t>(root_);
-  const Vec3 whole = root_to_world_ * (b.nodes[node].position - a.nodes[node].position);
+  const Affine parent_a = parent_of_root(a), parent_b = parent_of_root(b);
+  // The last two terms are exactly 0 if the nodes above the root do not move.
+  const Vec3 whole = parent_a.linear() * (b.nodes[node].position - a.nodes[node].position) +
+                     (parent_b.linear() - parent_a.linear()) * b.nodes[node].position +
+                     (parent_b.translation() - parent_a.translation());
   return whole - whole.dot(up_) * up_;
 }
 
 void Performance::translate(Pose& pose, const Vec3& by) const {
-  if (root_ >= 0) pose.nodes[root_].position += root_to_world_.inverse() * by;
+  if (root_ < 0) return;
+  const Vec3 local = parent_of_root(pose).linear().inverse() * by;
+  if (local.allFinite()) pose.nodes[root_].position += local;  // else the clip scales a node above the root to 0
 }
 
 Pose Performance::at_clip_time(double t) const {

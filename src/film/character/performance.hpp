@@ -40,6 +40,8 @@ class Performance {
 
  private:
   Pose at_clip_time(double t) const;
+  /// Transform of the root's parent in a pose; call it only if there is a root.
+  Affine parent_of_root(const Pose& pose) const;
   /// Translates a pose of the clip in the world [m].
   void translate(Pose& pose, const Vec3& by) const;
   /// Horizontal displacement of the clip from pose a to pose b, in the world [m].
@@ -50,7 +52,6 @@ class Performance {
   Playing playing_;
   Vec3 up_;
   Index root_ = -1;                        // uppermost node that the clip translates; -1: none
-  Mat3 root_to_world_ = Mat3::Identity();  // axes of the root's parent, in the world
   double period_ = 0;                      // of a round [s]
   Vec3 travel_{0, 0, 0}, shift_{0, 0, 0};  // travel per round, shift of all poses of the clip [m]
 };

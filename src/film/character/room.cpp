@@ -200,16 +200,30 @@ void Room::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const
     }
 }
 
-Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> x, std::span<const Index> other) const {
+// `other`: per vertex, the triangle of another limb from which it moved back, into `unlifted`; -1: none, but it may
+// have followed its neighbours.
+Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
+                     std::vector<Index> other) const {
   Moved moved;
   for (std::size_t v = 0; v < before.size(); ++v) {
     const double distance = (x[v] - before[v]).norm();
     if (distance > moved.distance) moved.distance = distance, moved.vertex = static_cast<Index>(v);
   }
   if (moved.vertex < 0) return moved;
-  moved.limb = name_of(limb_weights_[moved.vertex]);
-  const Index triangle = other[moved.vertex];
-  moved.away_from = triangle < 0 ? "the ground" : name_of(limb_weights_of_triangle_[triangle]);
+  const auto v = static_cast<std::size_t>(moved.vertex);
+  moved.limb = name_of(limb_weights_[v]);
+  moved.away_from = "ground";
+  if ((x[v] - unlifted[v]).norm() > (unlifted[v] - before[v]).norm()) return moved;
+  // Skin that only followed its neighbours moved away from the same limb as the nearest skin that did not only follow.
+  std::vector<Index> known;
+  while (other[v] < 0 && known != other) {
+    known = other;
+    for (const auto& [a, b] : edges_) {
+      if (known[a] < 0) other[a] = std::max(other[a], known[b]);
+      if (known[b] < 0) other[b] = std::max(other[b], known[a]);
+    }
+  }
+  if (other[v] >= 0) moved.away_from = name_of(limb_weights_of_triangle_[other[v]]);
   return moved;
 }
 
@@ -250,8 +264,9 @@ Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
     }
     if (!changed) break;
   }
+  const std::vector<Vec3> unlifted(x.begin(), x.begin() + std::ssize(original));
   lift_from_ground(from, x);
-  return farthest(original, x, other);
+  return farthest(original, unlifted, x, std::move(other));
 }
 
 }  // namespace weft::character

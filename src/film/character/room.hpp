@@ -25,7 +25,7 @@ struct Moved {
   double distance = 0;  ///< [m]; 0: nothing moved
   Index vertex = -1;
   std::string limb;       ///< limb that the vertex belongs to
-  std::string away_from;  ///< the other limb; else "the ground", even if the vertex only followed neighbours
+  std::string away_from;  ///< the other limb, or "ground" if the vertex was lifted farther than it moved back
 };
 
 /// Moves skin along the lines from its bones. Limbs are upper and lower arms, upper and lower legs, and the trunk with
@@ -58,7 +58,8 @@ class Room {
                     std::vector<Missing>& missing) const;
   void smooth(std::span<const double> lengths, std::vector<double>& remaining) const;
   void lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const;
-  Moved farthest(std::span<const Vec3> before, std::span<const Vec3> x, std::span<const Index> other) const;
+  Moved farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
+                 std::vector<Index> other) const;
 
   double room_;
   std::vector<Ground> grounds_;

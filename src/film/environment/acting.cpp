@@ -425,8 +425,8 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
     for (std::size_t v = 0; v < bones.size(); ++v)
       x[v] = bones[v] + character::grown(since, cast.settings.grow) * (x[v] - bones[v]);
   });
-  if (const auto doubt = warn_of_speed(keys, static_cast<double>(times.first) / times.rate, times.rate, times.count,
-                                       body.character.mesh.positions.size()))
+  if (const auto doubt =
+          warn_of_speed(keys, static_cast<double>(times.first) / times.rate, times.rate, times.count, vertices))
     body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
   if (const auto doubt = warn_of_floor_distance(std::move(lowest), cast.scene.obstacles.size() == 1))
     body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));

@@ -18,8 +18,9 @@ std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& u
 /// Warns of a body whose skin is all bound to one node, although the clip turns several others.
 std::optional<std::string> warn_of_missing_skin(const character::Character& body, const character::Clip& clip);
 
-/// Warns of an implausible speed of a body: of the mean position of its vertices. `vertices`: their number. The speed
-/// is measured over `count` key frames from `begin` [s] on, `rate` per second.
+/// Warns of an implausible speed of a body: of the mean position of its vertices. `vertices`: their number; keys of
+/// points that follow the body come after them. The speed is measured over `count` key frames from `begin` [s] on,
+/// `rate` per second.
 std::optional<std::string> warn_of_speed(const motion::KeyFrames& keys, double begin, double rate, std::size_t count,
                                          std::size_t vertices);
 

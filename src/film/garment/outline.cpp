@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -110,9 +109,8 @@ class PathReader {
       fail_here("a number");
       return 0;
     }
-    const std::size_t start = at_ + (data_[at_] == '+' ? 1 : 0);
     double value = 0;
-    const auto [end, error] = std::from_chars(data_.data() + start, data_.data() + data_.size(), value);
+    const auto [end, error] = parse_number(data_.substr(at_), value);
     if (error != std::errc() || !(std::abs(value) <= kMaxCoordinate)) {
       fail_here(fmt::format("a number from -{0:g} to {0:g}", kMaxCoordinate));
       return 0;
@@ -229,6 +227,11 @@ Vec2 Curve::at(double t) const {
 
 Curve straight(const Vec2& from, const Vec2& to) {
   return {{from, from + (to - from) / 3, to - (to - from) / 3, to}, false};
+}
+
+std::from_chars_result parse_number(std::string_view text, double& value) {
+  const bool has_plus = text.starts_with('+') && !text.starts_with("+-");
+  return std::from_chars(text.data() + (has_plus ? 1 : 0), text.data() + text.size(), value);
 }
 
 ParsedPath parse_path(std::string_view data) {

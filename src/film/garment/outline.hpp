@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <charconv>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,9 @@ Curve straight(const Vec2& from, const Vec2& to);
 
 /// A closed chain: each curve starts at the end of the preceding one, and the first at the end of the last.
 using Outline = std::vector<Curve>;
+
+/// Reads a number at the start of a text, as std::from_chars() does, but also one with a plus, as SVG allows.
+std::from_chars_result parse_number(std::string_view text, double& value);
 
 struct ParsedPath {
   Outline outline;

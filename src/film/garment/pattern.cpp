@@ -181,22 +181,26 @@ std::string unfold(const std::string& fold, Outline& outline, std::vector<std::s
   return {};
 }
 
-/// Copies from the original the properties that the mirror image leaves at their defaults, with left and right
-/// exchanged. The fabric is not copied.
-void copy_from_original(const Panel& from, Panel& panel) {
+/// Copies from the original what the file does not give for the mirror image, with left and right exchanged. `entry`:
+/// key path of the mirror image.
+void copy_from_original(const Panel& from, const std::string& entry, const Findings& findings, Panel& panel) {
+  const auto is_given = [&](const char* key) { return findings.has(fmt::format("{}.{}", entry, key)); };
   panel.path = from.path, panel.file = from.file, panel.id = from.id;
-  if (panel.edge_names.empty()) panel.edge_names = from.edge_names;
-  if (panel.fold.empty()) panel.fold = from.fold;
+  if (!is_given("edges")) panel.edge_names = from.edge_names;
+  if (!is_given("fold")) panel.fold = from.fold;
   if (!panel.side && !panel.angle) {
     panel.side = from.side;
     if (from.angle) panel.angle = -*from.angle;
   }
-  if (panel.around == Around::none) panel.around = mirrored(from.around);
-  if (panel.layer == 0) panel.layer = from.layer;
-  if (panel.grain == 0) panel.grain = -from.grain;
-  if (panel.rotation == 0) panel.rotation = -from.rotation;
-  if (panel.scale == Vec2(1, 1)) panel.scale = from.scale;
+  if (!is_given("around")) panel.around = mirrored(from.around);
+  if (!is_given("layer")) panel.layer = from.layer;
+  if (!is_given("grain")) panel.grain = -from.grain;
+  if (!is_given("rotation")) panel.rotation = -from.rotation;
+  if (!is_given("scale")) panel.scale = from.scale;
   if (!panel.position && from.position) panel.position = Vec2(-from.position->x(), from.position->y());
+  if (!is_given("fabric.stretch")) panel.reinforcement.stretch = from.reinforcement.stretch;
+  if (!is_given("fabric.bend")) panel.reinforcement.bend = from.reinforcement.bend;
+  if (!is_given("fabric.density")) panel.reinforcement.density = from.reinforcement.density;
 }
 
 /// The outline of a panel. Reports a mistake to `in_drawings` if the outline is in a drawing, else to `findings`.
@@ -219,13 +223,14 @@ std::optional<DrawnPanel> read_outline(const Panel& panel, const std::string& pa
 void complete_mirror_image(std::vector<Panel>& panels, std::size_t i, Findings& findings) {
   Panel& panel = panels[i];
   if (panel.mirror_of.empty()) return;
-  const std::string key = findings.entry("panel", i) + ".mirror_of";
+  const std::string& entry = findings.entry("panel", i);
+  const std::string key = entry + ".mirror_of";
   if (!panel.path.empty() || !panel.file.empty())
     return findings.report(key, "expected an outline of its own or of another panel, got both");
   std::vector<std::string> known;
   for (std::size_t k = 0; k < i; ++k) {
     if (!panels[k].mirror_of.empty()) continue;
-    if (panels[k].name == panel.mirror_of) return copy_from_original(panels[k], panel);
+    if (panels[k].name == panel.mirror_of) return copy_from_original(panels[k], entry, findings, panel);
     known.push_back(panels[k].name);
   }
   findings.report(key, fmt::format("expected a panel before it that has an outline, got {}{}",

@@ -67,7 +67,8 @@ class Drawing {
   pugi::xml_node root() const { return document_.document_element(); }
   pugi::xml_node find(const std::string& id) const {
     for (const char* key : {"id", "inkscape:label"})
-      if (const auto found = document_.find_node([&](const auto& n) { return id == n.attribute(key).value(); }))
+      if (const auto found =
+              document_.find_node([&](const auto& n) { return !id.empty() && id == n.attribute(key).value(); }))
         return found;
     if (const auto numbered = find_numbered(id)) return numbered;
     refuse(0, fmt::format("expected an element with the id or label \"{}\", got none; {}", id, suggest_ids(id)));
@@ -129,9 +130,9 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   for (;;) {
     const std::size_t start = text.find_first_not_of(" \t\r\n,");
     if (start == std::string_view::npos) return numbers;
-    text.remove_prefix(text[start] == '+' ? start + 1 : start);
+    text.remove_prefix(start);
     double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = parse_number(text, value);
     if (error != std::errc() || !std::isfinite(value) || numbers.size() == kMaxNumbers) return std::nullopt;
     numbers.push_back(value);
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
@@ -141,7 +142,7 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
 // A length such as "210mm" in [m]; nothing for percentages and invalid text.
 std::optional<double> parse_length(std::string_view text) {
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = parse_number(text, value);
   if (error != std::errc() || !(value > 0) || !std::isfinite(value)) return std::nullopt;
   const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
   if (unit.empty() || unit == "px") return value * kMetresPerPixel;
@@ -305,19 +306,23 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   group.edges.push_back({name, place});
 }
 
+bool is_seam_allowance(const pugi::xml_node& node) {
+  std::istringstream classes(node.attribute("class").value());
+  return std::find(std::istream_iterator<std::string>(classes), {}, "sa") != std::istream_iterator<std::string>();
+}
+
 void read_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node, Group& group) {
   for (const pugi::xml_node& child : node.children()) {
     const std::string_view kind = child.name();
     if (kind == "text") {
       read_text(drawing, sheet, child, group);
+    } else if (is_seam_allowance(child)) {
+      continue;
     } else if (kind == "g") {
       read_group(drawing, sheet, child, group);
-    } else if (kind == "polygon" || kind == "rect") {
+    } else if (kind == "polygon" || kind == "rect" ||
+               (kind == "path" && parse_path(child.attribute("d").value()).mistake.empty())) {
       group.outlines.push_back(child);
-    } else if (kind == "path" && parse_path(child.attribute("d").value()).mistake.empty()) {
-      std::istringstream classes(child.attribute("class").value());
-      if (std::find(std::istream_iterator<std::string>(classes), {}, "sa") == std::istream_iterator<std::string>())
-        group.outlines.push_back(child);
     }
   }
 }

@@ -24,7 +24,9 @@ struct UvRest {
   /// Number of triangles without UVs, without an area in the UV plane, a hundred times longer or shorter there than in
   /// the mesh, or too flat there (`flattest` of rest_from_uv). They keep their shape in the mesh.
   std::size_t unusable = 0;
-  double unusable_area = 0;  ///< of unusable triangles except those too flat, as a fraction of the mesh's area
+  /// Area of unusable triangles, as a fraction of the mesh's area. Of those too flat, only the area that they lack in
+  /// the UVs counts, since small triangles can be too flat in UVs that fit.
+  double unusable_area = 0;
   /// Largest relative difference in length between a triangle of the mesh and its panel, over all directions: the
   /// median over the area, and the 95 % quantile.
   double median_stretch = 0, stretch_quantile_95 = 0;

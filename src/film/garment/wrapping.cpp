@@ -122,10 +122,14 @@ class PanelPlacer {
     }
     return of_part;
   }
-  // Whether a ring around the part has a closure.
+  // Whether a ring around the part has a closure. Closures between two parts, such as a fly between two legs, are in no
+  // ring.
   bool has_closure(Around part) const {
+    const auto is_around_part = [&](const std::string& edge) {
+      return part_of(pattern_.panels[pattern_.find(edge).first]) == part;
+    };
     return std::ranges::any_of(pattern_.seams, [&](const Seam& seam) {
-      return seam.closure() && part_of(pattern_.panels[pattern_.find(seam.a).first]) == part;
+      return seam.closure() && is_around_part(seam.a) && is_around_part(seam.b);
     });
   }
 

@@ -69,14 +69,15 @@ ExrHeader read_exr_header(const std::filesystem::path& file) {
     Imf::InputFile in(file.c_str());
     const Imath::Box2i& area = in.header().dataWindow();
     ExrHeader found{area.max.x - area.min.x + 1, area.max.y - area.min.y + 1, {}};
-    // Reads the last line of pixels: the table of line offsets does not show whether the file is truncated.
+    // Reads the line of pixels at the end of the file: the table of line offsets does not show whether it is truncated.
+    const int end = in.header().lineOrder() == Imf::DECREASING_Y ? area.min.y : area.max.y;
     std::vector<float> line(static_cast<std::size_t>(found.width));
     Imf::FrameBuffer last;
     for (auto channel = in.header().channels().begin(); channel != in.header().channels().end(); ++channel)
       last.insert(channel.name(),
-                  Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(line.data() - area.min.x), sizeof(float), 0));
+                  Imf::Slice::Make(Imf::FLOAT, line.data(), Imath::V2i(area.min.x, end), found.width, 1));
     in.setFrameBuffer(last);
-    in.readPixels(area.max.y);
+    in.readPixels(end);
     for (auto entry = in.header().begin(); entry != in.header().end(); ++entry)
       if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute()))
         found.metadata[entry.name()] = text->value();

@@ -17,11 +17,13 @@ namespace {
 using scene::Cloth;
 using scene::Scene;
 
+constexpr const char* kNoCloth = "no cloth";
+
 // Item of a part that some cloths need: "2 of 3 cloths", or why no cloth needs it.
 template <class Test>
 PlanItem cloth_item(std::string part, const Scene& scene, Test needs, std::string_view absent) {
   const auto count = std::count_if(scene.cloths.begin(), scene.cloths.end(), needs);
-  if (count == 0) return {std::move(part), false, std::string(absent)};
+  if (count == 0) return {std::move(part), false, std::string(scene.cloths.empty() ? kNoCloth : absent)};
   return {std::move(part), true,
           fmt::format("{} of {} cloth{}", count, scene.cloths.size(), scene.cloths.size() == 1 ? "" : "s")};
 }
@@ -40,7 +42,7 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
   items.push_back(
       item_if("force: gravity", gravity > 0, fmt::format("{:.4g} m/s²", gravity), "physics.gravity is zero"));
   items.push_back(cloth_item(
-      "force: stretch", scene, [](const Cloth& c) { return !c.rope; }, "no cloth"));
+      "force: stretch", scene, [](const Cloth& c) { return !c.rope; }, kNoCloth));
   items.push_back(cloth_item(
       "force: shear", scene, [](const Cloth& c) { return c.material.shear > 0 || c.material.shear_viscosity > 0; },
       "shear and shear_viscosity are zero"));
@@ -147,16 +149,19 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
   std::string bodies = fmt::format("{} obstacle{}", obstacles, obstacles == 1 ? "" : "s");
   if (characters > 0) bodies += fmt::format(", {} character{}", characters, characters == 1 ? "" : "s");
   const bool self = collides_with_itself(scene);
-  items.push_back(item_if("collision: cloth and obstacles", with_obstacles, bodies,
-                          obstacles + characters == 0 ? "no obstacle collides" : "contact.obstacles is false"));
-  items.push_back(item_if("collision: cloth and cloth", self, "itself and others", "contact.self is false"));
+  const char* without_obstacles = obstacles + characters == 0 ? "no obstacle collides"
+                                  : !scene.contact.obstacles  ? "contact.obstacles is false"
+                                                              : "no cloth, and forces move no obstacle";
+  items.push_back(item_if("collision: cloth and obstacles", with_obstacles, bodies, without_obstacles));
+  items.push_back(item_if("collision: cloth and cloth", self, "itself and others",
+                          scene.cloths.empty() ? kNoCloth : "contact.self is false"));
   items.push_back(cloth_item(
       "collision: friction", scene, [&](const Cloth& c) { return (with_obstacles || self) && c.material.friction > 0; },
       "no collision, or friction is zero"));
   items.push_back(item_if("collision: velocity constraints",
                           with_obstacles && scene.contact.response == scene::Response::velocity_constraints,
                           "particles against obstacles",
-                          with_obstacles ? "contact.response is springs" : "no obstacle collides"));
+                          with_obstacles ? "contact.response is springs" : without_obstacles));
   plan_search(scene.contact.search, with_obstacles || self, items);
   items.push_back(item_if("motion: key frames", moving > 0,
                           fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"), "no obstacle moves"));

@@ -63,9 +63,9 @@ struct Exposure {
 };
 
 /// Exposes for the floor, as product photographers do for a white ground. Direct light is increased, never decreased,
-/// until open floor shows its own colour. It also gets a slight tint (white balance), against a bluish sky. The gain
-/// and the tint are limited, so that dark or coloured scenes stay so. Without a floor, or if the style does not expose,
-/// nothing changes. `lights`: those of the picture.
+/// until open floor shows its own colour. White balance then raises or lowers each channel slightly, against a bluish
+/// sky or coloured light, so that a white floor stays white. Both are limited, so that dark or coloured scenes stay so.
+/// Without a floor, or if the style does not expose, nothing changes. `lights`: those of the picture.
 Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights);
 
 /// Style, environment and exposure of a picture.

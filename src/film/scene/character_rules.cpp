@@ -158,7 +158,7 @@ const Table& character_rules() {
           .number("scale", &Character::scale, above(0, 1e6), "", "metres per unit of the file")
           .by_default("as the file states, else 1")
           .choice("up", &Character::up, {"as_file", "x", "y", "z"},
-                  "axis of the file that points up; as_file: as the file states it, for a sequence y")
+                  "axis of the file that points up; as_file: as the file states it, else y")
           .with([](auto& rows) {
             pose_rows(rows, &Character::pose, "position of the file's origin, or of the floor below the mannequin");
           })

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace weft::scene {
 
@@ -43,7 +44,8 @@ void Findings::keep_first() {
 std::vector<Mistake> Findings::take_mistakes() {
   keep_first();
   if (dropped_ > 0) mistakes_.push_back({0, 0, {}, fmt::format("{} further mistakes are not listed", dropped_), {}});
-  return std::move(mistakes_);
+  dropped_ = 0;
+  return std::exchange(mistakes_, {});
 }
 
 }  // namespace weft::scene

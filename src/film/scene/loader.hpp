@@ -16,7 +16,7 @@ inline constexpr std::size_t kMaxMistakes = 200;
 
 /// One mistake in a scene.
 struct Mistake {
-  int line = 0, column = 0;   ///< 1-based; 0 for mistakes of the command line or of the whole file
+  int line = 0, column = 0;   ///< 1-based; 1:1 for what the scene lacks; 0 for mistakes outside the text of the file
   std::string key;            ///< such as cloth.band.material.thickness; empty for mistakes of the whole file
   std::string text;           ///< "expected > 0 m, got -0.001"
   std::string override_text;  ///< "--set key=value" if an override caused it; empty for the file

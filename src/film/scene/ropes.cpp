@@ -34,6 +34,7 @@ std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, cons
   const double span = along.norm();
   // Solves sinh(u) / u = ratio by bisection. a = span / (2 u) is horizontal tension / weight per length [m].
   const double ratio = std::sqrt(length * length - rise * rise) / span;
+  if (ratio <= 1) return {from, to};  // the length exceeds the chord by rounding errors alone
   double low = 0, high = 1;
   while (std::sinh(high) / high < ratio) high *= 2;
   for (int k = 0; k < 100; ++k) {

@@ -344,7 +344,7 @@ void Campaign::measure_steps(Integrator integrator) {
     step_before = std::exchange(step_last, step);
   }
   if (!before || step_last > finest_) return;
-  CrossCheck check{.setting = as_in_scene(integrator, step_last)};
+  CrossCheck check{.integrator = integrator, .step = step_last};
   check.apart = difference(*last, *reference_);
   const Errors change = difference(*before, *last);
   const double ratio = error_ratio(integrator, step_before / step_last);

@@ -84,10 +84,11 @@ struct Candidate {
 /// Check of the reference by the run of an integrator with the shortest measured step. The check is made only if the
 /// step decides in that run and in a run with a longer step.
 struct CrossCheck {
-  Setting setting;
-  Errors apart{};  ///< difference to the reference
-  Errors doubt{};  ///< uncertainty of this run: difference to the next longer step in which the step decides,
-                   ///< extrapolated with half of the order (with contact 0.5), plus the spread over the starts
+  scene::Integrator integrator = scene::Integrator::implicit_euler;
+  double step = 0;  ///< [s]
+  Errors apart{};   ///< difference to the reference
+  Errors doubt{};   ///< uncertainty of this run: difference to the next longer step in which the step decides,
+                    ///< extrapolated with half of the order (with contact 0.5), plus the spread over the starts
 };
 
 struct Accuracy {

@@ -108,7 +108,7 @@ std::string cross_checks_text(const Accuracy& accuracy) {
   Table table{{"finest run", label(q) + " from the reference", "its own uncertainty", "excess"}};
   for (const CrossCheck& check : accuracy.cross_checks) {
     const double apart = at(check.apart, q), doubt = at(check.doubt, q);
-    table.push_back({fmt::format("{}, {:.4g} ms", name_of(check.setting.integrator), 1e3 * check.setting.step),
+    table.push_back({fmt::format("{}, {:.4g} ms", name_of(check.integrator), 1e3 * check.step),
                      fmt::format("{:.1e}", apart), fmt::format("{:.1e}", doubt),
                      apart > doubt ? fmt::format("{:.1e}", apart - doubt) : "0"});
   }

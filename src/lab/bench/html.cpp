@@ -73,10 +73,14 @@ std::string html_page(const std::string& title, const std::string& markdown, con
     } else if (line.starts_with("|--")) {
       continue;
     } else if (line.starts_with('|')) {
-      body += in_table ? "" : "<table>\n";
+      if (!in_table) {
+        close();
+        body += "<table>\n";
+      }
       body += row_html(line, in_table ? "td" : "th");
       in_table = true;
     } else {
+      if (in_table) close();
       paragraph += (paragraph.empty() ? "" : " ") + line;
     }
   }

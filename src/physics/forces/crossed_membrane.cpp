@@ -18,9 +18,9 @@ constexpr double kCollapsed = 1e-12;
 // are −0.7, −3.5 and −8.1 % at 1; 0.1, −0.5 and −2.8 % at a quarter; 0.2, 0.1 and −0.8 % at a tenth). Smaller values
 // flatten cells less under tension.
 constexpr double kHeightFraction = 0.1;
-// S₀ relative to ‖D₁ × D₂‖ of the cell at rest, times its reinforcement. The normal turns in proportion to 1 / ‖D₁ ×
-// D₂‖, below S₀ too fast to be a reference for the middle (measured: with S₀ at a tenth, a pin that pulls leather
-// reduces steps to 1 µs).
+// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. (Crossed cells have no reinforcement: only patterns do.) The normal
+// turns in proportion to 1 / ‖D₁ × D₂‖, below S₀ too fast to be a reference for the middle (measured: with S₀ at a
+// tenth, a pin that pulls leather reduces steps to 1 µs).
 constexpr double kFoldedSize = 0.5;
 
 // Indices of the corners of triangle k among the five particles of a cell.

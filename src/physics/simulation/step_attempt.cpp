@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/numerics.hpp"
 #include "core/parallel.hpp"
@@ -37,9 +38,18 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   const double t = attempt.t, h = attempt.h;
   held_ = pins_.held();
   hold_frames(model_, cloth_, t + h, held_);
+  // If a longer attempt has released something and was rejected, this step may end before that release.
+  if (before_release_) {
+    progress_.now.v = std::move(before_release_->v);
+    stepper_.return_to(std::move(before_release_->history));
+    before_release_.reset();
+  }
   // The acceleration of released particles jumps, so the stepper's history does not predict the motion that follows.
-  const bool releases = release_frames(model_, cloth_, t, h, progress_.now.v) || pins_.release_between(t, t + h);
-  if (releases) stepper_.restart();
+  if (any_frame_is_released(model_, t, h) || pins_.release_between(t, t + h)) {
+    before_release_ = {progress_.now.v, stepper_.history()};
+    release_frames(model_, cloth_, t, h, progress_.now.v);
+    stepper_.restart();
+  }
   pinned_ = held_.size();
   problem_.begin_step(t + h - start_, progress_.now.particles(), held_, pins_.pulls());
   attachments_.begin_step(t, t + h, progress_.now.particles(), cloth_.masses());

@@ -230,6 +230,7 @@ void StepLoop::fail(int frame, double t, double h, const std::string& reason) co
 void StepLoop::accept(double h, FrameReport& report) {
   count_work(measure_work(stepper_, std::span(held_).first(pinned_), cloth_.masses(), progress_.now, next_), report);
   stepper_.accept(progress_.now, next_, h);
+  before_release_.reset();
   pins_.accept();
   for (const std::string& text : attachments_.accept(next_.particles()))
     report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));

@@ -59,6 +59,7 @@ class StepLoop {
   };
   Checkpoint checkpoint() const { return {progress_, stepper_.history()}; }
   void return_to(Checkpoint checkpoint) {
+    before_release_.reset();
     progress_ = std::move(checkpoint.progress);
     stepper_.return_to(std::move(checkpoint.history));
   }
@@ -148,9 +149,14 @@ class StepLoop {
   YieldingPins pins_;
   Progress progress_;
   integrator::Stepper stepper_;
-  SystemState next_;                           // end of the current step; its start once the step is accepted
-  double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
-  std::vector<double> reported_overstretch_;   // last reported ratio of stretch to limit, per cloth; 0: none
+  struct BeforeRelease {
+    std::vector<Vec3> v;  // of all particles [m/s]
+    integrator::Stepper::History history;
+  };
+  std::optional<BeforeRelease> before_release_;  // start of a step that releases something, until it is accepted
+  SystemState next_;                             // end of the current step; its start once the step is accepted
+  double local_error_ = 0, solver_error_ = 0;    // of the step to `next_`, estimated [m]
+  std::vector<double> reported_overstretch_;     // last reported ratio of stretch to limit, per cloth; 0: none
   std::vector<integrator::HeldParticle> held_;
   std::size_t pinned_ = 0;  // pins and keys hold the first pinned_ of held_, velocity constraints the others
   std::optional<CollisionStage> collisions_;

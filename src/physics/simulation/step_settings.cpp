@@ -29,6 +29,15 @@ namespace {
 // Times that differ by less count as equal [s].
 constexpr double kSameTime = 1e-9;
 
+// Whether keys hold a dynamic body in a step that ends at t [s].
+bool is_held_until(const model::Dynamics& body, double t) {
+  return t <= body.release + kSameTime;
+}
+
+bool is_released(const model::Body& body, double t, double h) {
+  return body.dynamics && is_held_until(*body.dynamics, t) && !is_held_until(*body.dynamics, t + h);
+}
+
 // Velocities of the frame particles of a body as its keys move it at t; if the body is free, plus its own velocity and
 // spin.
 std::array<Vec3, mesh::RigidFrame::kParticles> velocities_of_frame(const model::Model& model, std::size_t number,
@@ -82,7 +91,7 @@ void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
   const std::vector<Index> first_of_frames = cloth.first_of_frames(model);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const model::Dynamics* body = model.bodies[b].dynamics.get();
-    if (body == nullptr || t > body->release + kSameTime) continue;
+    if (body == nullptr || !is_held_until(*body, t)) continue;
     const motion::PoseSample pose = model.pose(b, t);
     for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k) {
       const Vec3 arm = pose.rotation * body->frame.particles()[k];
@@ -91,17 +100,15 @@ void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
   }
 }
 
-bool release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v) {
+bool any_frame_is_released(const model::Model& model, double t, double h) {
+  return std::ranges::any_of(model.bodies, [&](const model::Body& body) { return is_released(body, t, h); });
+}
+
+void release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v) {
   const std::vector<Index> first_of_frames = cloth.first_of_frames(model);
-  bool any = false;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const model::Dynamics* body = model.bodies[b].dynamics.get();
-    const auto is_held_until = [&](double end) { return end <= body->release + kSameTime; };
-    if (body == nullptr || !is_held_until(t) || is_held_until(t + h)) continue;
-    std::ranges::copy(velocities_of_frame(model, b, t, true), v.begin() + first_of_frames[b]);
-    any = true;
-  }
-  return any;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (is_released(model.bodies[b], t, h))
+      std::ranges::copy(velocities_of_frame(model, b, t, true), v.begin() + first_of_frames[b]);
 }
 
 bool frames_are_constant(const model::Model& model, double t0, double t1) {

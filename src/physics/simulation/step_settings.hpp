@@ -27,9 +27,12 @@ SystemState start_of(const model::Model& model, const ClothSystem& cloth, double
 void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
                  std::vector<integrator::HeldParticle>& held);
 
-/// Sets the velocities of the frame particles of bodies that are released in the step from t to t + h [s]: the
-/// velocities of their keys at t, plus the body's own velocity and spin. Returns whether there are any.
-bool release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v);
+/// Whether a body is released in the step from t to t + h [s].
+bool any_frame_is_released(const model::Model& model, double t, double h);
+
+/// Sets the velocities of the frame particles of the bodies that are released in this step: the velocities of their
+/// keys at t, plus the body's own velocity and spin.
+void release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v);
 
 /// Whether all dynamic bodies that keys hold at t0 [s] stay held and still until t1 [s].
 bool frames_are_constant(const model::Model& model, double t0, double t1);

@@ -1,6 +1,7 @@
 #include "physics/untangle/relaxation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.hpp"
 

@@ -121,19 +121,31 @@ class Untangling {
   }
 
   // Separates coincident cloths, of which neither is on a side of the other: moves the later cloth to the front of the
-  // earlier one or, if the later one is not movable, the earlier cloth to the front of the later one.
+  // earlier one, and the earlier one back from particles of the later one that are held. If no particle of the later
+  // cloth is movable, moves the earlier cloth to the front of the later one.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
+    std::vector<std::uint8_t> can_move(fabric_.bodies.size(), 0);  // per body: whether any vertex is movable
+    for (Index i = 0; i < fabric_.particles(); ++i) can_move[fabric_.bodies.body_of(i)] |= fabric_.movable[i];
+    const auto normal = [&](const collision::Triangle& of) {
+      return Vec3((x_[of[1]] - x_[of[0]]).cross(x_[of[2]] - x_[of[0]]).stableNormalized());
+    };
+    const auto move = [&](const collision::Triangle& corners, const Vec3& along) {
+      for (const Index v : corners) normals[v] += along;
+    };
     for (const collision::TrianglePair& pair : finder_.near(x_, kTouchDistance)) {
       const collision::CornerPair corners{fabric_.bodies.triangles()[pair.a], fabric_.bodies.triangles()[pair.b]};
       if (!fabric_.is_cloth(corners.b[0]) ||
           fabric_.bodies.body_of(corners.a[0]) == fabric_.bodies.body_of(corners.b[0]))
         continue;
       if (collision::closest_features(corners, x_).points.distance_sq > kTouchDistance * kTouchDistance) continue;
-      const bool later = fabric_.movable[corners.b[0]];
-      const collision::Triangle &still = later ? corners.a : corners.b, &moves = later ? corners.b : corners.a;
-      for (const Index v : moves)
-        normals[v] += (x_[still[1]] - x_[still[0]]).cross(x_[still[2]] - x_[still[0]]).stableNormalized();
+      if (can_move[fabric_.bodies.body_of(corners.b[0])] == 0) {
+        move(corners.a, normal(corners.b));
+        continue;
+      }
+      move(corners.b, normal(corners.a));
+      if (std::ranges::any_of(corners.b, [&](Index v) { return fabric_.movable[v] == 0; }))
+        move(corners.a, -normal(corners.a));
     }
     for (Index i = 0; i < fabric_.particles(); ++i)
       if (fabric_.movable[i])

@@ -103,15 +103,12 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
   }
   // Prepares the simulation as a run does; with --estimate, also simulates some frames.
   std::optional<Estimate> estimate;
-  std::vector<std::string> enclosed;
-  if (options.estimate)
-    estimate = estimate_run(loaded.scene, render_settings(loaded.scene, {}));
-  else
-    enclosed = find_enclosed(loaded.scene, *production::SceneSimulation(loaded.scene).snapshot());
+  if (options.estimate) estimate = estimate_run(loaded.scene, render_settings(loaded.scene, {}));
+  const frame::SnapshotPtr start = estimate ? estimate->start : production::SceneSimulation(loaded.scene).snapshot();
   print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
   for (const std::string& warning : production::find_warnings(loaded.scene))
     print("{}: note: {}\n", file.string(), warning);
-  for (const std::string& note : enclosed) print("{}: note: {}\n", file.string(), note);
+  for (const std::string& note : find_enclosed(loaded.scene, *start)) print("{}: note: {}\n", file.string(), note);
   if (!options.against.empty()) print_changes(file, loaded.scene, options.against);
   if (options.plan) print("{}", plan_table(loaded.scene));
   if (estimate) print("{}: {}\n", file.string(), describe(*estimate));

@@ -160,8 +160,7 @@ ExitCode diff(const DiffOptions& options) {
   rules.check_used(names);
   for (Pair& pair : pairs) {
     pair.rules = rules.of(pair.name);
-    if (compare::is_lossy_video(pair.reference.value_or(fs::path())) || compare::is_lossy_video(pair.test))
-      pair.rules.limits = compare::with_encoder_noise(pair.rules.limits);
+    pair.rules.limits = compare::limits_for(pair.rules.limits, pair.reference.value_or(fs::path()), pair.test);
   }
   check_outputs(options, pairs);
   Json json{{"exit_code", 0}, {"limits", describe_json(options.limits)}, {"results", Json::array()}};

@@ -32,6 +32,7 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
   double begin = process_cpu_seconds();
   production::SceneSimulation simulation(scene);
   estimate.setup = process_cpu_seconds() - begin;
+  estimate.start = simulation.snapshot();
 
   begin = process_cpu_seconds();
   const auto enough = [&] {
@@ -43,17 +44,21 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
     estimate.tried = ++asked;
     return !enough();
   });
+  frame::SnapshotPtr before;
   if (shown) {
     estimate.tried = preroll;
-    for (int frame = 1; frame < scene.frame_count() && !enough(); ++frame, ++estimate.tried) simulation.advance();
+    for (int frame = 1; frame < scene.frame_count() && !enough(); ++frame, ++estimate.tried) {
+      before = simulation.snapshot();
+      simulation.advance();
+    }
   }
   estimate.simulate = (process_cpu_seconds() - begin) / std::max(1, estimate.tried);
 
   const frame::SnapshotPtr picture = shown ? simulation.snapshot() : production::view_start(scene).snapshot;
   render::Renderer renderer(settings);
-  renderer.draw(*picture);  // compiles the shaders
+  renderer.draw(*picture, before.get());  // compiles the shaders
   begin = process_cpu_seconds();
-  renderer.draw(*picture);
+  renderer.draw(*picture, before.get());
   estimate.draw = process_cpu_seconds() - begin;
   estimate.peak = peak_memory_bytes();
   return estimate;

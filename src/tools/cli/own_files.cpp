@@ -55,10 +55,7 @@ bool is_own_mesh(const fs::path& file) {
 bool is_output_of(const fs::path& file, const std::string& scene) {
   std::error_code error;
   if (fs::file_size(file, error) == 0 && !error) return true;
-  const std::string ending = file.extension().string();
-  // An effective scene has no mark by which Weft recognises it. It may be replaced, as it can be made again from the
-  // scene.
-  if (ending == ".toml" || (ending == ".ply" && is_own_mesh(file))) return true;
+  if (file.extension() == ".ply" && is_own_mesh(file)) return true;
   const auto metadata = metadata_of(file);
   if (metadata.contains("weft_version") && has_entry(metadata, "scene", scene)) return true;
   const std::string name = json_text(scene);

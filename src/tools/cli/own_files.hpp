@@ -12,8 +12,9 @@ bool is_picture_of(const std::filesystem::path& file, const std::string& scene, 
 /// Whether a PLY or OBJ file names Weft as its author.
 bool is_own_mesh(const std::filesystem::path& file);
 
-/// Whether a file is an output of a run of this scene, of any kind that `weft run` writes. Empty files, which a killed
-/// run leaves, and .toml files count too.
+/// Whether a file is an output of a run of this scene: a picture, video, mesh, report or log. Empty files, which a
+/// killed run leaves, count too, and so do meshes of other scenes, as meshes do not name theirs. Effective scenes have
+/// no mark by which Weft recognises them: see Store::holds_scene().
 bool is_output_of(const std::filesystem::path& file, const std::string& scene);
 
 }  // namespace weft::cli

@@ -390,7 +390,7 @@ ExitCode run(const RunOptions& options) {
   if (options.resume) {
     store.find_start();
     paths.check_absent(overwrite, store.outputs(),
-                       [&](const fs::path& file) { return is_output_of(file, scene.name); });
+                       [&](const fs::path& file) { return is_output_of(file, scene.name) || store.holds_scene(file); });
   } else if (store.has_leftover()) {
     log::info(fmt::format("note: {} frames of an unfinished run are discarded; --resume would have continued it",
                           store.leftover_frames()));

@@ -89,6 +89,10 @@ std::set<std::string> Store::outputs() const {
   return outputs;
 }
 
+bool Store::holds_scene(const std::filesystem::path& file) const {
+  return weft::holds(file, read_start(folder() / cache::kSceneFile, kMaxTextBytes));
+}
+
 void Store::note_outputs(std::set<std::string> outputs) const {
   outputs.merge(this->outputs());
   if (outputs.empty()) return;

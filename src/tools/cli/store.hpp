@@ -53,6 +53,8 @@ class Store {
 
   /// The outputs of the run that is resumed; their existing files may be replaced.
   std::set<std::string> outputs() const;
+  /// Whether a file is the effective scene of the run that is resumed, as that run has written it.
+  bool holds_scene(const std::filesystem::path& file) const;
   /// Adds to outputs().
   void note_outputs(std::set<std::string> outputs) const;
 

@@ -136,6 +136,10 @@ bool is_lossy_video(const std::filesystem::path& file) {
   }
 }
 
+Limits limits_for(const Limits& limits, const std::filesystem::path& reference, const std::filesystem::path& test) {
+  return is_lossy_video(reference) || is_lossy_video(test) ? with_encoder_noise(limits) : limits;
+}
+
 bool is_comparable(const std::filesystem::path& file) {
   return file.extension() == ".png" || is_video(file);
 }

@@ -13,6 +13,8 @@ bool is_video(const std::filesystem::path& file);
 /// Whether the file is a video whose encoder has changed the pictures; false if it cannot be read.
 bool is_lossy_video(const std::filesystem::path& file);
 bool is_comparable(const std::filesystem::path& file);
+/// Limits for two files: if either is a lossy video, default limits are wider; see with_encoder_noise().
+Limits limits_for(const Limits& limits, const std::filesystem::path& reference, const std::filesystem::path& test);
 
 struct FileComparison {
   enum class Outcome {
@@ -42,8 +44,9 @@ struct FileComparison {
   bool good() const { return outcome == Outcome::same || outcome == Outcome::within; }
 };
 
-/// Compares two existing files; a defect of one of them or of the mask is stored in the result. `mask`: file of a
-/// picture that is white where the files are compared and black elsewhere; may be empty.
+/// Compares two existing files; a defect of one of them or of the mask is stored in the result. `limits` apply as they
+/// are; see limits_for(). `mask`: file of a picture that is white where the files are compared and black elsewhere; may
+/// be empty.
 FileComparison compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
                              const Limits& limits, const std::filesystem::path& mask = {});
 

@@ -9,6 +9,7 @@
 #include "film/image/png.hpp"
 #include "film/image/shrink.hpp"
 #include "film/video/decoder.hpp"
+#include "tools/compare/files.hpp"
 
 namespace weft::review {
 namespace {
@@ -95,7 +96,7 @@ long long same_moment(long long k, const PictureTimes& from, const PictureTimes&
 std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,
                                                    const RunFiles& reference, const PictureTimes& reference_times,
                                                    const std::vector<long long>& at) {
-  const compare::Limits limits;
+  const compare::Limits limits = compare::limits_for({}, reference.video, run.video);
   std::vector<PairComparison> pairs;
   Reader ours(run), theirs(reference);
   long long last = -1;

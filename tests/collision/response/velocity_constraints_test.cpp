@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/numerics.hpp"
+
 namespace weft::collision {
 namespace {
 
@@ -140,6 +142,28 @@ TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCo
     const Vec3 expected = tangential > 1 ? Vec3(kMu * weight, 0, 0) : Vec3(Vec3::Zero());
     EXPECT_LT((force[0] - expected).norm(), 1e-12 * weight);
   }
+}
+
+TEST(VelocityConstraints, AParticleBetweenTwoWallsSticksHoweverManyOtherWallsItHas) {
+  constexpr double kMu = 0.5;
+  OneParticle particle;
+  const auto begin = [&] {
+    particle.constraints.begin_step(kStep);
+    particle.wall(Vec3(1, 0, 1).normalized(), kDMin, Vec3::Zero(), kMu);
+    particle.wall(Vec3(-1, 0, 1).normalized(), kDMin, Vec3::Zero(), kMu);
+    for (int k = 0; k < numerics.walls.most; ++k)
+      particle.wall(Vec3(std::cos(k), std::sin(k), 2).normalized(), 100 * kDMin, Vec3::Zero(), kMu);
+    particle.x_t1[0] = Vec3(0.001, 0, -0.01);  // passes the second wall farther
+    particle.prepare();
+  };
+  // The load presses more against the first wall, so that the order of the two walls changes between the projections.
+  for (int step = 0; step < 3; ++step) {
+    begin();
+    particle.revise(Vec3::Zero(), kMass * kGravity * Vec3(0.3, 0, 1));
+    particle.constraints.accept();
+  }
+  begin();
+  EXPECT_EQ(particle.prescribed().constraint.free, Mat3::Zero());
 }
 
 TEST(VelocityConstraints, LeanToWallsThatHeldAndAreNotThereNow) {

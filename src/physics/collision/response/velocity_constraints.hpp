@@ -2,6 +2,7 @@
 // prescribed in the filtered CG (Eq. 4), stiction, Coulomb friction, and release where the residual shows a pull.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -105,12 +106,13 @@ class VelocityConstraints {
     double static_friction;
     int next;  // next wall of the same particle, or −1
   };
-  /// Walls that hold a particle, as indices into walls_; −1: none. The order is that in which project() tries them.
+  /// Walls that hold a particle, as indices into walls_; −1: none. The order is that in which project() tries them; for
+  /// a particle with more than Numerics::Walls::most walls, it depends on the displacement.
   struct ActiveWalls {
     std::array<int, 3> walls{-1, -1, -1};
     std::array<double, 3> multipliers{0, 0, 0};
     int count = 0;
-    bool same_walls(const ActiveWalls& other) const { return count == other.count && walls == other.walls; }
+    bool same_walls(const ActiveWalls& other) const { return std::ranges::is_permutation(walls, other.walls); }
     double multiplier_sum() const { return multipliers[0] + multipliers[1] + multipliers[2]; }
   };
   /// State of a particle with walls: in the current step, or at the end of the last accepted one.

@@ -11,7 +11,7 @@ namespace weft {
 
 struct Mistake {
   std::string file;          ///< of the scene, as it was given
-  int line = 0, column = 0;  ///< counted from 1; 0: the mistake is in the file as a whole, or in `change`
+  int line = 0, column = 0;  ///< counted from 1; 1:1: what the scene lacks; 0: not in the text of the file
   std::string change;        ///< the override "key=value" that caused the mistake; empty: none did
   std::string key;           ///< such as "cloth.band.material.thickness"; empty: the file as a whole
   std::string text;          ///< such as "expected > 0 m, got -0.001"
