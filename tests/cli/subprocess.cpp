@@ -18,7 +18,7 @@
 #include <string_view>
 
 #include "core/installation.hpp"
-#include "tools/cli/program.hpp"
+#include "tools/cli/main.hpp"
 
 namespace weft::cli {
 namespace {
@@ -62,7 +62,7 @@ bool draws(const std::vector<std::string>& arguments) {
 
 [[noreturn]] void run_program_and_exit(const std::vector<char*>& argv) {
   set_own_installation({WEFT_PROGRAM, WEFT_PROGRAM, {}});
-  const int code = run_program(static_cast<int>(argv.size()) - 1, const_cast<char**>(argv.data()), run_tool);
+  const int code = run_weft_tools(static_cast<int>(argv.size()) - 1, const_cast<char**>(argv.data()));
   std::fflush(nullptr);
   ::_exit(code);
 }

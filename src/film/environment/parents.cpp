@@ -1,6 +1,5 @@
 #include "film/environment/parents.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 
 #include "film/environment/environment.hpp"
@@ -9,12 +8,6 @@
 
 namespace weft::environment {
 namespace {
-
-/// The rotation nearest to a matrix that is almost a rotation, from the polar decomposition.
-Quat nearest_rotation(const Mat3& matrix) {
-  const Eigen::JacobiSVD<Mat3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return Quat(Mat3(svd.matrixU() * svd.matrixV().transpose()));
-}
 
 /// The obstacle that `follow` names; none if `follow` names a part of a character or is empty.
 model::Parent parent_of(const scene::Scene& scene, const std::string& follow) {
@@ -33,7 +26,7 @@ std::shared_ptr<const motion::Track> track_of_frame(const motion::KeyFrames& key
     Mat3 axes;
     for (int axis = 0; axis < 3; ++axis)
       axes.col(axis) = (keys.at(time, first + 1 + static_cast<std::size_t>(axis)).position - origin) / kFrameAxis;
-    track.keys.push_back({time, {origin, nearest_rotation(axes)}});
+    track.keys.push_back({time, {origin, Quat(motion::best_rotation(axes))}});
   }
   return std::make_shared<const motion::Track>(track);
 }

@@ -1,6 +1,5 @@
 #include "film/production/camera_mounts.hpp"
 
-#include <Eigen/SVD>
 #include <span>
 
 namespace weft::production {
@@ -12,16 +11,13 @@ Vec3 mean_of(std::span<const Vec3> points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// The pose that maps `mesh` to `x` best in the least-squares sense (Kabsch, Acta Cryst. A32, 1976). This also works
-/// for bodies that forces move, which have no track.
+/// The pose that maps `mesh` to `x` best in the least-squares sense. This also works for bodies that forces move, which
+/// have no track.
 scene::Pose pose_of(std::span<const Vec3> mesh, std::span<const Vec3> x) {
   const Vec3 middle_mesh = mean_of(mesh), middle = mean_of(x);
   Mat3 covariance = Mat3::Zero();
   for (std::size_t i = 0; i < x.size(); ++i) covariance += (x[i] - middle) * (mesh[i] - middle_mesh).transpose();
-  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 no_mirror = Mat3::Identity();
-  no_mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  const Mat3 rotation = svd.matrixU() * no_mirror * svd.matrixV().transpose();
+  const Mat3 rotation = motion::best_rotation(covariance);
   return {middle - rotation * middle_mesh, Quat(rotation)};
 }
 

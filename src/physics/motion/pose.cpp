@@ -1,5 +1,7 @@
 #include "physics/motion/pose.hpp"
 
+#include <Eigen/SVD>
+
 namespace weft::motion {
 
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to) {
@@ -9,6 +11,13 @@ std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to) {
   };
   const std::optional<Vec3> first = angles(from), last = angles(to);
   return first && last ? std::optional<Vec3>(*last - *first) : std::nullopt;
+}
+
+Mat3 best_rotation(const Mat3& matrix) {
+  const Eigen::JacobiSVD<Mat3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 no_mirror = Mat3::Identity();
+  no_mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * no_mirror * svd.matrixV().transpose();
 }
 
 }  // namespace weft::motion

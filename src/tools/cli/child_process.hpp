@@ -9,7 +9,7 @@
 
 namespace weft::cli {
 
-/// File name of the tools program, which has the commands of run_tool().
+/// File name of the tools program, which has all commands.
 inline constexpr const char* kToolsName = "weft-tools";
 
 /// Path of the program `weft`: the running one, or if this is the tools program, the one beside it.

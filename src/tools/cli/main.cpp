@@ -1,6 +1,6 @@
-#include <unistd.h>
+#include "tools/cli/main.hpp"
 
-#include "tools/cli/program.hpp"
+#include <unistd.h>
 
 #if defined(__x86_64__) && defined(__AVX2__)
 
@@ -20,5 +20,5 @@ __attribute__((constructor(101), target("arch=x86-64"))) static void check_cpu()
 #endif
 
 int main(int argc, char** argv) {
-  return weft::cli::run_program(argc, argv, WEFT_RUN_TOOL);
+  return WEFT_RUN(argc, argv);
 }

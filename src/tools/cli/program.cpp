@@ -19,6 +19,7 @@
 #include "tools/cli/child_process.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/cli/main.hpp"
 #include "tools/cli/standard_output.hpp"
 
 namespace weft::cli {
@@ -60,8 +61,7 @@ void check_working_folder() {
     throw Error(ExitCode::usage, "the working folder cannot be used: {}; go to one that exists", error.message());
 }
 
-}  // namespace
-
+// Replaces this process by the tools program beside it. Throws Error(usage) if the tools program cannot be started.
 ExitCode become_tools(const Command& /*command*/, char** argv) {
   const std::filesystem::path tools = own_program().replace_filename(kToolsName);
   ::execv(tools.c_str(), argv);
@@ -69,6 +69,8 @@ ExitCode become_tools(const Command& /*command*/, char** argv) {
               "{}: cannot be started: {}; this command needs it beside the program, where ./weft builds it",
               tools.string(), std::strerror(errno));
 }
+
+}  // namespace
 
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {
   try {
@@ -89,6 +91,10 @@ int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& comm
     report(failure);
     return static_cast<int>(failure.code);
   }
+}
+
+int run_weft(int argc, char** argv) noexcept {
+  return run_program(argc, argv, become_tools);
 }
 
 }  // namespace weft::cli

@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "core/input_file.hpp"
 #include "tools/cli/commands.hpp"
+#include "tools/cli/main.hpp"
 #include "tools/cli/program.hpp"
 
 namespace weft::cli {
@@ -29,8 +30,8 @@ struct Dispatch {
 
 }  // namespace
 
-ExitCode run_tool(const Command& command, char** /*argv*/) {
-  return std::visit(Dispatch{}, command);
+int run_weft_tools(int argc, char** argv) noexcept {
+  return run_program(argc, argv, [](const Command& command, char**) { return std::visit(Dispatch{}, command); });
 }
 
 }  // namespace weft::cli
