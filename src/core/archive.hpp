@@ -1,5 +1,6 @@
-// Conversion of values to plain bytes and back. Each type has one description, `template <class Archive> void
-// serialize(Archive&, T&)`, so that writing and reading cannot differ.
+// Conversion of values to bytes and back. Each type has one description, a function or member `serialize` that is a
+// template over the archive, so that writing and reading cannot differ. Plain types are trivially copyable, and have
+// neither padding nor pointers.
 #pragma once
 
 #include <cstring>
@@ -13,7 +14,7 @@
 
 namespace weft {
 
-/// Appends the values it is called with, in the byte order of this machine.
+/// Appends the values passed to its functions, in the byte order of this machine.
 struct ByteWriter {
   static constexpr bool kReads = false;
   std::string bytes;
@@ -31,7 +32,7 @@ struct ByteWriter {
   }
 };
 
-/// Fills the values it is called with. Throws std::runtime_error if there are too few bytes.
+/// Fills the values passed to its functions from `bytes`. Throws std::runtime_error if there are too few bytes.
 struct ByteReader {
   static constexpr bool kReads = true;
   std::string_view bytes;
@@ -86,8 +87,8 @@ void serialize_each(Archive& archive, List& list, const Serialize& serialize_one
   for (auto& entry : list) serialize_one(entry);
 }
 
-/// A list of `count` finite points or vectors. Throws std::runtime_error if it reads another number, or values that are
-/// not finite.
+/// A list of `count` finite points or vectors. When reading, throws std::runtime_error if the list has another length
+/// or values that are not finite.
 template <class Archive>
 void serialize_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
   serialize_plain(archive, points);

@@ -20,9 +20,9 @@ Json parse_json(std::string_view text);
 extern template nlohmann::ordered_json parse_json(std::string_view);
 extern template nlohmann::json parse_json(std::string_view);
 
-/// The value of a key; `otherwise` if `json` is no object, lacks the key, or has a value of another type there (or one
-/// out of the range of int). The value() of nlohmann::json throws if `json` is no object or the type differs, which
-/// becomes an internal error if nobody catches it.
+/// The value of a key; `otherwise` if `json` is no object, lacks the key, or has a value there that is no T:
+/// std::string, double, or int within its range. The value() of nlohmann::json throws if `json` is no object or the
+/// type differs, which becomes an internal error if nobody catches it.
 template <class T, class Json>
 T value_or(const Json& json, const char* key, T otherwise) {
   if (!json.is_object()) return otherwise;

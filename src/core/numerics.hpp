@@ -1,5 +1,5 @@
-// All tuning constants of the physics. Other constants follow from a scene, from theory, from rounding, or from the
-// size of CPU caches.
+// The tuning constants of a time step. Those of one algorithm alone (untangling, stretch limits, single precision) are
+// in its file; others follow from a scene, from theory, from rounding, or from the size of CPU caches.
 #pragma once
 
 namespace weft {
@@ -12,9 +12,9 @@ struct Numerics {
   /// The linear solver (src/physics/solver).
   struct Linear {
     /// Trace of a particle's 3×3 block of the matrix, relative to the sum of `LinearSystem::norm_weights` over the rows
-    /// of its cloth. If any particle exceeds it, the multigrid levels do not interpolate (Preconditioner). Larger:
-    /// systems with slender cells or a viscosity of 1e4 N·s/m are not solved; smaller: soft cloth takes twice as many
-    /// iterations.
+    /// of its diagonal block. If any particle exceeds it, the multigrid levels correct each aggregate as a whole
+    /// instead of interpolating between aggregates (Preconditioner). Larger: systems with slender cells or a viscosity
+    /// of 1e4 N·s/m are not solved; smaller: soft cloth takes twice as many iterations.
     double stiff_particle = 1e3;
     /// Number of last iterations from which the error is estimated: `least_delay`, or all so far divided by
     /// `delay_fraction` if that is more. Fewer: solves end on a plateau, and cloth with a viscosity of 1e4 N·s/m gains
@@ -44,8 +44,8 @@ struct Numerics {
     int check_after = 4;
     /// Number of Newton iterations of a step in which friction follows the normal forces. Also the number of times that
     /// a solve may continue from cloth that was pushed apart (0: a ring takes four times the steps). After this number
-    /// of iterations, errors below the visibility threshold, and below `velocity_ratio` times the local velocity error
-    /// of implicit Euler, are allowed; after half of it, each linear solve includes all diagonal blocks. Larger:
+    /// of iterations, errors below unseen_velocity() and, with implicit Euler, below `velocity_ratio` times its local
+    /// velocity error, are allowed; after half of it, each linear solve includes all diagonal blocks. Larger:
     /// friction and normal forces, or cloths that press on each other, oscillate.
     int patience = 20;
     double velocity_ratio = 0.5;
@@ -67,12 +67,12 @@ struct Numerics {
   struct Steps {
     /// Error that the controller aims at, relative to the tolerance. Nearer to 1: more steps are rejected.
     double aim = 0.7;
-    /// Minimum and maximum factor between successive steps; after a rejection, the maximum is 1. Larger: BDF2
+    /// Minimum and maximum factor between successive steps; after a rejection, the maximum is 1. A larger maximum: BDF2
     /// propagates its error.
     double least_factor = 0.2;
     double largest_factor = 1.5;
-    /// Minimum step size [s]: at 10 m/s, cloth moves 1e-4 m in it. Errors do not reduce a step below it, and a step
-    /// below it that is not solved ends the run.
+    /// Shortest step that errors ask for [s]: at 10 m/s, cloth moves 1e-4 m in it. A step that is not solved is halved
+    /// further, but ends the run if it is shorter than this.
     double least = 1e-5;
     /// Maximum speed of cloth at rest [m/s]; see StepLoop::may_rest(). A frame at rest is one step.
     double rest_velocity = 0.02;
@@ -83,35 +83,36 @@ struct Numerics {
     /// Detection distance, relative to the largest activation distance. Smaller: contacts are found late in a step.
     double detection = 1.5;
     /// Verlet margin of near features, in detection distances: motion up to which the search reuses its lists.
-    /// Candidate pairs in slow steps have twice this margin, kept closest points (`search.coherence`) half of it.
-    /// Larger: longer lists; smaller: more searches. Also the distance between an obstacle's arc and its chord above
-    /// which a step is halved, and the motion of an obstacle in a step below which shorter steps find no more space.
+    /// Candidate pairs have twice this margin while no vertex moves that far in a step, kept closest points
+    /// (`search.coherence`) half of it. Larger: longer lists; smaller: more searches. Also the distance between an
+    /// obstacle's arc and its chord above which a step is halved, and the motion of an obstacle in a step below which
+    /// shorter steps find no more space.
     double margin = 0.25;
     /// Maximum contact thickness of cloth other than ropes, in particle spacings. Larger: a sheared sheet collides with
     /// itself.
     double thickness_of_spacing = 0.25;
     /// Minimum contact stiffness in m/h² (m: weighted mean mass of the contact's particles, or of the lighter side
-    /// against a rigid body; h: `time.step`). A particle then stops within a hundredth of the distance that it would
-    /// cover in a step.
+    /// against a rigid body; h: `time.step`). In one step of implicit Euler, a particle then goes in by at most a
+    /// hundredth of the distance that it would cover.
     double inertial_stiffness = 100;
     /// Stiffening of the normal force k d (1 + stiffening (d/r)⁴) at depth d, with stiffness k and activation distance
     /// r. 10: tips penetrate; 1000: more iterations.
     double stiffening = 100;
-    /// Where the stiffness of an edge pair falls from full to zero: from the border of a wedge to the sine `fade`
-    /// outside of it; and, if cloth takes part, also from a fold (−Σ `Proximity::outside_wedge`) of twice `fade` to one
-    /// of half of it, and along an edge, from the fraction `fade` to its end. 0: contacts switch on and off; larger:
-    /// only separating planes keep crossing creases apart.
+    /// Width of the three ramps along which the stiffness of an edge pair falls from full to zero: the sine of the
+    /// angle outside of an edge's wedge (`Proximity::outside_wedge`), up to `fade`; and, if cloth takes part, the fold,
+    /// from twice `fade` to half of it, and the place along an edge, from the fraction `fade` to its end. 0: contacts
+    /// switch on and off; larger: only separating planes keep crossing creases apart.
     double fade = 0.1;
     double flat_fold() const { return 0.5 * fade; }
-    /// Slip velocity below which friction sticks [m/s]; for springs, `stick_spacings` particle spacings per second if
-    /// that is more. Larger: cloth creeps down slopes; smaller: a stiffer system.
+    /// Slip velocity below which friction sticks [m/s]; if contacts are springs, `stick_spacings` of the smallest
+    /// particle spacings per second if that is more. Larger: cloth creeps down slopes; smaller: a stiffer system.
     double stick_velocity = 2e-4;
     double stick_spacings = 0.002;
     /// Slip velocity, in stick velocities, at which the coefficient has fallen from static to sliding friction.
     double slide_velocity = 5;
     /// Closing velocity from which a contact is an impact [m/s]; a slower contact counts as one in proportion to its
-    /// velocity (BDF2 only). Larger: impacts in short steps rebound; 0.1: five balls that meet keep a quarter of the
-    /// energy, not a fifth.
+    /// velocity (BDF2 only). Larger: impacts in short steps rebound (five balls that meet keep a quarter of their
+    /// energy with 0.1, and a fifth, which is right, with 0.05).
     double impact_velocity = 0.05;
     /// How often in a step a contact that has begun to slide may stick again when it slides back. 0: ribbons take 1.4
     /// times the iterations; 20: friction of 10 does not settle.
@@ -155,24 +156,26 @@ struct Numerics {
 
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
-    /// Number of halvings before another remedy: halvings of a step before cloth may count as pinched and before an
-    /// overstretched solve is accepted, and halvings of a trajectory in the search for separating planes (0: a tenth
-    /// more iterations). Also the number of attempts at a step that release obstructed pins; the next attempt may move
-    /// pinned particles.
+    /// How often a step is rejected before cloth may count as pinched, and before too much stretch or added energy is
+    /// accepted. How often a trajectory is halved in the search for separating planes (0: a tenth more iterations). How
+    /// often a step is tried anew with obstructed pins released, before pinned particles may be pushed.
     int halvings = 3;
-    /// Strain that pushing apart may add (energy: Energy::doubtful_gain). Above either, the solve continues; if it
-    /// cannot, only too much energy causes a halved step. Larger: single frames show strain of 0.1 and more.
+    /// Strain that pushing apart may add. If it adds more, or more energy than Energy::doubtful_gain, the solve
+    /// continues; once it may not continue any more, only added energy rejects the step. Larger: single frames show
+    /// strain of 0.1 and more.
     double added_strain = 0.05;
     /// Energy gain, relative to the kinetic and elastic energy at the start of the step, above which an unfinished
     /// solve starts anew with fixed normal forces.
     double astray_energy = 3;
-    /// Maximum increase of stretch in a step, in stretch limits.
+    /// Maximum stretch at the end of a step beyond that at its start or, if that is larger, the limit; in stretch
+    /// limits.
     double overstretch = 2;
   } repair;
 
-  /// Pins that an obstacle keeps from their position (src/physics/simulation/yielding_pins.cpp).
+  /// Pinned particles that an obstacle or other cloth keeps from their targets: they lag
+  /// (src/physics/simulation/yielding_pins.cpp).
   struct Pins {
-    /// Speed [m/s], relative to its target, at which a particle returns.
+    /// Maximum speed [m/s], relative to its target, at which a particle returns.
     double return_velocity = 1;
     /// Maximum force on a lagging particle: the largest of `acceleration` [m/s²] times its mass; `weights` times the
     /// weight of the cloth, divided among all particles of the pin; the same divided among those that lag, but at most
@@ -187,8 +190,8 @@ struct Numerics {
     /// Squared angular frequency of their stretching [1/`time.step`²]. Smaller: an impact of 1 m/s compresses them by
     /// more than 1e-6 m; larger: rounding in single precision.
     double rigidity = 1e4;
-    /// Contact thickness [m], but at most `thickness_of_size` times the smallest standard deviation of the body's mass.
-    /// Smaller: bodies at rest on each other rattle; larger: gaps are visible.
+    /// Contact thickness [m], but at most `thickness_of_size` times the smallest standard deviation of the places of
+    /// the body's mass. Smaller: bodies at rest on each other rattle; larger: gaps are visible.
     double thickness = 5e-4;
     double thickness_of_size = 0.1;
   } bodies;

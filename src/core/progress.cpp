@@ -16,7 +16,8 @@
 namespace weft {
 namespace {
 
-constexpr double kPaceWindow = 30;  // [s]; long enough to be steady, short enough to follow contacts
+// [s]; long enough to be steady, short enough to notice when contacts slow the simulation down.
+constexpr double kPaceWindow = 30;
 constexpr std::chrono::milliseconds kBarInterval{200};         // smooth for the eye
 constexpr std::chrono::milliseconds kHeartbeatInterval{5000};  // a log of one hour stays below a thousand lines
 

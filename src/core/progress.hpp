@@ -1,4 +1,4 @@
-// Progress and remaining time of a run: a bar on terminals, otherwise regular lines.
+// Progress and remaining time of a run: a bar on terminals, otherwise a line every few seconds.
 #pragma once
 
 #include <array>

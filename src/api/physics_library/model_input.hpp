@@ -13,8 +13,8 @@ namespace weft::library {
 /// the rotation is no unit quaternion.
 motion::Pose pose_of(const Pose& given, const std::string& object);
 
-/// Converts a model. `driven`: names of bodies that count as moving. If a value is out of range, throws
-/// std::invalid_argument that names the object and the value.
+/// Converts a model. `driven`: names of the bodies that the caller will move by Simulation::drive(). Throws
+/// std::invalid_argument that names the object and what is wrong: a value, a name, a reference, or a mesh.
 model::Model physics_of(const Model& given, const std::vector<std::string>& driven);
 
 }  // namespace weft::library

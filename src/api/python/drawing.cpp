@@ -26,8 +26,8 @@ render::Quality quality_of(const std::string& name) {
   throw std::invalid_argument("quality: expected \"draft\", \"preview\" or \"final\", got \"" + name + "\"");
 }
 
-/// Draws frames as the program does. Only the thread that created the renderer can use it, because of its OpenGL
-/// context.
+/// Draws frames as `weft run` does, except that a camera that the scene does not place stands for the first frame drawn
+/// and not for the whole run. Only the thread that created the renderer can use it.
 class Renderer {
  public:
   Renderer(const Scene& scene, const std::string& quality) {

@@ -10,7 +10,7 @@ namespace weft::character {
 
 /// Timing of a clip in the scene.
 struct Timing {
-  double dressing = 0;  ///< time of the scene before which the clip does not move [s]
+  double dressing = 0;  ///< scene time from which the clip moves; from the duration `dressing` of the scene [s]
   double blend = 0;     ///< time in which the clip then accelerates to `speed` [s]
   double start = 0;     ///< time of the clip at which it begins to play [s]
   double speed = 1;
@@ -21,8 +21,10 @@ double clip_time(const Timing& timing, double t);
 
 struct Playing {
   Timing timing;
-  bool loop = false;     ///< each round continues horizontally from the end of the previous one
-  double crossfade = 0;  ///< end of a round that is blended into the next one [s of the clip]; at most half of the clip
+  bool loop = false;     ///< repeats the clip; each repetition, a round, starts where the one before it has ended, but
+                         ///< only horizontally
+  double crossfade = 0;  ///< time at the end of a round in which it is blended into the next one [s of the clip];
+                         ///< longer values are reduced to half of the clip
   std::optional<Pose> stance = {};  ///< initial pose of the body, in place of the clip's pose at `start`
 };
 
@@ -51,9 +53,10 @@ class Performance {
   const Clip& clip_;
   Playing playing_;
   Vec3 up_;
-  Index root_ = -1;                        // uppermost node that the clip translates; -1: none
-  double period_ = 0;                      // of a round [s]
-  Vec3 travel_{0, 0, 0}, shift_{0, 0, 0};  // travel per round, shift of all poses of the clip [m]
+  Index root_ = -1;       // uppermost node that the clip translates; -1: none
+  double period_ = 0;     // of a round [s]
+  Vec3 travel_{0, 0, 0};  // per round [m]
+  Vec3 shift_{0, 0, 0};   // moves the clip to where `stance` stands [m]
 };
 
 /// Keys per second of the channel with the most keys; 0 for a clip that does not move.

@@ -167,7 +167,8 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
                           fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"), "no obstacle moves"));
 }
 
-// The rest shapes are known only after reading the files of meshes and patterns.
+// Adds where the rest shape of each mesh comes from, and the fit of each fitted pattern: known only once they are
+// built.
 void plan_rest_shapes(const Scene& scene, std::vector<PlanItem>& items) {
   environment::Wearers wearers(scene);
   for (const Cloth& cloth : scene.cloths)
@@ -203,7 +204,8 @@ void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
                           "time.preroll is 0"));
 }
 
-// Size of the key frames of characters, which is known only after reading their files.
+// Adds the parts of each character that do not collide, and the size of its key frames: known only once its files are
+// read.
 void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   if (scene.characters.empty()) items.push_back({"motion: characters", false, "no character"});
   for (const scene::Character& character : scene.characters) {
@@ -218,7 +220,7 @@ void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   }
 }
 
-// Whether forces move the obstacle, and it can roll or has a spin.
+// Whether forces move the obstacle, and it may roll (as any shape but boxes and half pipes may) or starts with a spin.
 bool turns_freely(const scene::Obstacle& obstacle) {
   const bool is_round = !std::holds_alternative<scene::BoxShape>(obstacle.shape) &&
                         !std::holds_alternative<scene::HalfPipe>(obstacle.shape);

@@ -23,7 +23,7 @@ struct Mistake {
 };
 
 struct LoadResult {
-  Scene scene;  ///< valid only if there are no mistakes
+  Scene scene;  ///< complete only if there are no mistakes; else values with mistakes have their defaults
   std::vector<Mistake>
       mistakes;  ///< in file order, then those of overrides; at most kMaxMistakes and a count of the rest
   bool ok() const { return mistakes.empty(); }
@@ -37,14 +37,15 @@ struct LoadResult {
 /// whatever the file contains.
 LoadResult load(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// Same as `load`, but from text in memory (tests, fuzzing). Relative paths start at the folder of `name`.
+/// Same as `load`, but from text in memory (tests, fuzzing). `name`: path that the text stands for, which need not
+/// exist; it names the scene, and relative paths start at its folder.
 LoadResult load_text(std::string_view text, const std::filesystem::path& name,
                      const std::vector<std::string>& overrides = {});
 
 /// The JSON schema (Draft 2020-12) of a format, generated from its rule table.
 std::string json_schema(const Table& table = scene_rules(), const std::string& title = "Weft scene");
 
-/// The checked scene with every default filled in, as TOML.
+/// The checked scene with its defaults filled in, as TOML; without keys whose default means "none".
 std::string effective_scene(const Scene& scene);
 
 }  // namespace weft::scene

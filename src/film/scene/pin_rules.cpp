@@ -6,7 +6,7 @@
 namespace weft::scene {
 namespace {
 
-/// Rows that select the particles of a part of a cloth, and give each of them a fraction.
+/// Rows that select the particles of a part of a cloth, and how strongly the part acts on each (0 to 1; see ClothPart).
 template <class S>
 void part_rows(TableBuilder<S>& rows) {
   rows.plain(Type::text, "panel", &S::panel,

@@ -18,7 +18,7 @@ std::string describe_node(const toml::node& node);
 std::string in_quotes(std::string_view text);
 /// Whether the text is valid as the name of a list entry.
 bool is_name(std::string_view text);
-/// "; did you mean a?" with the nearest of `known`; empty if none is near.
+/// "; did you mean mass?" with the nearest of `known`; empty if none is near.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 class Reader {
@@ -26,7 +26,7 @@ class Reader {
   /// `folder`: base of relative file names.
   Reader(Findings& findings, std::filesystem::path folder) : findings_(findings), folder_(std::move(folder)) {}
 
-  /// Fills `target`, a struct that `rules` describes, from the table at `path` (empty: the whole scene). A key with a
+  /// Fills `target`, a struct that `rules` describes, from the table at `path` (empty: the whole file). A key with a
   /// mistake keeps its default.
   void read(const toml::table& table, const Table& rules, void* target, const std::string& path);
 
@@ -34,7 +34,7 @@ class Reader {
   void read_rule(const toml::table& table, const Rule& rule, void* target, const std::string& path);
   void read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path);
   /// The key path of a list entry. It ends with the entry's name if this is valid and not yet in `names`; the name is
-  /// then added to `names`. Else it ends with the index.
+  /// then added to `names`. Else it is `by_index`, which ends with the index; a repeated name is reported.
   std::string entry_path(const toml::table& table, const Rule& rule, const std::string& path,
                          const std::string& by_index, std::set<std::string>& names);
   void report_unknown(const toml::table& table, const Table& rules, const Variant* variant, const std::string& path);

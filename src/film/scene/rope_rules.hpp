@@ -1,4 +1,4 @@
-// The rows of the rule table for ropes.
+// The rules of [[rope]].
 #pragma once
 
 #include "film/scene/rule.hpp"

@@ -35,7 +35,7 @@ class BlockGroups {
  private:
   std::span<const solver::DiagonalBlock> blocks_;
   std::vector<std::size_t> lowest_;
-  std::vector<char> is_free_;  // per group: no constraint or obstacle acts on it
+  std::vector<char> is_free_;  // per group: nothing from outside the group acts on it
 };
 
 template <class Term>

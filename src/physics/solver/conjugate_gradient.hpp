@@ -16,15 +16,17 @@ struct LinearReport {
   bool definite = true;  ///< false: the iteration ended at a direction without positive curvature
 };
 
-/// Solves A x = b on the free directions, with the Preconditioner P of particles and multigrid levels.
+/// Solves A x = b on the directions that the constraints leave free, with the Preconditioner P, which combines the
+/// blocks of particles with multigrid levels.
 ///
 /// solve() uses single precision if LinearGoal::relative is at least kSmallestSingleGoal, the system has
 /// `norm_weights`, and no particle's relative stiffness exceeds kMaxSingleStiffness (conjugate_gradient.cpp). Single
 /// precision is safe because Newton's method evaluates its residual in double, so that the next solve corrects errors
-/// of rounding.
+/// of rounding. If it meets a direction without positive curvature, solve() goes on in double.
 class ConjugateGradient {
  public:
-  /// Prepares the preconditioner for `system`, which must outlive the following calls. With AggregateSums::reuse, sums
+  /// Sets the system of the following calls, which must outlive them unchanged: the preconditioner is made in the first
+  /// of them. With AggregateSums::reuse, sums
   /// over aggregates are reused if they have been made since the last call with AggregateSums::recompute.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
@@ -33,18 +35,19 @@ class ConjugateGradient {
 
   /// Iterates from x = 0, whatever x contains, until the error meets `goal`, or for `max_iterations`.
   ///
-  /// The iteration itself gives the error e: a step of length α along a search direction reduces ‖e‖²_A by α rᵀz with z
-  /// = P⁻¹ r, so the gains of the last steps estimate ‖e‖²_A before them (Hestenes & Stiefel 1952; Strakoš & Tichý,
-  /// "Error Estimation in Preconditioned Conjugate Gradients", BIT 45, 2005). Each diagonal block has its own summand
-  /// of rᵀz. The squared error in the mass-weighted norm is that estimate times the largest ratio of a last step's
-  /// squared norm to its gain. √(rᵀz) cannot replace the estimate: for smooth motion this root is far below ‖e‖_A, and
-  /// flat sheets would fold in free fall.
+  /// The iteration itself gives the error e: a step of length α along a search direction, from the residual r, reduces
+  /// ‖e‖²_A by its gain α rᵀz with z = P⁻¹ r. The sum of the last gains estimates ‖e‖²_A as it was before these steps
+  /// (Hestenes & Stiefel 1952; Strakoš & Tichý, "Error Estimation in Preconditioned Conjugate Gradients", BIT 45,
+  /// 2005). Each diagonal block has its own summand of rᵀz. The squared error in the mass-weighted norm is that
+  /// estimate times the largest ratio, over these steps, of a step's squared mass-weighted norm to its gain, at most 1.
+  /// √(rᵀz) cannot replace the estimate: for smooth motion this root is far below ‖e‖_A, and flat sheets would fold in
+  /// free fall.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                      const Directions& directions = {});
   /// Solves for these diagonal blocks only: all other particles count as held, so x is zero there.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                      const Directions& directions, std::span<const std::size_t> parts);
-  /// b − A x of the last solve, on the rows that it solved for.
+  /// b − A x of the last solve, on the rows that it solved for, without constrained components.
   std::span<const Vec3> residual() const { return residual_; }
 
   /// Sets the constrained components of each entry to zero.

@@ -1,4 +1,4 @@
-// Row ranges, divided into chunks for threads.
+// Ranges of rows of 3×3 blocks (one row per particle or aggregate), divided into chunks for threads.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ struct RowRange {
   std::size_t begin = 0, end = 0;
 };
 
-/// Divides row ranges into chunks that do not depend on the number of threads and never cross a range, so that sums
-/// always have the same bits. A thread takes several chunks at a time if they are small, as for many small cloths.
+/// Divides row ranges into chunks that do not depend on the number of threads, so that sums always have the same bits.
+/// Each chunk lies in one range. A thread takes several chunks at a time if they are small, as for many small cloths.
 class RowChunks {
  public:
   RowChunks() = default;
@@ -33,13 +33,13 @@ class RowChunks {
     tasks_.push_back(chunks_.size());
   }
 
-  /// Calls body(begin, end) for all chunks.
+  /// Calls body(begin, end) for all chunks, on several threads and in any order.
   template <class Body>
   void for_each(const Body& body) const {
     for_each_chunk([&](std::size_t c) { body(chunks_[c].begin, chunks_[c].end); });
   }
 
-  /// Returns Σ body(begin, end) over the chunks of each range, in their order.
+  /// Returns one sum per range: Σ body(begin, end) over its chunks, added in ascending order.
   template <class Body>
   std::vector<PaddedVec3<double>> sums(const Body& body) const {
     std::vector<PaddedVec3<double>> of_chunks(chunks_.size()), of_ranges(ranges_);

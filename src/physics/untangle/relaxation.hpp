@@ -1,4 +1,5 @@
-// Relaxation: the rest of the cloth follows moved particles, so that threads and folds regain allowed lengths.
+// Relaxation: the rest of the cloth follows moved particles, so that links along edges (threads) and across them
+// (bending) regain allowed lengths.
 #pragma once
 
 #include <span>
@@ -8,9 +9,9 @@
 
 namespace weft::untangle {
 
-/// Sweeps over all links in order and corrects each at once (position-based dynamics without time: Müller et al.,
-/// "Position Based Dynamics", 2007). After every few sweeps, particles that are too low over a solid are raised to
-/// `above` its surface (per body of cloth, [m]).
+/// Sweeps over all links in order and corrects each before the next one is read, links of bending only in part
+/// (position-based dynamics without time: Müller et al., "Position Based Dynamics", 2007). After every few sweeps and
+/// after the last one, calls raise(). `above`: minimum height over solids [m], per body.
 void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, int sweeps,
            std::span<Vec3> x);
 

@@ -12,7 +12,7 @@
 namespace weft::untangle {
 namespace {
 
-// Height to which cloth is moved over an obstacle or over other cloth, in thicknesses.
+// Height above the surface of an obstacle or other cloth to which cloth is moved, in thicknesses of this cloth.
 constexpr double kHeightInThicknesses = 0.75;
 // Minimum gap between surfaces, in thicknesses: far above Numerics::Separation::least_gap.
 constexpr double kGapInThicknesses = 0.1;
@@ -25,20 +25,22 @@ constexpr int kPatience = 12, kMaxSmoothings = 12;
 // Maximum number of islands of a crossed pair that are tried one by one.
 constexpr std::size_t kMaxSingleIslands = 12;
 constexpr int kSweepsAfterMove = 120, kSweeps = 8;
-// Maximum displacement of a region inside a body, relative to its size. Beyond it the region is locked.
+// Maximum displacement of a region inside a body, relative to the region's size. Beyond it, the region is locked: it
+// has no way out.
 constexpr double kMaxDisplacementRatio = 1.5;
 // Maximum number of passes: a region that leaves one body may enter another.
 constexpr int kMaxPasses = 3;
-// Displacement of a region, in heights over the obstacle (kHeightInThicknesses), below which its way out is always
-// tried: then only strain after the move locks the region.
+// A region whose way out is shorter than this multiple of kHeightInThicknesses always takes it: then only strain after
+// the move locks the region.
 constexpr double kShallowDepth = 4;
-// Maximum strain of a thread after the move; beyond it the body goes through the cloth and the region is locked
+// Maximum strain of a thread after the move; beyond it the body is taken to go through the cloth: the region is locked
 // (measured: 0.44 for a tube 4 cm too small, the largest of the valid starts; 4.9 for trousers with a leg through the
 // seat).
 constexpr double kMaxStrain = 1.5;
-// Maximum fraction of a region's threads that the body may still block: those at the region's border recover.
+// Maximum fraction of a region's threads that may still go through the body after the move: relax() frees those at the
+// region's border.
 constexpr double kMaxBlockedFraction = 0.2;
-// Step along the gradients of contours, in mean lengths of the threads.
+// Step that shortens lines of crossing, in mean lengths of the threads.
 constexpr double kStep = 0.12;
 constexpr int kMaxGapRounds = 60;
 

@@ -60,7 +60,8 @@ void check_patterns(const scene::Scene& scene, Mistakes& mistakes) {
   }
 }
 
-/// Number of particles of all cloths. Cloths from files or patterns are built to count them.
+/// Number of particles of all cloths. All but rectangles are built to count their particles; what fails is added to
+/// `mistakes`.
 std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes) {
   std::size_t particles = 0;
   environment::Wearers wearers(scene);
@@ -74,7 +75,8 @@ std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes)
   return particles;
 }
 
-/// The effective scene of `against`. Throws Error(scene_invalid) or Error(asset_unreadable).
+/// The effective scene that `against` names: that of a cache folder, a file of an effective scene, or a scene. Throws
+/// Error(scene_invalid) or Error(asset_unreadable).
 std::string scene_text_of(const std::filesystem::path& against) {
   const bool is_cache = std::filesystem::is_directory(against);
   if (is_cache || against.string().ends_with(".effective.toml"))

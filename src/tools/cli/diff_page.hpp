@@ -7,12 +7,12 @@
 
 namespace weft::cli {
 
-/// One self-contained HTML file without scripts. It shows each pair that differs or lacks a readable file as reference,
-/// test and, if compared, map of the differences (of videos, the worst frame), without pictures beyond about 100 MB.
-/// Other pairs are only listed.
+/// One self-contained HTML file without scripts. It shows each pair that differs or lacks a readable file as reference
+/// ("before"), test ("after") and, if compared, map of the differences (of videos, the worst frame), without pictures
+/// beyond about 100 MB. Other pairs are only listed.
 class DiffPage {
  public:
-  /// `description`: text of the result.
+  /// `description`: the result as a line, which begins with "NAME: ".
   void add(const compare::FileComparison& result, const std::string& description);
   /// `title`: how many pairs are within their limits.
   std::string html(const std::string& title) const;

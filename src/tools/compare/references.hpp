@@ -1,6 +1,6 @@
-// Folders of reference pictures. Pictures depend slightly on Mesa and on the vector width of the processor. The
-// simulated motion depends slightly on the processor for which the program is built. If such differences exceed the
-// limits, a class of machines has its own references:
+// Folders of reference pictures. Pictures depend slightly on Mesa and on the vector width of the processor. If such
+// differences exceed the limits of the comparison, a class of machines has its own references (builds for different
+// processors simulate slightly different motion too, but share a class):
 //
 //     references/mesa-22.3-256bit/name.png   used for this class of machines
 //     references/default/name.png            used for names that the folder of the class does not have

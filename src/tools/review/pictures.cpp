@@ -15,7 +15,7 @@ namespace weft::review {
 namespace {
 
 constexpr std::size_t kMaxTiles = 16;
-constexpr int kTileWidth = 320;  // [pixels]; width of a poster in the overview on a high-density screen
+constexpr int kTileWidth = 320;  // [pixels]; twice that of the page's overview, for high-density screens
 constexpr int kHeatWidth = 640;  // maximum width of a FLIP map [pixels]
 
 // Reads pictures one after the other, from a video or from files.
@@ -32,7 +32,7 @@ class Reader {
     return image::read_png(run_.pictures[at]);
   }
 
-  /// The picture with this index; nullopt if there are fewer. Indices must ascend from call to call.
+  /// The picture with this index; nullopt if there is none. Each index must be larger than that of the call before.
   std::optional<image::Image> skip_to(long long picture) {
     if (!decoder_) next_ = picture;
     while (next_ < picture) {
