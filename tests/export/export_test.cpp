@@ -203,6 +203,23 @@ TEST_F(Exported, MaterialFilesNameThePicture) {
   EXPECT_EQ(image::read_picture(file("cloth.png")).rgba[3], 128);
 }
 
+// The second picture of an object does not take the name of that of an object called cloth_2.
+TEST_F(Exported, EveryPictureHasAFileOfItsOwn) {
+  const auto painted = [](frame::Appearance& look, std::uint8_t red) {
+    look.paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {red, 0, 0, 255}});
+  };
+  frame::Surface cloth = *surfaces_[0], other = *surfaces_[1];
+  cloth.parts = {{"front", cloth.appearance}, {"back", cloth.appearance}};
+  cloth.part_of_triangle = {0, 0, 1, 1};
+  painted(cloth.parts[0].appearance, 10);
+  painted(cloth.parts[1].appearance, 20);
+  other.name = "cloth_2";
+  painted(other.appearance, 30);
+  surfaces_[0] = std::make_shared<frame::Surface>(cloth);
+  surfaces_[1] = std::make_shared<frame::Surface>(other);
+  write(Format::obj, {3});
+}
+
 template <class T>
 T take(std::string_view& bytes) {
   T value;

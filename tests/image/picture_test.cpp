@@ -84,6 +84,15 @@ TEST(PictureFile, GrayPngIsOpaque) {
   EXPECT_EQ(picture.rgba, (std::vector<std::uint8_t>{10, 10, 10, 255, 200, 200, 200, 255}));
 }
 
+// Files of many programs do not name their gamma.
+TEST(PictureFile, PngOfSixteenBitsHasTheColorsOfOneOfEight) {
+  std::string bytes = png_bytes(2, 1, PNG_FORMAT_LINEAR_Y, {0x80, 0x80, 0x20, 0x20});
+  constexpr std::size_t kLength = 4, kChunk = 16;  // [bytes]: the length before the name, and the whole chunk
+  bytes.erase(bytes.find("gAMA") - kLength, kChunk);
+  const std::vector<std::uint8_t> expected{0x80, 0x80, 0x80, 255, 0x20, 0x20, 0x20, 255};
+  EXPECT_EQ(decode_picture(bytes).rgba, expected);
+}
+
 TEST(PictureFile, TgaKeepsColorsAndAlphaAndItsFirstRowIsTheLowestUnlessItSaysSo) {
   // 24-bit pixels are blue, green, red; the 32-bit picture has alpha, starts at the top and is run-length encoded.
   const std::string plain = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 24, 0, 30, 20, 10, 60, 50, 40};

@@ -124,6 +124,16 @@ TEST(CameraPath, TrackStaysWhereItIsPutAndOpensAsWideAsItsSubjectNeeds) {
   EXPECT_GT(largest, 0.6);  // the bounding box of a ball is up to sqrt(3) times as wide
 }
 
+TEST(CameraPath, TrackStandsUprightWhereverItLooks) {
+  frame::Camera camera = found_camera(Kind::track);
+  camera.position = Vec3(4, 0, 1);  // far from the default azimuth
+  frame::FrameSnapshot snapshot;
+  add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, 0, 1), Vec3::UnitX(), Vec3::UnitY(), 1).name = "pole";
+  for (Vec3& position : snapshot.states[0].positions) position.y() *= 0.01;
+  snapshot.cameras = {camera};
+  EXPECT_NEAR(extent(snapshot, path_of({snapshot}).at(snapshot), 0), 0.86, 1e-9);
+}
+
 TEST(CameraPath, OrbitGoesAroundAtOneDistanceWithEverythingInView) {
   frame::Camera camera = found_camera(Kind::whole);
   auto run = walk(camera);

@@ -243,5 +243,22 @@ TEST(Outlines, APictureOfOneFlatThingIsLeftAlone) {
   EXPECT_EQ(outlines.count(), 0u);
 }
 
+TEST(Outlines, APictureWithoutSurfacesKeepsNothingOfTheOneBefore) {
+  Scene scene;
+  scene.add(quad(10, 10, 30, 50, 2, kWhite), 2,
+            [](double x, double y) { return x > 10 && x < 30 && y > 10 && y < 50; });
+  Outlines outlines(kOutlinedWidth, kOutlinedHeight);
+  const std::vector<DrawnMesh> meshes = {{scene.things[0].positions, scene.things[0].triangles}};
+  outlines.smooth(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight},
+                  scene.picture);
+  EXPECT_GT(outlines.count(), 0u);
+  Scene empty;
+  outlines.smooth(empty.seen, {}, std::nullopt, test_view(), {}, empty.picture);
+  EXPECT_EQ(outlines.count(), 0u);
+  std::vector<Eigen::Vector4f> surfaces;
+  outlines.cut_out(empty.seen, empty.picture, surfaces);
+  for (const Eigen::Vector4f& pixel : surfaces) ASSERT_EQ(pixel, Eigen::Vector4f(Eigen::Vector4f::Zero()));
+}
+
 }  // namespace
 }  // namespace weft::render

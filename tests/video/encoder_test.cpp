@@ -9,9 +9,11 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "decode.hpp"
 #include "film/video/frame_rate.hpp"
+#include "film/video/join.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::video {
@@ -272,6 +274,9 @@ TEST_F(EncoderTest, NamesMayLookLikeProtocolsAndPatterns) {
   std::filesystem::current_path(folder_);
   encode_numbers("http:a %03d", small(), 4);
   expect_numbers(decode("http:a %03d"), 4);
+  const std::vector<std::filesystem::path> parts{"http:a %03d", "http:a %03d"};
+  join_videos(parts, "http:b", 25, 8, {});
+  EXPECT_EQ(decode("http:b").frames.size(), 8U);
   std::filesystem::current_path(before);
 }
 

@@ -51,6 +51,8 @@ Picture decode_png(std::string_view bytes) {
     picture.width = static_cast<int>(png.width);
     picture.height = static_cast<int>(png.height);
     png.format = PNG_FORMAT_RGBA;
+    // Without this flag, libpng takes 16-bit values for linear light if the file does not name its gamma.
+    png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
     picture.rgba.resize(PNG_IMAGE_SIZE(png));
   } catch (...) {
     png_image_free(&png);

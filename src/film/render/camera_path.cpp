@@ -69,7 +69,8 @@ void CameraPath::see(const frame::FrameSnapshot& snapshot) {
   frame.number = snapshot.frame;
   frame.time = snapshot.time;
   frame.camera = named ? *named : automatic_camera();
-  const ViewAxes axes = axes_from_angles(frame.camera, up_of(snapshot));
+  up_ = up_of(snapshot);
+  const ViewAxes axes = axes_from_angles(frame.camera, up_);
   frame.fit = FrustumFit(axes, frame.camera, aspect_);
   azimuth_changes_ = azimuth_changes_ || (!frames_.empty() && frames_.front().camera.azimuth != frame.camera.azimuth);
   const std::vector<bool> chosen = subjects_of(snapshot, frame.camera);
@@ -216,7 +217,7 @@ void CameraPath::compute_tracking_camera() {
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     frame::Camera& camera = frames_[k].camera;
     camera.target = centers[k];
-    const ViewAxes axes = view_axes(camera.target - camera.position, frames_[k].fit.axes().up);
+    const ViewAxes axes = view_axes(camera.target - camera.position, up_);
     for (int corner = 0; corner < 8; ++corner) {
       const auto which = static_cast<Box3::CornerType>(corner);
       const Vec3 to = frames_[k].subjects.corner(which) - camera.position;

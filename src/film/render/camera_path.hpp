@@ -47,6 +47,7 @@ class CameraPath {
   std::string name_;
   double aspect_;
   std::vector<Frame> frames_;
+  Vec3 up_ = Vec3::UnitZ();        // upward axis of the scene
   std::optional<Box3> cloth_box_;  // box to which positions of cloth are clamped
   Box3 subject_bounds_;            // bounds of the subjects of all frames
   bool azimuth_changes_ = false;   // the azimuth differs between frames

@@ -131,7 +131,6 @@ void Outlines::find_outlines(std::span<const Seen> seen, const PixelArea& area) 
 
 /// Allocates samples for each pixel with a set bit.
 void Outlines::number_samples() {
-  pixels_.clear();
   for (std::size_t word = 0; word < bits_.size(); ++word) {
     first_[word] = static_cast<int>(pixels_.size());
     const int y = static_cast<int>(word) / words_, x = static_cast<int>(word) % words_ * kWordBits;
@@ -342,6 +341,7 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
 
 void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
                       const View& view, const PixelArea& area, std::span<std::uint64_t> picture) {
+  pixels_.clear();
   if (area.width <= 0 || area.height <= 0) return;
   kink_ = static_cast<float>(kMinCreaseTangent * 2 * view.tan_half_height / height_);
   find_outlines(seen, area);

@@ -35,7 +35,8 @@ struct Dictionary {
 
 InputPtr open_video(const std::filesystem::path& file, const std::filesystem::path& reported_file) {
   AVFormatContext* opened = nullptr;
-  check(avformat_open_input(&opened, file.c_str(),
+  // The path is absolute, since libav reads the text before a colon as a protocol.
+  check(avformat_open_input(&opened, std::filesystem::absolute(file).c_str(),
                             av_find_input_format(is_matroska(reported_file) ? "matroska" : "mp4"), nullptr),
         reported_file, "read the frames back");
   InputPtr input(opened);
@@ -59,13 +60,22 @@ bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
 }
 
-// Delay between decoding and showing the first frame [frames]; 0 if there is no frame or one of these times is missing.
+// Delay between decoding and showing the first frame [frames]. Matroska stores no decoding times; there, it is the
+// smallest delay with which no frame is shown before it is decoded. 0 if there is no frame or a time is missing.
 std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
   const InputPtr input = open_video(file, reported_file);
+  const AVRational unit = input->streams[0]->time_base;
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
-  if (!read_packet(*input, *packet, reported_file)) return 0;
-  if (packet->pts == AV_NOPTS_VALUE || packet->dts == AV_NOPTS_VALUE) return 0;
-  return av_rescale_q(packet->pts - packet->dts, input->streams[0]->time_base, av_inv_q(rate));
+  std::int64_t delay = 0, first_time = 0;
+  for (std::int64_t k = 0; read_packet(*input, *packet, reported_file); ++k) {
+    if (packet->pts == AV_NOPTS_VALUE || (!is_matroska(reported_file) && packet->dts == AV_NOPTS_VALUE)) return 0;
+    if (!is_matroska(reported_file)) return av_rescale_q(packet->pts - packet->dts, unit, av_inv_q(rate));
+    const std::int64_t time = av_rescale_q(packet->pts, unit, av_inv_q(rate));
+    if (k == 0) first_time = time;
+    delay = std::max(delay, k - (time - first_time));
+    av_packet_unref(packet.get());
+  }
+  return delay;
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ bool is_same(const PictureFile& a, const PictureFile& b) {
 std::size_t add_picture(std::vector<PictureFile>& pictures, PictureFile picture, const std::string& surface) {
   for (std::size_t i = 0; i < pictures.size(); ++i)
     if (is_same(pictures[i], picture)) return i;
-  picture.name = pictures.empty() ? surface + ".png" : fmt::format("{}_{}.png", surface, pictures.size() + 1);
+  // The names of objects have no dots, so that "man.2.png" is not the picture of an object "man_2" as well.
+  picture.name = pictures.empty() ? surface + ".png" : fmt::format("{}.{}.png", surface, pictures.size() + 1);
   pictures.push_back(std::move(picture));
   return pictures.size() - 1;
 }
