@@ -94,6 +94,20 @@ TEST(Companions, TellTheErrorOfTheMeshWhereItsCellsCanBeHalved) {
   EXPECT_NE(cli::error_summary(odd).find("mesh not known: the cells cannot be halved"), std::string::npos);
 }
 
+TEST(Companions, KnowNoErrorOfTheMeshAndNoShadowOfRopes) {
+  const scene::Scene scene = support::scene_of_text(
+      "[time]\nduration = 0.08\n[[rope]]\nname = \"r\"\nfrom = [0, 0, 0]\nto = [1, 0, 0]\ndiameter = 0.02\n");
+  const ErrorEstimate estimate = estimate_of(scene, {.mesh = true});
+  EXPECT_EQ(estimate.parts.back().missing, "the cells cannot be halved");
+  EXPECT_EQ(at(estimate.all, Quantity::shadow), 0);
+}
+
+TEST(Companions, NeedClothOrRopes) {
+  const scene::Scene scene =
+      support::scene_of_text("[time]\nduration = 0.08\n[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nmass = 1\n");
+  EXPECT_THROW(estimate_of(scene), Error);
+}
+
 // A strip that stands on its edge and may fall to either side.
 scene::Scene undecided() {
   return support::scene_of_text(

@@ -47,11 +47,15 @@ TEST_F(Dependencies, MeshesOfObstaclesAndCloths) {
 }
 
 TEST_F(Dependencies, PatternsAndTheirDrawings) {
-  put("p/skirt.toml", "[[panel]]\nname = 'front'\nfile = 'drawn/my front.svg'\nid = 'front'\n");
+  put("p/skirt.toml",
+      "[[panel]]\nname = 'front'\nfile = 'drawn/my front.svg'\nid = 'front'\n"
+      "[[panel]]\nname = 'back'\nfile = 'drawn/back (1), old.svg'\nid = 'back'\n");
   put("p/drawn/my front.svg", "<svg/>");
+  put("p/drawn/back (1), old.svg", "<svg/>");
   const std::string scene = "cloth = [{ name = 'c', shape = 'pattern', file = 'p/skirt.toml' }]\n";
   expect_counts(scene, "p/skirt.toml");
   expect_counts(scene, "p/drawn/my front.svg");
+  expect_counts(scene, "p/drawn/back (1), old.svg");
 }
 
 TEST_F(Dependencies, CharactersMotionsAndWhatTheyName) {

@@ -64,6 +64,14 @@ const std::vector<Malformed> kMalformed = {
     {"AttachmentToNothing", kBand + "[[attach]]\nname = 'peg'\ncloth = 'bond'\nto = 'line'\n",
      "s.toml:4:9: attach.peg.cloth: expected the name of a cloth or rope, got \"bond\"; did you mean band?\n"
      "s.toml:5:6: attach.peg.to: expected the name of a cloth, rope, obstacle or character, got \"line\"\n"},
+    {"AttachmentToAnEmptyName", kBand + "[[attach]]\nname = 'peg'\ncloth = ''\nto = ''\n",
+     "s.toml:4:9: attach.peg.cloth: expected a text, got an empty one\n"
+     "s.toml:5:6: attach.peg.to: expected a text, got an empty one\n"},
+    {"SequenceWithoutAName", "[[character]]\nname = 'a'\nsource = 'sequence'\nfiles = ''\n",
+     "s.toml:4:9: character.a.files: expected a text, got an empty one\n"},
+    {"ReleaseOfKeysBeforeTheStart",
+     "[[obstacle]]\nname = 'b'\nshape = 'box'\nmass = 1\nkeys = [{ time = 0 }, { time = 1 }]\n",
+     "s.toml:1:1: obstacle.b.release: expected > 0 s beside keys, which move it until then, got none\n"},
     {"AttachmentToItself", kBand + "[[attach]]\nname = 'peg'\ncloth = 'band'\nto = 'band'\nbegin = 2\nrelease = 1\n",
      "s.toml:5:6: attach.peg.to: expected another object than the cloth itself, got \"band\"\n"
      "s.toml:7:11: attach.peg.release: expected > 2 s, when it begins, got 1\n"},

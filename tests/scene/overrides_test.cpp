@@ -74,6 +74,20 @@ TEST(Override, OfStepOrToleranceReplacesTheOtherOne) {
             "--set time.tolerance=1e-4: time.tolerance: expected either tolerance or step, got both\n");
 }
 
+TEST(Override, ReplacesTheKeysOfTheFileThatExcludeItOrThatItExcludes) {
+  const LoadResult rope = load_text("rope = [{ name = 'r', points = [[0, 0, 0], [1, 0, 0]] }]\n", "s.toml",
+                                    {"rope.r.from=[5, 0, 0]", "rope.r.to=[6, 0, 0]"});
+  EXPECT_EQ(rope.describe(), "");
+  EXPECT_TRUE(rope.scene.ropes[0].points.empty());
+  EXPECT_EQ(rope.scene.ropes[0].from, Vec3(5, 0, 0));
+  const LoadResult pin =
+      load_text(kScene + "[[cloth]]\nname = 'cape'\npin = [{ keys = [{ time = 0 }, { time = 1 }] }]\n", "s.toml",
+                {"cloth.cape.pin.0.follow=ball"});
+  EXPECT_EQ(pin.describe(), "");
+  EXPECT_TRUE(pin.scene.cloths[2].pins[0].motion.keys.empty());
+  EXPECT_EQ(load_text(effective_scene(pin.scene), "s.toml").describe(), "");
+}
+
 TEST(Override, IsCheckedLikeTheFile) {
   EXPECT_EQ(messages({"cloth.band.material.stretch=-1"}),
             "--set cloth.band.material.stretch=-1: cloth.band.material.stretch: expected >= 0 N/m, got -1\n");

@@ -184,6 +184,18 @@ TEST(RigidBodies, AreMovedByKeysUntilTheirRelease) {
   EXPECT_NEAR(at.z(), 1 - 0.5 * kGravity * 0.04, 0.02);
 }
 
+TEST(RigidBodies, ReleasedAtTimeZeroStandStillInThePreroll) {
+  production::SceneSimulation simulation(
+      support::scene_of_text(timed(0.2, "preroll = 0.2") +
+                             box("held", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, 1]\nrelease = 0\n") +
+                             box("free", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [1, 0, 1]\n")));
+  simulation.run_preroll();
+  EXPECT_NEAR((middle(vertices(simulation, 0)) - Vec3(0, 0, 1)).norm(), 0, 1e-12);
+  EXPECT_LT(middle(vertices(simulation, 1)).z(), 0.9);
+  for (int frame = 1; frame <= 5; ++frame) simulation.advance();
+  EXPECT_LT(middle(vertices(simulation, 0)).z(), 0.9);
+}
+
 TEST(RigidBodies, AreThrownAtTheirReleaseWithEachMethod) {
   // The history of BDF2 says that the body rests. If BDF2 used it at the release, the body would leave 1.5 times as
   // fast.

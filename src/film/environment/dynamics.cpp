@@ -15,10 +15,10 @@ std::shared_ptr<const model::Dynamics> make_dynamics(const scene::Scene& scene, 
     mesh::RigidFrame frame(mesh.topology.triangles, mesh.positions);
     const double mass = obstacle.mass > 0 ? obstacle.mass : obstacle.density * frame.volume();
     const Vec3 turn = std::numbers::pi / 180 * obstacle.spin;
-    // Without a release, forces move the obstacle from the start, even in a preroll.
-    const double release = obstacle.release > 0 ? obstacle.release : -std::numeric_limits<double>::infinity();
-    return std::make_shared<const model::Dynamics>(
-        model::Dynamics{std::move(frame), mass, obstacle.velocity, turn, release});
+    // Without a release after the start, forces move the obstacle from the start, even in a preroll.
+    const double always = -std::numeric_limits<double>::infinity(), release = obstacle.release.value_or(always);
+    return std::make_shared<const model::Dynamics>(model::Dynamics{std::move(frame), mass, obstacle.velocity, turn,
+                                                                   release > scene.start_time() ? release : always});
   } catch (const std::invalid_argument& expected) {
     throw Error(ExitCode::scene_invalid,
                 "{}:{}:{}: obstacle.{}: expected {} for a body with a mass, whose inertia is that of its interior; got "

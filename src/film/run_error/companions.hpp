@@ -52,7 +52,8 @@ struct CompanionOptions {
 /// only if four remain along each side. Differences between steps and between meshes are extrapolated by Richardson's
 /// method with the observed order, clamped to between 0.5 and 1 times the expected order; with only one companion, with
 /// 0.75 times the expected order. Only the frames in `run` are compared. If a companion other than that with twice the
-/// step fails, its part is marked as missing. Throws Error(interrupted) if options.proceed returns false.
+/// step fails, its part is marked as missing. Throws Error(usage) if the scene has neither cloth nor ropes, and
+/// Error(interrupted) if options.proceed returns false.
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options = {});
 
 }  // namespace weft::run_error

@@ -18,9 +18,9 @@ Vec3 up_of(const scene::Scene& scene) {
   return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
 }
 
-// Whether the cloth is a grid of cells, not a mesh from a file or a sewing pattern.
+// Whether the cloth is a grid of cells, not a mesh from a file, a sewing pattern or a rope.
 bool is_grid(const scene::Cloth& cloth) {
-  return cloth.shape != scene::ClothShape::mesh && cloth.shape != scene::ClothShape::pattern;
+  return scene::rectangle_particles(cloth) > 0;
 }
 
 // Sum over all cloths of the projected area, or of the surface area if `up` is zero [m²].
@@ -82,8 +82,9 @@ Trajectory Recorder::finish(std::span<const double> masses) {
   Functionals& functionals = trajectory_.functionals;
   functionals.energies_in_play = kinetic_ + elastic_ + high_ - low_;
   trajectory_.masses.assign(masses.begin(), masses.end());
-  if (last_ == nullptr) return std::move(trajectory_);
-  functionals.shadow = area_of(*last_, cloths_, up_) / start_area_;
+  if (last_ == nullptr || cloths_ == 0) return std::move(trajectory_);
+  // Ropes have no area.
+  if (start_area_ > 0) functionals.shadow = area_of(*last_, cloths_, up_) / start_area_;
   const std::vector<Vec3>& x = trajectory_.frames.back().x;
   functionals.top = up_.dot(x.front());
   double mass = 0;

@@ -111,7 +111,7 @@ Functionals median(const std::vector<Functionals>& samples);
 /// Whether every cloth is a grid that can have `refinement` times the cells along each side: a multiple of an eighth
 /// that gives a whole number of cells, at least two.
 bool can_refine(const scene::Scene& scene, double refinement);
-/// Gives all cloths that are grids `refinement` times the cells along each side.
+/// Gives all cloths that are grids, which ropes are not, `refinement` times the cells along each side.
 void refine(scene::Scene& scene, double refinement);
 
 /// For each particle of the scene, the particle at the same place in the scene with twice the cells along each side.

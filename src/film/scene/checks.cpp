@@ -275,7 +275,7 @@ void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::str
   if (!is_dynamic(obstacle)) {
     for (const auto& [key, is_given] :
          {std::pair("velocity", obstacle.velocity != Vec3::Zero()), std::pair("spin", obstacle.spin != Vec3::Zero()),
-          std::pair("release", obstacle.release > 0)})
+          std::pair("release", obstacle.release.value_or(0) > 0)})
       if (is_given)
         findings.report(fmt::format("{}.{}", path, key),
                         "expected a mass or density beside it, got none; without, only keys move an obstacle");
@@ -298,8 +298,10 @@ void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::str
     if (value != Vec3::Zero())
       findings.report(fmt::format("{}.{}", path, key),
                       "expected none beside keys, which give its velocity at the release");
-  if (obstacle.release == 0)
-    findings.report(path + ".release", "expected > 0 s beside keys, which move it until then, got 0");
+  if (!obstacle.release || *obstacle.release <= scene.start_time())
+    findings.report(path + ".release",
+                    fmt::format("expected > {:g} s beside keys, which move it until then, got {}", scene.start_time(),
+                                obstacle.release ? fmt::format("{:g}", *obstacle.release) : "none"));
 }
 
 void check_obstacles(const Scene& scene, Findings& findings) {

@@ -54,8 +54,8 @@ std::string decode_escapes(std::string_view text) {
   return plain;
 }
 
-/// Possible file names in text or binary content. Quotes, brackets, commas, equals signs and control characters
-/// separate texts; each text and its pieces between blanks count if they have an extension.
+/// Possible file names in text or binary content: texts between quotes or control characters, and texts that also
+/// brackets, commas and equals signs separate. Each text and its pieces between blanks count if they have an extension.
 std::set<std::string> find_possible_names(std::string_view content) {
   std::set<std::string> names;
   const auto add = [&](std::string_view text) {
@@ -69,19 +69,20 @@ std::set<std::string> find_possible_names(std::string_view content) {
       begin = end + 1;
     }
   };
-  const auto ends_text = [](char c) {
-    return (static_cast<unsigned char>(c) < 0x20) ||
-           std::string_view("\"'<>(),=|\x7F").find(c) != std::string_view::npos;
-  };
-  split(content, ends_text, [&](std::string_view text) {
-    const std::size_t first = text.find_first_not_of(' ');
-    if (first == std::string_view::npos || text.find('.') == std::string_view::npos) return;
-    text = text.substr(first, text.find_last_not_of(' ') + 1 - first);
-    add(text);
-    if (text.find(' ') != std::string_view::npos)
-      split(
-          text, [](char c) { return c == ' '; }, add);
-  });
+  for (const std::string_view separators : {"\"'\x7F", "\"'<>(),=|\x7F"}) {
+    const auto ends_text = [&](char c) {
+      return (static_cast<unsigned char>(c) < 0x20) || separators.find(c) != std::string_view::npos;
+    };
+    split(content, ends_text, [&](std::string_view text) {
+      const std::size_t first = text.find_first_not_of(' ');
+      if (first == std::string_view::npos || text.find('.') == std::string_view::npos) return;
+      text = text.substr(first, text.find_last_not_of(' ') + 1 - first);
+      add(text);
+      if (text.find(' ') != std::string_view::npos)
+        split(
+            text, [](char c) { return c == ' '; }, add);
+    });
+  }
   return names;
 }
 

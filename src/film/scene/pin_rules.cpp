@@ -15,7 +15,7 @@ void part_rows(TableBuilder<S>& rows) {
       .by_default("the whole cloth");
   rows.vector("low", &S::low, kWeftWarp, within(0, 1), "",
               "lower corner of the part, in fractions of the size along weft and warp; for a mesh, of its extent along "
-              "x and y of the file")
+              "x and y of the scene, before position and rotation")
       .single_fills_all();
   rows.vector("high", &S::high, kWeftWarp, within(0, 1), "", "upper corner of the part, likewise").single_fills_all();
   rows.plain(Type::text, "edge", &S::edge, "edge of a sewing pattern, as panel.edge, to which the part is limited")

@@ -27,6 +27,15 @@ bool is_override(const toml::node& node) {
   return !place_of(node.source()).override_text.empty();
 }
 
+/// Whether --set gives another key that excludes the rule's key of the file, and so replaces it.
+bool is_replaced(const toml::table& table, const Rule& rule, const std::vector<Rule>& rules) {
+  const toml::node* node = table.get(rule.key);
+  return node != nullptr && !is_override(*node) && std::ranges::any_of(rules, [&](const Rule& other) {
+           const toml::node* given = table.get(other.key);
+           return given != nullptr && is_override(*given) && (other.excludes == rule.key || rule.excludes == other.key);
+         });
+}
+
 }  // namespace
 
 bool is_name(std::string_view text) {
@@ -75,14 +84,15 @@ Value Reader::refuse(const toml::node& node, const std::string& path, const std:
 }
 
 void Reader::read(const toml::table& table, const Table& rules, void* target, const std::string& path) {
-  for (const Rule& rule : rules.rules) read_rule(table, rule, target, path);
-
+  const auto read_rules = [&](const std::vector<Rule>& own) {
+    for (const Rule& rule : own)
+      if (!is_replaced(table, rule, own)) read_rule(table, rule, target, path);
+  };
+  read_rules(rules.rules);
   const Variant* variant = rules.variant_of(target);
   // If the selector has a mistake, keys of all variants are accepted, so that only the selector is reported.
   const bool undecided = !rules.selector.empty() && findings_.has_mistake(join_path(path, rules.selector));
-  if (variant != nullptr && !undecided) {
-    for (const Rule& rule : variant->rules) read_rule(table, rule, target, path);
-  }
+  if (variant != nullptr && !undecided) read_rules(variant->rules);
   report_unknown(table, rules, undecided ? nullptr : variant, path);
 }
 
@@ -99,14 +109,12 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
   }
   findings_.set_place(key, place_of(node->source()));
 
-  if (!rule.excludes.empty() && table.contains(rule.excludes)) {
-    // If only one of two exclusive keys comes from --set, it replaces the other one, which is in the file.
-    const bool set_here = is_override(*node), set_there = is_override(*table.get(rule.excludes));
-    if (set_here == set_there) {
-      findings_.report(key, place_of(node->source()),
-                       fmt::format("expected either {} or {}, got both", rule.key, rule.excludes));
-    }
-    if (set_here <= set_there) return;
+  // If only one of two exclusive keys comes from --set, it replaces the other one, which is in the file.
+  const toml::node* excluded = rule.excludes.empty() ? nullptr : table.get(rule.excludes);
+  if (excluded != nullptr && is_override(*node) == is_override(*excluded)) {
+    findings_.report(key, place_of(node->source()),
+                     fmt::format("expected either {} or {}, got both", rule.key, rule.excludes));
+    return;
   }
   if (rule.type == Type::table) {
     if (const auto* inner = node->as_table()) {

@@ -36,6 +36,8 @@ Value Reader::read_text(const toml::node& node, const Rule& rule, const std::str
     return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
   }
   const std::string& text = string->get();
+  if (rule.type == Type::text && rule.need == Need::required && text.empty())
+    return refuse(node, path, fmt::format("expected {}, got an empty one", expectation(rule)));
   if (rule.type == Type::file) return check_file(node, text, path);
   if (!rule.choices.empty() && std::find(rule.choices.begin(), rule.choices.end(), text) == rule.choices.end()) {
     return refuse(

@@ -342,7 +342,6 @@ const Table& obstacle_rules() {
           .number("release", &Obstacle::release, within(0, 3600), "s",
                   "time from which forces move it; until then it stands still, or its keys move it; needs a mass or "
                   "density")
-          .written_if([](Obstacle& o) { return o.release > 0; })
           .plain(Type::text, "follow", &Obstacle::follow,
                  "obstacle, or part of a character such as \"man.head\", with which it moves; its own pose and keys "
                  "say where it would be if the followed body stayed where it is at the start of the run")

@@ -246,12 +246,12 @@ struct Obstacle {
   Shape shape;
   int segments = 48;  ///< round shapes: number of faces around the axis
   Pose pose;
-  PoseTrack motion;        ///< absolute poses; empty: rests at `pose`
-  double mass = 0;         ///< [kg]; 0: from the density
-  double density = 0;      ///< [kg/m³]; if mass and density are 0, forces do not move the obstacle
-  Vec3 velocity{0, 0, 0};  ///< at the start, if forces but no keys move it [m/s]
-  Vec3 spin{0, 0, 0};      ///< likewise, angular velocity about the centre of mass [degrees/s]
-  double release = 0;      ///< time from which forces move it [s]; until then, its keys do
+  PoseTrack motion;               ///< absolute poses; empty: rests at `pose`
+  double mass = 0;                ///< [kg]; 0: from the density
+  double density = 0;             ///< [kg/m³]; if mass and density are 0, forces do not move the obstacle
+  Vec3 velocity{0, 0, 0};         ///< at the start, if forces but no keys move it [m/s]
+  Vec3 spin{0, 0, 0};             ///< likewise, angular velocity about the centre of mass [degrees/s]
+  std::optional<double> release;  ///< time from which forces move it [s]; until then, its keys do; absent: always
   /// Obstacle, or "<character>.<part>", whose rigid motion since the start of the run is added to its own; empty: none.
   std::string follow = {};
   double friction = 0.3;
