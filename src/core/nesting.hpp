@@ -5,12 +5,13 @@
 
 namespace weft {
 
-/// Maximum nesting depth of a document: lists, tables, and the components of a dotted key. No scene has more than ten.
-/// Each level takes less than 1 kB of a stack of 8 MB.
+/// Maximum nesting depth of JSON, and of one header or one key with its value of TOML: lists, tables, and the
+/// components of a dotted key. No scene has more than ten. Each level takes less than 1 kB of a stack of 8 MB.
 inline constexpr int kMaxDepth = 128;
 
-/// Whether TOML or JSON text nests deeper than kMaxDepth. Up to the first mistake of a text, where the parser stops,
-/// this function counts at least as many levels as the parser creates; behind it the result is arbitrary.
+/// Whether TOML or JSON text nests deeper than kMaxDepth. Behind the first mistake of a text, where the parser stops,
+/// the result is arbitrary. A TOML document that passes is at most about three times as deep as kMaxDepth: a key counts
+/// without the header above it, and each component of that header may be a list of tables, which has two levels.
 bool nests_too_deep(std::string_view text);
 
 }  // namespace weft

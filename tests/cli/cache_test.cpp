@@ -188,6 +188,9 @@ TEST_F(CachedRun, OverwriteOfAShorterRunLeavesNoFrameOfTheLongerOne) {
   EXPECT_EQ(contents("m", ".ply").size(), 3u * 4);
   EXPECT_TRUE(fs::exists(folder_ / "p/00077.jpg"));
   // Redrawing a part does not shorten the film.
+  expect_well(run({"--overwrite", "--set", "time.duration=0.12", "--frames", "1:3"}));
+  EXPECT_EQ(contents("p", ".png").size(), 4u);
+  EXPECT_EQ(contents("m", ".ply").size(), 3u * 4);
   expect_well({"simulate", "s.toml", "--cache", "c"});
   expect_well({"render", "c", "-o", std::string("q/") + kPictures});
   expect_well({"render", "c", "-o", std::string("q/") + kPictures, "--frames", "3:5", "--overwrite"});

@@ -118,6 +118,21 @@ TEST_F(Completeness, RenderDoesNotGoOnWithOtherPictures) {
   EXPECT_EQ(support::read_bytes(folder_ / "p/00002.png"), third);
 }
 
+TEST_F(Completeness, RenderDoesNotGoOnWithPicturesDrawnWithAnOptionThatIsNotGivenNow) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":2"});
+  for (const Arguments& option : {Arguments{"--look", "clay"}, {"--motion-blur", "90"}, {"--depth", "16"}}) {
+    const Arguments without{"render", "c", "-o", option[0] + "/{frame:05}.png", "--frames", ":2", "--resume"};
+    Arguments with = without;
+    with.insert(with.end(), option.begin(), option.end());
+    expect_well(with);
+    const Outcome again = weft(with), refused = weft(without);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_TRUE(contains(again.err, "is complete already: frames 0:2")) << again.err;
+    EXPECT_EQ(refused.exit_code, 6) << option[0];
+    EXPECT_TRUE(contains(refused.err, option[0] + "/00000.png: exists already")) << refused.err;
+  }
+}
+
 TEST_F(Completeness, VideoThatWasStoppedIsDrawnAnewAndAnotherIsKept) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   Subprocess process({"render", "c", "-o", "a.mp4", "--size", "640x360", "--progress", "none", "--log-json", "-"},

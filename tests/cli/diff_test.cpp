@@ -7,6 +7,7 @@
 
 #include "cli/subprocess.hpp"
 #include "film/image/png.hpp"
+#include "film/video/encoder.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::cli {
@@ -85,6 +86,17 @@ TEST_F(Diff, HeatMapAndJsonTellWhereAndHowMuch) {
   expect({"diff", "ref/a.png", "out/a.png", "--heatmap", "one.png"}, 7, "");
   EXPECT_EQ(image::read_png(folder_ / "one.png").height, 24);
   expect({"diff", "ref", "out", "--heatmap", "one.png"}, 2, "--heatmap: expected a folder");
+}
+
+TEST_F(Diff, VideosOfOneNameHaveAHeatMapEach) {
+  for (const char* name : {"ref/a.mkv", "ref/a.mov", "out/a.mkv", "out/a.mov"}) {
+    video::Encoder encoder(folder_ / name, {.width = 32, .height = 24, .metadata = {}});
+    encoder.add(image::Image(32, 24));
+    encoder.finish();
+  }
+  expect({"diff", "ref", "out", "--heatmap", "maps"}, 0, "2 of 2 match their references");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "maps/a.mkv.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "maps/a.mov.png"));
 }
 
 TEST_F(Diff, AcceptedPictureIsTheReferenceFromThenOn) {

@@ -38,11 +38,12 @@ TEST(FrameRange, StepCountsFromItsBeginning) {
   EXPECT_EQ(frames_of("1:8:3", 10), (std::vector<int>{1, 4, 7}));
   EXPECT_EQ(frames_of("1:7:3", 10), (std::vector<int>{1, 4}));
   EXPECT_EQ(frames_of("2:9:100", 10), (std::vector<int>{2}));
+  EXPECT_EQ(frames_of("2:9:1000000000", 10), (std::vector<int>{2}));
 }
 
 TEST(FrameRange, RefusesWhatIsNotARange) {
-  for (const char* text :
-       {"", "5", "a:b", "-1:4", "0:4:0", "0:4:-1", "0:1:2:3", "1.5:3", "4:4", "5:2", ":0", "0:99999999999", "0 :4"}) {
+  for (const char* text : {"", "5", "a:b", "-1:4", "0:4:0", "0:4:-1", "0:4:2147483647", "0:1:2:3", "1.5:3", "4:4",
+                           "5:2", ":0", "0:99999999999", "0 :4"}) {
     EXPECT_THROW(parse_frames(text), Error) << text;
   }
 }

@@ -38,6 +38,7 @@ TEST_F(Helpers, EveryTemplateIsASceneWithItsSchemaBesideIt) {
   EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), run_weft({"schema"}, folder_).out);
   EXPECT_EQ(run_weft({"new", "my drape"}, folder_).exit_code, 6) << "it is there already";
   EXPECT_EQ(run_weft({"new", "other", "--template", "dress"}, folder_).exit_code, 2);
+  for (const char* name : {"folder/", ".", ".."}) EXPECT_EQ(run_weft({"new", name}, folder_).exit_code, 2) << name;
 }
 
 TEST_F(Helpers, TemplateOfARepositoryAddsToOneThatIsThere) {
@@ -92,6 +93,14 @@ TEST_F(Helpers, WatchDrawsAgainWhenTheSceneChanges) {
   EXPECT_EQ(watched.exit_code, 0) << watched.err;
   EXPECT_TRUE(fs::exists(folder_ / "s.png")) << watched.err;
   EXPECT_NE(support::read_bytes(folder_ / "first.png"), support::read_bytes(folder_ / "s.png"));
+}
+
+TEST_F(Helpers, WatchOfTheStartReplacesNoForeignPicture) {
+  fs::create_directories(folder_ / "output");
+  support::write_bytes(folder_ / "output/s.start.png", "precious");
+  const Outcome refused = run_weft({"watch", "s.toml", "--start", "--times", "1"}, folder_);
+  EXPECT_EQ(refused.exit_code, 6) << refused.err;
+  EXPECT_EQ(support::read_bytes(folder_ / "output/s.start.png"), "precious");
 }
 
 // The reading end of descriptor 9 is closed before the first byte, as `weft man | head` closes it before the last.

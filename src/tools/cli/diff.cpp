@@ -116,13 +116,14 @@ bool is_annotated(const DiffOptions& options) {
   return options.annotations || (actions != nullptr && std::string_view(actions) == "true");
 }
 
-// File for the heat map of a pair; empty if none is requested. If a picture has the same name as a video, the map of
-// the video keeps the video's extension.
+// File for the heat map of a pair; empty if none is requested. If a picture or another video has the same name as a
+// video, the map of the video keeps the video's extension.
 fs::path heatmap_file(const DiffOptions& options, const std::vector<Pair>& pairs, const std::string& name) {
   if (options.heatmap.empty() || options.heatmap.extension() == ".png") return options.heatmap;
   const std::string picture = fs::path(name).replace_extension(".png").string();
-  const bool taken =
-      picture != name && std::ranges::any_of(pairs, [&](const Pair& pair) { return pair.name == picture; });
+  const bool taken = picture != name && std::ranges::any_of(pairs, [&](const Pair& pair) {
+                       return pair.name != name && fs::path(pair.name).replace_extension(".png") == picture;
+                     });
   return options.heatmap / (taken ? name + ".png" : picture);
 }
 

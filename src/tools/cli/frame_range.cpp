@@ -54,7 +54,9 @@ FrameSelection parse_frames(std::string_view text) {
   selection.begin = parse_part(parts[0], text);
   selection.end = parse_part(parts[1], text);
   if (parts.size() == 3) selection.step = parse_part(parts[2], text).value_or(1);
-  if (selection.step < 1) throw Error(ExitCode::usage, "--frames: expected a step of at least 1, got {}", text);
+  constexpr int kMaxStep = 1'000'000'000;  // so that the sum of a frame and a step is an int
+  if (selection.step < 1 || selection.step > kMaxStep)
+    throw Error(ExitCode::usage, "--frames: expected a step from 1 to {}, got {}", kMaxStep, text);
   if (selection.end && selection.begin.value_or(0) >= *selection.end) {
     throw Error(ExitCode::usage, "--frames: {} names no frame: the second number is not part of the range", text);
   }

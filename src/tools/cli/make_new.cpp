@@ -7,6 +7,7 @@
 
 #include "core/input_file.hpp"
 #include "core/log.hpp"
+#include "core/names.hpp"
 #include "core/temporary_file.hpp"
 #include "embedded_templates.hpp"
 #include "film/scene/loader.hpp"
@@ -86,6 +87,9 @@ ExitCode make_new(const NewOptions& options) {
   for (const EmbeddedFile& file : kEmbeddedTemplates) {
     if (template_of(file) != options.kind) continue;
     is_folder = fs::path(file.name).has_parent_path();
+    if (!is_folder && !is_plain_name(scene.filename().string()))
+      throw Error(ExitCode::usage, "NAME: expected the name of a scene, such as dress or scenes/dress, got {}",
+                  options.name);
     if (!is_folder && scene.extension() != ".toml") scene += ".toml";
     files.emplace_back(is_folder ? scene / fs::path(file.name).lexically_relative(options.kind) : scene, file.text);
   }

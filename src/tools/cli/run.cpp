@@ -36,7 +36,6 @@ struct FilmPlan {
   FrameRange made;            ///< frames that the source makes or reads
   FrameRange wanted;          ///< subset of `made` that is drawn or written as meshes
   int simulated = 0;          ///< number of simulated frames, including those before frame 0; 0 if frames are only read
-  bool whole_film = true;     ///< false: other commands may write other frames of the film to the same place
   bool finds_camera = false;  ///< the camera is computed from all frames before the first one is drawn
   OutputTarget target;
   render::Settings settings;
@@ -116,7 +115,6 @@ FilmPlan plan_of(const cache::Reader& reader, const RenderOptions& options) {
   plan.settings = render_settings({plan.scene.width, plan.scene.height}, plan.scene.camera, options.common);
   plan.wanted = plan.made = cached_frames(reader, options.frames, options.partial);
   plan.finds_camera = render::CameraPath::is_computed(*reader.snapshot(plan.wanted.begin), plan.settings.camera);
-  plan.whole_film = !options.frames.begin && !options.frames.end;
   take_output(plan, options);
   const frame::SnapshotPtr first = reader.snapshot(plan.wanted.begin);
   plan.blurs = plan.settings.motion_blur.value_or(first->stage->motion_blur) > 0;
@@ -144,9 +142,10 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
   if (!options.log_json.empty() && options.log_json != "-") paths.writes("--log-json", options.log_json);
 }
 
-/// Removes files of an earlier, longer run whose names have the same form.
+/// Removes files of an earlier, longer run whose names have the same form, but not if --frames selects a part of the
+/// film: other commands may write the other frames to the same place.
 void remove_stale(const FilmPlan& plan, const RunOptions& options) {
-  if (!options.common.overwrite || !plan.whole_film) return;
+  if (!options.common.overwrite || options.frames.begin || options.frames.end) return;
   const auto is_picture = [&](const fs::path& file, int frame) { return is_picture_of(file, plan.scene.scene, frame); };
   if (plan.target.kind == Kind::images) FramePattern(plan.target.text).remove_others(plan.wanted, is_picture);
   if (options.meshes.empty()) return;

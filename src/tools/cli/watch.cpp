@@ -41,10 +41,11 @@ class Watch {
   explicit Watch(const WatchOptions& options) : options_(options) {
     // Checks that the file that drawings will replace is an earlier drawing of the scene.
     const auto option = std::ranges::find(options.passed_on, "--output");
+    const bool start = std::ranges::find(options.passed_on, "--start") != options.passed_on.end();
     const std::string scene = options.scene.stem().string();
-    const fs::path output = option != options.passed_on.end()
-                                ? fs::path(*(option + 1))
-                                : fs::path("output") / (scene + (options.film ? ".mp4" : ".png"));
+    const char* ending = options.film ? ".mp4" : start ? ".start.png" : ".png";
+    const fs::path output =
+        option != options.passed_on.end() ? fs::path(*(option + 1)) : fs::path("output") / (scene + ending);
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(output, ignored)) && !is_output_of(output, scene))
       throw Error(ExitCode::output_failed, "{}: exists already, and is no picture of {}; give another name",

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "film/image/exr.hpp"
 #include "film/image/png.hpp"
 #include "film/video/decoder.hpp"
@@ -16,6 +17,9 @@ namespace fs = std::filesystem;
 // Whether an output has the expected metadata. The OpenGL implementation may differ.
 bool agrees(const Metadata& found, Metadata expected) {
   expected.erase("gl");
+  // An output without one of these options must not have been drawn with it.
+  for (const char* option : {"camera", "look", "motion_blur"})
+    if (found.contains(option) && !expected.contains(option)) return false;
   return std::ranges::all_of(expected, [&](const auto& entry) {
     const auto here = found.find(entry.first);
     return here != found.end() && here->second == entry.second;
@@ -46,6 +50,8 @@ State state_of_picture(const fs::path& file, int frame, const render::Settings& 
     const image::Image image = image::read_png(file, &found.metadata);
     found.width = image.width;
     found.height = image.height;
+    constexpr std::size_t kBitDepthPlace = 24;  // in the file; PNG specification, 11.2.2 (IHDR)
+    if (read_start(file, kBitDepthPlace + 1).back() != (settings.deep ? 16 : 8)) return State::other;
   }
   const bool fits = found.width == settings.width && found.height == settings.height;
   return fits && agrees(found.metadata, std::move(expected)) ? State::whole : State::other;
