@@ -415,6 +415,11 @@ TEST(Plot, PlacesPointsOnLogarithmicAxesAndLeavesOutWhatIsNotPositive) {
   EXPECT_EQ(svg.find("inf"), std::string::npos);
 }
 
+TEST(Plot, WritesATitleAsText) {
+  const std::string svg = log_log_svg({{"silk & <wool>", "x", "y", {}, {}}});
+  EXPECT_NE(svg.find(">silk &amp; &lt;wool"), std::string::npos) << svg;
+}
+
 TEST(Plot, NamesDecadesAndWhereThereAreFewTheirParts) {
   const auto svg_of = [](double low, double high) {
     return log_log_svg({{"t", "x", "y", {{"c", "red", Marker::circle, false, {{low, low}, {high, high}}}}, {}}});

@@ -1,6 +1,8 @@
 // weft farm without a scheduler: its scripts run one task after the other. tests/farm/farm_test.py uses a Slurm.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "cli/cached_run.hpp"
@@ -88,6 +90,18 @@ TEST_F(Farms, TasksThatWereKilledAreTriedAgain) {
   const Outcome status = farm({"status", "a b"});
   EXPECT_EQ(status.exit_code, 9);
   EXPECT_NE(status.out.find("simulate_0 ended with exit code 3"), std::string::npos) << status.out;
+}
+
+// The signal before the time limit arrives in the pause between two tries.
+TEST_F(Farms, TasksThatAreToStopBeginNoOtherTry) {
+  ASSERT_EQ(submit().exit_code, 0);
+  support::write_bytes(folder_ / "failing", "#!/bin/sh\necho \"$1\"\nexit 6\n");
+  support::write_bytes(folder_ / "sleep", "#!/bin/sh\nkill -USR1 $PPID\n");
+  for (const char* program : {"failing", "sleep"}) fs::permissions(folder_ / program, fs::perms::owner_all);
+  do_tasks(fmt::format("PATH='{}':\"$PATH\" WEFT='{}'", folder_.string(), (folder_ / "failing").string()));
+  const std::string said = log("simulate_0"), pause = said.substr(std::min(said.find("try 1 of 3"), said.size()));
+  EXPECT_NE(pause.find("the time limit is near"), std::string::npos) << said;
+  EXPECT_EQ(pause.find("\nsimulate\n"), std::string::npos) << "the program was called again: " << said;
 }
 
 TEST_F(Farms, RefuseWhatTheyCannotDo) {

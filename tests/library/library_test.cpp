@@ -215,8 +215,39 @@ TEST(LibraryMove, IsPartOfTheSavedState) {
   EXPECT_EQ(positions(second.frame(), "ball"), positions(whole.frame(), "ball"));
 }
 
+// Of two handles, the caller moves one, from the second frame on; the other one moves by its keys.
+TEST(LibraryMove, StateContinuesBeforeABodyIsMoved) {
+  const Scene scene = Scene::parse(kHanging + R"(
+[[obstacle]]
+name = "other"
+shape = "sphere"
+radius = 0.01
+segments = 8
+position = [1, 0, 1]
+keys = [{ time = 0, position = [1, 0, 1] }, { time = 0.4, position = [2, 0, 1] }]
+)");
+  SimulationOptions options{.driven = {"other", "handle"}, .state = {}};
+  Simulation whole(scene, options);
+  options.state = whole.save();
+  for (int k = 1; k <= 3; ++k) {
+    Simulation resumed(scene, options);
+    for (Simulation* simulation : {&whole, &resumed}) {
+      if (k == 2) simulation->move("handle", {.position = {0, 0, 1.01}});
+      simulation->advance();
+    }
+    for (const char* object : {"sheet", "handle", "other"})
+      EXPECT_EQ(positions(resumed.frame(), object), positions(whole.frame(), object)) << object << " " << k;
+    options.state = resumed.save();
+  }
+  options.state.resize(options.state.find('\n') + 2);
+  EXPECT_THROW(Simulation(scene, options), std::invalid_argument) << "cut short";
+}
+
 TEST(LibraryMove, RefusesWhatItCannotMove) {
   const Scene scene = Scene::parse(kDrape);
+  const SimulationOptions ball{.driven = {"ball"}, .state = {}};
+  EXPECT_THROW(Simulation(scene.with({"obstacle.ball.mass=1"}), ball), std::invalid_argument);
+  EXPECT_NO_THROW(Simulation(scene.with({"obstacle.ball.mass=1", "obstacle.ball.release=0.2"}), ball));
   EXPECT_THROW(Simulation(scene, {.driven = {"bal"}, .state = {}}), std::invalid_argument);
   Simulation still(scene), driven(scene, {.driven = {"ball"}, .state = {}});
   EXPECT_THROW(still.move("ball", {}), std::invalid_argument);

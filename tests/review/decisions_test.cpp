@@ -38,6 +38,28 @@ TEST_F(DecisionsOfRuns, AreReadFromTheNearestFileThatNamesTheRun) {
   EXPECT_EQ(problems_, "[]");
 }
 
+TEST_F(DecisionsOfRuns, OfTheLatestDateCount) {
+  const auto dated = [](const std::string& state, const char* date) {
+    return R"({"state": ")" + state + R"(", "date": ")" + date + R"("})";
+  };
+  write("stiff/band.mp4");
+  write("stiff/review.json", file(R"("band": )" + dated("needs work", "2026-11-02T08:00:00.000Z")));
+  write("review.json", file(R"("stiff/band": )" + dated("approved", "2026-11-02T09:00:00.000Z")));
+  EXPECT_EQ(state(), "approved") << "decided on a page of the folder above";
+  write("review.json", file(R"("stiff/band": )" + dated("approved", "2026-11-02T07:00:00.000Z")));
+  EXPECT_EQ(state(), "needs work");
+}
+
+// A page of the folder `stiff` alone offers a file for this folder, with the folder's name as the key.
+TEST_F(DecisionsOfRuns, OfPicturesMayLieBesideThem) {
+  write("stiff/00000.png");
+  write("stiff/00001.png");
+  write("stiff/review.json", file(R"("stiff": )" + entry("approved")));
+  EXPECT_EQ(state(), "approved");
+  std::vector<RunFiles> alone = find_runs(folder_ / "stiff");
+  EXPECT_EQ(Decisions().of(alone.at(0)).at("state"), "approved");
+}
+
 TEST_F(DecisionsOfRuns, ThatCannotBeUsedAreNamedAndLeftOut) {
   write("band.mp4");
   const auto refused = [&](const std::string& text, const std::string& words) {

@@ -154,6 +154,20 @@ TEST_F(Review, RunsOfSeveralFoldersAreNamedWithThem) {
   EXPECT_EQ(data().at("runs").at(1).at("name"), "other/a");
 }
 
+TEST_F(Review, RunsOfSeveralFoldersHaveTheReferenceOfTheirPath) {
+  write("in/x/b.mp4");
+  write("other/y/b.mp4");
+  for (const char* reference : {"ref/a.mp4", "ref/x/b.mp4", "ref/y/b.mp4", "ref/other/y/b.mp4"}) write(reference);
+  Request both = request();
+  both.folders.push_back(folder_ / "other");
+  both.reference = folder_ / "ref";
+  write_review(both);
+  const Json page = data();
+  EXPECT_EQ(page.at("runs").at(0).at("reference"), "references/a");
+  EXPECT_EQ(page.at("runs").at(1).at("reference"), "references/x-b");
+  EXPECT_EQ(page.at("runs").at(2).at("reference"), "references/other-y-b") << "the folder of runs belongs to its name";
+}
+
 TEST_F(Review, ReferenceIsTheRunOfTheSamePathElseTheOnlyOneOfItsName) {
   write("in/b.mp4");
   write("in/c/d.mp4");

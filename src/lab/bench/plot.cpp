@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/markup.hpp"
+
 namespace weft::bench {
 namespace {
 
@@ -138,7 +140,7 @@ double height_of(const Panel& panel) {
 std::string draw(const Panel& panel) {
   const PlotAxis across = fit(panel, 0, kLeft, kPlotWidth), up = fit(panel, 1, kTop + kPlotHeight, -kPlotHeight);
   std::string text =
-      fmt::format("<text x='{}' y='20' font-size='14' font-weight='bold'>{}</text>\n", kLeft, panel.title);
+      fmt::format("<text x='{}' y='20' font-size='14' font-weight='bold'>{}</text>\n", kLeft, markup_text(panel.title));
   if (panel.unresolved_below > 0 && std::log10(panel.unresolved_below) > up.low) {
     const double top = std::max(up.at(panel.unresolved_below), kTop);
     text += fmt::format("<rect x='{}' y='{:.1f}' width='{}' height='{:.1f}' fill='#f1ece0'/>\n", kLeft, top, kPlotWidth,

@@ -7,6 +7,8 @@
 #include <ctime>
 #include <set>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/json.hpp"
@@ -68,23 +70,33 @@ const Decisions::File& Decisions::read(const fs::path& folder) {
 }
 
 Json Decisions::of(RunFiles& run) {
-  // For "stiff/band", looks for "band" in stiff/, then for "stiff/band" in the searched folder.
-  std::string key = fs::path(run.key).filename().string();
-  fs::path below = fs::path(run.key).parent_path();
-  while (true) {
+  // Folders below the searched one, each with the path of the run from there: for "stiff/band" first "band" in stiff/,
+  // then "stiff/band" in the searched folder itself.
+  const fs::path name = run.key;
+  std::vector<std::pair<fs::path, std::string>> places;
+  // Pictures such as band/00000.png are the run "band", also for a page of the folder band/ alone.
+  if (!run.pictures.empty() && run.pictures.front().parent_path() == run.folder / name)
+    places.emplace_back(name, name.filename().string());
+  std::string key = name.filename().string();
+  for (fs::path below = name.parent_path();; below = below.parent_path()) {
+    places.emplace_back(below, key);
+    if (below.empty()) break;
+    key = (below.filename() / key).generic_string();
+  }
+  Json latest;
+  const auto date = [](const Json& entry) { return value_or(entry, "date", std::string()); };
+  for (const auto& [below, key_there] : places) {
     const fs::path place = (run.folder / below).lexically_normal();
     const File& file = read(place);
-    const auto entry = file.runs.find(key);
+    const auto entry = file.runs.find(key_there);
     std::string mistake = file.problem;
     if (mistake.empty() && entry != file.runs.end()) {
       mistake = mistake_of_decision(*entry);
-      if (mistake.empty()) return *entry;
+      if (mistake.empty() && (latest.is_null() || date(*entry) > date(latest))) latest = *entry;
     }
     if (!mistake.empty()) run.problems.push_back((place / kDecisionsName).string() + ": " + mistake);
-    if (below.empty()) return nullptr;
-    key = (below.filename() / key).generic_string();
-    below = below.parent_path();
   }
+  return latest;
 }
 
 std::string fingerprint(const RunFiles& run) {

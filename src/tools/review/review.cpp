@@ -48,12 +48,16 @@ std::string last_part(const std::string& name) {
   return name.substr(name.rfind('/') + 1);
 }
 
-// The reference with this name. If there is none, the only reference whose name has the same last part; else null.
-const RunFiles* find_reference(const std::vector<RunFiles>& references, const std::string& name) {
+// The reference with the name of the run, else with its path below its own folder. If there is none, the only reference
+// whose name has the same last part; else null.
+const RunFiles* find_reference(const std::vector<RunFiles>& references, const RunFiles& run) {
+  for (const std::string& name : {run.name, run.key}) {
+    const auto same = std::ranges::find(references, name, &RunFiles::name);
+    if (same != references.end()) return &*same;
+  }
   const RunFiles* found = nullptr;
   for (const RunFiles& reference : references) {
-    if (reference.name == name) return &reference;
-    if (last_part(reference.name) != last_part(name)) continue;
+    if (last_part(reference.name) != last_part(run.name)) continue;
     if (found != nullptr) return nullptr;
     found = &reference;
   }
@@ -103,7 +107,7 @@ class Page {
     for (RunFiles& run : runs) {
       const Json decision = decisions.of(run);
       Entry entry = add(run, "runs");
-      const RunFiles* reference = find_reference(references, run.name);
+      const RunFiles* reference = find_reference(references, run);
       if (reference != nullptr) {
         if (!added_references.contains(reference)) added_references[reference] = add(*reference, "references");
         compare(entry, added_references[reference]);

@@ -26,11 +26,13 @@ attempt() {
       wait "$child"
       code=$?
     done
+    child=
     case $code in 0 | 2 | 3 | 4 | 5 | 9) return ;; esac
     tries=$((tries + 1))
     if [ -n "$stopped" ] || [ "$tries" -gt "$retries" ]; then return; fi
     echo "exit code $code: try $tries of $retries follows in $((pause * tries)) s"
     sleep $((pause * tries))
+    if [ -n "$stopped" ]; then return; fi # by a signal in the pause
   done
 }
 

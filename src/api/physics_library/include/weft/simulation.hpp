@@ -15,8 +15,9 @@ namespace weft {
 class Scene;
 
 struct SimulationOptions {
-  std::vector<std::string> driven;  ///< names of the bodies that Simulation::move() moves
-  std::string state;                ///< result of save(), from which to continue; empty: begin at frame 0
+  /// Names of the bodies that Simulation::move() moves: without a mass, or, in scenes, until their `release`.
+  std::vector<std::string> driven;
+  std::string state;  ///< result of save(), from which to continue; empty: begin at frame 0
 };
 
 /// A simulation at one frame. One thread at a time may use it; different simulations may run in different threads.
