@@ -26,7 +26,7 @@ scene::Scene with_driven(scene::Scene scene, const SimulationOptions& options) {
       throw std::invalid_argument(
           fmt::format("driven: expected obstacles of the scene ({}), got {}", fmt::join(names, ", "), name));
     }
-    if (scene::is_dynamic(*found) && found->release == 0)
+    if (scene::is_dynamic(*found) && found->release.value_or(0) == 0)
       throw std::invalid_argument(fmt::format(
           "driven: expected an obstacle without a mass, or with a `release` until which it is moved, got {}", name));
     if (found->motion.keys.size() > 1) continue;
