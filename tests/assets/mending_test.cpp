@@ -59,6 +59,22 @@ TEST(MendedSheet, IsLeftAsItIsWhereNothingIsWrong) {
   EXPECT_EQ(loaded.mesh.topology.triangles, triangles);
 }
 
+// They would be particles without mass.
+TEST(MendedSheet, HasNoVerticesWithoutTriangles) {
+  LoadedMesh loaded = strip(2);
+  loaded.mesh.positions.emplace(loaded.mesh.positions.begin(), 7, 7, 7);
+  loaded.groups["all"].insert(loaded.groups["all"].begin(), 1);
+  for (mesh::Triangle& t : loaded.mesh.topology.triangles)
+    for (Index& v : t) ++v;
+  loaded.lost_vertices = 1;
+  paint(loaded);
+  EXPECT_FALSE(mend_sheet(loaded, kFlattest).any());
+  ASSERT_EQ(loaded.mesh.positions.size(), 6U);
+  EXPECT_EQ(loaded.groups["all"].size(), 6U);
+  EXPECT_EQ(std::ranges::count(loaded.groups["all"], 1), 0);
+  expect_uv_of_places(loaded);
+}
+
 TEST(MendedSheet, FacesAsMostOfItsAreaDoes) {
   LoadedMesh loaded = strip(6);
   for (const std::size_t t : {1, 4, 5, 10})

@@ -44,6 +44,15 @@ TEST(Dressing, FindsEachVertexOnItsBonesAndBetweenLegsWhereTheyPart) {
   EXPECT_LT((places[2] - body.mesh.positions[2]).norm(), 1e-12) << "an end goes on through what it holds";
 }
 
+// Each mesh of a file has bones of its own at the same nodes.
+TEST(Dressing, BonesOfAnotherMeshAtTheSameNodesChangeNothing) {
+  Character body = two_legs();
+  const std::vector<Vec3> places = growth_start_positions(body, rest_pose(body));
+  const std::vector<Bone> bones = body.bones;
+  body.bones.insert(body.bones.end(), bones.begin(), bones.end());
+  EXPECT_EQ(growth_start_positions(body, rest_pose(body)), places);
+}
+
 TEST(Dressing, RaisesStraightArmsAndLeavesTheRest) {
   const Character body = make_mannequin({.edge_length = 0.1});
   const std::vector<Index> joints = find_joints(body);

@@ -73,6 +73,22 @@ std::vector<Vec3> places(const Clip& clip, std::size_t key) {
 
 const double kSpeeds[] = {0.7, 1.2, 1.5};
 
+TEST(Gait, AWalkTooShortForTwoStepsHasShortStepsNotQuickOnes) {
+  const Physique physique = physique_of(mannequin());
+  for (const double distance : {1e-6, 0.1})
+    for (const bool turn_back : {false, true}) {
+      Walk walk = at_speed(1.2);
+      walk.distance = distance;
+      walk.turn_back = turn_back;
+      const StepPlan plan = plan_walk(physique, walk);
+      EXPECT_NEAR(plan.key_time * plan.step_keys, pace_of(1.2, physique.height).step_time, 1e-12);
+      for (const Channel& channel : make_walk(mannequin(), walk).channels) {
+        for (const Quat& q : channel.rotation.values) EXPECT_TRUE(q.coeffs().allFinite());
+        for (const Vec3& x : channel.position.values) EXPECT_TRUE(x.allFinite());
+      }
+    }
+}
+
 TEST(Gait, StrideIsPeriodicWithItsVelocity) {
   for (const double speed : kSpeeds) {
     const Clip clip = make_stride(mannequin(), speed);

@@ -205,6 +205,18 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
     EXPECT_EQ(openings(open.sheet), 1U) << spacing;
     EXPECT_EQ(euler_characteristic(open.sheet), 1) << "a disk, at " << spacing;
   }
+  // A round pillow has one seam, along edges without ends. With a zip there, the same places of both edges are tied.
+  std::string round = panels + "[[seam]]\na = 'front.rim'\nb = 'back.rim'\n";
+  for (std::size_t at = round.find(path); at != std::string::npos; at = round.find(path))
+    round.replace(at, path.size(),
+                  "path = 'M -0.2 0 A 0.2 0.2 0 0 1 0.2 0 A 0.2 0.2 0 0 1 -0.2 0 Z'\nedges = 'rim rim'\n");
+  EXPECT_EQ(euler_characteristic(sew_text(round, 0.03).sheet), 2) << "a sphere";
+  const mesh::Sheet zipped = sew_text(round + "open = 1\n", 0.03).sheet;
+  EXPECT_GT(zipped.ties.size(), 30U);
+  for (const mesh::Tie& tie : zipped.ties) {
+    EXPECT_NEAR(zipped.rest[tie.a].x(), zipped.rest[tie.b].x(), 1e-6);
+    EXPECT_NEAR(zipped.rest[tie.a].z(), zipped.rest[tie.b].z(), 1e-6);
+  }
   std::string both_before = panels + seams;
   both_before.replace(both_before.find("'back'\n" + path), 6, "'front'");
   expect_mistake(both_before, "panels that lie one on the other need side = \"front\" and side = \"back\"");
@@ -280,6 +292,10 @@ TEST_F(SewingText, WhatCannotBeSewnIsRefused) {
   EXPECT_EQ(euler_characteristic(hat.sheet), 0);
   support::expect_error(ExitCode::scene_invalid, "expected an edge_length of at least",
                         [&] { sew_text(kDart + kDartSeams, 1e-4); });
+  // The area of round panels counts: 19.2 m² in two curves.
+  support::expect_error(ExitCode::scene_invalid, "expected an edge_length of at least 0.0044 m", [&] {
+    sew_text("[[panel]]\nname = 'round'\npath = 'M 0 0 C 0 4 4 4 4 0 C 4 -4 0 -4 0 0 Z'\n" + kDart + kDartSeams, 1e-4);
+  });
 }
 
 }  // namespace

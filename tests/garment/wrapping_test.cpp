@@ -144,6 +144,25 @@ TEST_F(Wrapping, RingsWiderThanTheBodyStandOffIt) {
   EXPECT_NEAR(radius, 4 * 0.40 / (2 * std::numbers::pi), 0.01);
 }
 
+// A ring whose hem is wider than its top starts as it does alone if another ring lies below it, apart.
+TEST_F(Wrapping, RingsThatLieApartHaveTheirOwnWidths) {
+  const auto ring = [](const std::string& name, const std::string& position, const std::string& path) {
+    std::string text;
+    for (const std::string side : {"front", "back"})
+      text += "[[panel]]\nname = '" + name + "_" + side + "'\naround = 'torso'\nside = '" + side +
+              "'\nposition = " + position + "\npath = '" + path + "'\nedges = 'hem right top left'\n";
+    for (const std::string edge : {"left", "right"})
+      text += "[[seam]]\na = '" + name + "_front." + edge + "'\nb = '" + name + "_back." + edge + "'\n";
+    return text;
+  };
+  const std::string high = ring("high", "[0, 0.8]", "M -0.40 0 L 0.40 0 L 0.27 0.5 L -0.27 0.5 Z");
+  const std::string low = ring("low", "[0, 0.2]", "M -0.26 0 L 0.26 0 L 0.26 0.2 L -0.26 0.2 Z");
+  const Garment alone = sew_text(high), both = sew_text(low + high);
+  const std::vector<Index>&a = alone.edges.at("high_front.hem"), &b = both.edges.at("high_front.hem");
+  EXPECT_LT((alone.sheet.rest[a[a.size() / 2]] - both.sheet.rest[b[b.size() / 2]]).norm(), 1e-6);
+  EXPECT_GT(alone.sheet.rest[a[a.size() / 2]].head<2>().norm(), 0.23);
+}
+
 TEST_F(Wrapping, MirrorImagesHaveTheOtherSide) {
   const Pattern pattern = pattern_of(
       "[[panel]]\nname = 'a'\naround = 'left_leg'\nangle = 30\nposition = [0.1, 0.2]\ngrain = 20\n"

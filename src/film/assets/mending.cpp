@@ -437,12 +437,15 @@ std::string MendingReport::describe() const {
 
 MendingReport mend_sheet(LoadedMesh& loaded, double flattest) {
   MendingReport mended;
-  if (!mesh::inspect(loaded.mesh.topology.triangles, loaded.mesh.positions.size()).manifold()) {
+  const bool is_sheet = mesh::inspect(loaded.mesh.topology.triangles, loaded.mesh.positions.size()).manifold();
+  if (!is_sheet) {
     mended.doubled = drop_doubles(loaded);
     const std::vector<Joint> joints = joints_of(loaded);
     mended.turned = orient_pieces(loaded, joints);
     cut(loaded, joints, mended);
     drop_third_triangles(loaded, mended);
+  }
+  if (!is_sheet || loaded.lost_vertices > 0) {
     std::vector<Index> from(loaded.mesh.positions.size());
     std::iota(from.begin(), from.end(), 0);
     keep_vertices(loaded, from);

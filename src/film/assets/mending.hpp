@@ -30,6 +30,7 @@ struct MendingReport {
 ///   detached. Small detached pieces are removed; larger ones are moved slightly away from the edge.
 /// - Of triangles whose height is below 1.1 · `flattest` times the longest edge of the mesh, the shortest edge is
 ///   collapsed (if short enough) or the longest is flipped, if the sheet stays manifold and its UVs continuous.
+/// - Vertices of faces without area that no other triangle has are removed.
 /// UVs, colours and groups are updated.
 MendingReport mend_sheet(LoadedMesh& loaded, double flattest);
 

@@ -57,23 +57,27 @@ std::vector<Vec3> mean_positions(const Character& character, const std::vector<V
   return middle;
 }
 
-/// Line segments of each bone: to the next bones below it; for a terminal bone, through the mean of its vertices.
+/// Line segments of each bone: to the next bones below it; for a terminal bone, through the mean of its vertices. Bones
+/// of one node, as of several meshes, have the same segments to bones below it.
 std::vector<std::vector<Segment>> segments_of(const Character& character, const std::vector<Vec3>& places,
                                               const std::vector<Vec3>& skin) {
-  std::vector<Index> bone_of_node(character.nodes.size(), -1);
-  for (std::size_t b = 0; b < character.bones.size(); ++b)
-    bone_of_node[character.bones[b].node] = static_cast<Index>(b);
-  std::vector<std::vector<Segment>> segments(character.bones.size());
+  std::vector<bool> has_bone(character.nodes.size(), false);
+  for (const Bone& bone : character.bones) has_bone[bone.node] = true;
+  std::vector<std::vector<Segment>> below(character.nodes.size());
   for (std::size_t n = 0; n < character.nodes.size(); ++n) {
-    if (bone_of_node[n] < 0) continue;
+    if (!has_bone[n]) continue;
     Index above = character.nodes[n].parent;
-    while (above >= 0 && bone_of_node[above] < 0) above = character.nodes[above].parent;
-    if (above >= 0 && places[n] != places[above]) segments[bone_of_node[above]].push_back({places[above], places[n]});
+    while (above >= 0 && !has_bone[above]) above = character.nodes[above].parent;
+    if (above >= 0 && places[n] != places[above]) below[above].push_back({places[above], places[n]});
   }
   const std::vector<Vec3> middle = mean_positions(character, places, skin);
-  for (std::size_t b = 0; b < segments.size(); ++b)
-    if (const Vec3& at = places[character.bones[b].node]; segments[b].empty())
+  std::vector<std::vector<Segment>> segments;
+  for (std::size_t b = 0; b < character.bones.size(); ++b) {
+    const Index node = character.bones[b].node;
+    segments.push_back(below[node]);
+    if (const Vec3& at = places[node]; segments[b].empty())
       segments[b].push_back({at, at + kTerminalBoneRatio * (middle[b] - at)});
+  }
   return segments;
 }
 

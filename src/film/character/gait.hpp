@@ -8,7 +8,7 @@ namespace weft::character {
 /// A walk from standing to standing, along -y from the origin.
 struct Walk {
   double speed = 1.2;      ///< steady walking speed [m/s]; 0.6 to 1.6
-  double distance = 6;     ///< [m]; at least two steps
+  double distance = 6;     ///< [m]; > 0; takes at least two steps
   bool turn_back = false;  ///< at the end, turn around on a small arc and walk back
   double stand = 0.5;      ///< standing time before and after [s]
   double arms_out = 13;    ///< angle of the upper arms from the vertical [degrees]; clearance for sleeves and skirts

@@ -177,9 +177,11 @@ StepPlan plan_walk(const Physique& body, const Walk& walk) {
   Pace pace = pace_of(walk.speed, body.height);
   // A whole number of steps; the first and the last are shorter.
   constexpr double shorter = 2 - kFirstStepRatio - kLastStepRatio;
-  const int steps = std::max(2, static_cast<int>(std::round(walk.distance / pace.step_length + shorter)));
+  const int fitting = static_cast<int>(std::round(walk.distance / pace.step_length + shorter));
+  const int steps = std::max(2, fitting);
   pace.step_length = walk.distance / (steps - shorter);
-  pace.step_time = pace.step_length / walk.speed;
+  // A distance that is too short for two steps makes them shorter, not quicker.
+  if (fitting >= 2) pace.step_time = pace.step_length / walk.speed;
   Planner planner(body, pace, walk.stand);
   int side = 1;
   if (walk.turn_back) {

@@ -130,8 +130,8 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
   mesh.topology.quads.clear();
   if (loaded.lost_vertices > 0)
     made.details.warnings.push_back(
-        fmt::format("{}: mesh file {}: {} of {} vertices are in no triangle that has an area; faces there cross "
-                    "themselves or have all corners on a line",
+        fmt::format("{}: mesh file {}: {} of {} vertices left out, which are in no triangle that has an area; faces "
+                    "there cross themselves or have all corners on a line",
                     where, cloth.file.string(), loaded.lost_vertices, mesh.positions.size()));
   if (const assets::MendingReport mended = assets::mend_sheet(loaded, 1 / mesh::kMaxUnevenness); mended.any())
     made.details.warnings.push_back(

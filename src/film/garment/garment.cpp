@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -68,13 +69,13 @@ class Sewing {
   void count_segments() {
     double area = 0;
     for (std::size_t p = 0; p < pattern_.panels.size(); ++p) {
-      std::vector<Vec2> corners;
+      std::vector<Vec2> outline;
       auto& counts = segments_.emplace_back();
       for (std::size_t e = 0; e < pattern_.panels[p].edges.size(); ++e) {
         counts.push_back(segments_for(length(p, e)));
-        for (const Curve& curve : pattern_.panels[p].edges[e].curves) corners.push_back(curve.start());
+        std::ranges::copy(sample_points(pattern_.panels[p].edges[e].curves), std::back_inserter(outline));
       }
-      area += std::abs(polygon_area(corners));
+      area += std::abs(polygon_area(outline));
     }
     if (area > kMaxParticles * spacing_ * spacing_)
       refuse(fmt::format("expected an edge_length of at least {:.2g} m, which {:g} particles need, got {} m",
@@ -120,7 +121,8 @@ class Sewing {
   }
 
   // Joins the points of both sides of each seam. For flat panels, the start positions determine which ends meet. For
-  // bent panels, the ends follow from the condition that both fronts face outward.
+  // bent panels, and for edges without ends, such as a whole outline, the condition that both fronts face outward
+  // determines their directions.
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
     for (const Seam& seam : pattern_.seams) {
@@ -135,8 +137,9 @@ class Sewing {
       };
       const double straight = end_distance();
       std::ranges::reverse(b);
-      const bool in_line = wearer_ != nullptr ? !are_drawn_from_same_side(pattern_.panels[p], pattern_.panels[q])
-                                              : straight < end_distance();
+      const bool in_line = wearer_ != nullptr || a.front() == a.back() || b.front() == b.back()
+                               ? !are_drawn_from_same_side(pattern_.panels[p], pattern_.panels[q])
+                               : straight < end_distance();
       if (in_line) std::ranges::reverse(b);
       for (std::size_t k = 0; k < a.size(); ++k) sewn_together_.join(a[k], b[k]);
       garment_.seams.push_back({a, length(p, e), length(q, f)});
@@ -346,7 +349,8 @@ class Sewing {
     }
   }
 
-  // Ties the points of two edges together. The start positions of the edges determine which ends meet.
+  // Ties the points of two edges together. The start positions of the edges determine which ends meet; for edges whose
+  // own ends meet, the sides from which their panels are drawn.
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {
@@ -359,7 +363,13 @@ class Sewing {
       };
       const double straight = end_distance();
       std::ranges::reverse(b);
-      if (straight < end_distance()) std::ranges::reverse(b);
+      const auto panel_of = [&](const std::string& edge) -> const Panel& {
+        return pattern_.panels[pattern_.find(edge).first];
+      };
+      const bool in_line = a.front() == a.back() || b.front() == b.back()
+                               ? !are_drawn_from_same_side(panel_of(seam.a), panel_of(seam.b))
+                               : straight < end_distance();
+      if (in_line) std::ranges::reverse(b);
       const std::size_t last = a.size() - 1;
       const std::vector<double> lengths = band_along(seam.a).lengths;
       const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);

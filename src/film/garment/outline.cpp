@@ -238,6 +238,13 @@ ParsedPath parse_path(std::string_view data) {
   return PathReader(data).read();
 }
 
+std::vector<Vec2> sample_points(const std::vector<Curve>& chain) {
+  std::vector<Vec2> points;
+  for (const Curve& curve : chain)
+    for (int i = 0; i < kPointsPerCurve; ++i) points.push_back(curve.at(double(i) / kPointsPerCurve));
+  return points;
+}
+
 Arclength::Arclength(const std::vector<Curve>& chain) {
   points_.push_back(chain.front().start());
   sums_.push_back(0);

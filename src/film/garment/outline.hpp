@@ -39,6 +39,12 @@ struct ParsedPath {
 /// curves of at most a quarter turn each (maximum error: 3e-4 of the radius). Curves of zero length are dropped.
 ParsedPath parse_path(std::string_view data);
 
+/// Number of points of each curve in sample_points().
+inline constexpr int kPointsPerCurve = 16;
+
+/// Points along a chain of curves, from its start and without its end.
+std::vector<Vec2> sample_points(const std::vector<Curve>& chain);
+
 /// Arc length along a chain of curves, to place points at equal distances on it.
 class Arclength {
  public:

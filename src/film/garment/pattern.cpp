@@ -26,8 +26,6 @@ using scene::TableBuilder;
 using scene::Type;
 using scene::within;
 
-// Sample points per curve for finding self-crossings of an outline.
-constexpr int kPointsPerCurve = 16;
 // Maximum deviation of a fold edge from a line / length of the edge; it is not 0, since files round coordinates.
 constexpr double kMaxFoldDeviation = 1e-3;
 // Maximum size of a panel [m].
@@ -100,13 +98,6 @@ const Table& panel_rules() {
           .table("fabric", &Panel::reinforcement, kFabric)
           .build();
   return kTable;
-}
-
-std::vector<Vec2> sample_points(const Outline& outline) {
-  std::vector<Vec2> points;
-  for (const Curve& curve : outline)
-    for (int i = 0; i < kPointsPerCurve; ++i) points.push_back(curve.at(double(i) / kPointsPerCurve));
-  return points;
 }
 
 // Assigns a name to each curve; the pieces of an arc share one. Returns a description of a mistake, or an empty string.

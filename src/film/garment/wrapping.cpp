@@ -149,7 +149,13 @@ class PanelPlacer {
         const double girth = tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap);
         const double ease = std::max(min_ease, (width + slack - girth) / (2 * std::numbers::pi));
         // The cap of a sleeve narrows and does not close: it keeps the ease of the level below.
-        raw.push_back(arm && width < widest - kCapNarrowing ? raw.back() : ease);
+        const double kept = arm && width < widest - kCapNarrowing ? raw.back() : ease;
+        // Between panels that lie apart, the ease is that of the nearer one.
+        if (const auto index = static_cast<std::size_t>(level - of_level.begin()->first); index > raw.size()) {
+          raw.resize((raw.size() + index) / 2, double(raw.back()));
+          raw.resize(index, kept);
+        }
+        raw.push_back(kept);
         widest = std::max(widest, width);
       }
       // Smooth over height: where a panel begins or ends, the width changes abruptly.
