@@ -243,6 +243,20 @@ keys = [{ time = 0, position = [1, 0, 1] }, { time = 0.4, position = [2, 0, 1] }
   EXPECT_THROW(Simulation(scene, options), std::invalid_argument) << "cut short";
 }
 
+TEST(LibraryMove, LeavesLayersWhereTheyAreHeldAfterAResumption) {
+  const std::string held =
+      "particles = [6, 6]\nsize = [0.4, 0.4]\npin = [{low = [0, 0], high = [0, 1], follow = 'hand'}]\n";
+  const Scene scene = Scene::parse("[time]\npreroll = 0.08\n[[cloth]]\nname = 'inner'\nposition = [0, 0, 1]\n" + held +
+                                   "[[cloth]]\nname = 'outer'\nposition = [0, 0, 1.1]\nover = 'inner'\n" + held +
+                                   "[[obstacle]]\nname = 'hand'\nshape = 'box'\ncollide = false\n");
+  Simulation whole(scene, {.driven = {"hand"}, .state = {}});
+  for (int k = 1; k <= 2; ++k) whole.move("hand", {.position = {0, 0.02 * k, 0}}), whole.advance();
+  Simulation resumed(scene, {.driven = {"hand"}, .state = whole.save()});
+  whole.advance(), resumed.advance();
+  for (const char* name : {"inner", "outer"})
+    EXPECT_EQ(positions(resumed.frame(), name), positions(whole.frame(), name)) << name;
+}
+
 TEST(LibraryMove, RefusesWhatItCannotMove) {
   const Scene scene = Scene::parse(kDrape);
   const SimulationOptions ball{.driven = {"ball"}, .state = {}};

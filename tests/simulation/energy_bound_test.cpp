@@ -76,6 +76,15 @@ TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
   EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
 }
 
+TEST(EnergyBound, WindOfASingleKeyBringsEnergy) {
+  scene::Scene scene = testing::sheet_alone(0.5, 5, 1);
+  scene.physics.gravity = Vec3::Zero();
+  scene.physics.air_density = 1.2;
+  scene.physics.keys = {{0, Vec3::Zero(), {0, 0, 8}}};
+  production::SceneSimulation simulation(scene);
+  EXPECT_EQ(refusal(simulation), "");
+}
+
 /// Turns a cloth upright and pins its upper edge; stiffnesses in N/m and N·m, without damping.
 void hang(scene::Cloth& cloth, double stretch, double shear, double bend) {
   cloth.pose.rotation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "film/production/plan.hpp"
 #include "film/production/scene_simulation.hpp"
+#include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {
@@ -251,6 +252,37 @@ TEST(RigidBodies, GoOnToTheBitFromWhatWasSaved) {
     EXPECT_EQ(vertices(whole, object), vertices(resumed, object)) << object;
 }
 
+TEST(RigidBodies, ThatPassThroughEverythingChangeNoContact) {
+  const scene::Scene scene = support::scene_of_text(
+      timed(0.4) + "[[cloth]]\nname = \"sheet\"\nparticles = [9, 9]\nsize = [0.4, 0.4]\nposition = [0, 0, 0.42]\n" +
+      box("table", "size = [1, 1, 0.8]\n") +
+      box("ghost", "size = [0.1, 0.1, 0.1]\nmass = 1\ncollide = false\nposition = [0, 0, 1]\n"));
+  production::SceneSimulation whole(scene), resumed(scene);
+  for (int frame = 0; frame < 6; ++frame) whole.advance();
+  std::string saved;
+  whole.save(saved);
+  resumed.restore(saved);
+  for (int frame = 6; frame < 10; ++frame) whole.advance(), resumed.advance();
+  for (const Vec3& x : vertices(whole, 0)) EXPECT_NEAR(x.z(), 0.4, 0.005);
+  EXPECT_GT(testing::lowest(vertices(whole, 0)), 0.4);
+  // Euler's method falls too far by g h t / 2.
+  EXPECT_NEAR(middle(vertices(whole, 2)).z(), 1 - 0.5 * kGravity * 0.4 * (0.4 + 0.01), 1e-3);
+  for (std::size_t object = 0; object < 3; ++object)
+    EXPECT_EQ(vertices(whole, object), vertices(resumed, object)) << object;
+}
+
+// A frame in which everything rests is one step, at whose end this arm is back; on its way it strikes the crate.
+TEST(RigidBodies, AtRestAreStruckByWhatComesAndGoesWithinAFrame) {
+  production::SceneSimulation simulation(support::scene_of_text(
+      "[time]\nduration = 3\nfps = 1\nstep = 0.01\n[physics]\ngravity = [0, 0, 0]\n" +
+      box("crate", "size = [2, 2, 2]\nmass = 100\n") +
+      box("arm",
+          "size = [2.4, 0.1, 0.1]\nkeys = [{time = 1, position = [0, -1.4, 0.9]}, "
+          "{time = 1.5, position = [0, -0.95, 0.9]}, {time = 2, position = [0, -1.4, 0.9]}]\n")));
+  simulation.advance();
+  EXPECT_GT(simulation.advance().kinetic_energy, 1);  // [J]
+}
+
 TEST(RigidBodies, KeepTheMomentumOfWhatCollides) {
   // Two blocks collide off-centre, without gravity: checks linear momentum, and angular momentum about the origin.
   const scene::Scene scene = support::scene_of_text(
@@ -370,6 +402,17 @@ TEST(RigidBodies, MayTouchWhatTheyStandOn) {
                    support::scene_of_text(timed(0.5) + "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n" +
                                           box("box", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, 0.03]\n"))),
                Error);
+}
+
+TEST(RigidBodies, MayTouchWhatTheyStandOnWhereOtherThingsAreUntangled) {
+  const scene::Scene scene = support::scene_of_text(
+      timed(0.04) + "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n" +
+      box("crate", "size = [0.2, 0.2, 0.2]\nmass = 1\nposition = [2, 0, 0.1]\n") +
+      "[[obstacle]]\nname = \"post\"\nshape = \"sphere\"\nsegments = 16\nradius = 0.1\nposition = [0, 0, -0.08]\n"
+      "[[cloth]]\nname = \"sheet\"\nparticles = [9, 9]\nsize = [0.4, 0.4]\nposition = [0, 0, 0.003]\n"
+      "start = \"untangle\"\n");
+  const production::SceneSimulation simulation(scene);
+  EXPECT_NEAR(middle(vertices(simulation, 2)).z(), 0.1002, 1e-9);  // lifted by 0.2 mm
 }
 
 TEST(RigidBodies, ArePlannedAndDoubtedWithEulersMethod) {

@@ -46,7 +46,6 @@ struct Simulation::Impl {
   std::unique_ptr<simulation::Simulation> simulation;
   std::string heading;
   std::vector<std::size_t> driven;  // numbers of the driven bodies
-  std::string moved;                // for each of them '1' if move() has moved it, else '0'; part of a saved state
   MakeFrame make_frame;
   std::optional<Frame> current;
 };

@@ -14,21 +14,19 @@ namespace weft {
 Simulation::Impl::Impl(std::unique_ptr<simulation::Simulation> of, std::string heading_of_state,
                        const SimulationOptions& options, MakeFrame make)
     : simulation(std::move(of)), heading(std::move(heading_of_state)), make_frame(std::move(make)) {
-  for (const std::string& name : options.driven) driven.push_back(body(name));
+  for (const std::string& name : options.driven) {
+    driven.push_back(body(name));
+    simulation->allow_drive(driven.back());
+  }
   if (options.state.empty()) {
-    moved.assign(driven.size(), '0');
     simulation->run_preroll();
     update_current_frame(simulation->initial_report());
     return;
   }
   if (!options.state.starts_with(heading))
     throw std::invalid_argument("state: expected one that this version saved of the same, with the same driven bodies");
-  moved = options.state.substr(heading.size(), driven.size());
-  // A state has the motions of those bodies that were moved: the others keep that of the model.
-  for (std::size_t k = 0; k < moved.size(); ++k)
-    if (moved[k] == '1') simulation->drive(driven[k], {});
   try {
-    simulation->restore(std::string_view(options.state).substr(heading.size() + moved.size()));
+    simulation->restore(std::string_view(options.state).substr(heading.size()));
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(std::string("state: ") + error.what());
   }
@@ -76,15 +74,13 @@ const Frame& Simulation::advance() {
 
 void Simulation::move(std::string_view body, const Pose& pose) {
   const std::size_t number = impl_->body(body);
-  const auto found = std::ranges::find(impl_->driven, number);
-  if (found == impl_->driven.end())
+  if (std::ranges::find(impl_->driven, number) == impl_->driven.end())
     throw std::invalid_argument(fmt::format("expected {} among SimulationOptions::driven", body));
   impl_->simulation->drive(number, library::pose_of(pose, std::string(body)));
-  impl_->moved[static_cast<std::size_t>(found - impl_->driven.begin())] = '1';
 }
 
 std::string Simulation::save() const {
-  std::string bytes = impl_->heading + impl_->moved;
+  std::string bytes = impl_->heading;
   impl_->simulation->save(bytes);
   return bytes;
 }

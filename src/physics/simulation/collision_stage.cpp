@@ -20,8 +20,9 @@ bool bodies_collide(const model::Model& model) {
   return model.contact.obstacles && std::ranges::any_of(model.bodies, &model::Body::collide);
 }
 
-bool moves_by_forces(const model::Model& model) {
-  return std::ranges::any_of(model.bodies, [](const model::Body& body) { return body.dynamics != nullptr; });
+bool dynamic_bodies_collide(const model::Model& model) {
+  return model.contact.obstacles &&
+         std::ranges::any_of(model.bodies, [](const model::Body& body) { return body.collide && body.dynamics; });
 }
 
 // Numbers of the colliding bodies; those that forces move come first.
@@ -112,8 +113,11 @@ collision::Bodies make_bodies(const model::Model& model, const ClothSystem& clot
     }
     std::vector<collision::Patch> patches;
     for (const model::Patch& patch : body.patches) patches.push_back({patch.vertices, patch.thickness, patch.friction});
+    // If no body that forces move collides, the frame particles, which move, come before the first obstacle.
+    const Index in_front = std::exchange(frames, 0);
     bodies.add(body.colliding_triangles(), static_cast<Index>(body.mesh.positions.size()),
-               {.friction = body.friction, .moving = body.moving, .rigid = !body.deforms()}, patches, body.limbs);
+               {.friction = body.friction, .moving = body.moving || in_front > 0, .rigid = !body.deforms()}, patches,
+               body.limbs, in_front);
   }
   return bodies;
 }
@@ -134,8 +138,7 @@ double sagitta(double radius, double angle) {
 }  // namespace
 
 bool CollisionStage::needed(const model::Model& model) {
-  return (!model.cloths.empty() && (model.contact.self || bodies_collide(model))) ||
-         (moves_by_forces(model) && bodies_collide(model));
+  return (!model.cloths.empty() && (model.contact.self || bodies_collide(model))) || dynamic_bodies_collide(model);
 }
 
 CollisionStage::CollisionStage(const model::Model& model, const ClothSystem& cloth, SystemState& start)
@@ -197,32 +200,43 @@ double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start)
       sum += up.dot(start.x[static_cast<std::size_t>(bodies[body].frame) + k]);
     return sum / mesh::RigidFrame::kParticles;
   };
+  const auto may_be_untangled = [&](std::size_t body) {
+    return body < cloths && model_.cloths[body].may_be_untangled();
+  };
   const std::vector<Vec3> given = start.x;
-  std::map<std::size_t, int> lifts;
-  for (int round = 0; round <= kMaxStackHeight; ++round) {
-    std::set<std::size_t> touching;
-    for (const collision::CornerPair& pair : engine_.find_intersections(start.x)) {
-      const std::size_t a = bodies.body_of(pair.a[0]), b = bodies.body_of(pair.b[0]);
-      if (is_free(a) && (!is_free(b) || height(a) > height(b)))
-        touching.insert(a);
-      else if (is_free(b))
-        touching.insert(b);
+  // If surfaces still touch, tries once more without cloth that untangle() may move.
+  for (const bool with_all : {true, false}) {
+    const auto find_pairs = [&] {
+      std::vector<std::array<std::size_t, 2>> pairs;
+      for (const collision::CornerPair& pair : engine_.find_intersections(start.x)) {
+        const std::size_t a = bodies.body_of(pair.a[0]), b = bodies.body_of(pair.b[0]);
+        if (with_all || (!may_be_untangled(a) && !may_be_untangled(b))) pairs.push_back({a, b});
+      }
+      return pairs;
+    };
+    std::map<std::size_t, int> lifts;
+    for (int round = 0; round <= kMaxStackHeight; ++round) {
+      std::set<std::size_t> touching;
+      for (const auto& [a, b] : find_pairs()) {
+        if (is_free(a) && (!is_free(b) || height(a) > height(b)))
+          touching.insert(a);
+        else if (is_free(b))
+          touching.insert(b);
+      }
+      if (touching.empty()) break;
+      for (const std::size_t body : touching) {
+        ++lifts[body];
+        for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k)
+          start.x[static_cast<std::size_t>(bodies[body].frame) + k] += numerics.separation.restored_gap * up;
+      }
+      rigid_.place(start.x);
     }
-    if (touching.empty()) break;
-    for (const std::size_t body : touching) {
-      ++lifts[body];
-      for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k)
-        start.x[static_cast<std::size_t>(bodies[body].frame) + k] += numerics.separation.restored_gap * up;
-    }
-    rigid_.place(start.x);
-  }
-  if (!lifts.empty() && !engine_.find_intersections(start.x).empty()) {
+    int max_lift = 0;
+    for (const auto& [body, count] : lifts) max_lift = std::max(max_lift, count);
+    if (lifts.empty() || find_pairs().empty()) return max_lift * numerics.separation.restored_gap;
     start.x = given;
-    return 0;
   }
-  int max_lift = 0;
-  for (const auto& [body, count] : lifts) max_lift = std::max(max_lift, count);
-  return max_lift * numerics.separation.restored_gap;
+  return 0;
 }
 
 // Bodies that do not move stay where append_bodies() has put them.
@@ -291,16 +305,18 @@ bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemStat
 bool CollisionStage::bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const {
   place_bodies(t0, now);
   place_bodies(t1, next);
-  const Box3 cloth = mesh::bounding_box(now.particles());
+  const Box3 solved = mesh::bounding_box(std::span(now.x).first(static_cast<std::size_t>(rigid_.end())));
   const collision::Bodies& bodies = engine_.bodies();
   for (std::size_t b = model_.cloths.size(); b < bodies.size(); ++b) {
     if (bodies[b].deformable) continue;
-    const auto from = bodies.part(b, std::span<const Vec3>(now.x)), to = bodies.part(b, std::span<const Vec3>(next.x));
+    const std::size_t count = model_.bodies[bodies_[b - model_.cloths.size()]].mesh.positions.size();
+    const auto from = bodies.part(b, std::span<const Vec3>(now.x)).last(count),
+               to = bodies.part(b, std::span<const Vec3>(next.x)).last(count);
     if (std::ranges::equal(from, to)) continue;
     Box3 swept = mesh::bounding_box(from).merged(mesh::bounding_box(to));
     swept.min().array() -= engine_.detection_distance();
     swept.max().array() += engine_.detection_distance();
-    if (swept.intersects(cloth)) return false;
+    if (swept.intersects(solved)) return false;
   }
   return true;
 }

@@ -40,7 +40,7 @@ class CollisionStage {
   /// Lifts dynamic bodies (moved by forces) that touch something at the start, because scenes place a box exactly on
   /// its support. Of two such bodies that touch, the upper one rises by 0.2 mm along the unit vector `up`, at most 33
   /// times; a body that touches anything else rises itself. Bodies that keys hold at t [s] stay. Returns the largest
-  /// lift [m]. If surfaces still touch afterwards, changes nothing and returns 0.
+  /// lift [m]. If surfaces still touch afterwards that untangle() does not move, changes nothing and returns 0.
   double lift_bodies(const Vec3& up, double t, SystemState& start);
 
   /// Moves cloth that touches or crosses something at the start, if Cloth::may_be_untangled(). Particles
@@ -63,8 +63,8 @@ class CollisionStage {
   /// [s] that its vertices deviate from them by more than `numerics.contact.margin` detection distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
-  /// Whether no key-framed body near the cloth moves between t0 and t1 [s]; t0 is the time of `now`. Places bodies in
-  /// both states.
+  /// Whether no key-framed body near cloth or bodies that forces move moves between t0 and t1 [s]; t0 is the time of
+  /// `now`. Places bodies in both states.
   bool bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const;
 
   /// Whether no obstacle near cloth moves by more than `numerics.contact.margin` detection distances from `now` to

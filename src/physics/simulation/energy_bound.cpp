@@ -35,7 +35,8 @@ bool is_driven_by_pins_alone(const model::Model& model) {
   for (const model::Attachment& attachment : model.attachments)
     if (attachment.length || (attachment.to_body && model.bodies[*attachment.to_body].moving)) return false;
   if (model.physics.keys.size() > 1 || !model.fans.empty()) return false;
-  return model.physics.air_density == 0 || (model.physics.wind == Vec3::Zero() && model.physics.gusts.speed == 0);
+  const Vec3& wind = model.physics.keys.empty() ? model.physics.wind : model.physics.keys.front().wind;
+  return model.physics.air_density == 0 || (wind == Vec3::Zero() && model.physics.gusts.speed == 0);
 }
 
 double mechanical_energy(const FrameReport& report) {

@@ -93,7 +93,8 @@ struct Simulation::Impl {
   std::unique_ptr<StepLoop> steps;
   FrameReport start_report;  // of frame 0
   std::optional<EnergyBound> energy_bound;
-  std::map<std::size_t, std::array<motion::PoseKey, 2>> driven;  // bodies, with the two keys of their last drive()
+  // Bodies of allow_drive(), with the two keys of their last drive(), if there was one.
+  std::map<std::size_t, std::optional<std::array<motion::PoseKey, 2>>> driven;
 };
 
 Simulation::Impl::Impl(model::Model of) : model(std::move(of)), frame(-model.time.preroll_frames) {
@@ -213,12 +214,13 @@ void Simulation::Impl::report_obstructions(FrameReport& report) const {
 
 void Simulation::Impl::drive(std::size_t body, const motion::Pose& end) {
   const motion::PoseSample now = model.pose(body, time());
-  driven[body] = {{{time(), {now.position, now.rotation}}, {next_time(), {end.position, end.rotation}}}};
+  driven.at(body) = std::array<motion::PoseKey, 2>{
+      {{time(), {now.position, now.rotation}}, {next_time(), {end.position, end.rotation}}}};
   set_motion(body);
 }
 
 void Simulation::Impl::set_motion(std::size_t body) {
-  const auto& keys = driven.at(body);
+  const auto& keys = *driven.at(body);
   const motion::PoseTrack motion{motion::Interpolation::linear, {keys.begin(), keys.end()}};
   model.set_motion(body, motion);
   if (dressed_part) dressed_part->set_motion(body, motion);
@@ -227,23 +229,29 @@ void Simulation::Impl::set_motion(std::size_t body) {
 template <class Archive>
 void Simulation::Impl::serialize(Archive& archive) {
   for (auto& [body, keys] : driven) {
-    for (motion::PoseKey& key : keys) {
+    bool is_driven = keys.has_value();
+    archive.value(is_driven);
+    if (!is_driven) continue;
+    if (!keys) keys.emplace();
+    for (motion::PoseKey& key : *keys) {
       serialize_values(archive, key.time);
       archive.raw(key.pose.position.data(), 3 * sizeof(double));
       archive.raw(key.pose.rotation.coeffs().data(), 4 * sizeof(double));
     }
-    if constexpr (Archive::kReads) {
-      require(keys[0].time < keys[1].time, "a way forward in time");
-      set_motion(body);
-    }
+    if constexpr (Archive::kReads) require((*keys)[0].time < (*keys)[1].time, "a way forward in time");
   }
-  archive.value(frame);
+  int saved_frame = frame;
+  archive.value(saved_frame);
   std::uint64_t last = layer;
   archive.value(last);
   if constexpr (Archive::kReads) {
-    require(frame >= -model.time.preroll_frames && frame < kMaxFrames, "a frame of the model");
+    require(saved_frame >= -model.time.preroll_frames && saved_frame < kMaxFrames, "a frame of the model");
     require(last < model.layers.size(), "a layer of the model");
+    // Pins refer to where bodies are at the start of the run, by the motions of the model.
     if (last != layer) begin_layer(last);
+    frame = saved_frame;
+    for (const auto& [body, keys] : driven)
+      if (keys) set_motion(body);
   }
   steps->serialize(archive);
   energy_bound->serialize(archive);
@@ -342,6 +350,10 @@ std::vector<std::vector<Vec3>> Simulation::contact_forces() const {
     of_cloths[dressed[number]].assign(forces.begin() + impl_->steps->cloth().first_particle(number),
                                       forces.begin() + impl_->steps->cloth().first_particle(number + 1));
   return of_cloths;
+}
+
+void Simulation::allow_drive(std::size_t body) {
+  impl_->driven.try_emplace(body);
 }
 
 void Simulation::drive(std::size_t body, const motion::Pose& end) {

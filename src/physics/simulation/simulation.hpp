@@ -95,16 +95,19 @@ class Simulation {
   /// Total contact force on each particle [N] at the end of the last step, per cloth; empty until the cloth is put on.
   std::vector<std::vector<Vec3>> contact_forces() const;
 
-  /// Moves a rigid body (number in the model) to `end` at constant velocity during the next frame, whatever its own
-  /// motion; it then stays there. The body must be `moving`.
+  /// Announces that drive() may move this rigid body (number in the model), which must be `moving`. Only allowed before
+  /// the first advance().
+  void allow_drive(std::size_t body);
+  /// Moves such a body to `end` at constant velocity during the next frame, whatever its own motion; it then stays
+  /// there.
   void drive(std::size_t body, const motion::Pose& end);
 
   /// Appends everything that later frames depend on. Only the same version of the program on a machine of the same kind
   /// can read it. Not allowed after a failed advance().
   void save(std::string& bytes) const;
   /// Restores what a simulation of the same model has saved; the frames that follow have the same bits. Only allowed
-  /// before the first advance(). If bodies were driven, first call drive() once for each of them, to any pose.
-  /// Throws std::runtime_error if the bytes do not fit this model; the simulation is then unusable.
+  /// before the first advance() and drive(), and after the same calls of allow_drive(). Throws std::runtime_error if
+  /// the bytes do not fit this model; the simulation is then unusable.
   void restore(std::string_view bytes);
 
  private:
