@@ -165,6 +165,13 @@ TEST_F(CachedRun, FramesThatWereNotDressedYetAreNotDrawn) {
   EXPECT_TRUE(contains(rest.err, "it has the look from before the scene was changed")) << rest.err;
   expect_well(again);
   expect_well({"render", "c", "-o", "b.mp4"});
+  // All frames are there, but only the first three have the look of the scene.
+  const Arguments back{"simulate", "s.toml", "--cache", "c", "--resume"};
+  part = back;
+  part.insert(part.end(), {"--frames", ":3"});
+  expect_well(part);
+  EXPECT_FALSE(contains(weft(back).err, "complete already"));
+  EXPECT_TRUE(contains(weft(back).err, "complete already"));
 }
 
 TEST_F(CachedRun, WholeCacheSaysSoAndStaysAsItIs) {

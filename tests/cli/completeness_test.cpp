@@ -186,6 +186,8 @@ TEST_F(Joining, OfFoldersIsByteForByteTheVideoOfRender) {
   draw("every_third.mp4", "::3");
   expect_joined({"a", "b", "-o", "third.mp4", "--frames", "::3"});
   EXPECT_TRUE(support::read_bytes(folder_ / "third.mp4") == support::read_bytes(folder_ / "every_third.mp4"));
+  draw("a/film.mkv", ":3");
+  expect_joined({"a", "b", "-o", "beside_a_video.mp4"});
 }
 
 TEST_F(Joining, OfPicturesIsInTheCodecThatIsAskedFor) {

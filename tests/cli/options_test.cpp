@@ -130,6 +130,21 @@ TEST(Options, MissingOrSurplusArgumentsAreRefused) {
   EXPECT_NE(refusal({"run", "a.toml", "--size", "64x64", "--size", "64x64"}), "accepted");
 }
 
+TEST(Options, OfWatchAreThoseThatItsDrawingTakes) {
+  const auto refused = [](Arguments more) {
+    more.insert(more.begin(), {"watch", "s.toml"});
+    return refusal(more);
+  };
+  EXPECT_EQ(refused({"--film", "--frame", "3"}), "weft watch: --frame is for a still; expected it without --film");
+  EXPECT_EQ(refused({"--film", "--start"}), "weft watch: --start is for a still; expected it without --film");
+  EXPECT_EQ(refused({"--frames", "0:3"}), "weft watch: --frames is for a video; expected it with --film");
+  EXPECT_EQ(refused({"--start", "--frame", "3"}), "weft watch: expected --start or --frame, got both");
+  EXPECT_EQ(refused({"-o", "a.mp4"}), "-o: expected a name ending in .png without --film, got a.mp4");
+  EXPECT_TRUE(refused({"-o", "a.png", "--film"}).starts_with("-o: expected one {frame}"));
+  for (const Arguments& good : {Arguments{"--film", "--frames", "0:3", "-o", "a.mp4"}, {"--start", "-o", "a.png"}})
+    EXPECT_EQ(refused(good), "accepted");
+}
+
 TEST(Options, OfSpeedAreListsAndForSpeedAlone) {
   const auto bench = [](Arguments arguments) {
     arguments.insert(arguments.begin(), {"bench", "speed"});

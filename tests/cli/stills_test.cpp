@@ -34,6 +34,21 @@ TEST_F(Stills, SheetShowsEvenlySpacedFramesFromTheFirstToTheLast) {
   EXPECT_EQ(about("few.png").at("frames"), "0 1 2") << "a scene of three frames has no more";
 }
 
+// The scene cannot start, so its simulation would end with exit code 3.
+TEST_F(Stills, SheetThatNoPngCanHoldIsRefusedBeforeTheSimulation) {
+  const Arguments sheet{"sheet", "s.toml", "--set", "cloth.cloth.position=[0,0,0.02]", "--columns", "1", "--count"};
+  const auto of = [&](const char* count) {
+    Arguments arguments = sheet;
+    arguments.insert(arguments.end(), {count, "--size", "16x8192"});
+    return run_weft(arguments, folder_);
+  };
+  const Outcome refused = of("2");
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("expected a sheet of at most 16384x16384 pixels, got one of 34x"), std::string::npos)
+      << refused.err;
+  EXPECT_EQ(of("1").exit_code, 3);
+}
+
 TEST_F(Stills, OneCallDrawsAPictureOfEachSceneAndGoesOnAfterBrokenOnes) {
   for (const char* name : {"b.toml", "deep/c.toml"}) {
     fs::create_directories((folder_ / name).parent_path());

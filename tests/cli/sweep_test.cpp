@@ -12,6 +12,7 @@
 
 #include "cli/cached_run.hpp"
 #include "film/image/png.hpp"
+#include "film/video/encoder.hpp"
 #include "tools/cli/sweep_plan.hpp"
 #include "tools/cli/sweep_report.hpp"
 
@@ -178,6 +179,22 @@ TEST(SweepLabels, AreNotCut) {
   EXPECT_TRUE(label_of(run).ends_with("key49=0.123"));
 }
 
+class SweepSheet : public support::TestFolder {};
+
+TEST_F(SweepSheet, OfTooManyRunsShowsTheFirstRows) {
+  video::Encoder encoder(folder_ / "a.mp4", {.width = 16, .height = 8192, .metadata = {}});
+  encoder.add(image::Image(16, 8192));
+  encoder.finish();
+  SweepResult result = made_up_result();
+  result.video = folder_ / "a.mp4";
+  result.run.difference.clear();
+  write_sweep_sheet(folder_ / "sheet.png", std::vector<SweepResult>(5, result), "", {});
+  const image::Image sheet = image::read_png(folder_ / "sheet.png");  // of two rows, the first
+  EXPECT_GT(sheet.width, 3 * 16);
+  EXPECT_GT(sheet.height, 8192);
+  EXPECT_LT(sheet.height, 2 * 8192);
+}
+
 class Sweeps : public CachedRun {
  protected:
   static constexpr const char* kRadius = "obstacle.ball.radius=0.1,0.11";
@@ -226,6 +243,19 @@ TEST_F(Sweeps, GoOnWithWhatIsNotDoneAndPassOverTheRest) {
   EXPECT_NE(other.err.find("w: holds runs with other options"), std::string::npos) << other.err;
   fs::create_directories(folder_ / "w2/mine");
   EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", "w2", "--set", kRadius}, folder_).exit_code, 6);
+}
+
+TEST_F(Sweeps, RunsThatWereToBeRepeatedAreNotDoneUntilThen) {
+  const Arguments arguments{"--set", "time.duration=0.08,0.12", "--camera"};
+  const auto with = [&](Arguments more) {
+    more.insert(more.begin(), arguments.begin(), arguments.end());
+    return sweep(more);
+  };
+  EXPECT_EQ(sweep({"--set", "time.duration=0.08,0.12"}).exit_code, 0);
+  EXPECT_EQ(with({"nowhere", "--overwrite"}).exit_code, 2);
+  const Outcome again = with({"nowhere"});
+  EXPECT_EQ(again.exit_code, 2) << again.err;
+  EXPECT_EQ(again.err.find("done already"), std::string::npos) << again.err;
 }
 
 TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {

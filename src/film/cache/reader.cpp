@@ -113,13 +113,14 @@ CachedFrame Reader::read(int frame) const {
   return cached;
 }
 
-void Reader::verify(int frame) const {
+std::uint64_t Reader::verify(int frame) const {
   const fs::path file = folder_ / frame_file(frame);
-  read_checked(file, [&] {
+  return read_checked(file, [&] {
     const Label label = cache::verify(read_container(file));
     check_scene(label.scene_hash);
     if (label.kind != Kind::frame || label.frame != frame)
       throw std::runtime_error("it is another file under this name");
+    return label.scene_hash;
   });
 }
 

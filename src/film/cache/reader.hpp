@@ -41,8 +41,8 @@ class Reader {
   frame::SnapshotPtr snapshot(int frame) const { return read(frame).snapshot; }
   simulation::FrameReport report(int frame) const { return read(frame).report; }
 
-  /// Checks the file of a frame without decompressing it.
-  void verify(int frame) const;
+  /// Checks the file of a frame without decompressing it. Returns the hash of the scene whose looks the frame has.
+  std::uint64_t verify(int frame) const;
 
   /// nullopt if no state is stored.
   std::optional<SolverState> state() const;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "film/image/png.hpp"
 #include "film/image/text.hpp"
 
 namespace weft::image {
@@ -66,36 +67,58 @@ std::vector<std::string> caption_lines(const Font& font, const SheetPicture& pic
   return lines;
 }
 
+/// Where everything on a sheet is.
+struct Plan {
+  Plan(std::span<const SheetPicture> pictures, int wanted_columns) : layout(pictures[0].image.width) {
+    columns = std::min(wanted_columns, static_cast<int>(pictures.size()));
+    const int width = pictures[0].image.width;
+    const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
+    const Font font(layout.text);
+    std::size_t max_lines = 1;
+    for (const SheetPicture& picture : pictures) {
+      captions.push_back(caption_lines(font, picture, width, layout.gap / 2));
+      max_lines = std::max(max_lines, captions.back().size());
+    }
+    top = 2 * layout.gap + layout.heading;
+    size.row = pictures[0].image.height + layout.caption + (static_cast<int>(max_lines) - 1) * layout.line();
+    size.width = layout.gap + columns * (width + layout.gap);
+    size.height = top + rows * size.row + layout.gap / 2;
+  }
+
+  Layout layout;
+  int columns = 1, top = 0;
+  std::vector<std::vector<std::string>> captions;
+  SheetSize size;
+};
+
 }  // namespace
+
+bool SheetSize::is_writable() const {
+  return width <= kMaxPngSide && height <= kMaxPngSide;
+}
+
+SheetSize contact_sheet_size(std::span<const SheetPicture> pictures, int columns) {
+  return Plan(pictures, columns).size;
+}
 
 Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const std::string& heading) {
   if (pictures.empty() || columns < 1) throw Error(ExitCode::internal, "contact sheet: expected pictures and columns");
   const int width = pictures[0].image.width, height = pictures[0].image.height;
-  columns = std::min(columns, static_cast<int>(pictures.size()));
-  const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
-  const Layout layout(width);
-  const int top = 2 * layout.gap + layout.heading;
+  const Plan plan(pictures, columns);
+  const Layout& layout = plan.layout;
   const Font heading_font(layout.heading), font(layout.text);
-  std::vector<std::vector<std::string>> captions;
-  std::size_t max_lines = 1;
-  for (const SheetPicture& picture : pictures) {
-    captions.push_back(caption_lines(font, picture, width, layout.gap / 2));
-    max_lines = std::max(max_lines, captions.back().size());
-  }
-  const int caption = layout.caption + (static_cast<int>(max_lines) - 1) * layout.line();
-
-  Image sheet(layout.gap + columns * (width + layout.gap), top + rows * (height + caption) + layout.gap / 2);
+  Image sheet(plan.size.width, plan.size.height);
   for (std::size_t i = 0; i < sheet.rgb.size(); ++i) sheet.rgb[i] = kPaper[i % 3];
   heading_font.draw(sheet, layout.gap, layout.gap + layout.heading * 4 / 5, heading, kInk);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const SheetPicture& picture = pictures[i];
     if (picture.image.width != width || picture.image.height != height)
       throw Error(ExitCode::internal, "contact sheet: expected pictures of one size");
-    const int x = layout.gap + static_cast<int>(i) % columns * (width + layout.gap);
-    const int y = top + static_cast<int>(i) / columns * (height + caption);
+    const int x = layout.gap + static_cast<int>(i) % plan.columns * (width + layout.gap);
+    const int y = plan.top + static_cast<int>(i) / plan.columns * plan.size.row;
     paste(sheet, picture.image, x, y);
     int baseline = y + height;
-    for (const std::string& line : captions[i]) font.draw(sheet, x, baseline += layout.line(), line, kInk);
+    for (const std::string& line : plan.captions[i]) font.draw(sheet, x, baseline += layout.line(), line, kInk);
     font.draw(sheet, x + width - font.width(picture.right), baseline, picture.right, kFaintInk);
   }
   return sheet;

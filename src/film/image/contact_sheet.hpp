@@ -13,6 +13,18 @@ struct SheetPicture {
   std::string left, right;  ///< caption: `left` can take several lines, `right` is at the end of the last line
 };
 
+/// Size of a contact sheet [pixels].
+struct SheetSize {
+  int width = 0, height = 0;
+  int row = 0;  ///< height of a row of pictures with their captions
+
+  /// Whether write_png() can write a sheet of this size.
+  bool is_writable() const;
+};
+
+/// Size of the sheet that contact_sheet() makes. Only the sizes of the pictures count, not their pixels.
+SheetSize contact_sheet_size(std::span<const SheetPicture> pictures, int columns);
+
 /// Lays out pictures of one size in rows under a heading. The size of the text is proportional to the width of the
 /// pictures, within limits.
 Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const std::string& heading);

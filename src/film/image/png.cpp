@@ -30,9 +30,6 @@ namespace {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-// Limit on a side [pixels]; the software renderer's frame buffer and x264 have the same limit.
-constexpr int kMaxSide = 16384;
-
 // zlib level and row filter. Measured on rendered frames of 1280×720 pixels: 19 ms of CPU time and 62 KB per frame;
 // with libpng's default filters, 27 ms and 65 KB; with level 3, 8 ms and 90 KB.
 constexpr int kLevel = 6;
@@ -126,7 +123,7 @@ bool write_all(const Writer& writer, const Rows& rows, std::FILE* file, png_text
 bool read_header(const Reader& reader, std::FILE* file) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_set_read_fn(reader.png, file, read_bytes);
-  png_set_user_limits(reader.png, kMaxSide, kMaxSide);
+  png_set_user_limits(reader.png, kMaxPngSide, kMaxPngSide);
   // A damaged chunk is an error even if it contains only metadata, because reference images must be intact.
   png_set_crc_action(reader.png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   png_read_info(reader.png, reader.info);
@@ -223,10 +220,10 @@ void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax
 
 // `bytes`: size of the available data.
 void check_size(const std::filesystem::path& file, const Rows& rows, std::size_t bytes) {
-  const bool in_range = rows.width >= 1 && rows.height >= 1 && rows.width <= kMaxSide && rows.height <= kMaxSide;
+  const bool in_range = rows.width >= 1 && rows.height >= 1 && rows.width <= kMaxPngSide && rows.height <= kMaxPngSide;
   if (!in_range || bytes != rows.row_bytes() * static_cast<std::size_t>(rows.height)) {
     throw Error(ExitCode::output_failed, "{}: expected an image of 1 to {} pixels a side, got {}x{} with {} bytes",
-                file.string(), kMaxSide, rows.width, rows.height, bytes);
+                file.string(), kMaxPngSide, rows.width, rows.height, bytes);
   }
 }
 

@@ -16,6 +16,7 @@
 #include "tools/cli/path_ledger.hpp"
 #include "tools/cli/signals.hpp"
 #include "tools/cli/stages.hpp"
+#include "tools/compare/files.hpp"
 #include "tools/compare/references.hpp"
 
 namespace weft::cli {
@@ -103,7 +104,7 @@ std::vector<fs::path> files_of(const fs::path& part) {
     throw Error(ExitCode::usage, "{}: expected a video (.mp4) or a folder of pictures", part.string());
   std::vector<fs::path> files;
   for (const std::string& name : compare::comparable_names(part))
-    if (!is_video(name) && name.find('/') == std::string::npos) files.push_back(part / name);
+    if (!compare::is_video(name) && name.find('/') == std::string::npos) files.push_back(part / name);
   if (files.empty()) throw Error(ExitCode::asset_unreadable, "{}: holds no pictures", part.string());
   return files;
 }

@@ -98,6 +98,26 @@ SweepOptions checked(SweepOptions sweep) {
   return sweep;
 }
 
+// Refuses options that the drawing command would refuse each time.
+WatchOptions checked(WatchOptions watch) {
+  const std::vector<std::string>& words = watch.passed_on;
+  const auto given = [&](const char* name) { return std::ranges::find(words, name) != words.end(); };
+  for (const char* name : {"--frame", "--start"})
+    if (watch.film && given(name))
+      throw Error(ExitCode::usage, "weft watch: {} is for a still; expected it without --film", name);
+  if (!watch.film && given("--frames"))
+    throw Error(ExitCode::usage, "weft watch: --frames is for a video; expected it with --film");
+  if (given("--start") && given("--frame"))
+    throw Error(ExitCode::usage, "weft watch: expected --start or --frame, got both");
+  if (const auto option = std::ranges::find(words, "--output"); option != words.end()) {
+    const std::filesystem::path output = *(option + 1);
+    if (watch.film) (void)parse_output(output.string(), "");
+    if (!watch.film && output.has_extension() && output.extension() != ".png")
+      throw Error(ExitCode::usage, "-o: expected a name ending in .png without --film, got {}", output.string());
+  }
+  return watch;
+}
+
 FarmOptions checked(FarmOptions farm) {
   const bool submits = farm.action == FarmOptions::Action::submit;
   if (submits && farm.sweep.output.empty())
@@ -140,7 +160,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "sweep") return checked(parser.sweep);
   if (name == "farm") return checked(parser.farm);
   if (name == "new") return parser.fresh;
-  if (name == "watch") return parser.watch;
+  if (name == "watch") return checked(parser.watch);
   if (name == "completion") return PrintText{completion(parser.app, parser.shell)};
   if (name == "man") return PrintText{manual(parser.app)};
   if (name == "schema") return parser.schema;

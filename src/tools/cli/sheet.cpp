@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/error.hpp"
 #include "core/log.hpp"
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
@@ -42,6 +44,25 @@ std::string heading(const Stills& stills, const std::vector<int>& frames) {
                      stills.scene().frame_count, stills.scene().fps);
 }
 
+/// The picture of a frame with its caption.
+image::SheetPicture with_caption(image::Image picture, int frame, double time_s) {
+  return {std::move(picture), fmt::format("frame {}", frame), fmt::format("{:.2f} s", time_s)};
+}
+
+/// Throws Error(usage) if the sheet is too large for a PNG, before anything is simulated.
+void check_sheet_size(const Stills& stills, const std::vector<int>& frames, int columns) {
+  image::Image picture;  // without pixels
+  picture.width = stills.settings().width;
+  picture.height = stills.settings().height;
+  std::vector<image::SheetPicture> pictures;
+  for (const int k : frames) pictures.push_back(with_caption(picture, k, k / stills.scene().fps));
+  const image::SheetSize size = image::contact_sheet_size(pictures, columns);
+  if (size.is_writable()) return;
+  throw Error(ExitCode::usage,
+              "--count, --columns, --size: expected a sheet of at most {0}x{0} pixels, got one of {1}x{2}",
+              image::kMaxPngSide, size.width, size.height);
+}
+
 }  // namespace
 
 ExitCode sheet(const SheetOptions& options) {
@@ -51,6 +72,8 @@ ExitCode sheet(const SheetOptions& options) {
   stills->set_size(options.common.size.value_or(small_size(stills->settings())));
   const render::Settings& settings = stills->settings();
   const std::vector<int> frames = evenly_spaced(stills->frames(), options.count);
+  const int columns = options.columns.value_or(kColumns);
+  check_sheet_size(*stills, frames, columns);
   const auto file = still_file(*stills, options.output, stills->scene().scene + ".sheet.png", options.common.overwrite);
   {
     const auto count = static_cast<int>(frames.size());
@@ -61,15 +84,12 @@ ExitCode sheet(const SheetOptions& options) {
     painter->set_camera_path(stills->camera());
     std::vector<image::SheetPicture> pictures;
     for (const frame::SnapshotPtr& snapshot : snapshots) {
-      const int k = snapshot->frame;
-      pictures.push_back({painter->draw(*snapshot, nullptr).image, fmt::format("frame {}", k),
-                          fmt::format("{:.2f} s", snapshot->time)});
+      pictures.push_back(with_caption(painter->draw(*snapshot, nullptr).image, snapshot->frame, snapshot->time));
       progress.advance(Stage::draw);
     }
     Metadata metadata = describe_pictures(stills->scene(), settings, painter->description());
     metadata["frames"] = fmt::format("{}", fmt::join(frames, " "));
-    image::write_png(file, image::contact_sheet(pictures, options.columns.value_or(kColumns), heading(*stills, frames)),
-                     metadata);
+    image::write_png(file, image::contact_sheet(pictures, columns, heading(*stills, frames)), metadata);
   }
   log::info(fmt::format("{}: {} of {} frames in {}", file.string(), frames.size(), stills->scene().frame_count,
                         format_duration(timer.seconds())));

@@ -56,7 +56,8 @@ void Store::find_start() {
                   folder().string(), found.weft_version, found.cpu_target);
     std::optional<cache::SolverState> state = reader->state();
     if (!state) return;
-    for (int frame = 0; frame <= state->frame; ++frame) reader->verify(frame);
+    for (int frame = 0; frame <= state->frame; ++frame)
+      if (reader->verify(frame) == manifest_.scene_hash && current_frames_ == frame) ++current_frames_;
     start_ = std::move(*state);
     note_former_looks(found);
     reader_ = std::move(reader);
@@ -79,7 +80,7 @@ void Store::note_former_looks(const cache::Manifest& found) {
 }
 
 bool Store::holds(int frame) const {
-  return frame <= start_.frame && manifest_.scene_hash == earlier().manifest().scene_hash;
+  return frame < current_frames_;
 }
 
 std::set<std::string> Store::outputs() const {

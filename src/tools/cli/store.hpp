@@ -100,6 +100,7 @@ class Store {
   std::unique_ptr<cache::Reader> reader_;      // of the earlier run
   std::unique_ptr<cache::Reader> now_reader_;  // of this run
   cache::SolverState start_;
+  int current_frames_ = 0;  // number of frames, from frame 0 on, that the earlier run left with the current looks
   std::unique_ptr<cache::Writer> writer_;
   std::string state_;  // buffer, kept to reuse its memory
   WallTimer since_save_;

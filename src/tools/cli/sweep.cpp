@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <sstream>
+#include <system_error>
 
 #include "core/input_file.hpp"
 #include "core/json.hpp"
@@ -65,6 +66,7 @@ class Sweep {
 
   ExitCode make() {
     if (!options_.gather) {
+      if (options_.overwrite) forget_results();
       write_sweep_index(options_, plan_);
       run_all();
     }
@@ -74,6 +76,13 @@ class Sweep {
   }
 
  private:
+  /// Removes the statistics of all runs. Otherwise, if this sweep is stopped, a later one would take runs that are not
+  /// repeated yet, possibly with other options, for done.
+  void forget_results() const {
+    std::error_code none;
+    for (const Job& job : jobs_) fs::remove(job.stats(), none);
+  }
+
   std::vector<std::string> command(const Job& job) const {
     std::vector<std::string> words{own_program().string(), "run", options_.scene.string()};
     for (const std::string& text : job.overrides()) words.insert(words.end(), {"--set", text});
@@ -153,8 +162,8 @@ class Sweep {
     const auto failed = std::ranges::find_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
     const auto count = std::ranges::count_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
     if (stop_.requested()) {
-      log::info(fmt::format("weft: interrupted: {} of {} runs are not finished; the same command continues", count,
-                            results.size()));
+      log::info(fmt::format("weft: interrupted: {} of {} runs are not finished; the same command {}", count,
+                            results.size(), options_.overwrite ? "starts again" : "continues"));
       return ExitCode::interrupted;
     }
     std::vector<std::string> made;  // there is no sheet if no run has a picture

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/json.hpp"
+#include "core/log.hpp"
 #include "film/image/contact_sheet.hpp"
 #include "film/image/png.hpp"
 #include "film/image/shrink.hpp"
@@ -159,7 +160,17 @@ void write_sweep_sheet(const std::filesystem::path& file, const std::vector<Swee
     pictures.push_back({fits ? *found[i] : none, label_of(results[i].run),
                         good ? costs_of(results[i].stats) : fmt::format("exit {}", static_cast<int>(results[i].code))});
   }
-  image::write_png(file, image::contact_sheet(pictures, columns_of(results), heading));
+  const int columns = columns_of(results);
+  const image::SheetSize size = image::contact_sheet_size(pictures, columns);
+  if (!size.is_writable()) {
+    // As many whole rows as a PNG can hold.
+    const int too_many = (size.height - image::kMaxPngSide + size.row - 1) / size.row;
+    const std::size_t rows = (pictures.size() + columns - 1) / columns;
+    pictures.resize((rows - too_many) * columns);
+    log::info(fmt::format("note: {}: shows the first {} of {} runs, as many as a picture can hold", file.string(),
+                          pictures.size(), results.size()));
+  }
+  image::write_png(file, image::contact_sheet(pictures, columns, heading));
 }
 
 }  // namespace weft::cli

@@ -27,6 +27,7 @@ bench::Table sweep_table(const std::vector<SweepResult>& results);
 /// Writes a sheet with one picture per run, its values, and the CPU time of simulation and drawing, or the exit code if
 /// the run failed. The picture is the drawn frame with index `frame`; if `frame` is missing or too large, the last one.
 /// It is grey if the run has no picture, or one of another size than the first. Writes nothing if no run has a picture.
+/// If there are more runs than a PNG can hold, the sheet shows the first ones, and a note says so.
 void write_sweep_sheet(const std::filesystem::path& file, const std::vector<SweepResult>& results,
                        const std::string& heading, std::optional<int> frame);
 
