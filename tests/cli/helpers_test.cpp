@@ -78,6 +78,17 @@ TEST_F(Helpers, ScenesOfTheTemplateOfARepositoryHaveFixedCameras) {
   EXPECT_EQ(scenes, 2);
 }
 
+// `weft` builds the program of `simulate` and `render`, and that of `diff`, each when a command needs it.
+TEST_F(Helpers, WorkflowOfARepositoryBuildsBothProgramsWithTheCacheOfTheCompiler) {
+  EXPECT_EQ(run_weft({"new", "repo", "--template", "ci"}, folder_).exit_code, 0);
+  const std::string workflow = support::read_bytes(folder_ / "repo/.github/workflows/pictures.yml");
+  const std::size_t begin = workflow.find("CCACHE_DIR:"), end = workflow.find("- name: Draw and compare");
+  for (const char* command : {".weft/weft --version", ".weft/weft diff --help"}) {
+    const std::size_t found = workflow.find(command);
+    EXPECT_TRUE(begin < found && found < end) << command;
+  }
+}
+
 TEST_F(Helpers, WatchDrawsAgainWhenTheSceneChanges) {
   std::thread change([&] {
     for (int i = 0; i < 600 && !fs::exists(folder_ / "s.png"); ++i)

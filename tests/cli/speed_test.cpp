@@ -9,6 +9,7 @@
 #include "cli/subprocess.hpp"
 #include "core/archive.hpp"
 #include "core/parallel.hpp"
+#include "lab/bench/html.hpp"
 #include "lab/bench/speed_report.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -109,6 +110,16 @@ TEST(SpeedReport, SeriesDifferInOneThingAndLeaveFailuresOut) {
   const std::string text = speed_markdown({"t", "m", {}, runs}, "p.svg");
   EXPECT_TRUE(contains(text, "## Runs that failed")) << text;
   EXPECT_TRUE(contains(text, "no memory")) << text;
+}
+
+TEST(SpeedReport, LinksToPlotsWhateverTheNameOfTheScene) {
+  const std::string name = "speed_a (1) 50%.svg", text = speed_markdown({"t", "m", {}, rows()}, name);
+  EXPECT_TRUE(contains(text, "![By particles](speed_a%20%281%29%2050%25.svg)\n")) << text;
+  const std::string page = html_page("t", text, [&](const std::string& link) {
+    EXPECT_EQ(link, link_to(name));
+    return "<svg/>";
+  });
+  EXPECT_TRUE(contains(page, "<svg/>")) << page;
 }
 
 TEST(SpeedReport, ExponentsAreSlopesBetweenSizes) {

@@ -287,6 +287,18 @@ TEST_F(LibraryFiles, ThatCannotBeUsedAreErrorsWithThePlaceInTheScene) {
   EXPECT_EQ(error.mistakes().at(0).key, "obstacle.b") << error.what();
 }
 
+TEST_F(LibraryFiles, AreFoundByChangesAfterTheCurrentFolderHasChanged) {
+  support::write_bytes(folder_ / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  support::write_bytes(folder_ / "s.toml", "[[obstacle]]\nname = \"a\"\nshape = \"mesh\"\nfile = \"a.obj\"\n");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_);
+  const Scene scene = Scene::load("s.toml");
+  std::filesystem::current_path(before);
+  EXPECT_EQ(scene.with({"time.fps=50"}).fps(), 50);
+  const auto error = thrown<SceneError>([&] { scene.with({"time.fps=-1"}); });
+  EXPECT_EQ(error.mistakes().at(0).file, "s.toml") << "as it was given";
+}
+
 TEST(LibraryErrors, OfAnObjectThatIsNotThereNameThoseThatAre) {
   const Simulation simulation(Scene::parse(kDrape));
   const auto error = thrown<std::out_of_range>([&] { simulation.frame().object("shet"); });

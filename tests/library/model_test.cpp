@@ -301,8 +301,12 @@ TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
   expect_refused("vertices that triangles use, got number 81 alone", with([](Model& m) {
                    m.cloths[0].mesh.positions.push_back({0, 0, 1});
                  }));
-  expect_refused("each particle once in a pin, got 4 twice", with([](Model& m) {
+  expect_refused("each particle once, in one pin alone, got 4 twice", with([](Model& m) {
                    m.pins = {{.cloth = "sheet", .particles = {4, 4}, .body = ""}};
+                 }));
+  expect_refused("each particle once, in one pin alone, got 4 twice", with([](Model& m) {
+                   m.pins = {{.cloth = "sheet", .particles = {3, 4}, .body = "", .release = 0.1},
+                             {.cloth = "sheet", .particles = {4}, .body = "ball"}};
                  }));
   expect_refused("a pin with particles",
                  with([](Model& m) { m.pins = {{.cloth = "sheet", .particles = {}, .body = ""}}; }));

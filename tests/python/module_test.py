@@ -3,6 +3,7 @@
 module_test.py WEFT SOURCES    PYTHONPATH names the folder of the module.
 """
 import ast
+import os
 import pathlib
 import subprocess
 import sys
@@ -56,6 +57,17 @@ class Module(unittest.TestCase):
                 numpy.testing.assert_array_equal(frame[name].positions, cached[name].positions)
                 numpy.testing.assert_array_equal(frame[name].triangles, cached[name].triangles)
             self.assertEqual(frame.report.kinetic_energy, cached.report.kinetic_energy)
+        (self.folder / "cache/frame_00007.weft").unlink()
+        self.assertEqual([frame.number for frame in cache], [0, 1, 2, 3, 4, 5, 6, 8, 9, 10])
+
+    def test_relative_paths_stay_those_of_the_folder_in_which_they_were_given(self):
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        run("simulate", "drape.toml", "--frames", "0:2", "--cache", "cache", folder=self.folder)
+        os.chdir(self.folder)
+        cache = weft.Cache("cache")
+        os.chdir(before)
+        self.assertEqual([frame.number for frame in cache], [0, 1])
 
     def test_model_of_arrays_has_the_bits_of_the_scene_that_says_the_same(self):
         scene = weft.parse(DRAPE, {"cloth.sheet.shape": "aligned_triangles", "cloth.sheet.material.fabric": "silk",
@@ -273,7 +285,7 @@ friction = 0.8
         for node in stub.body:
             if isinstance(node, ast.ClassDef) and node.name[-5:] != "Error":
                 has = {name for name in vars(getattr(weft, node.name))
-                       if not name.startswith("_") or name in ("__getitem__",)}
+                       if not name.startswith("_") or name in ("__getitem__", "__iter__")}
                 self.assertEqual(names_in(node.body) - {"__init__"}, has, node.name)
             if isinstance(node, ast.FunctionDef):
                 self.assertIn("\n", getattr(weft, node.name).__doc__)

@@ -54,7 +54,10 @@ Scene Scene::parse(std::string_view toml, const std::vector<std::string>& change
 Scene Scene::with(const std::vector<std::string>& changes) const {
   std::vector<std::string> all = data_->changes;
   all.insert(all.end(), changes.begin(), changes.end());
-  return parse(data_->text, all, data_->file);
+  // The absolute path, as the current folder may have changed since; mistakes name the file as it was given.
+  scene::LoadResult loaded = scene::load_text(data_->text, data_->scene.file, all);
+  loaded.file = data_->file;
+  return Scene(checked(std::move(loaded), std::move(all)));
 }
 
 const std::string& Scene::name() const {

@@ -173,16 +173,17 @@ std::size_t number_of(const std::string& name, const Objects& objects, const cha
   refuse("pin", "a {} ({}), got \"{}\"", kind, fmt::join(names, ", "), name);
 }
 
-void add_pin(const Pin& given, model::Model& model) {
+// `held`: cloth and number of each particle that a pin holds, to which this function adds.
+void add_pin(const Pin& given, std::set<std::pair<std::string, int>>& held, model::Model& model) {
   model::Cloth& cloth = model.cloths[number_of(given.cloth, model.cloths, "cloth")];
   model::Pin& pin = cloth.pins.emplace_back();
   if (given.particles.empty()) refuse(cloth.name, "a pin with particles, got one without");
-  std::set<int> seen;
   Vec3 sum = Vec3::Zero();
   for (const int i : given.particles) {
     if (i < 0 || static_cast<std::size_t>(i) >= cloth.start.size())
       refuse(cloth.name, "pinned particles from 0 to {}, got {}", cloth.start.size() - 1, i);
-    if (!seen.insert(i).second) refuse(cloth.name, "each particle once in a pin, got {} twice", i);
+    if (!held.insert({given.cloth, i}).second)
+      refuse(cloth.name, "each particle once, in one pin alone, got {} twice", i);
     pin.particles.push_back({.particle = i});
     sum += cloth.start[static_cast<std::size_t>(i)];
   }
@@ -254,7 +255,8 @@ model::Model physics_of(const Model& given, const std::vector<std::string>& driv
     check_name(body.name);
     model.bodies.push_back(body_of(body, std::ranges::find(driven, body.name) != driven.end()));
   }
-  for (const Pin& pin : given.pins) add_pin(pin, model);
+  std::set<std::pair<std::string, int>> held;
+  for (const Pin& pin : given.pins) add_pin(pin, held, model);
   return model;
 }
 

@@ -136,7 +136,7 @@ void bind_model(py::module_& module) {
            "`mass`: above 0, forces move it (kg).")
       .def("pin", &add_pin, py::arg("cloth"), py::arg("particles"), py::kw_only(), py::arg("body") = "",
            py::arg("release") = std::numeric_limits<double>::infinity(),
-           "Hold particles where they start, or at a body, until `release` (s).");
+           "Hold particles where they start, or at a body, until `release` (s). A particle can be in one pin only.");
 }
 
 }  // namespace weft::python

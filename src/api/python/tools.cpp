@@ -56,7 +56,9 @@ ErrorOfRun estimate_error(const Scene& public_scene, bool mesh) {
 class Cache {
  public:
   explicit Cache(const std::filesystem::path& folder)
-      : reader_(with_public_errors([&] { return std::make_unique<cache::Reader>(folder); })) {}
+      // Absolute, so that frames are found after os.chdir(), too.
+      : reader_(with_public_errors(
+            [&] { return std::make_unique<cache::Reader>(std::filesystem::current_path() / folder); })) {}
 
   std::vector<int> frames() const {
     return with_public_errors([&] { return reader_->frames(); });
@@ -152,7 +154,13 @@ void bind_tools(py::module_& module) {
       .def_property_readonly("frames", &Cache::frames, "Numbers of the frames that the cache contains now.")
       .def_property_readonly("fps", &Cache::fps)
       .def_property_readonly("scene", &Cache::scene)
-      .def("__getitem__", &Cache::frame, py::arg("number"), WithoutLock());
+      .def("__getitem__", &Cache::frame, py::arg("number"), WithoutLock())
+      .def(
+          "__iter__",
+          [](const py::object& self) {
+            return py::module_::import("builtins").attr("map")(self.attr("__getitem__"), self.attr("frames"));
+          },
+          "The frames that the cache contains now, in order; each is read when it is needed.");
   bind_difference(module);
 }
 

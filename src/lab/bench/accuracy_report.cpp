@@ -253,8 +253,8 @@ std::string accuracy_markdown(const std::string& title, const Accuracy& accuracy
       "exponent observed since the row above.\n\n## The reference\n\n{}\n## Steps and newton_tolerance\n\nError of the "
       "{} and CPU time. * marks where newton_tolerance a tenth as large changes less than a tenth of the error, or "
       "less than is known of it: the step decides.\n\n",
-      title, recommendation(accuracy), conclusion(accuracy), work_plot, settings_plot, accuracy.duration,
-      accuracy.frames,
+      title, recommendation(accuracy), conclusion(accuracy), link_to(work_plot), link_to(settings_plot),
+      accuracy.duration, accuracy.frames,
       accuracy.contact
           ? fmt::format("With contact the motion is chaotic: errors are those of the medians over {} starts, "
                         "1 µm apart. Energy: largest of all frames; the rest: of the last frame. ",

@@ -6,8 +6,8 @@
 
 namespace weft::bench {
 
-/// Returns the SVG text of a plot, given its name in the report.
-using FindPlot = std::function<std::string(const std::string& name)>;
+/// Returns the SVG text of a plot, given its link in the report; see link_to().
+using FindPlot = std::function<std::string(const std::string& link)>;
 
 /// Converts the Markdown subset of the reports (headings, paragraphs, `code`, **strong**, tables, plots) to HTML. Plots
 /// are embedded, so that the page needs no other file.

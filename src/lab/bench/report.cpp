@@ -74,6 +74,17 @@ std::string markdown(const Table& table) {
   return text;
 }
 
+std::string link_to(const std::string& file) {
+  std::string link;
+  for (const char c : file) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+                          c == '.' || c == '_' || c == '~';
+    link += is_plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
+  }
+  return link;
+}
+
 int Tally::wrong() const {
   return of_[static_cast<std::size_t>(Verdict::unbounded)] + of_[static_cast<std::size_t>(Verdict::not_finite)];
 }

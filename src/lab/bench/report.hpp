@@ -17,6 +17,10 @@ using Table = std::vector<std::vector<std::string>>;
 std::string csv(const Table& table);
 std::string markdown(const Table& table);
 
+/// Destination of a link to `file`, which is in the folder of the report. Bytes other than ASCII letters, digits and
+/// "-._~" are percent-encoded (RFC 3986), as spaces and parentheses end a destination in Markdown.
+std::string link_to(const std::string& file);
+
 /// Counts how often each verdict occurred.
 class Tally {
  public:

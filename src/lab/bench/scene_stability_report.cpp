@@ -204,7 +204,7 @@ std::string scene_stability_markdown(const std::string& title, const SceneStabil
       "# Stability of {}\n\n{}\n\n![map]({})\n\n{} runs of {} frames, {:.0f} CPU s; {} of them break. Factors are on "
       "the values of the scene; something counts as broken that is not so in the scene as it is.\n\n{}\n## All "
       "runs\n\n{}",
-      title, margin_sentence(stability), picture, stability.trials.size() + 1, stability.frames, cpu_s, broken,
+      title, margin_sentence(stability), link_to(picture), stability.trials.size() + 1, stability.frames, cpu_s, broken,
       markdown(margin_table(stability)), markdown(trial_table(stability)));
 }
 

@@ -387,7 +387,7 @@ std::string speed_markdown(const SpeedReport& report, const std::string& plot) {
       "# Speed: {}\n\n{}\n![By particles]({})\n\nFrames {} up to but without {}, all times of one frame on average. "
       "{}. "
       "Each run is a process of its own.\n\n",
-      report.title, conclusion(report.runs), plot, report.frames.begin, report.frames.end, report.machine);
+      report.title, conclusion(report.runs), link_to(plot), report.frames.begin, report.frames.end, report.machine);
   const auto section = [&](const std::string& heading, const std::string& about, const Table& table) {
     if (table.size() > 1) text += fmt::format("## {}\n\n{}\n\n{}\n", heading, about, markdown(table));
   };

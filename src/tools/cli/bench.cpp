@@ -193,7 +193,7 @@ ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path
   write_file(folder / settings, settings_plot);
   write_file(folder / (name + ".md"), text);
   write_file(folder / (name + ".html"), bench::html_page(title, text, [&](const std::string& plot) {
-               return plot == work ? work_plot : settings_plot;
+               return plot == bench::link_to(work) ? work_plot : settings_plot;
              }));
   print("{}\n{}written to {}\n", bench::recommendation(accuracy), bench::conclusion(accuracy),
         (folder / (name + ".html")).string());

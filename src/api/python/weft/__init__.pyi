@@ -1,5 +1,5 @@
 import os
-from typing import Any, Mapping, Optional, Sequence, Union
+from typing import Any, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy
 import numpy.typing
@@ -227,6 +227,7 @@ class Cache:
     @property
     def scene(self) -> Scene: ...
     def __getitem__(self, number: int) -> Frame: ...
+    def __iter__(self) -> Iterator[Frame]: ...
 
 class Difference:
     @property

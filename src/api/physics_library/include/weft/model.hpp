@@ -66,7 +66,7 @@ struct Body {
   bool collide = true;  ///< false: no contact; pins can still follow the body
 };
 
-/// Holds particles of a cloth where they start, or at a body.
+/// Holds particles of a cloth where they start, or at a body. A particle can be in one pin only.
 struct Pin {
   std::string cloth;
   std::vector<int> particles;
