@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "film/production/scene_simulation.hpp"
+#include "film/scene/ropes.hpp"
 #include "support/intersections.hpp"
 
 namespace weft::untangle {
@@ -139,6 +140,30 @@ TEST(UntangledStart, ASheetThatLiesOnAnotherGoesInFrontOfItAlsoWhereItIsPinned) 
   EXPECT_LT(max_displacement(*first, *production::view_start(scene).snapshot), scene.cloths[0].material.thickness);
 }
 
+TEST(UntangledStart, ASheetThatLiesExactlyOnAnObstacleGoesOntoItsFront) {
+  for (const bool is_floor : {true, false}) {
+    scene::Scene scene = empty_scene();
+    scene.cloths.push_back(sheet("sheet", {0, 0, 0.25}, 0.4, 9));
+    if (is_floor)
+      add_obstacle(scene, "floor", scene::Plane{}, {0, 0, 0.25});
+    else
+      add_obstacle(scene, "table", scene::BoxShape{{1, 1, 0.5}});
+    const frame::SnapshotPtr first = production::SceneSimulation(scene).snapshot();
+    EXPECT_GT(lowest(first->states[0].positions), 0.25);
+    EXPECT_LT(max_displacement(*first, *production::view_start(scene).snapshot), scene.cloths[0].material.thickness);
+  }
+}
+
+TEST(UntangledStart, ASheetOnWhichARopeLiesGoesBack) {
+  scene::Scene scene = empty_scene();
+  scene.cloths.push_back(sheet("sheet", {0, 0, 1}, 0.4, 9));
+  scene::Rope rope;
+  rope.name = "rope";
+  rope.points = {{-0.3, 0.01, 1}, {0.3, 0.02, 1}};
+  scene.cloths.push_back(scene::as_cloth(rope));
+  EXPECT_EQ(refusal(scene), "");
+}
+
 TEST(UntangledStart, ACrumpledSheetThatCrossesItselfIsSmoothedWhereItDoes) {
   scene::Scene scene = empty_scene();
   scene.cloths.push_back(sheet("sheet", Vec3::Zero(), 0.3));
@@ -156,6 +181,14 @@ TEST(UntangledStart, WhatMayNotBeMovedIsNot) {
   EXPECT_EQ(judged_pairs(*first), 0U);
   EXPECT_EQ(first->states[0].positions, given->states[0].positions);
   EXPECT_NE(first->states[1].positions, given->states[1].positions);
+}
+
+TEST(UntangledStart, ClothInsideABodyMayStayThereIfAnotherClothIsUntangled) {
+  scene::Scene scene = empty_scene();
+  scene.cloths = {sheet("a", {0, 0, 0}, 0.1, 4), sheet("b", {2, 0, 0}, 0.1, 4)};
+  scene.cloths[0].start = scene::ClothStart::as_given;
+  add_obstacle(scene, "drum", scene::Sphere{1});
+  EXPECT_EQ(refusal(scene), "");
 }
 
 TEST(UntangledStart, ASheetThatAPoleGoesThroughIsRefusedWithWhereAndHowFar) {

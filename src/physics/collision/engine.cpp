@@ -127,7 +127,8 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
   pushed_pairs_.clear();
   // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here,
-  // because pairs that only turning planes separate come near each other.
+  // because pairs that only turning planes separate come near each other. Exception: pairs for which separate_guess()
+  // has found such a plane are not tested again if it has not moved them since.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
   find_failing(x_t0, x_t1, PlaneKinds::constant);
   if (response_.form() == ResponseForm::springs)

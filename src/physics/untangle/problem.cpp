@@ -19,8 +19,10 @@ Fabric::Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, s
       movable(may_move),
       edges(mesh::collect_edges(of_bodies.triangles())),
       neighbours(rest.size()),
-      on_border(x.size(), 0) {
+      on_border(x.size(), 0),
+      can_move(of_bodies.size(), 0) {
   for (std::size_t b = 0; b < bodies.size(); ++b) thickness.push_back(bodies[b].thickness);
+  for (Index i = 0; i < particles(); ++i) can_move[bodies.body_of(i)] |= movable[i];
   const auto add = [&](Index i, Index j, bool bend) {
     const double at_start = (x[i] - x[j]).norm(), at_rest = (rest[i] - rest[j]).norm();
     links.push_back({i, j, kMinLengthRatio * std::min(at_start, at_rest), std::max(at_start, at_rest), bend});

@@ -43,6 +43,7 @@ struct Fabric {
   std::vector<std::vector<Index>> neighbours;  ///< per particle
   std::vector<std::uint8_t> on_border;         ///< per vertex
   std::vector<double> thickness;               ///< per body [m]
+  std::vector<std::uint8_t> can_move;          ///< per body: whether any of its vertices is movable
 
   bool is_cloth(Index vertex) const { return vertex < particles(); }
   Index particles() const { return static_cast<Index>(neighbours.size()); }

@@ -122,13 +122,12 @@ class Untangling {
     return any;
   }
 
-  // Separates coincident cloths, of which neither is on a side of the other: moves the later cloth to the front of the
-  // earlier one, and the earlier one back from particles of the later one that are held. If no particle of the later
-  // cloth is movable, moves the earlier cloth to the front of the later one.
+  // Separates coincident surfaces, of which neither is on a side of the other: moves the later cloth to the front of
+  // the earlier one, and the earlier one back from particles of the later one that are held. If no particle of the
+  // later one is movable, as of obstacles, moves the earlier cloth to its front. A rope has no front: moves the cloth
+  // back.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
-    std::vector<std::uint8_t> can_move(fabric_.bodies.size(), 0);  // per body: whether any vertex is movable
-    for (Index i = 0; i < fabric_.particles(); ++i) can_move[fabric_.bodies.body_of(i)] |= fabric_.movable[i];
     const auto normal = [&](const collision::Triangle& of) {
       return Vec3((x_[of[1]] - x_[of[0]]).cross(x_[of[2]] - x_[of[0]]).stableNormalized());
     };
@@ -137,12 +136,11 @@ class Untangling {
     };
     for (const collision::TrianglePair& pair : finder_.near(x_, kTouchDistance)) {
       const collision::CornerPair corners{fabric_.bodies.triangles()[pair.a], fabric_.bodies.triangles()[pair.b]};
-      if (!fabric_.is_cloth(corners.b[0]) ||
-          fabric_.bodies.body_of(corners.a[0]) == fabric_.bodies.body_of(corners.b[0]))
-        continue;
+      if (fabric_.bodies.body_of(corners.a[0]) == fabric_.bodies.body_of(corners.b[0])) continue;
       if (collision::closest_features(corners, x_).points.distance_sq > kTouchDistance * kTouchDistance) continue;
-      if (can_move[fabric_.bodies.body_of(corners.b[0])] == 0) {
-        move(corners.a, normal(corners.b));
+      if (fabric_.can_move[fabric_.bodies.body_of(corners.b[0])] == 0) {
+        const Vec3 front = normal(corners.b);
+        move(corners.a, front.isZero() ? Vec3(-normal(corners.a)) : front);
         continue;
       }
       move(corners.b, normal(corners.a));

@@ -84,7 +84,8 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
                                       std::span<const Vec3> x) {
   const Index particles = fabric.particles();
   std::vector<std::uint8_t> inside(particles, 0);
-  for (Index i = 0; i < particles; ++i) inside[i] = solid.is_near(x[i], 0) && solid.inside(x[i]);
+  for (Index i = 0; i < particles; ++i)
+    inside[i] = fabric.can_move[fabric.bodies.body_of(i)] != 0 && solid.is_near(x[i], 0) && solid.inside(x[i]);
   std::vector<Index> move_of(x.size(), -1);  // per vertex: index among the moves of the present region
   std::vector<InsideRegion> regions;
   for (Index first = 0; first < particles; ++first) {

@@ -23,10 +23,10 @@ struct InsideRegion {
   std::vector<Move> moves;  ///< out of the body, to the height `above` over its surface
 };
 
-/// Finds all regions of cloth inside `solid` at x [m]. In each, either every particle takes its nearest way out, or all
-/// move in one direction, or the whole mesh moves; the way that costs least is chosen. For example, a sheet through a
-/// ball is moved to the side where its smaller part is, and a garment that is too small outward on all sides. `above`:
-/// height over the surface, per body of cloth [m].
+/// Finds all regions of movable cloth inside `solid` at x [m]. In each, either every particle takes its nearest way
+/// out, or all move in one direction, or the whole mesh moves; the way that costs least is chosen. For example, a sheet
+/// through a ball is moved to the side where its smaller part is, and a garment that is too small outward on all sides.
+/// `above`: height over the surface, per body of cloth [m].
 std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, std::span<const double> above,
                                       std::span<const Vec3> x);
 

@@ -165,6 +165,22 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
   }
 }
 
+TEST(Separation, PushingAPieceOfRopeOffATriangleKeepsTheMomentum) {
+  const std::vector<Triangle> triangles{{0, 1, 1}, {2, 3, 4}};
+  const std::vector<TrianglePair> pairs{{0, 1}};
+  const std::vector<Vec3> x_t0{{-0.1, 0, 0.01}, {0.1, 0, 0.01}, {-0.2, -0.2, 0}, {0.2, -0.2, 0}, {0, 0.2, 0}};
+  std::vector<Vec3> x_t1 = x_t0;
+  for (const std::size_t end : {0, 1}) x_t1[end].z() = -0.02;
+  std::vector<Vec3> pushed = x_t1;
+  Separation separation(triangles, {});
+  separation.watch(pairs, x_t0);
+  ASSERT_TRUE(separation.enforce(x_t0, pushed, std::vector<std::uint8_t>(x_t0.size(), kFree)).separated);
+  Vec3 gain = Vec3::Zero();  // all masses are equal
+  for (std::size_t v = 0; v < pushed.size(); ++v) gain += pushed[v] - x_t1[v];
+  EXPECT_GT(pushed[0].z(), x_t1[0].z());
+  EXPECT_LT(gain.norm(), 1e-12);
+}
+
 TEST(Separation, WhatCannotMoveIsNotMoved) {
   // One side of each pair is an obstacle, which cannot be moved.
   LonePairs pairs = random_pairs(200, 0.05, 4);

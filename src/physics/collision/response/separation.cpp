@@ -100,11 +100,13 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
   };
   std::array<Corner, 6> all;
   std::size_t count = 0;
-  for (const bool is_of_a : {true, false})
-    for (const Index v : is_of_a ? pair.a : pair.b)
+  for (const bool is_of_a : {true, false}) {
+    const Triangle& side = is_of_a ? pair.a : pair.b;
+    for (const Index v : std::span(side).first(side[1] == side[2] ? 2 : 3))  // an edge repeats its second end
       if (step.movable[v] == kFree && group_of(v) == nullptr)
         all[count++] = {n.dot(step.x_t1[v]) + (is_of_a ? -0.5 : 0.5) * target, masses_.empty() ? 1 : masses_[v],
                         is_of_a};
+  }
   const std::span<Corner> corners(all.data(), count);
   std::ranges::sort(corners, {}, &Corner::limit);
   const auto momentum_gain = [&](double c) {  // sum of mass times push along n [kg m]
