@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 
 #include "film/environment/environment.hpp"
+#include "physics/mesh/geometry.hpp"
 
 namespace weft::environment {
 namespace {
@@ -32,6 +34,26 @@ TEST(Start, ScaleStretchesAlongWeftAndWarpAboutTheMiddleAndLeavesTheRestShape) {
   EXPECT_NEAR((x[4] - x[0]).norm(), 3 * 1, 1e-12);
   EXPECT_NEAR((x[40] - x[0]).norm(), 0.25 * 2, 1e-12);
   EXPECT_LT((x[22] - Vec3(1, 2, 3)).norm(), 1e-12);  // the middle
+}
+
+TEST(Start, ScaleStretchesPatternsAcrossAndAlongTheUpAxis) {
+  scene::Scene scene = turned_sheet();
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.shape = scene::ClothShape::pattern;
+  cloth.file = std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/pillow.toml";
+  cloth.edge_length = 0.1;
+  cloth.pose.rotation = Quat::Identity();
+  for (const auto up : {scene::UpAxis::z, scene::UpAxis::y}) {
+    scene.up = up;
+    cloth.start_scale = {1, 1};
+    const Vec3 size = mesh::bounding_box(Environment(scene).model.cloths[0].start).sizes();
+    cloth.start_scale = {3, 0.5};
+    const Vec3 scaled = mesh::bounding_box(Environment(scene).model.cloths[0].start).sizes();
+    const int warp = up == scene::UpAxis::z ? 2 : 1;
+    EXPECT_NEAR(scaled.x(), 3 * size.x(), 1e-12);
+    EXPECT_NEAR(scaled[warp], 0.5 * size[warp], 1e-12);
+    EXPECT_NEAR(scaled[3 - warp], size[3 - warp], 1e-12);
+  }
 }
 
 TEST(Start, NoiseIsBoundedDifferentForEachParticleAndTheSameInEveryRun) {

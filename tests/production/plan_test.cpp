@@ -17,9 +17,10 @@ TEST(Plan, SaysThatAScenesObjectsCanCollideWhereTheyCan) {
   const std::string sheet = "[[cloth]]\nname = 'sheet'\nparticles = 3\n", off = "[contact]\nself = false\n",
                     ball = "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nposition = [0, 0, 2]\n",
                     floor = "[[obstacle]]\nname = 'floor'\nshape = 'plane'\nposition = [0, 0, -3]\n";
-  for (const std::string& text : {sheet, off + sheet, off + sheet + ball, off + sheet + ball + "collide = false\n",
-                                  "[contact]\nself = false\nobstacles = false\n" + sheet + ball, ball, floor + ball,
-                                  floor + ball + "mass = 1\n", std::string("[contact]\nobstacles = false\n") + ball}) {
+  for (const std::string& text :
+       {sheet, off + sheet, off + sheet + ball, off + sheet + ball + "collide = false\n",
+        "[contact]\nself = false\nobstacles = false\n" + sheet + ball, ball, floor + ball, floor + ball + "mass = 1\n",
+        floor + ball + "mass = 1\ncollide = false\n", std::string("[contact]\nobstacles = false\n") + ball}) {
     const scene::Scene scene = support::scene_of_text(text);
     EXPECT_EQ(can_collide(scene), simulation::CollisionStage::needed(environment::Environment(scene).model)) << text;
   }
@@ -31,10 +32,24 @@ TEST(Plan, BlamesNoKeyOfContactOrMaterialInASceneWithoutCloth) {
       "[[obstacle]]\nname = 'floor'\nshape = 'plane'\n");
   std::map<std::string, std::string> reasons;
   for (const PlanItem& item : plan(scene)) reasons[item.part] = item.reason;
-  EXPECT_EQ(reasons.at("collision: cloth and obstacles"), "no cloth, and forces move no obstacle");
-  EXPECT_EQ(reasons.at("collision: velocity constraints"), "no cloth, and forces move no obstacle");
+  EXPECT_EQ(reasons.at("collision: cloth and obstacles"), "no cloth, and forces move no obstacle that collides");
+  EXPECT_EQ(reasons.at("collision: velocity constraints"), "no cloth, and forces move no obstacle that collides");
   EXPECT_EQ(reasons.at("collision: cloth and cloth"), "no cloth");
   EXPECT_EQ(reasons.at("force: bending"), "no cloth");
+}
+
+TEST(Warnings, NamePinsOfRopesByTheirKeys) {
+  const std::string ball = "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nradius = 0.1\n";
+  const auto warnings_of = [&](const std::string& pin) {
+    return find_warnings(support::scene_of_text(
+        "[[rope]]\nname = 'line'\nfrom = [0, 0, 1]\nto = [1, 0, 1]\n[[rope.pin]]\nat = 0\n" + pin + ball));
+  };
+  const auto jump = warnings_of("keys = [{ time = 0, offset = [0.2, 0, 0] }]\n"),
+             far = warnings_of("follow = 'ball'\n");
+  ASSERT_EQ(jump.size(), 1U);
+  EXPECT_TRUE(jump[0].starts_with("rope.line.pin.0: its keys begin 0.2 m away")) << jump[0];
+  ASSERT_EQ(far.size(), 1U);
+  EXPECT_TRUE(far[0].starts_with("rope.line.pin.0: follows 'ball' from 0.9 m away")) << far[0];
 }
 
 }  // namespace

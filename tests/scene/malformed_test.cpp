@@ -106,6 +106,8 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:5:8: cloth.coat.over: expected the name of a cloth, got \"shrt\"; did you mean shirt?\n"},
     {"OverNumber", "[[cloth]]\nname = 'coat'\nover = ['coat', 3]\n",
      "s.toml:3:17: cloth.coat.over: expected a text or an array of texts, got 3\n"},
+    {"OverAnEmptyName", "[[cloth]]\nname = 'coat'\nover = ['']\n",
+     "s.toml:3:8: cloth.coat.over: expected a text or an array of texts, got an empty one\n"},
     {"OverItself", "[[cloth]]\nname = 'coat'\nover = 'coat'\n",
      "s.toml:3:8: cloth.coat.over: expected cloth that is put on before this one, got \"coat\", which it is itself\n"},
     {"OverInACircle",

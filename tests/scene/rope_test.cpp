@@ -108,6 +108,11 @@ TEST(RopeScenes, MistakesNameTheKeyAndWhatIsExpected) {
       "from = [0, 0, 0]\nto = [1, 0, 0]\n[[cloth]]\nname = \"flag\"\n[[attach]]\nname = \"a\"\ncloth = \"flag\"\n"
       "to = \"line\"\nat = 0.5\n",
       "attach.a.at: expected none for a cloth that is not a rope");
+  const std::string tied =
+      "from = [0, 0, 0]\nto = [1, 0, 0]\n[[obstacle]]\nname = \"post\"\nshape = \"box\"\n"
+      "position = [0, 0, 2]\n[[attach]]\nname = \"a\"\ncloth = \"line\"\nto = \"post\"\n";
+  expect(tied + "at = 0.5\nlow = [0.2, 0]\n", "attach.a.low: expected none beside at, which gives the part");
+  EXPECT_EQ(load_rope(tied + "low = [0.2, 0]\n").describe(), "");
 }
 
 }  // namespace

@@ -415,6 +415,18 @@ TEST(RigidBodies, MayTouchWhatTheyStandOnWhereOtherThingsAreUntangled) {
   EXPECT_NEAR(middle(vertices(simulation, 2)).z(), 0.1002, 1e-9);  // lifted by 0.2 mm
 }
 
+TEST(RigidBodies, ThatDoNotCollideFallThroughClothAndFloors) {
+  const std::string sheet = "[[cloth]]\nname = \"sheet\"\nsize = 0.5\nparticles = 3\nposition = [0, 0, 0.95]\n",
+                    floor = "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\nposition = [0, 0, 0.9]\n",
+                    cube = box("cube", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, 1.1]\n");
+  for (const std::string& text : {sheet + cube + "collide = false\n", "[contact]\nobstacles = false\n" + sheet + cube,
+                                  floor + cube + "collide = false\n"}) {
+    production::SceneSimulation simulation(support::scene_of_text(timed(0.4) + text));
+    for (int frame = 0; frame < 10; ++frame) simulation.advance();
+    EXPECT_NEAR(middle(vertices(simulation, 1)).z(), 1.1 - 0.5 * kGravity * 0.4 * (0.4 + 0.01), 1e-3) << text;
+  }
+}
+
 TEST(RigidBodies, ArePlannedAndDoubtedWithEulersMethod) {
   const std::string ball = "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nmass = 1\n";
   const auto counts = [](const scene::Scene& scene) {

@@ -35,11 +35,14 @@ double noise(std::uint64_t z) {
 
 // Positions of the particles at the start: those of `rest`, the mesh placed in the scene, scaled about the position of
 // the cloth's pose, with noise.
-std::vector<Vec3> start_positions(const scene::Cloth& cloth, const mesh::Mesh& rest) {
+std::vector<Vec3> start_positions(scene::UpAxis up, const scene::Cloth& cloth, const mesh::Mesh& rest) {
   std::vector<Vec3> x = rest.positions;
   if (cloth.start_scale == Vec2(1, 1) && cloth.start_noise == 0) return x;
+  Vec3 factors(cloth.start_scale.x(), cloth.start_scale.y(), 1);
+  // Patterns stand upright, with warp along the up axis; with y up, this is the axis of factors.y().
+  if (cloth.shape == scene::ClothShape::pattern && up == scene::UpAxis::z) std::swap(factors.y(), factors.z());
   const Mat3 axes = cloth.pose.rotation.toRotationMatrix();
-  const Mat3 scale = axes * Vec3(cloth.start_scale.x(), cloth.start_scale.y(), 1).asDiagonal() * axes.transpose();
+  const Mat3 scale = axes * factors.asDiagonal() * axes.transpose();
   for (std::size_t i = 0; i < x.size(); ++i) {
     x[i] = cloth.pose.position + scale * (x[i] - cloth.pose.position);
     for (int axis = 0; axis < 3; ++axis)
@@ -291,7 +294,7 @@ MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Weare
   choose_particles(scene, cloth, file, where, made);
   if (meets_obstacles(scene) && scene::rectangle_particles(cloth) == 0) check_triangles(made.cloth.sheet, where);
   for (Vec3& x : made.cloth.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
-  made.cloth.start = start_positions(cloth, made.cloth.mesh);
+  made.cloth.start = start_positions(scene.up, cloth, made.cloth.mesh);
   made.cloth.velocity = cloth.velocity;
   made.cloth.spin = std::numbers::pi / 180 * cloth.spin;
   return made;

@@ -43,6 +43,10 @@ bool any_pin(const scene::Scene& scene, bool (*is)(const scene::Pin&)) {
                              [&](const scene::Cloth& cloth) { return std::ranges::any_of(cloth.pins, is); });
 }
 
+std::string pin_name(const scene::Cloth& cloth, std::size_t number) {
+  return fmt::format("{}.{}.pin.{}", cloth.rope ? "rope" : "cloth", cloth.name, number);
+}
+
 struct MovingPins {
   std::vector<Index> first;  // first particle of each cloth, then the number of all particles
   simulation::Pins pins;
@@ -66,7 +70,7 @@ struct MovingPins {
   bool is_moved(const scene::Scene& scene, std::size_t number) const { return has_keys(pin(scene, number)); }
   std::string name(const scene::Scene& scene, std::size_t pin) const {
     const simulation::Pins::Info& info = pins.info(pin);
-    return fmt::format("cloth.{}.pin.{}", scene.cloths[info.cloth].name, info.number);
+    return pin_name(scene.cloths[info.cloth], info.number);
   }
 };
 
@@ -197,10 +201,10 @@ std::vector<std::string> find_far_pins(const scene::Scene& scene, const environm
         nearest = std::min(nearest, collision::nearest_point(place, body->mesh.topology.triangles, x).height);
       }
       if (nearest > kMaxPinDistance && std::isfinite(nearest))
-        found.push_back(fmt::format(
-            "cloth.{}.pin.{}: follows '{}' from {:.3g} m away at the start, where what is worn lies on it; position "
-            "of the cloth brings it nearer",
-            scene.cloths[c].name, p, scene.cloths[c].pins[p].follow, nearest));
+        found.push_back(
+            fmt::format("{}: follows '{}' from {:.3g} m away at the start, where what is worn lies on it; {} nearer",
+                        pin_name(scene.cloths[c], p), scene.cloths[c].pins[p].follow, nearest,
+                        scene.cloths[c].rope ? "its points bring it" : "position of the cloth brings it"));
     }
   return found;
 }

@@ -130,8 +130,9 @@ bool collides_with_obstacles(const Scene& scene) {
   const auto collides = [](const auto& body) { return body.collide; };
   const bool any_collides =
       std::ranges::any_of(scene.obstacles, collides) || std::ranges::any_of(scene.characters, collides);
-  const bool any_moved =
-      !scene.cloths.empty() || std::ranges::any_of(scene.obstacles, [](const auto& o) { return scene::is_dynamic(o); });
+  const bool any_moved = !scene.cloths.empty() || std::ranges::any_of(scene.obstacles, [](const auto& o) {
+    return scene::is_dynamic(o) && o.collide;
+  });
   return scene.contact.obstacles && any_collides && any_moved;
 }
 
@@ -151,7 +152,7 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
   const bool self = collides_with_itself(scene);
   const char* without_obstacles = obstacles + characters == 0 ? "no obstacle collides"
                                   : !scene.contact.obstacles  ? "contact.obstacles is false"
-                                                              : "no cloth, and forces move no obstacle";
+                                                              : "no cloth, and forces move no obstacle that collides";
   items.push_back(item_if("collision: cloth and obstacles", with_obstacles, bodies, without_obstacles));
   items.push_back(item_if("collision: cloth and cloth", self, "itself and others",
                           scene.cloths.empty() ? kNoCloth : "contact.self is false"));

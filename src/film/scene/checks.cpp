@@ -96,6 +96,10 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
   }
   if (part.at && !cloth.rope)
     findings.report(path + ".at", "expected none for a cloth that is not a rope; give the part by low and high");
+  for (const auto& [key, is_given] :
+       {std::pair(".low", part.low != Vec2(0, 0)), std::pair(".high", part.high != Vec2(1, 1)),
+        std::pair(".mask", part.mask.has_value())})
+    if (part.at && cloth.rope && is_given) findings.report(path + key, "expected none beside at, which gives the part");
   if (part.at && part.at->x() > part.at->y())
     findings.report(path + ".at",
                     fmt::format("expected the lower end first, got {} before {}", part.at->x(), part.at->y()));

@@ -1,6 +1,7 @@
 // Part of the reader: converts single TOML values to checked values.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <stdexcept>
@@ -63,6 +64,8 @@ Value Reader::read_texts(const toml::node& node, const Rule& rule, const std::st
   }
   if (texts.empty())
     return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+  if (std::ranges::any_of(texts, &std::string::empty))
+    return refuse(node, path, fmt::format("expected {}, got an empty one", expectation(rule)));
   return texts;
 }
 

@@ -16,14 +16,15 @@ void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_c
     triangles_.push_back(t);
   }
   body_of_.insert(body_of_.end(), vertex_count, traits_.size());
-  limb_of_.insert(limb_of_.end(), limbs.empty() ? vertex_count : in_front, 0);
-  limb_of_.insert(limb_of_.end(), limbs.begin(), limbs.end());
+  if (limbs.empty())
+    limb_of_.insert(limb_of_.end(), vertex_count, 0);
+  else
+    limb_of_.insert(limb_of_.end(), limbs.begin(), limbs.end());
   material_of_.insert(material_of_.end(), vertex_count, materials_.size());
   materials_.push_back({traits_.size(), traits.thickness, traits.friction});
   for (const Patch& patch : patches) {
     for (std::size_t v = 0; v < patch.vertices.size(); ++v)
-      if (patch.vertices[v] != 0)
-        material_of_[static_cast<std::size_t>(first_vertex + in_front) + v] = materials_.size();
+      if (patch.vertices[v] != 0) material_of_[static_cast<std::size_t>(first_vertex) + v] = materials_.size();
     materials_.push_back({traits_.size(), patch.thickness, patch.friction});
   }
   traits_.push_back(traits);

@@ -47,8 +47,8 @@ class Bodies {
 
   /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`: number of positions
   /// before these vertices that count as part of the body but belong to no triangle, such as frame particles; patches
-  /// and `limbs` do not include them. If patches share a vertex, the last one counts. `limbs`: limb number of each
-  /// vertex, from 0; empty: one limb.
+  /// and `limbs` include them. If patches share a vertex, the last one counts. `limbs`: limb number of each vertex,
+  /// from 0; empty: one limb.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
            std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
 

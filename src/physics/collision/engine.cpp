@@ -20,14 +20,14 @@ double detection_distance_of(const Bodies& bodies) {
   return numerics.contact.detection * max_thickness;
 }
 
-// The rigid bodies that are carried by frame particles.
+// The rigid bodies with triangles that are carried by frame particles.
 std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const double> masses) {
   constexpr Index kFrame = 4;
   std::vector<RigidGroup> groups;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Index frame = bodies[b].frame;
-    if (frame < 0) continue;
     const Surface& surface = bodies.surfaces()[b];
+    if (frame < 0 || surface.triangles.empty()) continue;
     const auto of_frame = masses.subspan(static_cast<std::size_t>(frame), kFrame);
     // The vertices of a body may begin with frame particles, which belong to no triangle.
     Index first = bodies.vertex_count(), last = 0;

@@ -20,19 +20,20 @@ bool bodies_collide(const model::Model& model) {
   return model.contact.obstacles && std::ranges::any_of(model.bodies, &model::Body::collide);
 }
 
-bool dynamic_bodies_collide(const model::Model& model) {
-  return model.contact.obstacles &&
-         std::ranges::any_of(model.bodies, [](const model::Body& body) { return body.collide && body.dynamics; });
+bool moves_by_forces(const model::Body& body) {
+  return body.dynamics != nullptr;
 }
 
-// Numbers of the colliding bodies; those that forces move come first.
+// Numbers of the colliding bodies; those that forces move come first. If no such body collides, one that does not is
+// the first: the frame particles of all bodies that forces move belong to the first body.
 std::vector<std::size_t> colliding_bodies(const model::Model& model) {
   std::vector<std::size_t> bodies;
-  if (!bodies_collide(model)) return bodies;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    if (model.bodies[b].collide) bodies.push_back(b);
-  std::stable_partition(bodies.begin(), bodies.end(),
-                        [&](std::size_t b) { return model.bodies[b].dynamics != nullptr; });
+    if (model.contact.obstacles && model.bodies[b].collide) bodies.push_back(b);
+  std::stable_partition(bodies.begin(), bodies.end(), [&](std::size_t b) { return moves_by_forces(model.bodies[b]); });
+  const auto first = std::ranges::find_if(model.bodies, moves_by_forces);
+  if (first != model.bodies.end() && (bodies.empty() || !moves_by_forces(model.bodies[bodies.front()])))
+    bodies.insert(bodies.begin(), static_cast<std::size_t>(first - model.bodies.begin()));
   return bodies;
 }
 
@@ -102,9 +103,11 @@ collision::Bodies make_bodies(const model::Model& model, const ClothSystem& clot
   for (std::size_t b : colliding_bodies(model)) {
     const model::Body& body = model.bodies[b];
     if (body.dynamics) {
-      bodies.add(body.colliding_triangles(), static_cast<Index>(body.mesh.positions.size()),
+      const bool collides = model.contact.obstacles && body.collide;
+      bodies.add(collides ? body.colliding_triangles() : std::span<const mesh::Triangle>(),
+                 static_cast<Index>(body.mesh.positions.size()),
                  {.deformable = true,
-                  .thickness = thickness_of(*body.dynamics),
+                  .thickness = collides ? thickness_of(*body.dynamics) : 0,
                   .friction = body.friction,
                   .rigid = true,
                   .frame = first_of_frames[b]},
@@ -113,11 +116,8 @@ collision::Bodies make_bodies(const model::Model& model, const ClothSystem& clot
     }
     std::vector<collision::Patch> patches;
     for (const model::Patch& patch : body.patches) patches.push_back({patch.vertices, patch.thickness, patch.friction});
-    // If no body that forces move collides, the frame particles, which move, come before the first obstacle.
-    const Index in_front = std::exchange(frames, 0);
     bodies.add(body.colliding_triangles(), static_cast<Index>(body.mesh.positions.size()),
-               {.friction = body.friction, .moving = body.moving || in_front > 0, .rigid = !body.deforms()}, patches,
-               body.limbs, in_front);
+               {.friction = body.friction, .moving = body.moving, .rigid = !body.deforms()}, patches, body.limbs);
   }
   return bodies;
 }
@@ -138,7 +138,9 @@ double sagitta(double radius, double angle) {
 }  // namespace
 
 bool CollisionStage::needed(const model::Model& model) {
-  return (!model.cloths.empty() && (model.contact.self || bodies_collide(model))) || dynamic_bodies_collide(model);
+  const auto meets = [](const model::Body& body) { return moves_by_forces(body) && body.collide; };
+  return (!model.cloths.empty() && (model.contact.self || bodies_collide(model))) ||
+         (model.contact.obstacles && std::ranges::any_of(model.bodies, meets));
 }
 
 CollisionStage::CollisionStage(const model::Model& model, const ClothSystem& cloth, SystemState& start)

@@ -149,7 +149,7 @@ class CollisionStage {
 
   const model::Model& model_;
   std::vector<std::string> names_;   // of all cloths, then of all bodies_
-  std::vector<std::size_t> bodies_;  // colliding bodies of the model; those that forces move come first
+  std::vector<std::size_t> bodies_;  // numbers in the model; those that forces move come first, see colliding_bodies()
   std::vector<double> radii_;  // per body: largest distance of a vertex from its origin [m]; 0: still or deforming
   std::vector<Box3> boxes_;    // bounding box of each body in its own coordinates
   std::size_t particles_;

@@ -27,15 +27,16 @@ bool is_driven_by_pins_alone(const model::Model& model) {
   for (const model::Body& body : model.bodies) {
     if (body.deforms() || (body.collide && body.moving)) return false;
     // A body that gets a velocity at its release gains energy then.
-    if (body.dynamics && body.dynamics->release > 0 &&
+    if (body.dynamics && body.dynamics->release > model.start_time() &&
         (body.dynamics->velocity != Vec3::Zero() || body.dynamics->angular_velocity != Vec3::Zero()))
       return false;
   }
   // The work of attachments is not counted if they contract to a given length, or if their target moves.
   for (const model::Attachment& attachment : model.attachments)
     if (attachment.length || (attachment.to_body && model.bodies[*attachment.to_body].moving)) return false;
-  if (model.physics.keys.size() > 1 || !model.fans.empty()) return false;
-  const Vec3& wind = model.physics.keys.empty() ? model.physics.wind : model.physics.keys.front().wind;
+  const std::vector<model::PhysicsKey>& keys = model.physics.keys;
+  if (keys.size() > 1 || !model.fans.empty()) return false;
+  const Vec3& wind = keys.empty() ? model.physics.wind : keys.front().wind;
   return model.physics.air_density == 0 || (wind == Vec3::Zero() && model.physics.gusts.speed == 0);
 }
 

@@ -149,8 +149,8 @@ void PinchedPairs::serialize(Archive& archive) {
         });
       };
       const auto is_particle = [&](Index v) { return v >= 0 && v < first_obstacle_; };
-      require(std::ranges::all_of(key.cloth, is_particle) && !origin.faces.empty() &&
-                  std::ranges::all_of(origin.faces, is_of_body),
+      require(std::ranges::all_of(key.cloth, is_particle) && key.body > body_of_[first_obstacle_ - 1] &&
+                  key.body <= body_of_.back() && !origin.faces.empty() && std::ranges::all_of(origin.faces, is_of_body),
               "pinched triangles of a cloth and an obstacle");
     }
   });

@@ -89,9 +89,7 @@ class PinchedPairs {
 
   const std::map<Key, Origin>& origins() const { return origins_; }
   std::size_t body_of(Index vertex) const { return body_of_[vertex]; }
-  bool is_obstacle(const Surface& surface) const {
-    return surface.first_vertex + surface.vertex_count > first_obstacle_;
-  }
+  bool is_obstacle(const Surface& surface) const { return surface.first_vertex >= first_obstacle_; }
 
   /// Saves or restores all triangles and origins. Throws std::runtime_error if they do not fit these bodies.
   template <class Archive>
