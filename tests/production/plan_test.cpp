@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "film/environment/environment.hpp"
 #include "physics/simulation/collision_stage.hpp"
@@ -50,6 +51,25 @@ TEST(Warnings, NamePinsOfRopesByTheirKeys) {
   EXPECT_TRUE(jump[0].starts_with("rope.line.pin.0: its keys begin 0.2 m away")) << jump[0];
   ASSERT_EQ(far.size(), 1U);
   EXPECT_TRUE(far[0].starts_with("rope.line.pin.0: follows 'ball' from 0.9 m away")) << far[0];
+}
+
+TEST(Warnings, NameInfinitePlanesThatPicturesDoNotShow) {
+  const std::string floor = "[[obstacle]]\nname = 'floor'\nshape = 'plane'\n",
+                    wall = "[[obstacle]]\nname = 'wall'\nshape = 'plane'\nrotation = [90, 0, 0]\n";
+  const std::vector<std::string> found = find_warnings(support::scene_of_text(floor + wall));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].starts_with("obstacle.wall: pictures show only one infinite plane, 'floor'")) << found[0];
+  for (const char* key : {"infinite = false\n", "look.visible = false\n"})
+    EXPECT_TRUE(find_warnings(support::scene_of_text(floor + wall + key)).empty()) << key;
+}
+
+TEST(Warnings, NameLightsThatPicturesDoNotShow) {
+  std::string lights = "[[obstacle]]\nname = 'floor'\nshape = 'plane'\n";
+  for (const char* name : {"a", "b", "c", "d"}) lights += std::string("[[light]]\nname = '") + name + "'\n";
+  EXPECT_TRUE(find_warnings(support::scene_of_text(lights)).empty());
+  const std::vector<std::string> found = find_warnings(support::scene_of_text(lights + "[[light]]\nname = 'e'\n"));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].starts_with("light.e: has no effect")) << found[0];
 }
 
 }  // namespace

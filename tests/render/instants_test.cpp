@@ -92,6 +92,35 @@ TEST(Instants, LensBlursWhatIsOutOfFocus) {
   EXPECT_LE(middle_of_edge(), 2);
 }
 
+// From straight above, no direction of the world is upright in the picture; still, the pictures from all points of the
+// lens have the same one. The square is in focus and 28 pixels wide; a mean of rotated squares would lose its corners.
+TEST(Instants, LensDoesNotRotateThePictureFromAbove) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = square_at(0).stage;
+  add_square(snapshot, frame::ObjectKind::obstacle, Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 0.1).appearance.color =
+      Vec3::Ones();
+  snapshot.cameras = {camera_at(Vec3(0, 0, 2), Vec3::Zero(), 20)};
+  snapshot.cameras[0].aperture = 0.5;
+  snapshot.lights = {sun(-Vec3::UnitZ())};
+  const image::Image image = Renderer(small_settings()).draw(snapshot);
+  EXPECT_GT(image.pixel(100, 50)[1], 200);
+  EXPECT_GT(image.pixel(112, 38)[1], 0.95 * image.pixel(100, 50)[1]);
+}
+
+// The diagonal of a ground that extends behind the camera is seen as a vertical line, 0.866 of the half width to the
+// right of the middle: at 186.6 pixels.
+TEST(Looks, WireShowsThePartOfAnEdgeBeforeTheCamera) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = square_at(0).stage;
+  add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0, -0.5), Vec3::UnitZ(), Vec3::UnitX(), 10);
+  snapshot.cameras = {camera_at(Vec3::Zero(), Vec3(0, 2, 0), 60)};
+  snapshot.lights = {sun(-Vec3::UnitZ())};
+  Settings settings = small_settings();
+  settings.look = Look::wire;
+  const image::Image wire = Renderer(settings).draw(snapshot);
+  EXPECT_LT(wire.pixel(186, 80)[1], 0.75 * wire.pixel(180, 80)[1]);
+}
+
 TEST(Looks, ClayHasNoColorsAndWireShowsEdges) {
   frame::FrameSnapshot snapshot = square_at(0, 1);
   auto surface = std::make_shared<frame::Surface>(*snapshot.surfaces[0]);

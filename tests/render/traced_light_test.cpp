@@ -160,6 +160,15 @@ TEST(ReflectedLight, OfARectangleIsItsFormFactor) {
   }
 }
 
+TEST(Lamps, ASpotHasTheConeOfItsScene) {
+  frame::Light spot;
+  spot.kind = frame::Light::Kind::spot;
+  for (const double angle : {1.0, 45.0, 170.0}) {
+    spot.cone_angle = angle;
+    EXPECT_NEAR(make_lamp(spot, Vec3::Ones()).packed.position.w(), std::cos(radians(angle) / 2), 1e-6) << angle;
+  }
+}
+
 TEST(ReflectedLight, SurfacesAreShadedByOthers) {
   // A plate between the sun and the lit rectangle.
   std::vector<Mesh> meshes{rectangle(0.5, 0.5, 1), rectangle(1, 1, -1)};

@@ -135,6 +135,10 @@ struct Camera {
   double smoothing = 0.5;  ///< time over which the paths of subjects and camera are smoothed [s]
 };
 
+/// Maximum number of lights of which pictures show the effect; further ones are ignored. Each costs rays at every
+/// pixel.
+inline constexpr int kMaxLights = 4;
+
 /// A light at one time. Sun: parallel light along `direction`. Spot: from `position` toward `target`.
 struct Light {
   enum class Kind { sun, spot };

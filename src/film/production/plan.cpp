@@ -7,6 +7,7 @@
 
 #include "film/environment/acting.hpp"
 #include "film/environment/environment.hpp"
+#include "film/frame/frame_snapshot.hpp"
 #include "film/production/pin_warnings.hpp"
 #include "film/scene/following.hpp"
 #include "film/scene/layers.hpp"
@@ -268,8 +269,28 @@ std::vector<PlanItem> plan(const Scene& scene) {
   return items;
 }
 
-std::vector<std::string> find_warnings(const scene::Scene& scene) {
+std::vector<std::string> find_undrawn(const scene::Scene& scene) {
   std::vector<std::string> found;
+  const scene::Obstacle* drawn = nullptr;
+  for (const scene::Obstacle& obstacle : scene.obstacles) {
+    const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
+    if (plane == nullptr || !plane->infinite || !obstacle.look.visible) continue;
+    if (drawn == nullptr)
+      drawn = &obstacle;
+    else
+      found.push_back(fmt::format(
+          "obstacle.{}: pictures show only one infinite plane, '{}', and not this one; set infinite = false "
+          "in one of them, so that it is drawn within its size",
+          obstacle.name, drawn->name));
+  }
+  for (std::size_t k = frame::kMaxLights; k < scene.lights.size(); ++k)
+    found.push_back(fmt::format("light.{}: has no effect, as pictures show that of the first {} lights only",
+                                scene.lights[k].name, frame::kMaxLights));
+  return found;
+}
+
+std::vector<std::string> find_warnings(const scene::Scene& scene) {
+  std::vector<std::string> found = find_undrawn(scene);
   if (scene.time.integrator == scene::Integrator::implicit_euler)
     for (const scene::Obstacle& obstacle : scene.obstacles)
       if (turns_freely(obstacle))

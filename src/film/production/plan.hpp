@@ -23,6 +23,10 @@ std::vector<PlanItem> plan(const scene::Scene& scene);
 /// Whether anything in the scene can collide.
 bool can_collide(const scene::Scene& scene);
 
+/// One warning for each visible infinite plane, and for each light, that pictures do not show because there are too
+/// many.
+std::vector<std::string> find_undrawn(const scene::Scene& scene);
+
 /// Warnings of `weft check`, one text each: settings that may end a run, or that the author hardly intends. If the
 /// scene has moving pins, throws as the constructor of SceneSimulation does.
 std::vector<std::string> find_warnings(const scene::Scene& scene);

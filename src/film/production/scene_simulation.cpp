@@ -5,6 +5,7 @@
 #include "core/log.hpp"
 #include "film/environment/environment.hpp"
 #include "film/production/pin_warnings.hpp"
+#include "film/production/plan.hpp"
 
 namespace weft::production {
 
@@ -12,7 +13,8 @@ SceneSimulation::SceneSimulation(const scene::Scene& scene) : SceneSimulation(sc
 
 SceneSimulation::SceneSimulation(const scene::Scene& scene, const environment::Environment& environment)
     : Simulation(environment.model), maker_(scene, environment), heat_(scene.render.heat) {
-  for (const std::string& text : find_jumps(scene, environment)) log::warn(text);
+  for (const auto& texts : {find_undrawn(scene), find_jumps(scene, environment)})
+    for (const std::string& text : texts) log::warn(text);
 }
 
 frame::SnapshotPtr SceneSimulation::snapshot() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace weft::render {
 namespace {
@@ -84,8 +85,11 @@ void draw_edges(std::span<const SurfaceBuffers> surfaces, const View& view, int 
       return Place{(0.5 + 0.5 * at.x() / at.w()) * width, (0.5 + 0.5 * at.y() / at.w()) * height, 1 / at.w()};
     };
     for (const auto& [a, b] : edges_of(surfaces[i].surface())) {
-      if (std::min(clip[a].w(), clip[b].w()) < view.near) continue;
-      canvas.line(place(clip[a]), place(clip[b]), static_cast<float>(kFirstSurface + i));
+      Eigen::Vector4d from = clip[a], to = clip[b];
+      if (from.w() > to.w()) std::swap(from, to);
+      if (to.w() <= view.near) continue;
+      if (from.w() < view.near) from += (view.near - from.w()) / (to.w() - from.w()) * (to - from);
+      canvas.line(place(from), place(to), static_cast<float>(kFirstSurface + i));
     }
   }
 }

@@ -15,7 +15,7 @@ Vec3 travel_direction(const frame::Light& light) {
 }
 
 double half_cone(const frame::Light& light) {
-  return radians(std::clamp(light.cone_angle, 1.0, 160.0)) / 2;
+  return radians(std::clamp(light.cone_angle, 1.0, 170.0)) / 2;
 }
 
 /// Tangent of half the angular size of the light source. A minimum avoids shadow edges without any penumbra.

@@ -12,8 +12,7 @@
 
 namespace weft::render {
 
-/// Maximum number of lights; further ones are ignored. Each light costs rays at every pixel.
-inline constexpr int kMaxLights = 4;
+using frame::kMaxLights;
 
 /// The snapshot's lights, at most kMaxLights. If it has none, the lights of the look: a warm key light from above,
 /// beside the camera; the look `stage` has a second light from the other side.

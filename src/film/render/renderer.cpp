@@ -62,21 +62,6 @@ struct Plan {
   Lighting lighting;
 };
 
-Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Stage& stage, const frame::Camera& camera,
-               double aspect) {
-  Plan plan;
-  plan.stage = stage;
-  plan.stage.heat = heat_shown(snapshot, stage);
-  plan.up = up_of(snapshot);
-  plan.subjects = subject_bounds(snapshot);
-  plan.surroundings = surroundings_bounds(snapshot);
-  plan.floor = find_floor(snapshot, plan.up);
-  plan.view = make_view(camera, plan.up, aspect, plan.subjects, plan.floor);
-  plan.lights = effective_lights(snapshot, plan.stage.look, plan.view.axes, plan.up);
-  plan.lighting = make_lighting(plan.stage, plan.up, plan.floor, plan.lights);
-  return plan;
-}
-
 }  // namespace
 
 struct Renderer::Impl {
@@ -134,7 +119,7 @@ struct Renderer::Impl {
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
   void blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
                                std::span<const DrawnMesh> opaque, const PixelArea& area);
-  Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const;
+  Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, const Vec3& upright) const;
   void draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan);
   void draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before);
   void draw_layers(const Plan& plan, const frame::FrameSnapshot* before);
@@ -368,10 +353,21 @@ void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const c
   }
 }
 
-Plan Renderer::Impl::plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const {
-  frame::Stage stage = snapshot.stage ? *snapshot.stage : frame::Stage{};
-  stage.look = settings.look.value_or(stage.look);
-  return make_plan(snapshot, stage, camera, settings.aspect());
+/// `upright`: direction that is upright in the picture.
+Plan Renderer::Impl::plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera,
+                             const Vec3& upright) const {
+  Plan plan;
+  plan.stage = snapshot.stage ? *snapshot.stage : frame::Stage{};
+  plan.stage.look = settings.look.value_or(plan.stage.look);
+  plan.stage.heat = heat_shown(snapshot, plan.stage);
+  plan.up = up_of(snapshot);
+  plan.subjects = subject_bounds(snapshot);
+  plan.surroundings = surroundings_bounds(snapshot);
+  plan.floor = find_floor(snapshot, plan.up);
+  plan.view = make_view(camera, upright, settings.aspect(), plan.subjects, plan.floor);
+  plan.lights = effective_lights(snapshot, plan.stage.look, plan.view.axes, plan.up);
+  plan.lighting = make_lighting(plan.stage, plan.up, plan.floor, plan.lights);
+  return plan;
 }
 
 void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
@@ -380,7 +376,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   const double shutter = before ? settings.motion_blur.value_or(scene_blur) : 0;
   // With data layers, the picture stays sharp: compositors blur it by the motion and depth layers.
   if (data || (shutter <= 0 && camera.aperture <= 0)) {
-    const Plan plan = plan_of(snapshot, camera);
+    const Plan plan = plan_of(snapshot, camera, up_of(snapshot));
     draw_sharp(snapshot, plan);
     if (data) draw_layers(plan, before);
     return;
@@ -407,8 +403,12 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   Smear smear(settings.width, settings.height);
   for (const Instant& instant : instants(shutter, camera.aperture > 0, count)) {
     const frame::FrameSnapshot moved = snapshot_at(instant.back);
-    const Plan plan =
-        plan_of(moved, through_lens(between(camera, camera_before, instant.back), up_of(moved), instant.lens));
+    const frame::Camera middle = between(camera, camera_before, instant.back);
+    const Vec3 up = up_of(moved);
+    // From all points of the lens, the same direction is upright. With `up` itself, the pictures of a camera that looks
+    // steeply down would be rotated against each other.
+    const Vec3 upright = smears ? up : view_axes(middle.target - middle.position, up).up;
+    const Plan plan = plan_of(moved, through_lens(middle, up, instant.lens), upright);
     draw_sharp(moved, plan);
     for (std::size_t i = 0; i < sums.size(); ++i) sharp[i] = linear_of(rgba[i]);
     if (!smears) {
@@ -451,7 +451,7 @@ void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* b
     layers.channels.push_back({"caught.A", std::move(alpha), true});
   }
   std::optional<Before> earlier;
-  if (before) earlier.emplace(Before{*before, plan_of(*before, choose_camera(*before)).view});
+  if (before) earlier.emplace(Before{*before, plan_of(*before, choose_camera(*before), up_of(*before)).view});
   data->draw(passes->surfaces, plan.floor, plan.view, earlier, layers);
 }
 

@@ -293,7 +293,8 @@ void shape_rows(TableBuilder<Obstacle>& rows) {
                             .vector("size", of_shape(&Plane::size), {"x", "y"}, kExtent, "m", "edge lengths")
                             .single_fills_all()
                             .plain(Type::boolean, "infinite", of_shape(&Plane::infinite),
-                                   "whether it is drawn up to the horizon; it collides only within `size`"));
+                                   "whether it is drawn up to the horizon; it collides only within `size`. Of several "
+                                   "such planes only the first visible one is drawn"));
   rows.variant(
       "mesh",
       Rows()

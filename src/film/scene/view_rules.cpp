@@ -231,7 +231,7 @@ const Table& light_rules() {
     };
   };
   static const Table kTable =
-      Rows("A light: still, or moved by key frames.")
+      Rows("A light: still, or moved by key frames. Pictures show the effect of the first 4.")
           .starting_from({.name = {}, .color = {1, 1, 1}, .keys = {LightKey{}}})
           .plain(Type::name, "name", &Light::name, "unique name of the light")
           .need(Need::required)
