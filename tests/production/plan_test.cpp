@@ -39,6 +39,21 @@ TEST(Plan, BlamesNoKeyOfContactOrMaterialInASceneWithoutCloth) {
   EXPECT_EQ(reasons.at("force: bending"), "no cloth");
 }
 
+TEST(Plan, UsesGravityOfKeysInPlaceOfTheConstantOne) {
+  const auto gravity = [](const std::string& physics) {
+    for (const PlanItem& item :
+         plan(support::scene_of_text("[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n[physics]\n" + physics)))
+      if (item.part == "force: gravity") return std::string(item.used ? "uses " : "leaves out ") + item.reason;
+    return std::string();
+  };
+  EXPECT_EQ(gravity("gravity = [0, 0, -4]\n"), "uses 4 m/s²");
+  EXPECT_EQ(gravity("gravity = [0, 0, 0]\n"), "leaves out physics.gravity is zero");
+  EXPECT_EQ(
+      gravity("gravity = [0, 0, 0]\nkeys = [{ time = 0, gravity = [0, 0, 0] }, { time = 1, gravity = [0, 0, -9] }]\n"),
+      "uses at most 9 m/s²");
+  EXPECT_EQ(gravity("keys = [{ time = 0, gravity = [0, 0, 0] }]\n"), "leaves out gravity of physics.keys is zero");
+}
+
 TEST(Warnings, NamePinsOfRopesByTheirKeys) {
   const std::string ball = "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nradius = 0.1\n";
   const auto warnings_of = [&](const std::string& pin) {

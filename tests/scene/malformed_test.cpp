@@ -362,6 +362,10 @@ TEST_F(SceneFile, ThatIsMissingIsNamed) {
             (folder_ / "no.toml").string() + ": expected a scene file, got no such file\n");
 }
 
+TEST_F(SceneFile, WithoutANameIsRefused) {
+  EXPECT_TRUE(messages("").starts_with(": expected a scene file, got no such file\n")) << messages("");
+}
+
 TEST_F(SceneFile, ThatIsAFolderIsRefused) {
   EXPECT_EQ(messages(folder_), folder_.string() + ": expected a scene file, got a folder\n");
 }
@@ -424,7 +428,7 @@ TEST(Mistakes, OfADeeplyDottedKeyDoNotExhaustTheStack) {
 }
 
 TEST(Mistakes, OfANameThatCannotNameOutputsAreSaidBeforeAnythingElse) {
-  for (const char* name : {"a\nb.toml", "a\x1b[2J.toml", "...toml", "a\x7f.toml", "\t.toml"})
+  for (const char* name : {"", "a\nb.toml", "a\x1b[2J.toml", "...toml", "a\x7f.toml", "\t.toml"})
     EXPECT_NE(load_text(kFloor, name).describe().find("expected a file whose name without its ending can name outputs"),
               std::string::npos)
         << name;

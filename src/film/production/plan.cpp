@@ -39,9 +39,12 @@ bool air_acts(const Scene& scene) {
 }
 
 void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
-  const double gravity = scene.physics.gravity.norm();
-  items.push_back(
-      item_if("force: gravity", gravity > 0, fmt::format("{:.4g} m/s²", gravity), "physics.gravity is zero"));
+  const auto& keys = scene.physics.keys;
+  double gravity = keys.empty() ? scene.physics.gravity.norm() : 0;
+  for (const auto& key : keys) gravity = std::max(gravity, key.gravity.norm());
+  items.push_back(item_if("force: gravity", gravity > 0,
+                          fmt::format("{}{:.4g} m/s²", keys.empty() ? "" : "at most ", gravity),
+                          keys.empty() ? "physics.gravity is zero" : "gravity of physics.keys is zero"));
   items.push_back(cloth_item(
       "force: stretch", scene, [](const Cloth& c) { return !c.rope; }, kNoCloth));
   items.push_back(cloth_item(

@@ -53,7 +53,7 @@ LoadResult load_from(const std::optional<std::string_view>& text, const std::fil
   LoadResult result;
   result.file = file;
   result.text = text.value_or("");
-  result.scene.file = std::filesystem::absolute(file);
+  if (!file.empty()) result.scene.file = std::filesystem::absolute(file);  // absolute("") throws
   result.scene.name = file.stem().string();
   if (!is_plain_name(result.scene.name))
     findings.report("", {},

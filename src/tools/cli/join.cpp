@@ -212,16 +212,15 @@ Metadata describe(const Film& film, const FrameRange& frames) {
   return metadata;
 }
 
-/// Encodes the pictures as one video. If interrupted, leaves no file and returns false.
-bool encode(const std::vector<fs::path>& pictures, const fs::path& file, const video::Settings& settings) {
+/// Encodes the pictures as one video. If interrupted, leaves no file and throws Error(interrupted).
+void encode(const std::vector<fs::path>& pictures, const fs::path& file, const video::Settings& settings) {
   const StopSignals signals;
   video::Encoder encoder(file, settings);
   for (const fs::path& picture : pictures) {
-    if (signals.requested()) return false;
+    if (signals.requested()) throw Error(ExitCode::interrupted, "interrupted; no video was written");
     encoder.add(image::read_png(picture));
   }
   encoder.finish();
-  return true;
 }
 
 }  // namespace
@@ -254,7 +253,7 @@ ExitCode join(const JoinOptions& options) {
     settings.codec = codec;
     settings.crf = options.video.crf.value_or(settings.crf);
     settings.metadata = metadata;
-    if (!encode(files, options.output, settings)) return ExitCode::interrupted;
+    encode(files, options.output, settings);
   }
   log::info(fmt::format("{}: frames {} from {} file{}", options.output.string(), frames.text(), files.size(),
                         files.size() == 1 ? "" : "s"));
