@@ -1,5 +1,6 @@
 #include "film/assets/mesh_file.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -9,7 +10,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "assets/small_files.hpp"
 #include "core/error.hpp"
@@ -218,6 +221,21 @@ TEST_F(MeshFiles, OfASequenceAreTurnedAsTheyStateElseFromY) {
   EXPECT_LT((farthest("y.fbx", with_up_axis_of_fbx(fbx_square(), 1), FileUp::as_file) - upright).norm(), 1e-5);
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
   EXPECT_LT((farthest("a.obj", obj, FileUp::as_file) - upright).norm(), 1e-5);
+}
+
+TEST_F(MeshFiles, OfASequenceMayHavePolygonsWhoseShapeChanges) {
+  const auto hexagon = [](int dented) {  // that corner lies near the middle
+    std::string obj;
+    for (int k = 0; k < 6; ++k) {
+      const double angle = k * std::numbers::pi / 3, radius = k == dented ? 0.1 : 1;
+      obj += fmt::format("v {} {} 0\n", radius * std::cos(angle), radius * std::sin(angle));
+    }
+    return obj + "f 1 2 3 4 5 6\n";
+  };
+  const std::vector<std::filesystem::path> files{put("0.obj", hexagon(0)), put("1.obj", hexagon(1))};
+  const LoadedSequence loaded = load_sequence(files, {{}, scene::FileUp::as_file, scene::UpAxis::y}, "here");
+  EXPECT_EQ(loaded.positions.size(), 2U);
+  EXPECT_EQ(loaded.mesh.topology.triangles.size(), 4U);
 }
 
 TEST_F(MeshFiles, CountVerticesThatNoTriangleHas) {

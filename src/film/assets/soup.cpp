@@ -157,6 +157,8 @@ void append_face(Soup& soup, std::span<const Index> corners) {
   if (corners.size() == 4) {
     soup.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
   } else {
+    soup.polygons.push_back(static_cast<Index>(corners.size()));
+    soup.polygons.insert(soup.polygons.end(), corners.begin(), corners.end());
     mesh::triangulate_face(corners, soup.positions, soup.triangles);
   }
 }
@@ -213,6 +215,7 @@ std::string to_bytes(const Soup& soup) {
   put(bytes, names);
   put(bytes, soup.triangles);
   put(bytes, soup.quads);
+  put(bytes, soup.polygons);
   put(bytes, soup.up);
   return bytes;
 }
@@ -232,6 +235,7 @@ Soup from_bytes(std::string_view bytes) {
   }
   take(bytes, soup.triangles);
   take(bytes, soup.quads);
+  take(bytes, soup.polygons);
   take(bytes, soup.up);
   return soup;
 }

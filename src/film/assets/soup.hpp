@@ -27,6 +27,8 @@ struct Soup {
   std::vector<std::string> group_names;
   std::vector<mesh::Triangle> triangles;
   std::vector<mesh::Quad> quads;
+  /// Faces that are no quads, before they are divided into `triangles`: of each, the number of its corners, then these.
+  std::vector<Index> polygons;
   std::vector<int> up;  ///< up axis of the file or its format, 0 x, 1 y, 2 z; empty: not stated
 };
 

@@ -217,9 +217,10 @@ Tube::Section Tube::section(double s) const {
   const double place = (s - first_) / kSpacing;
   const double last = static_cast<double>(sections_.size() - 1);
   const double inside = std::clamp(place, 0.0, last);
-  const auto below = std::min(static_cast<std::size_t>(inside), sections_.size() - 2);
+  // A limb that is shorter than kSpacing has one section.
+  const auto below = std::min(static_cast<std::size_t>(inside), std::max<std::size_t>(sections_.size(), 2) - 2);
   const double fraction = inside - static_cast<double>(below);
-  const Section &a = sections_[below], &b = sections_[below + 1];
+  const Section &a = sections_[below], &b = sections_[std::min(below + 1, sections_.size() - 1)];
   Section mixed = a;
   mixed.centre = (1 - fraction) * a.centre + fraction * b.centre;
   mixed.along = ((1 - fraction) * a.along + fraction * b.along).normalized();
