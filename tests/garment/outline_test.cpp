@@ -27,7 +27,7 @@ double area_of(const std::string& path) {
 
 TEST(Outlines, LinesInEveryFormGiveTheSamePolygon) {
   for (const char* path : {"M0 0L3 0L3 2L0 2Z", "m 0,0 l 3,0 0,2 -3,0 z", "M0 0H3V2H0Z", "M0 0h3v2h-3z",
-                           "M 0 0 3 0 3 2 0 2 0 0 Z", "M+0-0L3e0.0L3 2 0,2z"}) {
+                           "M 0 0 3 0 3 2 0 2 0 0 Z", "M+0-0L3e0.0L3 2 0,2z", "M0,0 L3,0 L3,2 L0,2 L0,0"}) {
     const ParsedPath parsed = parse_path(path);
     ASSERT_EQ(parsed.mistake, "") << path;
     EXPECT_EQ(parsed.outline.size(), 4U) << path;

@@ -217,6 +217,12 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
     EXPECT_NEAR(zipped.rest[tie.a].x(), zipped.rest[tie.b].x(), 1e-6);
     EXPECT_NEAR(zipped.rest[tie.a].z(), zipped.rest[tie.b].z(), 1e-6);
   }
+  // The rim has no end that could have a second tie.
+  std::set<Index> tied;
+  for (const mesh::Tie& tie : zipped.ties) EXPECT_TRUE(tied.insert(tie.a).second) << tie.a;
+  const mesh::Sheet buttoned = sew_text(round + "buttons = 2\n", 0.03).sheet;
+  ASSERT_EQ(buttoned.ties.size(), 2U);
+  EXPECT_GT((buttoned.rest[buttoned.ties[0].a] - buttoned.rest[buttoned.ties[1].a]).norm(), 0.35) << "opposite";
   std::string both_before = panels + seams;
   both_before.replace(both_before.find("'back'\n" + path), 6, "'front'");
   expect_mistake(both_before, "panels that lie one on the other need side = \"front\" and side = \"back\"");

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include "film/garment/triangulation.hpp"
@@ -51,6 +53,24 @@ TEST_F(Drawings, TransformsOfElementAndGroupsApply) {
   expect_corners(
       head + "<rect id='p' x='1' y='2' width='30' height='40' transform='matrix(1 0 0 1 4,5) skewX(45)'/></svg>",
       {{0.007, -0.007}, {0.037, -0.007}, {0.077, -0.047}, {0.047, -0.047}});
+}
+
+TEST_F(Drawings, RectanglesMayHaveRoundCorners) {
+  const auto area = [&](const std::string& radii) {
+    const Outline outline = load(
+        "<svg width='1000mm' viewBox='0 0 1000 1000'><rect id='p' x='100' y='200' width='400' "
+        "height='200' " +
+        radii + "/></svg>");
+    return std::abs(polygon_area(sample_points(outline)));
+  };
+  // Corners of radii a and b lack (4 - π) a b of the area.
+  const double corner = 4 - std::numbers::pi;
+  EXPECT_NEAR(area(""), 0.08, 1e-12);
+  EXPECT_NEAR(area("rx='0' ry='50'"), 0.08, 1e-12);
+  EXPECT_NEAR(area("rx='50'"), 0.08 - corner * 0.05 * 0.05, 1e-4);
+  EXPECT_NEAR(area("rx='50' ry='20'"), 0.08 - corner * 0.05 * 0.02, 1e-4);
+  EXPECT_NEAR(area("rx='900'"), 0.08 - corner * 0.2 * 0.1, 3e-4) << "an ellipse";
+  expect_refused("<svg><rect id='p' width='1' height='1' rx='a'/></svg>", "rx and ry as numbers");
 }
 
 TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineColumnAndElement) {
@@ -119,11 +139,12 @@ TEST_F(Drawings, NumbersHaveOneSign) {
   expect_refused("<svg><rect id='p' x='+-5' width='1' height='1'/></svg>", "numbers");
 }
 
-// Valentina and Seamly write paths without ids.
+// Valentina and Seamly write paths without ids, and without Z.
 TEST_F(Drawings, WithoutIdsGiveTheirPathsByNumber) {
-  support::write_bytes(folder_ / "d.svg",
-                       "<svg width='10mm' viewBox='0 0 10 10'><g><path d='M0 0L1 0L0 1Z'/></g><path d='M5 0L7 0L5 2Z'/>"
-                       "<rect x='1' y='2' width='3' height='4'/></svg>");
+  support::write_bytes(
+      folder_ / "d.svg",
+      "<svg width='10mm' viewBox='0 0 10 10'><g><path d='M0 0L1 0L0 1Z'/></g><path d='M5,0 L7,0 L5,2 L5,0'/>"
+      "<rect x='1' y='2' width='3' height='4'/></svg>");
   EXPECT_LT((load_svg_panel(folder_ / "d.svg", "path:2").outline[0].start().cwiseAbs() - Vec2(0.005, 0)).norm(), 1e-12);
   EXPECT_EQ(load_svg_panel(folder_ / "d.svg", "rect:1").outline.size(), 4u);
   for (const char* id : {"path:3", "path:0", "path:x", "front", ""})

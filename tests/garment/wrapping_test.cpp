@@ -237,14 +237,19 @@ TEST_F(Wrapping, SeamsThatTearAreTiesOfTheirLoadPerLength) {
   const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
   std::string text = kVest;
   text.replace(text.find(seam), seam.size(), seam + "tearing_load = 300\n");
-  const mesh::Sheet sheet = sew_text(text).sheet;
-  EXPECT_EQ(sheet.tearing_seams, std::vector<std::string>{"front.right + back.right"});
-  double strength = 0;
-  for (const mesh::Tie& tie : sheet.ties) {
-    EXPECT_EQ(tie.tearing, 0);
-    strength += tie.strength;
+  // More buttons than particles share the load among those that there are.
+  std::string buttoned = kVest;
+  buttoned.replace(buttoned.find(seam), seam.size(), seam + "tearing_load = 300\nbuttons = 100\n");
+  for (const std::string& each : {text, buttoned}) {
+    const mesh::Sheet sheet = sew_text(each).sheet;
+    EXPECT_EQ(sheet.tearing_seams, std::vector<std::string>{"front.right + back.right"});
+    double strength = 0;
+    for (const mesh::Tie& tie : sheet.ties) {
+      EXPECT_EQ(tie.tearing, 0);
+      strength += tie.strength;
+    }
+    EXPECT_NEAR(strength, 300 * 0.5, 1e-9);
   }
-  EXPECT_NEAR(strength, 300 * 0.5, 1e-9);
 }
 
 TEST_F(Wrapping, AStifferPanelIsStifferAlone) {
@@ -272,6 +277,8 @@ TEST_F(Wrapping, MistakesSayWhatWouldBeRight) {
   expect(panel + "side = 'back'\nangle = 90\n", "expected either side or angle, got both");
   expect(panel + "[[panel]]\nname = 'b'\nmirror_of = 'c'\n",
          "panel.b.mirror_of: expected a panel before it that has an outline, got \"c\"");
+  expect(panel + "[[panel]]\nname = 'b'\nmirror_of = 'a'\nid = 'c'\n",
+         "panel.b.mirror_of: expected an outline of its own or of another panel, got both");
   expect("[[panel]]\nname = 'a'\naround = 'left_leg'\nposition = [0, 0]\npath = 'M 0 0 L 0.3 0 L 0 0.2 Z'\n",
          "expected a wearer with the joints UpperLeg, LowerLeg and Foot for panels around left_leg");
 }

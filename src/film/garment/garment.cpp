@@ -371,12 +371,20 @@ class Sewing {
                                : straight < end_distance();
       if (in_line) std::ranges::reverse(b);
       const std::size_t last = a.size() - 1;
-      const std::vector<double> lengths = band_along(seam.a).lengths;
-      const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
-      Index last_tied = -1;
-      const std::size_t count = seam.buttons > 0 ? static_cast<std::size_t>(seam.buttons) : a.size();
+      const auto length_of = [this](const std::string& edge) {
+        const std::vector<double> lengths = band_along(edge).lengths;
+        return std::accumulate(lengths.begin(), lengths.end(), 0.0);
+      };
+      // As that of other seams, the length is the mean of both sides.
+      const double length = 0.5 * (length_of(seam.a) + length_of(seam.b));
+      // If both edges are rings, their last particles are the first again.
+      const bool ring = last > 0 && a.front() == a.back() && b.front() == b.back();
+      const std::size_t places = ring ? last : a.size();
+      // If there are more buttons than particles, each particle gets one tie.
+      const std::size_t count = seam.buttons > 0 ? std::min(places, static_cast<std::size_t>(seam.buttons)) : places;
+      const std::size_t gaps = ring ? count : count - 1;
       for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t k = count == 1 ? last / 2 : (2 * i * last + count - 1) / (2 * (count - 1));
+        const std::size_t k = count == 1 ? last / 2 : (2 * i * last + gaps) / (2 * gaps);
         mesh::Tie tie{.a = a[k], .b = b[k], .strength = seam.strength};
         if (seam.tearing_load) {
           tie.strength = *seam.tearing_load * length / static_cast<double>(count);
@@ -384,9 +392,8 @@ class Sewing {
         }
         if (seam.open) tie.open = *seam.open;
         if (seam.closed) tie.closed = *seam.closed;
-        // Edges may meet in one particle at an end; such a particle needs no tie. If there are more buttons than
-        // particles, each particle gets one tie.
-        if (tie.a != tie.b && std::exchange(last_tied, tie.a) != tie.a) garment_.sheet.ties.push_back(tie);
+        // Edges may meet in one particle at an end; such a particle needs no tie.
+        if (tie.a != tie.b) garment_.sheet.ties.push_back(tie);
       }
     }
   }

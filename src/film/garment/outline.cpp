@@ -72,8 +72,9 @@ class PathReader {
 
   ParsedPath read() {
     while (result_.mistake.empty() && skip_space()) command();
+    if (!closed_ && !result_.outline.empty() && is_at_start()) close();
     if (result_.mistake.empty() && !closed_)
-      fail("expected a closed outline, which ends with Z, got one that is open at the end");
+      fail("expected a closed outline, which ends with Z or where it starts, got one that is open at the end");
     Outline& outline = result_.outline;
     std::erase_if(outline, [](const Curve& c) {
       return c.control[1] == c.start() && c.control[2] == c.start() && c.end() == c.start();
@@ -157,11 +158,13 @@ class PathReader {
     } while (result_.mistake.empty() && number_follows());
   }
 
+  // Whether the pen misses the start by rounded digits at most.
+  bool is_at_start() const { return (pen_ - first_).norm() <= 1e-6 * std::max(1e-9, (farthest_ - nearest_).norm()); }
+
   void close() {
     closed_ = true;
-    // An end that misses the start by rounded digits only is moved to the start.
-    const double slack = 1e-6 * std::max(1e-9, (farthest_ - nearest_).norm());
-    if ((pen_ - first_).norm() > slack) return add(straight(pen_, first_));
+    if (!is_at_start()) return add(straight(pen_, first_));
+    // The end is moved to the start.
     if (!result_.outline.empty()) result_.outline.back().control[3] = first_;
   }
 

@@ -35,8 +35,9 @@ struct ParsedPath {
   std::string mistake;  ///< "expected a number, got "x" at character 12"; empty: none
 };
 
-/// Reads one closed outline from the path data of SVG 1.1 (section 8.3), in the units of the data. Arcs become cubic
-/// curves of at most a quarter turn each (maximum error: 3e-4 of the radius). Curves of zero length are dropped.
+/// Reads one closed outline, which ends with Z or where it starts, from the path data of SVG 1.1 (section 8.3), in the
+/// units of the data. Arcs become cubic curves of at most a quarter turn each (maximum error: 3e-4 of the radius).
+/// Curves of zero length are dropped.
 ParsedPath parse_path(std::string_view data);
 
 /// Number of points of each curve in sample_points().

@@ -216,7 +216,7 @@ void complete_mirror_image(std::vector<Panel>& panels, std::size_t i, Findings& 
   if (panel.mirror_of.empty()) return;
   const std::string& entry = findings.entry("panel", i);
   const std::string key = entry + ".mirror_of";
-  if (!panel.path.empty() || !panel.file.empty())
+  if (!panel.path.empty() || !panel.file.empty() || !panel.id.empty())
     return findings.report(key, "expected an outline of its own or of another panel, got both");
   std::vector<std::string> known;
   for (std::size_t k = 0; k < i; ++k) {

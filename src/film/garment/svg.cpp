@@ -224,8 +224,22 @@ Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
     const auto x = number("x"), y = number("y"), width = number("width"), height = number("height");
     if (!x || !y || x->size() > 1 || y->size() > 1 || !width || width->size() != 1 || !height || height->size() != 1)
       drawing.refuse(node, "expected x, y, width and height as numbers, got something else");
-    data = fmt::format("M {} {} h {} v {} h {} Z", x->empty() ? 0 : (*x)[0], y->empty() ? 0 : (*y)[0], (*width)[0],
-                       (*height)[0], -(*width)[0]);
+    const auto round_x = number("rx"), round_y = number("ry");
+    if (!round_x || !round_y || round_x->size() > 1 || round_y->size() > 1)
+      drawing.refuse(node, "expected rx and ry as numbers, got something else");
+    // If only one radius is given, it counts for both; larger ones than half the size are cut to it.
+    const auto& rx_or_ry = round_x->empty() ? *round_y : *round_x;
+    const auto& ry_or_rx = round_y->empty() ? *round_x : *round_y;
+    const double left = x->empty() ? 0 : (*x)[0], top = y->empty() ? 0 : (*y)[0], w = (*width)[0], h = (*height)[0];
+    const double rx = rx_or_ry.empty() ? 0 : std::min(rx_or_ry[0], 0.5 * w);
+    const double ry = ry_or_rx.empty() ? 0 : std::min(ry_or_rx[0], 0.5 * h);
+    if (rx > 0 && ry > 0)
+      data = fmt::format(
+          "M {0} {1} h {2} a {4} {5} 0 0 1 {4} {5} v {3} a {4} {5} 0 0 1 -{4} {5} "
+          "h -{2} a {4} {5} 0 0 1 -{4} -{5} v -{3} a {4} {5} 0 0 1 {4} -{5} Z",
+          left + rx, top, w - 2 * rx, h - 2 * ry, rx, ry);
+    else
+      data = fmt::format("M {} {} h {} v {} h {} Z", left, top, w, h, -w);
   } else if (kind != "path") {
     drawing.refuse(node, "expected a path, polygon or rect, got another element; id names the outline itself");
   }
