@@ -36,8 +36,9 @@ struct Simulation::Impl {
   /// Makes the objects of the current state, and keeps alive the data that they view (`viewed` or `snapshot`).
   using MakeFrame = std::function<Frame::Data(const simulation::Simulation& now)>;
 
-  /// `heading`: first line of a saved state; see heading_of(). Throws std::invalid_argument if the options do not fit.
-  Impl(std::unique_ptr<simulation::Simulation> simulation, std::string heading, const SimulationOptions& options,
+  /// `heading_of_state`: first line of a saved state; see heading_of(). Throws std::invalid_argument if the options do
+  /// not fit.
+  Impl(std::unique_ptr<simulation::Simulation> of, std::string heading_of_state, const SimulationOptions& options,
        MakeFrame make_frame);
 
   std::size_t body(std::string_view name) const;
