@@ -37,6 +37,13 @@ PoseTrack spin(Interpolation interpolation, const Vec3& axis, const std::vector<
   return track;
 }
 
+TEST(Pose, BestRotationIsFoundThroughStretchAndIsNoMirrorImage) {
+  const Mat3 turn = about({1, 2, 3}, 0.7).toRotationMatrix();
+  EXPECT_LT((best_rotation(turn * Vec3(1.2, 0.9, 1).asDiagonal()) - turn).norm(), kRoundingOfTurns);
+  // Of a mirror image, the axis of the smallest stretch is the one that is not mirrored.
+  EXPECT_LT((best_rotation(turn * Vec3(3, 2, -1).asDiagonal()) - turn).norm(), kRoundingOfTurns);
+}
+
 TEST(Track, WithoutKeysHoldsTheRestPose) {
   const Pose rest{{1, 2, 3}, about({1, 1, 0}, 0.5)};
   const Track track({}, rest);

@@ -39,12 +39,11 @@ bool air_acts(const Scene& scene) {
 }
 
 void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
-  const auto& keys = scene.physics.keys;
-  double gravity = keys.empty() ? scene.physics.gravity.norm() : 0;
-  for (const auto& key : keys) gravity = std::max(gravity, key.gravity.norm());
+  const double gravity = scene.physics.largest_gravity();
+  const bool has_keys = !scene.physics.keys.empty();
   items.push_back(item_if("force: gravity", gravity > 0,
-                          fmt::format("{}{:.4g} m/s²", keys.empty() ? "" : "at most ", gravity),
-                          keys.empty() ? "physics.gravity is zero" : "gravity of physics.keys is zero"));
+                          fmt::format("{}{:.4g} m/s²", has_keys ? "at most " : "", gravity),
+                          has_keys ? "gravity of physics.keys is zero" : "physics.gravity is zero"));
   items.push_back(cloth_item(
       "force: stretch", scene, [](const Cloth& c) { return !c.rope; }, kNoCloth));
   items.push_back(cloth_item(

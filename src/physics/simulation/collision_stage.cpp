@@ -311,9 +311,7 @@ bool CollisionStage::bodies_are_constant(double t0, double t1, SystemState& now,
   const collision::Bodies& bodies = engine_.bodies();
   for (std::size_t b = model_.cloths.size(); b < bodies.size(); ++b) {
     if (bodies[b].deformable) continue;
-    const std::size_t count = model_.bodies[bodies_[b - model_.cloths.size()]].mesh.positions.size();
-    const auto from = bodies.part(b, std::span<const Vec3>(now.x)).last(count),
-               to = bodies.part(b, std::span<const Vec3>(next.x)).last(count);
+    const auto from = bodies.part(b, std::span<const Vec3>(now.x)), to = bodies.part(b, std::span<const Vec3>(next.x));
     if (std::ranges::equal(from, to)) continue;
     Box3 swept = mesh::bounding_box(from).merged(mesh::bounding_box(to));
     swept.min().array() -= engine_.detection_distance();
