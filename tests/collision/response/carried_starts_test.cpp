@@ -62,6 +62,30 @@ TEST_P(BeforeATurningBlade, OneObstacleAloneLeavesClothRoom) {
 
 INSTANTIATE_TEST_SUITE_P(By, BeforeATurningBlade, ::testing::Values(0.05, 0.3, 1.0));
 
+// A press comes down on cloth that lies on a floor. Where the press would carry it, the cloth would be below the floor.
+TEST(CarriedStarts, ClothIsNotCarriedThroughAnObstacleThatStands) {
+  std::vector<Vec3> x_t0;
+  for (const double z : {0.0, kGap, -2.5 * kGap})  // cloth, press, floor
+    for (const Vec3& x : {Vec3(0, 0, z), Vec3(0.1, 0, z), Vec3(0, 0.1, z)}) x_t0.push_back(x);
+  std::vector<Vec3> x_t1 = x_t0;
+  const RigidMotion down{.shift = Vec3(0, 0, -3 * kGap)};
+  for (int v = 3; v < 6; ++v) x_t1[v] += down.shift;
+  const std::vector<std::size_t> body_of{0, 0, 0, 1, 1, 1, 2, 2, 2};
+  CarriedStarts carried(3, body_of);
+  carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, down, {}});
+  PinchedPairs pinched(3, body_of, std::vector<Index>(9, 0));
+
+  const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
+  const CornerPair on_press{{0, 1, 2}, {3, 4, 5}}, on_floor{{0, 1, 2}, {6, 7, 8}};
+  Separation separation(triangles, {});
+  separation.watch(std::vector<TrianglePair>{{0, 1}, {0, 2}}, x_t0);
+  const std::vector<std::uint8_t> movable{1, 1, 1, 0, 0, 0, 0, 0, 0};
+  EXPECT_TRUE(separation.enforce(x_t0, x_t1, movable, &pinched, &carried).separated);
+  EXPECT_TRUE(pinched.exempts(on_press) != pinched.exempts(on_floor)) << "there is no room between them";
+  const CornerPair& kept = pinched.exempts(on_press) ? on_floor : on_press;
+  EXPECT_TRUE(find_separating_plane(kept, x_t0, x_t1));
+}
+
 TEST(CarriedStarts, AreLookedAtOnlyForWhatTurns) {
   const std::vector<Vec3> x_t0(6, Vec3(1, 2, 3)), x_t1(6, Vec3(1, 2, 4));
   CarriedStarts carried(3, {0, 0, 0, 1, 1, 1});

@@ -280,8 +280,8 @@ bool Separation::backtrack_all(Step& step) const {
   return moved;
 }
 
-// Whether all vertices of a pair are at their start, or where one obstacle carries them. If so, they do not meet,
-// however close they are, because they do not meet at the start.
+// Whether all vertices of a pair are at their start, or where one obstacle, the pair's own if it has one, carries them.
+// If so, they do not meet, however close they are, because they do not meet at the start.
 bool Separation::is_backtracked(const CornerPair& pair, const Step& step) const {
   const auto ends_at = [&](std::span<const Vec3> x) {
     const auto is_there = [&](Index v) { return step.x_t1[v] == x[v]; };
@@ -289,7 +289,11 @@ bool Separation::is_backtracked(const CornerPair& pair, const Step& step) const 
   };
   if (ends_at(step.x_t0)) return true;
   const int carrier = carriers_[pair.a[0]];
-  return carrier >= 0 && ends_at(step.carried->by(static_cast<std::size_t>(carrier)));
+  if (carrier < 0) return false;
+  // Another obstacle is not carried along, and may meet what is.
+  const auto obstacle = static_cast<std::size_t>(carrier);
+  return (!step.carried->has_obstacle(pair) || step.carried->obstacle_of(pair) == obstacle) &&
+         ends_at(step.carried->by(obstacle));
 }
 
 void Separation::test_again(const Step& step) {
