@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/numerics.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {
@@ -98,6 +99,20 @@ TEST_F(CollisionStages, GiveParticlesTheVelocityOfTheirPush) {
   }
   EXPECT_GT(largest, 0.001);
   EXPECT_EQ(bodies_of(next_), bodies_of(solved));
+}
+
+// Tied to the gap that pushing apart restores: contacts found that close to the last ones lead to the same solution.
+TEST_F(CollisionStages, TellAContinuationThatLeadsBackToItsStart) {
+  stage_->begin_step(0.2, 0.01, {}, now_, next_);
+  EXPECT_FALSE(stage_->restarts_at(next_)) << "the solve has not continued yet";
+  stage_->continue_from(next_);
+  EXPECT_TRUE(stage_->restarts_at(next_));
+  next_.x[3].x() += 0.9 * numerics.separation.restored_gap;
+  EXPECT_TRUE(stage_->restarts_at(next_));
+  next_.x[24].z() += 1.1 * numerics.separation.restored_gap;
+  EXPECT_FALSE(stage_->restarts_at(next_)) << "one particle is elsewhere";
+  stage_->begin_step(0.2, 0.005, {}, now_, next_);
+  EXPECT_FALSE(stage_->restarts_at(next_)) << "a new attempt";
 }
 
 }  // namespace

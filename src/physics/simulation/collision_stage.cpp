@@ -10,6 +10,7 @@
 
 #include "core/archive.hpp"
 #include "core/numerics.hpp"
+#include "core/parallel_append.hpp"
 #include "physics/mesh/geometry.hpp"
 #include "physics/simulation/intersections.hpp"
 
@@ -404,6 +405,14 @@ bool CollisionStage::find_pins_between_cloths() {
 void CollisionStage::continue_from(const SystemState& next) {
   x_restart_ = next.x;
   engine_.continue_from(x_restart_);
+}
+
+bool CollisionStage::restarts_at(const SystemState& next) const {
+  const double most =
+      std::min(numerics.separation.restored_gap, numerics.contact.margin * engine_.detection_distance());
+  return !x_restart_.empty() && parallel_all_of(particles_, [&](std::size_t i) {
+    return (next.x[i] - x_restart_[i]).squaredNorm() <= most * most;
+  });
 }
 
 std::string CollisionStage::describe(const collision::ObstructedPin& given, const SystemState& now) const {

@@ -80,8 +80,8 @@ void StepLoop::update_weather(double t, double h) {
 
 // Solves the step and checks it. If pairs would meet, pushes particles apart. If the solve had ended and this adds
 // little energy and strain, accepts the result. Otherwise continues the solve from the corrected positions, with
-// contacts found anew, until every candidate pair has a separating plane; after numerics.newton.patience continuations,
-// only pushes.
+// contacts found anew, until every candidate pair has a separating plane. After numerics.newton.patience continuations,
+// or if the last one has led back to where it began, only pushes.
 StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
   const SystemState& now = progress_.now;
   int continuations = 0;
@@ -111,7 +111,7 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
     if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.energy.doubtful_gain &&
         cloth_.max_strain(next_.particles()) <= strain_before + numerics.repair.added_strain)
       return std::nullopt;
-    ++continuations;
+    continuations = collisions_->restarts_at(next_) ? numerics.newton.patience : continuations + 1;
     collisions_->continue_from(next_);
     problem_.limit_friction_updates();
   }
