@@ -109,7 +109,7 @@ class Walk {
       if (stop.lanes != 0) before.missed[kept++] = stop;
     }
     before.missed.resize(kept);
-    for (const Ref ref : before.closed) traverse_self(ref);
+    for (const Ref ref : before.closed) traverse_self(ref);  // records it again, or what is below it
 
     // Old entries stay in front, so that they are not copied repeatedly.
     const auto append = [](auto& first, auto& second) {
@@ -119,7 +119,6 @@ class Walk {
     append(before.missed, list.missed);
     append(before.leaf_pairs, list.leaf_pairs);
     append(before.self_leaves, list.self_leaves);
-    append(before.closed, list.closed);
   }
 
   /// A call of open() that is done later: open(a) if `self`, else open(a, b).
