@@ -67,6 +67,8 @@ TEST_F(CameraFile, StandsStillWithoutAnAnimation) {
 TEST_F(CameraFile, TellsByHowMuchItIsTilted) {
   document_["nodes"][1]["rotation"] = {0, 0, std::sin(0.05), std::cos(0.05)};
   EXPECT_NEAR(load().roll, 0.1 * 180 / std::numbers::pi, 1e-4);
+  document_["nodes"][1]["rotation"] = {0, 0, std::cos(0.05), std::sin(0.05)};
+  EXPECT_NEAR(load().roll, 180 - 0.1 * 180 / std::numbers::pi, 1e-4) << "nearly upside down";
 }
 
 TEST_F(CameraFile, IsRefusedByNameWhereItIsNotThere) {

@@ -4,9 +4,12 @@
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -379,6 +382,23 @@ TEST_F(Scenes, PicturesThatCannotBeHadAreLeftOutWithAWarning) {
   ASSERT_EQ(got.warnings.size(), 1u);
   EXPECT_EQ(got.warnings[0], "material \"\": picture \"C:\\paint\\skin.tga\" is left out: not there");
   EXPECT_EQ(got.character.coloring.material_of_triangle.size(), 4u);
+}
+
+TEST_F(Scenes, PicturesMayBeNamedPercentEncoded) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("weft_encoded_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string png = "\x89PNG\r\n\x1a\nand so on";
+  std::ofstream(folder / "my skin.png") << png;
+  auto* material = new aiMaterial;
+  const aiString encoded("my%20skin.png");
+  material->AddProperty(&encoded, AI_MATKEY_TEXTURE(aiTextureType_DIFFUSE, 0));
+  scene_.mMaterials = new aiMaterial* [1] { material };
+  scene_.mNumMaterials = 1;
+  const ReadCharacter got = to_character(scene_, folder / "body.gltf");
+  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(got.warnings.empty());
+  EXPECT_EQ(got.character.coloring.materials.at(0).picture, png);
 }
 
 // As in FBX avatars whose pictures are not embedded: one warning for all materials.

@@ -238,6 +238,15 @@ TEST_F(MeshFiles, OfASequenceMayHavePolygonsWhoseShapeChanges) {
   EXPECT_EQ(loaded.mesh.topology.triangles.size(), 4U);
 }
 
+TEST_F(MeshFiles, OfASequenceKeepTrianglesThatHaveAnAreaInAnyFile) {
+  const auto fold = [](double y) {  // its second triangle unfolds; its third never does
+    return fmt::format("v 0 0 0\nv 1 0 0\nv 0.5 1 0\nv 0.5 {} 0\nv 2 0 0\nf 1 2 3\nf 2 1 4\nf 1 2 5\n", y);
+  };
+  const std::vector<std::filesystem::path> files{put("0.obj", fold(0)), put("1.obj", fold(-1)), put("2.obj", fold(0))};
+  const LoadedSequence loaded = load_sequence(files, {{}, scene::FileUp::as_file, scene::UpAxis::y}, "here");
+  EXPECT_EQ(loaded.mesh.topology.triangles, (Triangles{{0, 1, 2}, {1, 0, 3}}));
+}
+
 TEST_F(MeshFiles, CountVerticesThatNoTriangleHas) {
   const LoadedMesh loaded =
       load("line.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 3 0 0\nv 4 0 0\nf 1 2 3\nf 4 5 6\n");
@@ -270,6 +279,30 @@ TEST_F(MeshFiles, OfCompressedGltfAreRefusedByTheNameOfTheCompression) {
     EXPECT_EQ(refusal("packed.gltf", file),
               "expected meshes without compression, got " + name + ", which is not read; export the file without it");
   }
+}
+
+TEST_F(MeshFiles, OfGltfWithIntegersForFloatsAreRefusedByTheAttribute) {
+  const auto with = [](std::string gltf, const std::string& from, const std::string& to) {
+    return gltf.replace(gltf.find(from), from.size(), to);
+  };
+  const std::string shorts = with(gltf_tetrahedron(), "5126", "5122");
+  EXPECT_EQ(refusal("a.gltf", shorts),
+            "expected POSITION as floats, got integers, which are not read; export the file without quantisation");
+  // Accessor 1, the indices, has integers.
+  const std::string weights = with(gltf_tetrahedron(), "\"POSITION\":0", "\"POSITION\":0,\"WEIGHTS_0\":1"),
+                    places = with(gltf_tetrahedron(), "\"POSITION\":0", "\"POSITION\":0,\"TEXCOORD_0\":1");
+  EXPECT_TRUE(refusal("b.gltf", weights).starts_with("expected WEIGHTS_0 as floats"));
+  EXPECT_FALSE(refusal("c.gltf", places).starts_with("expected TEXCOORD_0")) << "there is no picture to place";
+  EXPECT_TRUE(refusal("d.gltf", with(places, "\"scene\":0", "\"textures\":[{}],\"scene\":0"))
+                  .starts_with("expected TEXCOORD_0 as floats"));
+}
+
+TEST_F(MeshFiles, OfGltfHaveTheirDataInFilesWithPercentEncodedNames) {
+  const std::string binary = glb_tetrahedron();
+  std::string gltf = gltf_tetrahedron();
+  const std::size_t uri = gltf.find("data:"), end = gltf.find('"', uri);
+  put("my 100% d\xc3\xa4ta.bin", binary.substr(binary.size() - 72));
+  EXPECT_NEAR(volume(load("a.gltf", gltf.replace(uri, end - uri, "my%20100%25%20d%C3%A4ta.bin"))), 1.0 / 6, 1e-15);
 }
 
 TEST_F(MeshFiles, OfGltfThatNestsTooDeepAreRefusedBeforeTheyAreRead) {
@@ -366,6 +399,14 @@ TEST_F(MeshFiles, OfPlyWithoutAnEndOfTheirHeaderAreRefusedAtOnce) {
   const std::string whole = ply_tetrahedron();
   EXPECT_EQ(refusal("cut.ply", whole.substr(0, whole.find("end_header"))),
             "expected a line end_header in the first 64 kB of a PLY file, got none");
+}
+
+TEST_F(MeshFiles, OfPlyWithTriangleStripsAreRefusedByName) {
+  EXPECT_EQ(refusal("a.ply",
+                    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                    "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+                    "0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n"),
+            "expected faces, got triangle strips (tristrips), which are not read; export the file with faces");
 }
 
 TEST_F(MeshFiles, ThatAreEmptyMissingFoldersOrTooLargeAreRefusedBeforeReading) {

@@ -1,5 +1,7 @@
 // weft export, as a shell starts it.
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -95,6 +97,22 @@ keys = [{ time = 0, position = [3, -4, 2], target = [0, 0, 0.5], field_of_view =
       EXPECT_NEAR(taken[place].get<double>(), value.get<double>(), 1e-6 + 1.2e-7 * std::abs(value.get<double>()))
           << up << place;
   }
+}
+
+TEST_F(ExportCommand, InterruptedSaysHowFarItIsAndLeavesWholeFiles) {
+  std::ofstream(folder_ / "a.toml") << "[time]\nduration = 8\n[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\n";
+  expect_well({"simulate", "a.toml", "--cache", "c"});
+  Subprocess weft({"export", "c", "--format", "obj", "-o", "out"}, folder_);
+  for (int i = 0; i < 60'000 && !std::filesystem::exists(folder_ / "out/ball_00000.obj"); ++i) ::usleep(1000);
+  weft.send(SIGTERM);
+  const Outcome outcome = weft.wait();
+  EXPECT_EQ(outcome.exit_code, 75) << outcome.err;
+  const auto files = contents("out", ".obj");
+  const std::string words =
+      "interrupted after " + std::to_string(files.size()) + " of 201 frames; export again with --overwrite";
+  EXPECT_TRUE(contains(outcome.err, words)) << outcome.err;
+  EXPECT_TRUE(contents("out", ".tmp").empty());
+  EXPECT_EQ(files.rbegin()->second, files.at("ball_00000.obj"));
 }
 
 TEST_F(ExportCommand, RefusesWithTheCodesOfTheContract) {

@@ -139,6 +139,21 @@ TEST_F(Staged, UsdFilesHavePanelsNormalsAndMaterials) {
             std::string::npos);
 }
 
+TEST_F(Staged, UsdMaterialsOfPartsHaveNamesThatNoObjectHas) {
+  frame::Surface body = *surfaces_[1];
+  body.name = "red_dress_0_front";
+  surfaces_[1] = std::make_shared<frame::Surface>(body);
+  const std::string text = written(Format::usd, "1st film.usda");
+  const std::regex material("def Material \"(\\w+)\"");
+  std::vector<std::string> names;
+  for (std::sregex_iterator i(text.begin(), text.end(), material), end; i != end; ++i) names.push_back((*i)[1]);
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"red_dress", "red_dress_0_front_2", "red_dress_1_back", "red_dress_0_front"}));
+  const std::string dress = block(text, "def Mesh \"red_dress\"");
+  EXPECT_NE(block(dress, "def GeomSubset \"red_dress_0_front_2\"").find("</_1st_film/materials/red_dress_0_front_2>"),
+            std::string::npos);
+}
+
 TEST_F(Staged, UsdMaterialsShowThePictureOfAPart) {
   frame::Surface dress = *surfaces_[0];
   frame::Paint& paint = dress.parts[1].appearance.paint;

@@ -10,6 +10,7 @@
 #include "film/environment/environment.hpp"
 #include "physics/simulation/collision_stage.hpp"
 #include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::production {
 namespace {
@@ -52,6 +53,22 @@ TEST(Plan, UsesGravityOfKeysInPlaceOfTheConstantOne) {
       gravity("gravity = [0, 0, 0]\nkeys = [{ time = 0, gravity = [0, 0, 0] }, { time = 1, gravity = [0, 0, -9] }]\n"),
       "uses at most 9 m/s²");
   EXPECT_EQ(gravity("keys = [{ time = 0, gravity = [0, 0, 0] }]\n"), "leaves out gravity of physics.keys is zero");
+}
+
+using Plans = support::TestFolder;
+
+TEST_F(Plans, CountTheVerticesOfAllFilesOfASequence) {
+  const auto fold = [](double y) {  // two triangles, of which two corners coincide if y is 0
+    return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 " + std::to_string(y) + " 0\nf 1 2 3\nf 1 4 3\n";
+  };
+  support::write_bytes(folder_ / "0.obj", fold(0));
+  support::write_bytes(folder_ / "1.obj", fold(1));
+  std::map<std::string, std::string> reasons;
+  for (const PlanItem& item : plan(support::scene_of_text(
+           "[[character]]\nname = 'fold'\nsource = 'sequence'\nfiles = '" + folder_.string() + "'\n")))
+    reasons[item.part] = item.reason;
+  EXPECT_NE(reasons.at("motion: character fold").find("of 4 vertices"), std::string::npos)
+      << reasons.at("motion: character fold");
 }
 
 TEST(Warnings, NamePinsOfRopesByTheirKeys) {

@@ -31,6 +31,17 @@ std::shared_ptr<frame::Stage> stage_with_up(const Vec3& up) {
   return stage;
 }
 
+TEST(Framing, ViewsStraightDownAreThoseFromTheFrontThatAreNearlySo) {
+  for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
+    const Vec3 front = Vec3::UnitX().cross(up);  // from which a scene is seen
+    for (const double offset : {1e-3, 1e-7, 0.0, -1e-7}) {
+      const ViewAxes axes = view_axes(-up - offset * front, up);
+      EXPECT_LT((axes.right - Vec3::UnitX()).norm(), 1e-6) << up.transpose() << ", " << offset;
+      EXPECT_LT((axes.up + front).norm(), 2e-3) << up.transpose() << ", " << offset;
+    }
+  }
+}
+
 TEST(Framing, EveryVertexIsInFrameAndTheTighterDirectionReachesTheMargin) {
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
     for (const double aspect : {16.0 / 9, 1.0, 0.5}) {

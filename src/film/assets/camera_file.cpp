@@ -121,8 +121,10 @@ void add_view(LoadedCamera& camera, const aiCamera& from, const aiMatrix4x4& wor
   camera.times.push_back(time);
   camera.positions.push_back(position);
   camera.forward.push_back(forward);
-  // The side vector of a camera without roll is horizontal.
-  camera.roll = std::max(camera.roll, kDegrees * std::asin(std::min(1.0, std::abs(forward.cross(up).y()))));
+  // The side vector of a camera without roll is horizontal; so is that of a camera upside down.
+  const double tilt = kDegrees * std::asin(std::min(1.0, std::abs(forward.cross(up).y())));
+  constexpr double kSinglePrecision = 1e-6;
+  camera.roll = std::max(camera.roll, up.y() < -kSinglePrecision ? 180 - tilt : tilt);
 }
 
 const aiCamera& find_camera(const aiScene& scene, const std::string& object) {

@@ -15,7 +15,8 @@ struct LoadedCamera {
   std::vector<Vec3> positions;  ///< [m], in axes with y up
   std::vector<Vec3> forward;    ///< viewing directions, unit length
   double field_of_view = 0;     ///< vertical [degrees]
-  double roll = 0;              ///< largest angle between the camera's side vector and the horizontal [degrees]
+  double roll = 0;              ///< largest angle between the camera's side vector and the horizontal, 180 if it is
+                                ///< upside down [degrees]
 };
 
 /// Reads the camera on the node `object` of a glTF file (empty: the only camera), and the first animation that moves

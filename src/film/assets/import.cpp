@@ -5,7 +5,9 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,23 +17,31 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "core/input_file.hpp"
+#include "core/json.hpp"
 #include "core/nesting.hpp"
 
 namespace weft::assets {
 namespace {
 
 /// Opens only regular files, also among those that a file refers to (materials, buffers): pipes and devices may never
-/// end.
+/// end. assimp 5.2 passes the names in glTF files on as they are there: percent-encoded.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
-  bool Exists(const char* file) const override {
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(file, ignored);
-  }
+  bool Exists(const char* file) const override { return !find(file).empty(); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
-    return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+    const std::string found = find(file);
+    return found.empty() ? nullptr : DefaultIOSystem::Open(found.c_str(), mode);
+  }
+
+ private:
+  static std::string find(const std::string& file) {
+    std::error_code ignored;
+    for (const std::string& name : {file, percent_decoded(file)})
+      if (std::filesystem::is_regular_file(name, ignored)) return name;
+    return {};
   }
 };
 
@@ -81,7 +91,34 @@ std::string_view compression_of(std::string_view gltf) {
   return {};
 }
 
-/// Throws std::runtime_error for glTF with compressed meshes or JSON that is nested too deeply.
+/// The value of a key; null if there is none.
+const nlohmann::json& part_of(const nlohmann::json& json, const char* key) {
+  static const nlohmann::json kNone;
+  return json.is_object() && json.contains(key) ? json[key] : kNone;
+}
+
+/// Name of an attribute of a mesh that glTF has as integers; empty if there is none. assimp 5.2 copies their bytes into
+/// its floats. Texture coordinates count only if there are textures.
+std::string integer_attribute(const nlohmann::json& gltf) {
+  constexpr int kFloat = 5126;
+  const nlohmann::json& accessors = part_of(gltf, "accessors");
+  for (const nlohmann::json& mesh : part_of(gltf, "meshes"))
+    for (const nlohmann::json& primitive : part_of(mesh, "primitives")) {
+      const nlohmann::json& attributes = part_of(primitive, "attributes");
+      if (!attributes.is_object()) continue;
+      for (const auto& [name, accessor] : attributes.items()) {
+        const bool read = name == "POSITION" || name.starts_with("WEIGHTS_") ||
+                          (name.starts_with("TEXCOORD_") && !part_of(gltf, "textures").empty());
+        const int number = value_or<int>(attributes, name.c_str(), -1);
+        if (!read || !accessors.is_array() || number < 0 || std::cmp_greater_equal(number, accessors.size())) continue;
+        if (value_or<int>(accessors[static_cast<std::size_t>(number)], "componentType", kFloat) != kFloat) return name;
+      }
+    }
+  return {};
+}
+
+/// Throws std::runtime_error for glTF with compressed meshes, with attributes that are read wrongly, or JSON that is
+/// nested too deeply.
 void check_gltf(const std::filesystem::path& file) {
   const std::string text = gltf_text(file);
   if (const std::string_view compression = compression_of(text); !compression.empty())
@@ -90,9 +127,33 @@ void check_gltf(const std::filesystem::path& file) {
   if (nests_too_deep(text))
     throw std::runtime_error(
         fmt::format("expected JSON of at most {} levels of lists and objects, got more", kMaxDepth));
+  nlohmann::json gltf;
+  try {
+    if (!text.empty()) gltf = parse_json<nlohmann::json>(text);
+  } catch (const std::exception&) {
+    return;  // assimp says what is wrong
+  }
+  if (const std::string name = integer_attribute(gltf); !name.empty())
+    throw std::runtime_error("expected " + name + " as floats, got integers, which are not read; export the file " +
+                             "without quantisation");
 }
 
 }  // namespace
+
+std::string percent_decoded(const std::string& name) {
+  std::string decoded;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    unsigned char byte = 0;
+    const char* end = name.data() + std::min(i + 3, name.size());
+    if (name[i] == '%' && std::from_chars(name.data() + i + 1, end, byte, 16).ptr == name.data() + i + 3) {
+      decoded += static_cast<char>(byte);
+      i += 2;
+    } else {
+      decoded += name[i];
+    }
+  }
+  return decoded;
+}
 
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps) {
   check_gltf(file);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 struct aiScene;
 namespace Assimp {
@@ -15,6 +16,9 @@ namespace weft::assets {
 /// std::runtime_error with assimp's message. Damaged files can crash assimp or block it for ever: call it through
 /// run_isolated.
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps);
+
+/// The name with %20 as a space and so on (RFC 3986), as glTF and Collada encode the names of files.
+std::string percent_decoded(const std::string& name);
 
 /// The unit that an FBX file states [m]. For other formats, assimp itself converts to metres if it knows the unit.
 std::optional<double> metres_per_unit(const aiScene& scene);

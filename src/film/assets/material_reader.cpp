@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "core/input_file.hpp"
+#include "film/assets/import.hpp"
 #include "film/image/picture.hpp"
 
 namespace weft::assets {
@@ -71,12 +72,14 @@ std::vector<fs::path> picture_folders(const fs::path& file) {
 std::optional<fs::path> find_file(const std::string& named, const fs::path& file) {
   std::string plain = named.starts_with("file://") ? named.substr(7) : named;
   std::ranges::replace(plain, '\\', '/');
-  const fs::path folder = file.parent_path(), name = fs::path(plain).filename();
-  std::vector<fs::path> places{folder / plain, folder / name};
-  for (const fs::path& each : picture_folders(file)) places.push_back(each / name);
-  for (const fs::path& at : places) {
-    std::error_code error;
-    if (fs::is_regular_file(at, error)) return at;
+  const fs::path folder = file.parent_path();
+  for (const fs::path path : {plain, percent_decoded(plain)}) {
+    std::vector<fs::path> places{folder / path, folder / path.filename()};
+    for (const fs::path& each : picture_folders(file)) places.push_back(each / path.filename());
+    for (const fs::path& at : places) {
+      std::error_code error;
+      if (fs::is_regular_file(at, error)) return at;
+    }
   }
   return std::nullopt;
 }

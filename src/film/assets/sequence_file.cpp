@@ -115,7 +115,7 @@ LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const
   for (std::vector<Vec3>& positions : loaded.positions) positions = kept_of(positions, kept);
   first.positions = loaded.positions.front();
   std::size_t flat = 0;
-  loaded.mesh.topology = make_topology(first, flat);
+  loaded.mesh.topology = make_topology(first, flat, std::span(loaded.positions).subspan(1));
   loaded.mesh.positions = std::move(first.positions);
   return loaded;
 }

@@ -190,10 +190,14 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   return soup;
 }
 
-mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles) {
+mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles,
+                             std::span<const std::vector<Vec3>> later_positions) {
   mesh::Topology topology;
   topology.triangles = mesh::split_quads(soup.quads, soup.positions);
-  const auto flat = [&](const mesh::Triangle& t) { return !has_area(t, soup.positions); };
+  const auto flat = [&](const mesh::Triangle& t) {
+    return !has_area(t, soup.positions) &&
+           std::ranges::none_of(later_positions, [&](const std::vector<Vec3>& x) { return has_area(t, x); });
+  };
   if (soup.triangles.empty() && std::none_of(topology.triangles.begin(), topology.triangles.end(), flat)) {
     topology.quads = soup.quads;
   } else {

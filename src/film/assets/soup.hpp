@@ -42,8 +42,10 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object = {}
 void append_face(Soup& soup, std::span<const Index> corners);
 
 /// The surface of a soup: quads if the soup contains only quads and both halves of each have an area, else triangles.
-/// Triangles without area (a repeated corner, or all corners on a line) are left out and counted.
-mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles);
+/// Triangles without area (a repeated corner, or all corners on a line), also with each of `later_positions`, are left
+/// out and counted.
+mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles,
+                             std::span<const std::vector<Vec3>> later_positions = {});
 
 /// Serialises a soup for transfer between two processes of the same program, and back.
 std::string to_bytes(const Soup& soup);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
+#include <string>
 #include <system_error>
 
 #include "core/error.hpp"
@@ -14,13 +16,17 @@ namespace {
 
 constexpr std::uint64_t kMaxAddressSpace = std::uint64_t{16} << 30;  // address space limit for reading [bytes]
 
-/// Refuses a PLY header without an end: it blocks assimp 5.2 until the time limit.
+/// Refuses a PLY header without an end, which blocks assimp 5.2 until the time limit, and triangle strips, of which it
+/// reads only one triangle each.
 void check_ply_header(const Source& source) {
   constexpr std::size_t kHeaderBytes = 1 << 16;  // a hundred times the size of real headers
   const std::string start = read_start(source.file, kHeaderBytes);
   const bool ply = start.starts_with("ply") || start.starts_with("PLY");
-  if (ply && start.find("\nend_header\n") == std::string::npos && start.find("\nend_header\r") == std::string::npos)
-    source.fail("expected a line end_header in the first 64 kB of a PLY file, got none");
+  if (!ply) return;
+  const std::size_t end = std::min(start.find("\nend_header\n"), start.find("\nend_header\r"));
+  if (end == std::string::npos) source.fail("expected a line end_header in the first 64 kB of a PLY file, got none");
+  if (start.find("\nelement tristrips ") < end)
+    source.fail("expected faces, got triangle strips (tristrips), which are not read; export the file with faces");
 }
 
 /// CPU time limit for reading [s]: many times what assimp needs for its slowest text formats (about 10 MB/s). Thus only

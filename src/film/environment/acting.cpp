@@ -473,9 +473,9 @@ KeyFrameCount count(const Cast& cast, const Source& source) {
 }
 
 KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {
-  const std::vector<std::filesystem::path> files = scene::sequence_files(source.files);
-  const auto first = assets::load_sequence(std::span(files).first(1), cast.axes(), cast.where);
-  return count(cast, key_times(cast, source.fps, false), first.mesh.positions.size());
+  // Which vertices are merged depends on all files.
+  const auto loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
+  return count(cast, key_times(cast, source.fps, false), loaded.mesh.positions.size());
 }
 
 }  // namespace

@@ -283,7 +283,7 @@ motion::Spline<7> camera_track(const scene::Scene& scene, const scene::Camera& c
       fmt::format("{}:{}:{}: camera.{}", scene.file.string(), camera.line, camera.column, camera.name);
   const assets::LoadedCamera loaded = assets::load_camera(camera.file, camera.object, where);
   if (loaded.roll > kMaxIgnoredRoll)
-    log::warn(fmt::format("{}: it is tilted to a side by up to {:.2g} degrees, which is left out", where, loaded.roll));
+    log::warn(fmt::format("{}: it is tilted to a side by up to {:.3g} degrees, which is left out", where, loaded.roll));
   const auto turned = [&](const Vec3& x) { return scene.up == scene::UpAxis::z ? Vec3(x.x(), -x.z(), x.y()) : x; };
   const double target_distance = camera.focus > 0 ? camera.focus : 1;  // distance of the target [m]
   std::vector<double> times;

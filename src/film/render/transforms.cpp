@@ -6,8 +6,9 @@ ViewAxes view_axes(const Vec3& forward, const Vec3& up) {
   ViewAxes axes;
   axes.forward = forward.squaredNorm() > 0 ? forward.normalized() : Vec3(-up.unitOrthogonal());
   Vec3 right = axes.forward.cross(up);
-  // If the view is straight up or down, the roll is arbitrary.
-  if (right.norm() < 1e-9 * up.norm()) right = up.unitOrthogonal();
+  // Directions from camera files have single precision.
+  constexpr double kMaxSineOfVertical = 1e-6;
+  if (right.norm() < kMaxSineOfVertical * up.norm()) right = Vec3::UnitX();
   axes.right = right.normalized();
   axes.up = axes.right.cross(axes.forward);
   return axes;

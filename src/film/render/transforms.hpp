@@ -18,8 +18,8 @@ struct ViewAxes {
   Vec3 right, up, forward;
 };
 
-/// Axes that look along `forward`, with `up` upright in the picture. If the two are parallel, the roll is arbitrary. If
-/// `forward` is zero, the direction is arbitrary.
+/// Axes that look along `forward`, with `up` (not x) upright in the picture. If the two are parallel, right is x, as in
+/// views from the front of a scene. If `forward` is zero, the direction is arbitrary.
 ViewAxes view_axes(const Vec3& forward, const Vec3& up);
 
 /// view_from_world for a viewer at `eye`.

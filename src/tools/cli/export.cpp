@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/error.hpp"
 #include "core/log.hpp"
 #include "film/cache/reader.hpp"
 #include "film/render/lighting.hpp"
@@ -110,9 +111,12 @@ ExitCode export_frames(const ExportOptions& options) {
     request.views = [&](const frame::FrameSnapshot& snapshot) { return cameras->at(snapshot); };
     request.lighting = cameras->lighting(*first);
   }
+  std::size_t done = 0;
   const bool whole = exporter::write(
-      request, [&](int frame) { return reader.snapshot(frame); }, [&] { return signals.requested().load(); });
-  if (!whole) return ExitCode::interrupted;
+      request, [&](int frame) { return ++done, reader.snapshot(frame); }, [&] { return signals.requested().load(); });
+  if (!whole)
+    throw Error(ExitCode::interrupted, "interrupted after {} of {} frames; export again with --overwrite", done,
+                request.frames.size());
   if (options.overwrite && !options.frames.begin && !options.frames.end) remove_stale(request, manifest, frames);
   log::info(fmt::format("{}: {} file{} of {} frame{}", request.folder.string(), files.size(),
                         files.size() == 1 ? "" : "s", request.frames.size(), request.frames.size() == 1 ? "" : "s"));

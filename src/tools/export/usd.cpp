@@ -135,14 +135,6 @@ void write_material(std::ostream& out, const std::string& prim, const std::strin
   out << "        }\n";
 }
 
-// Names of the materials of the parts, unique within the object.
-std::vector<std::string> part_prims(const frame::Surface& surface, const std::string& prim) {
-  std::vector<std::string> names;
-  for (std::size_t p = 0; p < surface.parts.size(); ++p)
-    names.push_back(fmt::format("{}_{}_{}", prim, p, prim_name(surface.parts[p].name)));
-  return names;
-}
-
 }  // namespace
 
 bool UsdFile::Samples::add(int frame, std::string value) {
@@ -187,6 +179,12 @@ UsdFile::UsdFile(const frame::FrameSnapshot& first, const std::string& name, dou
     object.smooth = object.groups.of_corner == surfaces_[s]->triangles;
     objects_.push_back(std::move(object));
   }
+  // After the names of all objects, which keep theirs: the materials of objects and of parts are in one scope.
+  for (Object& object : objects_) {
+    const std::vector<frame::SurfacePart>& parts = surfaces_[object.surface]->parts;
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      object.parts.push_back(unique_prim(fmt::format("{}_{}_{}", object.prim, p, prim_name(parts[p].name))));
+  }
 }
 
 std::string UsdFile::unique_prim(const std::string& name) {
@@ -224,13 +222,11 @@ void UsdFile::add(const frame::FrameSnapshot& snapshot, const std::vector<View>&
 void UsdFile::write_materials(std::ostream& out) const {
   out << "    def Scope \"materials\"\n    {\n";
   for (const Object& object : objects_) {
-    const frame::Surface& surface = *surfaces_[object.surface];
     const auto write = [&](const std::string& prim, const Material& material) {
       write_material(out, prim, fmt::format("/{}/materials/{}", root_, prim), material, object.materials);
     };
     write(object.prim, object.materials.all[0]);
-    const std::vector<std::string> parts = part_prims(surface, object.prim);
-    for (std::size_t p = 0; p < parts.size(); ++p) write(parts[p], object.materials.all[p + 1]);
+    for (std::size_t p = 0; p < object.parts.size(); ++p) write(object.parts[p], object.materials.all[p + 1]);
   }
   out << "    }\n";
 }
@@ -267,8 +263,7 @@ void UsdFile::write_mesh(std::ostream& out, const Object& object) const {
                        object.smooth ? " (\n            interpolation = \"vertex\"\n        )"
                                      : " (\n            interpolation = \"faceVarying\"\n        )");
   write_places(out, surface, object);
-  const std::vector<std::string> parts = part_prims(surface, object.prim);
-  for (std::size_t p = 0; p < parts.size(); ++p) {
+  for (std::size_t p = 0; p < object.parts.size(); ++p) {
     std::string faces;
     for (std::size_t t = 0; t < surface.part_of_triangle.size(); ++t)
       if (surface.part_of_triangle[t] == static_cast<std::int32_t>(p))
@@ -279,7 +274,7 @@ void UsdFile::write_mesh(std::ostream& out, const Object& object) const {
         "        {{\n            uniform token elementType = \"face\"\n"
         "            uniform token familyName = \"materialBind\"\n            int[] indices = [{1}]\n"
         "            rel material:binding = </{2}/materials/{0}>\n        }}\n",
-        parts[p], faces, root_);
+        object.parts[p], faces, root_);
   }
   out << "    }\n";
 }

@@ -43,7 +43,8 @@ class UsdFile {
   };
   struct Object {
     std::size_t surface = 0;
-    std::string prim = {};  // its name in the file
+    std::string prim = {};                // its name in the file, and that of its material
+    std::vector<std::string> parts = {};  // names of the materials of its parts, unique in the file
     NormalGroups groups = {};
     bool smooth = false;  // one normal per vertex, else one per corner
     std::size_t vertices = 0;
