@@ -264,7 +264,8 @@ TEST(LibraryMove, RefusesWhatItCannotMove) {
   EXPECT_NO_THROW(Simulation(scene.with({"obstacle.ball.mass=1", "obstacle.ball.release=0.2"}), ball));
   EXPECT_THROW(Simulation(scene, {.driven = {"bal"}, .state = {}}), std::invalid_argument);
   Simulation still(scene), driven(scene, {.driven = {"ball"}, .state = {}});
-  EXPECT_THROW(still.move("ball", {}), std::invalid_argument);
+  const auto error = thrown<std::invalid_argument>([&] { still.move("ball", {}); });
+  EXPECT_STREQ(error.what(), "expected a driven body, got ball; name it in `driven` when the simulation is made");
   EXPECT_THROW(driven.move("ball", {.position = {NAN, 0, 0}}), std::invalid_argument);
   EXPECT_THROW(driven.move("ball", {.rotation = {0, 0, 0, 0}}), std::invalid_argument);
 }

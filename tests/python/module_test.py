@@ -3,8 +3,11 @@
 module_test.py WEFT SOURCES    PYTHONPATH names the folder of the module.
 """
 import ast
+import decimal
+import enum
 import os
 import pathlib
+import pickle
 import subprocess
 import sys
 import tempfile
@@ -31,6 +34,10 @@ shape = "sphere"
 radius = 0.15
 segments = 16
 """
+
+
+class Side(enum.IntEnum):
+    SHORT = 9
 
 
 def run(*words, folder):
@@ -114,6 +121,13 @@ class Module(unittest.TestCase):
             model.add_cloth("flat", corners, [[2**32, 1, 2]])
         with self.assertRaisesRegex(ValueError, "velvet"):
             model.add_cloth("flat", corners, triangles, material="velvet 2")
+        with self.assertRaisesRegex(ValueError, "particles: expected integers, got bool"):
+            model.pin("sheet", numpy.array([False, True, False, False]))
+        with self.assertRaisesRegex(ValueError, "particles: expected numbers of particles, got 4294967296"):
+            model.pin("sheet", [2**32])
+        with self.assertRaises(TypeError):
+            model.gravity[2] = 0
+        self.assertEqual(model.gravity, (0, 0, -1))
         model.add_cloth("sheet", corners, triangles)
         with self.assertRaisesRegex(ValueError, "names differ"):
             weft.Simulation(model)
@@ -141,6 +155,31 @@ class Module(unittest.TestCase):
         start = weft.Simulation(scene).frame["sheet"].positions
         self.assertEqual(start.shape, (99, 3))
         self.assertTrue((start[:, 2] == 0.3).all())
+
+    def test_changes_take_numbers_of_any_class_and_refuse_what_toml_lacks(self):
+        scene = weft.parse(DRAPE)
+        exact = scene.with_changes({"time.step": decimal.Decimal("0.005"), "cloth.sheet.particles": [Side.SHORT] * 2})
+        self.assertEqual(weft.Simulation(exact).frame["sheet"].positions.shape, (81, 3))
+        self.assertIn("step = 0.005", exact.text)
+        for value in (None, {0, 1}, range(3), b"silk", [None]):
+            with self.assertRaisesRegex(TypeError, "title: expected a number, "):
+                scene.with_changes({"title": value})
+        with self.assertRaisesRegex(TypeError, "texts as keys, got int"):
+            scene.with_changes({1: 2})
+
+    def test_caches_and_frames_know_what_they_contain(self):
+        run("simulate", "drape.toml", "--frames", "0:2", "--cache", "cache", folder=self.folder)
+        cache = weft.Cache(self.folder / "cache")
+        self.assertEqual([1 in cache, 2 in cache], [True, False])
+        self.assertEqual(["ball" in cache[1], "bell" in cache[1]], [True, False])
+
+    def test_mistakes_survive_the_way_from_another_process(self):
+        with self.assertRaises(weft.SceneError) as caught:
+            weft.parse(DRAPE, {"time.step": -1})
+        error = pickle.loads(pickle.dumps(caught.exception))
+        self.assertEqual((type(error), str(error)), (weft.SceneError, str(caught.exception)))
+        for field in ("file", "line", "column", "change", "key", "text"):
+            self.assertEqual(getattr(error.mistakes[0], field), getattr(caught.exception.mistakes[0], field))
 
     def test_mistakes_have_their_place(self):
         with self.assertRaises(weft.SceneError) as caught:
@@ -272,6 +311,9 @@ friction = 0.8
         self.assertGreater(difference.flip, 0)
         self.assertTrue(weft.compare(a, c, pixel_budget=1, flip=1, spot=1).good)
         self.assertEqual(weft.compare(a, self.folder / "none.png").outcome, "no test")
+        for limit, value in (("flip", float("nan")), ("spot", -1), ("pixel_budget", -1), ("pixel_tolerance", -1)):
+            with self.assertRaisesRegex(ValueError, limit + ": expected 0 or more"):
+                weft.compare(a, b, **{limit: value})
 
     def test_stubs_and_docstrings_are_of_what_is_there(self):
         stub = ast.parse((SOURCES / "src/api/python/weft/__init__.pyi").read_text())
@@ -285,10 +327,13 @@ friction = 0.8
         for node in stub.body:
             if isinstance(node, ast.ClassDef) and node.name[-5:] != "Error":
                 has = {name for name in vars(getattr(weft, node.name))
-                       if not name.startswith("_") or name in ("__getitem__", "__iter__")}
+                       if not name.startswith("_") or name in ("__getitem__", "__iter__", "__contains__")}
                 self.assertEqual(names_in(node.body) - {"__init__"}, has, node.name)
             if isinstance(node, ast.FunctionDef):
                 self.assertIn("\n", getattr(weft, node.name).__doc__)
+        for error in (weft.SceneError, weft.FileError, weft.SimulationError):
+            self.assertTrue(error.__doc__)
+        self.assertNotIn(" object at ", weft.Model.add_cloth.__doc__)
 
 
 if __name__ == "__main__":

@@ -75,7 +75,8 @@ const Frame& Simulation::advance() {
 void Simulation::move(std::string_view body, const Pose& pose) {
   const std::size_t number = impl_->body(body);
   if (std::ranges::find(impl_->driven, number) == impl_->driven.end())
-    throw std::invalid_argument(fmt::format("expected {} among SimulationOptions::driven", body));
+    throw std::invalid_argument(
+        fmt::format("expected a driven body, got {}; name it in `driven` when the simulation is made", body));
   impl_->simulation->drive(number, library::pose_of(pose, std::string(body)));
 }
 

@@ -40,15 +40,21 @@ std::vector<Row> rows_of(const Array& array, const char* name) {
   return rows;
 }
 
-Mesh mesh_of(const Doubles& positions, const py::object& triangles) {
-  const py::array array = py::array::ensure(triangles);
-  if (!array) throw py::value_error("triangles: expected an array of n rows and 3 columns");
+using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+// Raises ValueError with the type of an array of anything but integers, such as a mask.
+Integers integers_of(const py::object& given, const char* name) {
+  const py::array array = py::array::ensure(given);
+  if (!array) throw py::value_error(fmt::format("{}: expected an array of integers", name));
   const char kind = array.dtype().kind();
-  if (kind != 'i' && kind != 'u')
+  if (array.size() > 0 && kind != 'i' && kind != 'u')
     throw py::value_error(
-        fmt::format("triangles: expected integers, got {}", py::str(array.dtype()).cast<std::string>()));
-  using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
-  return {rows_of<Vector>(positions, "positions"), rows_of<Triangle>(Integers(array), "triangles")};
+        fmt::format("{}: expected integers, got {}", name, py::str(array.dtype()).cast<std::string>()));
+  return Integers(array);
+}
+
+Mesh mesh_of(const Doubles& positions, const py::object& triangles) {
+  return {rows_of<Vector>(positions, "positions"), rows_of<Triangle>(integers_of(triangles, "triangles"), "triangles")};
 }
 
 void add_cloth(Model& model, const std::string& name, const Doubles& positions, const py::object& triangles,
@@ -79,9 +85,28 @@ void add_body(Model& model, const std::string& name, const Doubles& positions, c
   model.bodies.push_back(std::move(body));
 }
 
-void add_pin(Model& model, const std::string& cloth, const std::vector<int>& particles, const std::string& body,
+void add_pin(Model& model, const std::string& cloth, const py::object& particles, const std::string& body,
              double release) {
-  model.pins.push_back({cloth, particles, body, release});
+  Pin pin{.cloth = cloth, .particles = {}, .body = body, .release = release};
+  const Integers numbers = integers_of(particles, "particles");
+  for (py::ssize_t i = 0; i < numbers.size(); ++i) {
+    const std::int64_t number = numbers.data()[i];
+    if (!std::in_range<int>(number))
+      throw py::value_error(fmt::format("particles: expected numbers of particles, got {}", number));
+    pin.particles.push_back(static_cast<int>(number));
+  }
+  model.pins.push_back(std::move(pin));
+}
+
+// A tuple, as a change of one number in a list would change a copy alone.
+template <Vector Model::*member>
+py::tuple vector_of(const Model& model) {
+  return py::tuple(py::cast(model.*member));
+}
+
+template <Vector Model::*member>
+void set_vector(Model& model, const Vector& value) {
+  model.*member = value;
 }
 
 void bind_material(py::module_& module) {
@@ -119,13 +144,15 @@ void bind_model(py::module_& module) {
       .def_readwrite("fps", &Model::fps, "Frames per second.")
       .def_readwrite("step", &Model::step, "Maximum time step, s.")
       .def_readwrite("method", &Model::method)
-      .def_readwrite("newton_tolerance", &Model::newton_tolerance)
-      .def_readwrite("gravity", &Model::gravity, "m/s².")
-      .def_readwrite("wind", &Model::wind, "m/s.")
+      .def_readwrite("newton_tolerance", &Model::newton_tolerance,
+                     "Error that the solver may leave, relative to the local truncation error.")
+      .def_property("gravity", &vector_of<&Model::gravity>, &set_vector<&Model::gravity>, "m/s².")
+      .def_property("wind", &vector_of<&Model::wind>, &set_vector<&Model::wind>, "m/s.")
       .def_readwrite("air_density", &Model::air_density, "kg/m³.")
       .def_readwrite("self_contact", &Model::self_contact, "Contact of cloth with itself and other cloths.")
       .def("add_cloth", &add_cloth, py::arg("name"), py::arg("positions"), py::arg("triangles"), py::kw_only(),
-           py::arg("rest") = py::none(), py::arg("material") = Material(), py::arg("velocity") = Vector{},
+           py::arg("rest") = py::none(), py::arg_v("material", Material(), "Material()"),
+           py::arg("velocity") = Vector{},
            "`rest`: places in the flat fabric along weft and warp, n x 2, m; without, the mesh is the rest shape. "
            "`material`: a Material, or the name of a fabric.")
       .def("add_body", &add_body, py::arg("name"), py::arg("positions"), py::arg("triangles"), py::kw_only(),
@@ -136,7 +163,8 @@ void bind_model(py::module_& module) {
            "`mass`: above 0, forces move it (kg).")
       .def("pin", &add_pin, py::arg("cloth"), py::arg("particles"), py::kw_only(), py::arg("body") = "",
            py::arg("release") = std::numeric_limits<double>::infinity(),
-           "Hold particles where they start, or at a body, until `release` (s). A particle can be in one pin only.");
+           "Hold particles where they start, or at a body, until `release` (s). A particle can be in one pin only. "
+           "`particles`: their numbers; numpy.flatnonzero(mask) has those of a mask.");
 }
 
 }  // namespace weft::python

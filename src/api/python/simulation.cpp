@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -19,24 +20,32 @@
 namespace weft::python {
 namespace {
 
-// Converts a value of a change to TOML text. Accepts scalars and arrays of numpy, too.
-std::string toml_of(const py::handle& value) {
-  if (py::hasattr(value, "tolist")) return toml_of(value.attr("tolist")());
+// Converts a value of a change to TOML text. Accepts scalars and arrays of numpy, too. Raises TypeError for a value
+// that TOML does not have, such as None or a set. `path`: key of the change.
+std::string toml_of(const py::handle& value, const std::string& path) {
+  if (py::hasattr(value, "tolist")) return toml_of(value.attr("tolist")(), path);
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  if (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value)) return py::repr(value);
+  // Plain numbers, as subclasses may have texts of their own.
+  if (py::hasattr(value, "__index__")) return py::repr(value.attr("__index__")());
+  if (py::hasattr(value, "__float__")) return py::repr(value.attr("__float__")());
   if (py::isinstance<py::dict>(value)) {
     std::vector<std::string> entries;
     for (const auto& [key, entry] : value.cast<py::dict>())
-      entries.push_back(fmt::format("{} = {}", toml_of(key), toml_of(entry)));
+      entries.push_back(fmt::format("{} = {}", toml_of(key, path), toml_of(entry, path)));
     return fmt::format("{{ {} }}", fmt::join(entries, ", "));
   }
   if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
     std::vector<std::string> entries;
-    for (const py::handle entry : value) entries.push_back(toml_of(entry));
+    for (const py::handle entry : value) entries.push_back(toml_of(entry, path));
     return fmt::format("[{}]", fmt::join(entries, ", "));
   }
+  if (py::hasattr(value, "__fspath__")) return toml_of(value.attr("__fspath__")(), path);
+  if (!py::isinstance<py::str>(value))
+    throw py::type_error(
+        fmt::format("{}: expected a number, a bool, a text, a path, or an array, list, tuple or dict of these, got {}",
+                    path, Py_TYPE(value.ptr())->tp_name));
   // A JSON string is also a TOML string.
-  return py::module_::import("json").attr("dumps")(py::str(value), py::arg("ensure_ascii") = false).cast<std::string>();
+  return py::module_::import("json").attr("dumps")(value, py::arg("ensure_ascii") = false).cast<std::string>();
 }
 
 using Changes = std::optional<py::dict>;
@@ -44,8 +53,12 @@ using Changes = std::optional<py::dict>;
 std::vector<std::string> changes_of(const Changes& changes) {
   std::vector<std::string> texts;
   if (!changes) return texts;
-  for (const auto& [key, value] : *changes)
-    texts.push_back(fmt::format("{}={}", key.cast<std::string>(), toml_of(value)));
+  for (const auto& [key, value] : *changes) {
+    if (!py::isinstance<py::str>(key))
+      throw py::type_error(fmt::format("changes: expected texts as keys, got {}", Py_TYPE(key.ptr())->tp_name));
+    const auto path = key.cast<std::string>();
+    texts.push_back(fmt::format("{}={}", path, toml_of(value, path)));
+  }
   return texts;
 }
 
@@ -108,6 +121,8 @@ const char* kind_of(const FrameObject& object) {
   return kNames[static_cast<std::size_t>(object.object->kind)];
 }
 
+using MistakeState = std::tuple<std::string, int, int, std::string, std::string, std::string>;
+
 // Defines the exceptions. The attribute `mistakes` of SceneError lists the mistakes with their places.
 void bind_errors(py::module_& module) {
   py::class_<Mistake>(module, "Mistake", "One mistake in a scene, with its place in the file.")
@@ -118,12 +133,26 @@ void bind_errors(py::module_& module) {
       .def_readonly("change", &Mistake::change,
                     "\"key=value\" of the change that contains the mistake; empty if the mistake is in the file.")
       .def_readonly("key", &Mistake::key, "Key, such as \"cloth.band.material.thickness\"; may be empty.")
-      .def_readonly("text", &Mistake::text, "Description, such as \"expected > 0 m, got -0.001\".");
+      .def_readonly("text", &Mistake::text, "Description, such as \"expected > 0 m, got -0.001\".")
+      // Exceptions of worker processes come as pickles.
+      .def(py::pickle(
+          [](const Mistake& mistake) {
+            return MistakeState(mistake.file, mistake.line, mistake.column, mistake.change, mistake.key, mistake.text);
+          },
+          [](const MistakeState& state) {
+            const auto& [file, line, column, change, key, text] = state;
+            return Mistake{file, line, column, change, key, text};
+          }));
   // These references are never released, because the interpreter may end before this library.
   static const py::handle scene_error = py::exception<SceneError>(module, "SceneError", PyExc_ValueError).release();
   static const py::handle file_error = py::exception<FileError>(module, "FileError", scene_error).release();
   static const py::handle simulation_error =
       py::exception<SimulationError>(module, "SimulationError", PyExc_RuntimeError).release();
+  scene_error.attr("__doc__") =
+      "A scene has mistakes, or surfaces touch at the start. The text lists all mistakes; `mistakes` has their places.";
+  file_error.attr("__doc__") = "A file that the scene names, or a frame cache, cannot be used.";
+  simulation_error.attr("__doc__") =
+      "The simulation cannot continue. The text names the frame, the time and the reason.";
   static const auto set = [](const py::handle& type, const SceneError& error) {
     py::object instance = type(error.what());
     instance.attr("mistakes") = py::cast(error.mistakes());
@@ -191,13 +220,14 @@ void bind_frame(py::module_& module) {
       .def_property_readonly("name", [](const FrameObject& self) { return std::string(self.object->name); })
       .def_property_readonly("kind", &kind_of, "\"cloth\", \"obstacle\", \"character\" or \"rope\".")
       .def_property_readonly("positions", &rows<&Object::positions>, "n x 3, m.")
-      .def_property_readonly("velocities", &rows<&Object::velocities>, "Velocities, n x 3, m/s; no rows for bodies.")
+      .def_property_readonly("velocities", &rows<&Object::velocities>,
+                             "Velocities, n x 3, m/s; no rows for bodies and caches.")
       .def_property_readonly("contact_forces", &rows<&Object::contact_forces>,
                              "Contact force on each particle, friction included, at the end of the last time step: n x "
                              "3, N; zeros in the first frame of a simulation; no rows for bodies and caches.")
-      .def_property_readonly(
-          "strains", &strains,
-          "Strain at each particle, n values: the largest |length / rest length - 1| of the threads at it.")
+      .def_property_readonly("strains", &strains,
+                             "Strain at each particle, n values: the largest |length / rest length - 1| of the threads "
+                             "at it; no values for bodies and caches.")
       .def_property_readonly("rest", &rows<&Object::rest>, "Rest coordinates along weft and warp, n x 2, m.")
       .def_property_readonly("triangles", &rows<&Object::triangles>, "Vertex numbers of the triangles, m x 3.");
   py::class_<Frame>(module, "Frame", "One frame; it never changes. frame[\"band\"] is its object with this name.")
@@ -210,7 +240,13 @@ void bind_frame(py::module_& module) {
                                for (const Object& object : self.objects()) objects.push_back({self, &object});
                                return objects;
                              })
-      .def("__getitem__", &find_object, py::arg("name"));
+      .def("__getitem__", &find_object, py::arg("name"))
+      .def(
+          "__contains__",
+          [](const Frame& self, const std::string& name) {
+            return std::ranges::any_of(self.objects(), [&](const Object& object) { return object.name == name; });
+          },
+          py::arg("name"), "Whether an object has this name.");
 }
 
 }  // namespace
@@ -238,7 +274,8 @@ void bind_simulation(py::module_& module) {
            "from there.")
       .def_property_readonly("frame", &Simulation::frame, py::return_value_policy::copy, "The current frame.")
       .def("advance", &Simulation::advance, py::return_value_policy::copy, WithoutLock(),
-           "Compute the next frame. If it raises SimulationError, the current frame stays as it was.")
+           "Compute the next frame. If it raises SimulationError, the current frame stays as it was. Ctrl-C acts when "
+           "the frame is complete.")
       .def("move", move, py::arg("obstacle"), py::arg("position"),
            py::arg("rotation") = std::array<double, 4>{1, 0, 0, 0},
            "During the next frame, move a driven obstacle to this pose (m; unit quaternion w, x, y, z) at constant "

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -6,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -127,6 +129,10 @@ void bind_difference(py::module_& module) {
   const auto compare = [](const std::filesystem::path& reference, const std::filesystem::path& test,
                           int pixel_tolerance, double pixel_budget, double flip, double spot,
                           const std::optional<std::filesystem::path>& mask) {
+    using Limit = std::pair<const char*, double>;
+    for (const auto& [name, limit] : {Limit("pixel_tolerance", pixel_tolerance), Limit("pixel_budget", pixel_budget),
+                                      Limit("flip", flip), Limit("spot", spot)})
+      if (!(limit >= 0)) throw std::invalid_argument(fmt::format("{}: expected 0 or more, got {:g}", name, limit));
     return compare_files(reference, test, {pixel_tolerance, pixel_budget, flip, spot}, mask.value_or(""));
   };
   const compare::Limits limits;
@@ -155,6 +161,9 @@ void bind_tools(py::module_& module) {
       .def_property_readonly("fps", &Cache::fps)
       .def_property_readonly("scene", &Cache::scene)
       .def("__getitem__", &Cache::frame, py::arg("number"), WithoutLock())
+      .def(
+          "__contains__", [](const Cache& self, int number) { return std::ranges::count(self.frames(), number) > 0; },
+          py::arg("number"), "Whether the cache contains the frame of this number now.")
       .def(
           "__iter__",
           [](const py::object& self) {

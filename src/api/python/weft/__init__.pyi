@@ -1,11 +1,12 @@
 import os
-from typing import Any, Iterator, Mapping, Optional, Sequence, Union
+from typing import Any, Iterator, Optional, Sequence, Union
 
 import numpy
 import numpy.typing
 
 _Path = Union[str, "os.PathLike[str]"]
-_Changes = Mapping[str, Any]
+_Changes = dict[str, Any]
+_Vector = Union[Sequence[float], numpy.typing.NDArray[Any]]
 _Doubles = numpy.typing.NDArray[numpy.float64]
 
 __version__: str
@@ -131,6 +132,7 @@ class Frame:
     @property
     def objects(self) -> list[Object]: ...
     def __getitem__(self, name: str) -> Object: ...
+    def __contains__(self, name: str) -> bool: ...
 
 class Method:
     implicit_euler: Method
@@ -165,10 +167,16 @@ class Model:
     step: float
     method: Method
     newton_tolerance: float
-    gravity: Sequence[float]
-    wind: Sequence[float]
     air_density: float
     self_contact: bool
+    @property
+    def gravity(self) -> tuple[float, float, float]: ...
+    @gravity.setter
+    def gravity(self, value: _Vector) -> None: ...
+    @property
+    def wind(self) -> tuple[float, float, float]: ...
+    @wind.setter
+    def wind(self, value: _Vector) -> None: ...
     def __init__(self) -> None: ...
     def add_cloth(
         self,
@@ -178,7 +186,7 @@ class Model:
         *,
         rest: Optional[numpy.typing.ArrayLike] = ...,
         material: Union[str, Material] = ...,
-        velocity: Sequence[float] = ...,
+        velocity: _Vector = ...,
     ) -> None: ...
     def add_body(
         self,
@@ -186,22 +194,22 @@ class Model:
         positions: numpy.typing.ArrayLike,
         triangles: numpy.typing.ArrayLike,
         *,
-        position: Sequence[float] = ...,
-        rotation: Sequence[float] = ...,
-        keys: Sequence[tuple[float, Sequence[float], Sequence[float]]] = ...,
+        position: _Vector = ...,
+        rotation: _Vector = ...,
+        keys: Sequence[tuple[float, _Vector, _Vector]] = ...,
         mass: float = ...,
-        velocity: Sequence[float] = ...,
+        velocity: _Vector = ...,
         friction: float = ...,
         collide: bool = ...,
     ) -> None: ...
-    def pin(self, cloth: str, particles: Sequence[int], *, body: str = ..., release: float = ...) -> None: ...
+    def pin(self, cloth: str, particles: numpy.typing.ArrayLike, *, body: str = ..., release: float = ...) -> None: ...
 
 class Simulation:
     def __init__(self, scene: Union[Scene, Model], *, driven: Sequence[str] = ..., state: bytes = ...) -> None: ...
     @property
     def frame(self) -> Frame: ...
     def advance(self) -> Frame: ...
-    def move(self, obstacle: str, position: Sequence[float], rotation: Sequence[float] = ...) -> None: ...
+    def move(self, obstacle: str, position: _Vector, rotation: _Vector = ...) -> None: ...
     def save(self) -> bytes: ...
 
 def set_threads(threads: int) -> None: ...
@@ -227,6 +235,7 @@ class Cache:
     @property
     def scene(self) -> Scene: ...
     def __getitem__(self, number: int) -> Frame: ...
+    def __contains__(self, number: int) -> bool: ...
     def __iter__(self) -> Iterator[Frame]: ...
 
 class Difference:
