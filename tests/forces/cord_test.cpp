@@ -20,10 +20,10 @@ std::vector<double> even_pieces() {
   return std::vector<double>(kPieces, kLength / kPieces);
 }
 
-Positions arc(double radius) {
+Positions arc(double radius, double length = kLength) {
   Positions x;
   for (int i = 0; i <= kPieces; ++i) {
-    const double angle = kLength / radius * i / kPieces;
+    const double angle = length / radius * i / kPieces;
     x.emplace_back(radius * std::sin(angle), 0.2, radius * std::cos(angle));
   }
   return x;
@@ -53,6 +53,15 @@ TEST(Cord, PullsMoreWhereKeysMakeItShorter) {
   for (int i = 0; i <= kPieces; ++i) x.emplace_back(kLength * i / kPieces, 0, 0);
   cord.set_length_ratio(0.8);
   EXPECT_NEAR(testing::force_of(cord, x, testing::zeros(x)).front().x(), 5000 * (1 / 0.8 - 1), 1e-9);
+}
+
+TEST(Cord, KeepsItsBendingStiffnessWhereKeysMakeItShorter) {
+  Cord cord(even_pieces(), false, 0, {.bend = 3e-4});
+  EXPECT_TRUE(cord.set_length_ratio(0.4));
+  EXPECT_FALSE(cord.set_length_ratio(0.4));
+  cord.hold(std::vector<char>(kPieces + 1, 0));
+  const double length = 0.4 * kLength, expected = 0.5 * 3e-4 * (length - length / kPieces) / (0.1 * 0.1);
+  EXPECT_NEAR(cord.energy(arc(0.1, length)) / expected, 1, 1.1e-4);
 }
 
 TEST(Cord, MeetsAirAcrossAsACylinderAndNotAlong) {

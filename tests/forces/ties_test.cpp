@@ -47,6 +47,15 @@ TEST(Ties, ForceIsMinusTheGradientOfTheEnergy) {
   }
 }
 
+TEST(Ties, KnowWhetherTheyOpenOrCloseBetweenTwoTimes) {
+  const Ties ties = tie_of(3, 1);
+  EXPECT_TRUE(ties.are_constant_between(0, 0.9));
+  EXPECT_FALSE(ties.are_constant_between(0.9, 1.1));
+  EXPECT_FALSE(ties.are_constant_between(1.1, 1.2));  // its strength grows
+  EXPECT_TRUE(ties.are_constant_between(2, 2.9));
+  EXPECT_FALSE(ties.are_constant_between(2.9, 3));
+}
+
 TEST(Ties, AreOpenAndClosedAtTheirTimes) {
   const auto held = [](double open, double closed, double t) {
     Ties ties = tie_of(open, closed);

@@ -187,5 +187,13 @@ TEST_F(Garments, AStartThatMeetsACharacterTellsHowArmsAreHeldOff) {
   EXPECT_EQ(elsewhere.find(hint), std::string::npos) << elsewhere;
 }
 
+// If nothing moves, a frame is one step; but not if something is timed in it.
+TEST_F(Garments, TakeAllTheirStepsWhileTheyAreSewn) {
+  production::SceneSimulation simulation(dressed("pin = [{ low = 0, high = 1 }]\n[time]\nfps = 25\nduration = 1\n"));
+  int frame = 0;
+  for (; frame < 15; ++frame) EXPECT_EQ(simulation.advance().steps, 4) << "frame " << frame + 1;
+  for (; frame < 18; ++frame) EXPECT_EQ(simulation.advance().steps, 1) << "frame " << frame + 1;
+}
+
 }  // namespace
 }  // namespace weft::simulation

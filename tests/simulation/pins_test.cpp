@@ -168,9 +168,24 @@ TEST(PinStrength, IsKnownOfEveryParticle) {
     const model::Model model = environment::Environment(scene).model;
     const Pins pins(model, {0});
     int pinned = 0;
-    for (Index i = 0; i < 9; ++i) pinned += pins.strength_fraction(i) > 0 ? 1 : 0;
+    for (Index i = 0; i < 9; ++i) pinned += pins.strength_fraction(i, 0) > 0 ? 1 : 0;
     EXPECT_EQ(pinned, 3) << edge;
   }
+}
+
+TEST(PinsThatOverlap, HoldWhatPinsBeforeThemHaveReleased) {
+  const Pinned pinned(support::scene_of_text(
+      "[[cloth]]\nname = 'a'\nsize = [0.2, 0.2]\nparticles = [3, 3]\npin = [\n"
+      "{ low = [0, 1], high = [1, 1], release = 0.2 },\n"
+      "{ low = [0, 1], high = [0.5, 1], release = 0.1 },\n"  // released before, so it never holds any
+      "{ low = [0, 1], high = [0, 1], keys = [{ time = 0.2 }, { time = 0.4, offset = [0, 0, 1] }] }]\n"));
+  ASSERT_EQ(pinned.at(0.2).size(), 3u);
+  for (const integrator::HeldParticle& held : pinned.at(0.2))
+    EXPECT_EQ(pinned.pins.pin_of(held.constraint.particle, 0.2), 0u);
+  const std::vector<integrator::HeldParticle> after = pinned.at(0.3);
+  ASSERT_EQ(after.size(), 1u);
+  EXPECT_EQ(pinned.pins.pin_of(after[0].constraint.particle, 0.3), 2u);
+  EXPECT_NEAR((after[0].x_end - pinned.start(after[0]) - Vec3(0, 0, 0.5)).norm(), 0, 1e-12);
 }
 
 }  // namespace

@@ -185,6 +185,19 @@ TEST(RigidBodies, AreMovedByKeysUntilTheirRelease) {
   EXPECT_NEAR(at.z(), 1 - 0.5 * kGravity * 0.04, 0.02);
 }
 
+TEST(RigidBodies, ReleasedAtTheirLastKeyGoOnWithTheVelocityOfTheirKeys) {
+  production::SceneSimulation simulation(support::scene_of_text(
+      timed(0.4, "integrator = \"bdf2\"") +
+      box("box",
+          "size = [0.1, 0.1, 0.1]\nmass = 1\ncollide = false\nrelease = 0.2\nkeys = [{ time = 0, position = "
+          "[0, 0, 1] }, { time = 0.2, position = [0.4, 0, 1] }]\n")));
+  for (int frame = 1; frame < 5; ++frame) simulation.advance();
+  // Work of the keys accounts for its energy of motion: otherwise the run ends with an error.
+  EXPECT_NEAR(simulation.advance().kinetic_energy, 0.5 * 1 * 2 * 2, 1e-6);
+  for (int frame = 6; frame <= 10; ++frame) simulation.advance();
+  EXPECT_NEAR(middle(vertices(simulation, 0)).x(), 0.8, 1e-6);
+}
+
 TEST(RigidBodies, ReleasedAtTimeZeroStandStillInThePreroll) {
   production::SceneSimulation simulation(
       support::scene_of_text(timed(0.2, "preroll = 0.2") +
@@ -413,6 +426,19 @@ TEST(RigidBodies, MayTouchWhatTheyStandOnWhereOtherThingsAreUntangled) {
       "start = \"untangle\"\n");
   const production::SceneSimulation simulation(scene);
   EXPECT_NEAR(middle(vertices(simulation, 2)).z(), 0.1002, 1e-9);  // lifted by 0.2 mm
+}
+
+// No cloth could be untangled, so the message advises nothing of that kind.
+TEST(RigidBodies, ThatCrossAtTheStartAreRefusedWithAdviceForBodies) {
+  try {
+    const production::SceneSimulation simulation(
+        support::scene_of_text(timed(0.2) + box("one", "size = [0.1, 0.1, 0.1]\nmass = 1\n") +
+                               box("other", "size = [0.1, 0.1, 0.1]\nposition = [0.05, 0.02, 0.03]\n")));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("move one of them"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("untangle"), std::string::npos) << error.what();
+  }
 }
 
 TEST(RigidBodies, ThatDoNotCollideFallThroughClothAndFloors) {

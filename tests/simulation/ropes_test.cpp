@@ -4,8 +4,10 @@
 #include <algorithm>
 
 #include "core/parallel.hpp"
+#include "film/environment/environment.hpp"
 #include "film/production/plan.hpp"
 #include "film/production/scene_simulation.hpp"
+#include "physics/simulation/step_problem.hpp"
 #include "simulation/saved_state.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
@@ -50,6 +52,30 @@ TEST(RopeRuns, AreDrawnInToTheLengthOfTheirKeys) {
   double length = 0;
   for (std::size_t i = 1; i < x.size(); ++i) length += (x[i] - x[i - 1]).norm();
   EXPECT_NEAR(length, 0.7, 1e-3);  // its weight stretches cotton by less than this
+}
+
+TEST(RopeRuns, HaveTheBendingStiffnessOfTheirLengthInTheMatrix) {
+  const model::Model model =
+      environment::Environment(
+          support::scene_of_text("[[rope]]\nname = \"line\"\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nsegments = 8\n"
+                                 "keys = [{ time = 0, length = 1 }, { time = 1, length = 0.5 }]\n"))
+          .model;
+  ClothSystem cloth(model);
+  const std::vector<Vec3>& x = model.cloths[0].start;
+  const std::vector<Vec3> v(x.size(), Vec3::Zero());
+  const auto blocks_at = [&](double t, StepProblem& problem) {
+    problem.begin_step(t, x, {});
+    std::vector<Vec3> force = v;
+    problem.linearise({x, v, x, 100, 1}, 0, force);
+    std::vector<Mat3> blocks;
+    const solver::BlockMatrix& matrix = problem.memory().system.matrix;
+    matrix.for_each_block(0, matrix.rows(), [&](Index, Index, const Mat3& block) { blocks.push_back(block); });
+    return blocks;
+  };
+  StepProblem used(cloth), fresh(cloth);
+  const std::vector<Mat3> before = blocks_at(0, used), after = blocks_at(1, used);
+  EXPECT_NE(before, after);
+  EXPECT_EQ(after, blocks_at(1, fresh));
 }
 
 TEST(RopeRuns, BearWhatIsTiedToThem) {

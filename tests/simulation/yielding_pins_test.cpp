@@ -241,6 +241,20 @@ TEST(PinKeys, OffsetAndPositionAreTwoWaysToSayOneThing) {
   for (std::size_t i = 0; i < by_offset.size(); ++i) EXPECT_LT((by_offset[i] - by_position[i]).norm(), 1e-6);
 }
 
+TEST(Doubts, NamePinsThatTakeOverParticlesFarFromTheirPlaces) {
+  const auto of = [](const std::string& offset) {
+    return production::find_warnings(support::scene_of_text(
+        "time = { duration = 0.8, fps = 25 }\n[[cloth]]\nname = 'sheet'\nsize = [0.4, 0.4]\nparticles = [5, 5]\n"
+        "[[cloth.pin]]\nlow = [0, 1]\nrelease = 0.4\nkeys = [{ time = 0 }, { time = 0.3, offset = " +
+        offset + " }]\n[[cloth.pin]]\nlow = [0, 1]\n"));
+  };
+  EXPECT_TRUE(of("[0, 0, 0]").empty());
+  const auto far = of("[0, 0, 0.3]");
+  ASSERT_EQ(far.size(), 1u);
+  EXPECT_NE(far[0].find("cloth.sheet.pin.1: moves at "), std::string::npos) << far[0];
+  EXPECT_NE(far[0].find("it takes over particles"), std::string::npos) << far[0];
+}
+
 TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
   const auto of = [](const std::string& text) { return production::find_warnings(support::scene_of_text(text)); };
   const auto entries = of(kIntoTheFloor);

@@ -80,14 +80,14 @@ void list_colliding_triangles(model::Body& body, BodyDetails& details) {
   if (body.colliding.empty()) body.collide = false;
 }
 
-/// Advice for the message that surfaces touch at the start.
-std::string start_advice_for(const scene::Scene& scene) {
+/// Sets the advice for the message that surfaces touch at the start.
+void set_start_advice(const scene::Scene& scene, model::Model& model) {
   const bool untangles = std::ranges::any_of(scene.cloths, [](const scene::Cloth& cloth) {
     return cloth.start == scene::ClothStart::untangle || !cloth.over.empty();
   });
-  return untangles ? "'weft thumbnail --start' draws it as it was; move one of them"
-                   : "'weft thumbnail --start' draws it; move one of them, leave it out of contact, or give a cloth "
-                     "start = \"untangle\"";
+  model.start_advice = untangles ? "'weft thumbnail --start' draws it as it was; move one of them"
+                                 : "'weft thumbnail --start' draws it; move one of them, or leave it out of contact";
+  if (!untangles) model.untangle_advice = "or give a cloth start = \"untangle\"";
 }
 
 /// Advice for the message that a character touches another surface: hanging arms are in the way of most skirts.
@@ -170,7 +170,7 @@ Environment::Environment(const scene::Scene& scene) {
   model.solver = scene.solver;
   model.contact = scene.contact;
   model.layers = scene::list_layers(scene);
-  model.start_advice = start_advice_for(scene);
+  set_start_advice(scene, model);
   const std::vector<Attached> attached = add_cloths(scene);
   for (const scene::Obstacle& obstacle : scene.obstacles) {
     model.bodies.push_back(make_obstacle(scene, obstacle));

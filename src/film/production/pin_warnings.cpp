@@ -82,11 +82,11 @@ struct HeldRegion {
 
 // Returns one region per pin; empty for pins with a strength, and for cloth that is no rectangle.
 std::vector<HeldRegion> held_regions(const scene::Scene& scene, const environment::Environment& environment,
-                                     const MovingPins& moving, const HeldParticles& held) {
+                                     const MovingPins& moving, const HeldParticles& held, double t) {
   std::vector<HeldRegion> regions(moving.pins.size());
   std::vector<std::size_t> seen(moving.pins.size(), 0);
   for (const integrator::HeldParticle& particle : held) {
-    const std::size_t pin = moving.pins.pin_of(particle.constraint.particle);
+    const std::size_t pin = moving.pins.pin_of(particle.constraint.particle, t);
     const simulation::Pins::Info& info = moving.pins.info(pin);
     const scene::Cloth& cloth = scene.cloths[info.cloth];
     const std::size_t every = (info.particles + kMaxSampledParticles - 1) / kMaxSampledParticles, number = seen[pin]++;
@@ -146,7 +146,7 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
   const double start = -scene.preroll_frames() / scene.time.fps;
   moving.pins.held_at(start, environment.model, held);
   for (const integrator::HeldParticle& particle : held) {
-    const std::size_t pin = moving.pins.pin_of(particle.constraint.particle);
+    const std::size_t pin = moving.pins.pin_of(particle.constraint.particle, start);
     const double distance =
         (particle.x_end - moving.start[static_cast<std::size_t>(particle.constraint.particle)]).norm();
     if (distance > kMinJump && moving.is_moved(scene, pin) && jumps.insert(pin).second)
@@ -160,21 +160,24 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
   for (const double t : times_of(scene)) {
     moving.pins.held_at(t, environment.model, held);
     for (const integrator::HeldParticle& particle : held) {
-      const std::size_t number = moving.pins.pin_of(particle.constraint.particle);
+      const std::size_t number = moving.pins.pin_of(particle.constraint.particle, t);
       Vec3& x = before[static_cast<std::size_t>(particle.constraint.particle)];
       // A jump between two samples shows only in the distance, not in the velocity.
       const double mean = t > last && last >= 0 ? (particle.x_end - x).norm() / (t - last) : 0;
       const double speed = std::max(particle.v_end.norm(), mean);
       x = particle.x_end;
       const scene::Pin& pin = moving.pin(scene, number);
-      if (speed <= kMaxHoldSpeed || !(has_keys(pin) || follows(pin)) || !fast.insert(number).second) continue;
-      found.push_back(fmt::format(
-          "{}: moves at {:.3g} m/s at {:.4g} s, which tears cloth along{}", moving.name(scene, number), speed, t,
-          has_keys(pin)
-              ? ""
-              : fmt::format("; '{}', which it follows, moves or jumps there: keys farther apart make it slower, "
-                            "and a jump needs a scene of its own on either side",
-                            pin.follow)));
+      if (speed <= kMaxHoldSpeed || !fast.insert(number).second) continue;
+      std::string reason;
+      if (follows(pin))
+        reason = fmt::format(
+            "; '{}', which it follows, moves or jumps there: keys farther apart make it slower, and a "
+            "jump needs a scene of its own on either side",
+            pin.follow);
+      else if (!has_keys(pin))
+        reason = "; it takes over particles that an earlier pin has moved and releases";
+      found.push_back(fmt::format("{}: moves at {:.3g} m/s at {:.4g} s, which tears cloth along{}",
+                                  moving.name(scene, number), speed, t, reason));
     }
     last = t;
   }
@@ -220,7 +223,7 @@ std::vector<std::string> find_stretches(const scene::Scene& scene, const environ
   HeldParticles held;
   for (const double t : times_of(scene)) {
     moving.pins.held_at(t, environment.model, held);
-    const std::vector<HeldRegion> regions = held_regions(scene, environment, moving, held);
+    const std::vector<HeldRegion> regions = held_regions(scene, environment, moving, held, t);
     for (std::size_t b = 1; b < regions.size(); ++b)
       for (std::size_t a = 0; a < b; ++a) {
         const std::size_t cloth = moving.pins.info(a).cloth;
@@ -267,14 +270,15 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
       return may_be_in ? collision::nearest_point(p, body.mesh.topology.triangles, x).height : 1;
     };
     // The start positions count too, because keys may begin inside.
-    sample_at(-scene.preroll_frames() / scene.time.fps);
+    const double start = -scene.preroll_frames() / scene.time.fps;
+    sample_at(start);
     for (const integrator::HeldParticle& particle : held)
       if (height_of(moving.start[static_cast<std::size_t>(particle.constraint.particle)]) > 0)
-        outside.insert(moving.pins.pin_of(particle.constraint.particle));
+        outside.insert(moving.pins.pin_of(particle.constraint.particle, start));
     for (const double t : times_of(scene)) {
       sample_at(t);
       for (const integrator::HeldParticle& particle : held) {
-        const std::size_t pin = moving.pins.pin_of(particle.constraint.particle);
+        const std::size_t pin = moving.pins.pin_of(particle.constraint.particle, t);
         if (entered.contains(pin) || !moving.is_moved(scene, pin)) continue;
         // An open surface, such as a floor, has no inside: a pin enters it only if it was in front of the surface
         // before.

@@ -78,9 +78,7 @@ const Table& rope_rules() {
           .by_default(of_material)
           .number("stretch", &Rope::stretch, above(0, 1e10), "N", "stretching stiffness: force per strain (EA)")
           .by_default(of_material)
-          .number(
-              "bend", &Rope::bend, within(0, 1e6), "N·m²",
-              "bending stiffness (EI) at the initial length; keys of the length do not change the moments at joints")
+          .number("bend", &Rope::bend, within(0, 1e6), "N·m²", "bending stiffness (EI)")
           .by_default(of_material)
           .number("damping", &Rope::damping, within(0, 10), "s",
                   "viscosity of stretch and bending, relative to their stiffness")

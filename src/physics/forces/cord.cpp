@@ -42,34 +42,41 @@ Cord::Cord(std::span<const double> lengths, bool closed, Index first, const Cord
   const auto pieces = static_cast<Index>(lengths.size()), particles = closed ? pieces : pieces + 1;
   const auto particle = [&](Index i) { return first + i % particles; };
   for (Index p = 0; p < pieces; ++p) pieces_.push_back({{particle(p), particle(p + 1)}, lengths[slot(p)], 0, 0, 0});
+  if (parameters.bend > 0 || parameters.bend_viscosity > 0)
+    for (Index p = 0; p < (closed ? pieces : pieces - 1); ++p) {
+      const double before = lengths[slot(p)], after = lengths[slot((p + 1) % pieces)];
+      turns_.push_back({{particle(p), particle(p + 1), particle(p + 2)}, before, after, 0.5 * (before + after)});
+    }
   set_length_ratio(1);
-  if (parameters.bend == 0 && parameters.bend_viscosity == 0) return;
-  for (Index p = 0; p < (closed ? pieces : pieces - 1); ++p) {
-    turns_.push_back(
-        {{particle(p), particle(p + 1), particle(p + 2)}, lengths[slot(p)], lengths[slot((p + 1) % pieces)], {}, 0});
-    compute_weights(turns_.back(), {});
-  }
 }
 
-// If the middle and one end are held, the free half piece contains the whole turn; see Bend.
-void Cord::compute_weights(Turn& turn, std::span<const char> held) const {
-  const auto is_held = [&](std::size_t k) { return !held.empty() && held[slot(turn.particles[k])] != 0; };
-  turn.length = 0.5 * (turn.before + turn.after);
-  if (is_held(1) && is_held(0) != is_held(2)) turn.length = 0.5 * (is_held(0) ? turn.after : turn.before);
-  const double one = 1 / (turn.before * turn.length), other = 1 / (turn.after * turn.length);
+void Cord::compute_weights(Turn& turn) const {
+  turn.length = length_ratio_ * turn.initial_length;
+  const double one = 1 / (length_ratio_ * turn.before * turn.length),
+               other = 1 / (length_ratio_ * turn.after * turn.length);
   turn.weights = {one, -(one + other), other};
 }
 
+// If the middle and one end are held, the free half piece contains the whole turn; see Bend.
 void Cord::hold(std::span<const char> held) {
-  for (Turn& turn : turns_) compute_weights(turn, held);
+  for (Turn& turn : turns_) {
+    const auto is_held = [&](std::size_t k) { return held[slot(turn.particles[k])] != 0; };
+    turn.initial_length = 0.5 * (turn.before + turn.after);
+    if (is_held(1) && is_held(0) != is_held(2)) turn.initial_length = 0.5 * (is_held(0) ? turn.after : turn.before);
+    compute_weights(turn);
+  }
 }
 
-void Cord::set_length_ratio(double ratio) {
+bool Cord::set_length_ratio(double ratio) {
+  if (ratio == length_ratio_) return false;
+  length_ratio_ = ratio;
   for (Piece& piece : pieces_) {
     piece.rest = ratio * piece.initial_length;
     piece.elasticity = parameters_.stretch / piece.rest;
     piece.viscosity = parameters_.stretch_viscosity / piece.rest;
   }
+  for (Turn& turn : turns_) compute_weights(turn);
+  return !turns_.empty();
 }
 
 void Cord::couple(std::vector<std::pair<Index, Index>>& pairs) const {

@@ -23,10 +23,9 @@ struct CordParameters {
 ///
 /// Stretch: a piece of length l and rest length r has the energy ½ EA r (l / r − 1)² and the viscous tension η d/dt (l
 /// / r). Bending: each particle between two pieces has the energy ½ EI L ‖s''‖², where s'' is the second difference of
-/// the positions for the initial rest lengths, and L is the mean of both lengths (as in Bend on lines, clamps
-/// included). The cord is straight at rest. For viscosity of bending see BendDamping. Air: the drag on a piece is −½ ρ
-/// c d l ‖v_n‖ v_n, half at either end, where v_n is the component across the piece of its velocity relative to the
-/// air.
+/// the positions for the rest lengths, and L is the mean of both lengths (as in Bend on lines, clamps included). The
+/// cord is straight at rest. For viscosity of bending see BendDamping. Air: the drag on a piece is −½ ρ c d l ‖v_n‖
+/// v_n, half at either end, where v_n is the component across the piece of its velocity relative to the air.
 class Cord final : public Membrane {
  public:
   /// `lengths`: rest lengths of the pieces [m]; `closed`: the last piece connects the last particle to the first.
@@ -42,8 +41,8 @@ class Cord final : public Membrane {
   void add_constant_stiffness(solver::Assembly& assembly) const override;
   void hold(std::span<const char> held) override;
 
-  /// Sets the rest lengths of stretch, not those of bending, to `ratio` times the initial ones.
-  void set_length_ratio(double ratio);
+  /// Sets the rest lengths to `ratio` times the initial ones. Returns whether this changes the constant stiffness.
+  bool set_length_ratio(double ratio);
 
   double max_strain(std::span<const Vec3> x) const override;
   void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
@@ -60,18 +59,20 @@ class Cord final : public Membrane {
   struct Turn {
     std::array<Index, 3> particles;
     double before, after;                      // initial rest lengths of its pieces [m]
-    std::array<double, 3> weights;             // of s'' [1/m²]
-    double length;                             // L [m]
+    double initial_length;                     // L at the initial rest lengths [m]
+    std::array<double, 3> weights{};           // of s'' [1/m²]
+    double length = 0;                         // L [m]
     std::array<Index, 3> scalars{}, blocks{};  // of the pairs 01, 12, 20
   };
   void add_stretch(const Piece& piece, const Evaluation& at) const;
   void add_air(const Piece& piece, const Evaluation& at) const;
   void add_turn(const Turn& turn, const Evaluation& at) const;
-  void compute_weights(Turn& turn, std::span<const char> held) const;
+  void compute_weights(Turn& turn) const;
 
   Index first_;
   CordParameters parameters_;
   BendDamping damping_;
+  double length_ratio_ = 0;  // of current to initial rest lengths; 0: not set yet
   std::vector<Piece> pieces_;
   std::vector<Turn> turns_;
 };

@@ -33,6 +33,11 @@ void Ties::use(double t, double progress) {
     piece.strength = piece.state == State::torn ? 0 : piece.tie.strength * progress * closed_ratio(piece.tie, t);
 }
 
+bool Ties::are_constant_between(double t0, double t1) const {
+  return std::ranges::all_of(
+      pieces_, [&](const Piece& piece) { return closed_ratio(piece.tie, t0) == closed_ratio(piece.tie, t1); });
+}
+
 void Ties::accept(std::span<const Vec3> x) {
   for (Piece& piece : pieces_) {
     if (piece.tie.tearing < 0) continue;

@@ -24,6 +24,10 @@ class Ties final : public Force {
   /// Updates strengths at time t [s] of the scene. `progress`: of sewing, 0 to 1.
   void use(double t, double progress);
 
+  /// Whether the same ties are closed, with the same strength, at the times t0 and t1 [s] of the scene, for the same
+  /// progress of sewing.
+  bool are_constant_between(double t0, double t1) const;
+
   /// Accepts the end of a step, with particles at x [m]: ties of tearable seams begin to hold, or tear.
   void accept(std::span<const Vec3> x);
   /// Total pull of a tearable seam [N], and whether any of its ties has strength now (is closed and not torn).

@@ -41,7 +41,8 @@ Model Model::with_cloths(std::span<const std::size_t> numbers) const {
              .bodies = bodies,
              .attachments = {},
              .layers = {},
-             .start_advice = start_advice};
+             .start_advice = start_advice,
+             .untangle_advice = untangle_advice};
   for (const std::size_t number : numbers) part.cloths.push_back(cloths[number]);
   for (Attachment attachment : attachments) {
     const auto own = position_of(attachment.cloth, numbers);

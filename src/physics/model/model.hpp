@@ -165,6 +165,7 @@ struct Model {
   std::vector<Attachment> attachments;
   std::vector<Layer> layers;                      ///< of all cloths, from the skin outward; empty: one layer
   std::string start_advice = "move one of them";  ///< what to do if surfaces touch at the start, for the error message
+  std::string untangle_advice;                    ///< further advice if one of them is cloth; or empty
 
   /// Start of the run, preroll included [s].
   double start_time() const { return -time.preroll_frames / time.fps; }

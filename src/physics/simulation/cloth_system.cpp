@@ -321,6 +321,10 @@ void ClothSystem::build_aggregates(const model::Model& model) {
   } while (!is_coarse);
 }
 
+double ClothSystem::Sewing::progress_at(double t) const {
+  return duration > 0 ? ease((t - begin) / duration) : 1;
+}
+
 void ClothSystem::Sewing::set_progress(double new_progress) {
   progress = new_progress;
   membrane->interpolate_rest_shape(progress);
@@ -328,22 +332,30 @@ void ClothSystem::Sewing::set_progress(double new_progress) {
   if (bands != nullptr) bands->interpolate_rest_shape(progress);
 }
 
-bool ClothSystem::lengths_are_constant(double t0, double t1) const {
-  return std::ranges::all_of(
-      keyed_ropes_, [&](const KeyedRope& rope) { return rope.lengths.at(t0).value == rope.lengths.at(t1).value; });
+bool ClothSystem::is_constant_between(double t0, double t1) const {
+  return inflation_.is_constant_between(t0, t1) &&
+         std::ranges::all_of(
+             keyed_ropes_,
+             [&](const KeyedRope& rope) { return rope.lengths.at(t0).value == rope.lengths.at(t1).value; }) &&
+         std::ranges::all_of(sewing_, [&](const Sewing& sewing) {
+           return sewing.progress_at(t0 - begin_) == sewing.progress_at(t1 - begin_) &&
+                  (sewing.ties == nullptr || sewing.ties->are_constant_between(t0, t1));
+         });
 }
 
-void ClothSystem::sew(double t) {
+bool ClothSystem::sew(double t) {
+  bool changes_constant = false;
   for (const KeyedRope& rope : keyed_ropes_)
-    rope.cord->set_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
+    changes_constant |= rope.cord->set_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
   for (Sewing& sewing : sewing_) {
-    const double progress = sewing.duration > 0 ? ease((t - sewing.begin) / sewing.duration) : 1;
+    const double progress = sewing.progress_at(t);
     if (sewing.ties != nullptr) {
       sewing.time = t;
       sewing.ties->use(begin_ + t, progress);
     }
     if (progress != sewing.progress) sewing.set_progress(progress);
   }
+  return changes_constant;
 }
 
 void ClothSystem::inflate(double t, std::span<const Vec3> x) {

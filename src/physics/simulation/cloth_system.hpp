@@ -71,18 +71,19 @@ class ClothSystem {
   void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
   void add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const;
 
-  /// Fills in rate² M and the constant part of the stiffness, which only hold() changes.
+  /// Fills in rate² M and the constant part of the stiffness, which only hold() and sew() change.
   void fill_constant(double rate, solver::Assembly& assembly) const;
 
   /// An empty system with the sparsity pattern of these forces.
   solver::LinearSystem make_linear_system() const;
 
   /// Updates rope lengths, ties, and the rest shapes of cloth that is being sewn to time t [s since the start of the
-  /// run].
-  void sew(double t);
+  /// run]. Returns whether this changes the constant part of the stiffness.
+  bool sew(double t);
 
-  /// Whether the key-framed rope lengths are equal at the scene times t0 and t1 [s], which differ from those of sew().
-  bool lengths_are_constant(double t0, double t1) const;
+  /// Whether rope lengths, sewing, ties and the air that the model gives are the same at the scene times t0 and t1 [s],
+  /// which differ from those of sew().
+  bool is_constant_between(double t0, double t1) const;
 
   /// Updates the enclosed air for the step that ends at time t [s since the start of the run]; call it after sew(t).
   /// `x`: particles at the start of the step [m].
@@ -151,6 +152,7 @@ class ClothSystem {
     std::vector<std::string> tearing_seams{};  // names
     double time = 0;                           // at which the ties were last updated [s since the start of the run]
 
+    double progress_at(double t) const;  // t: [s since the start of the run]
     void set_progress(double new_progress);
   };
   std::vector<Sewing> sewing_;

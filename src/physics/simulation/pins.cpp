@@ -1,6 +1,7 @@
 #include "physics/simulation/pins.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "physics/collision/proximity/surface_point.hpp"
 
@@ -33,28 +34,38 @@ struct TriangleAxes {
 
 }  // namespace
 
-// Takes time linear in the particles of all pins.
-std::vector<Pins::Owner> Pins::owners(const model::Model& model, const std::vector<Index>& first_particle) {
+// Takes time linear in the particles of all pins. A later pin has a particle only if it is released after all pins
+// before it.
+std::vector<std::vector<Pins::Owner>> Pins::owners(const model::Model& model,
+                                                   const std::vector<Index>& first_particle) {
   std::size_t count = 0;
   for (std::size_t c = 0; c < model.cloths.size(); ++c)
     count = static_cast<std::size_t>(first_particle[c]) + model.cloths[c].start.size();
-  std::vector<Owner> owner_of(count);
+  std::vector<std::vector<Owner>> owners_of(count);
   for (const bool faded : {false, true}) {
     std::size_t pin = 0;
     for (std::size_t c = 0; c < model.cloths.size(); ++c)
       for (const model::Pin& each : model.cloths[c].pins) {
+        const double release = each.release >= 0 ? each.release : std::numeric_limits<double>::infinity();
         for (const model::Chosen& chosen : each.particles) {
-          const auto i = static_cast<std::size_t>(first_particle[c] + chosen.particle);
-          if (chosen.faded == faded && owner_of[i].fraction == 0) owner_of[i] = {pin, chosen.share};
+          std::vector<Owner>& owners = owners_of[static_cast<std::size_t>(first_particle[c] + chosen.particle)];
+          if (chosen.faded == faded && (owners.empty() || owners.back().release < release))
+            owners.push_back({pin, chosen.share, release});
         }
         ++pin;
       }
   }
-  return owner_of;
+  return owners_of;
+}
+
+Pins::Owner Pins::owner_at(Index particle, double t) const {
+  for (const Owner& owner : owners_of_[static_cast<std::size_t>(particle)])
+    if (t <= owner.release) return owner;
+  return {};
 }
 
 Pins::Pins(const model::Model& model, const std::vector<Index>& first_particle)
-    : owner_of_(owners(model, first_particle)) {
+    : owners_of_(owners(model, first_particle)) {
   const double start_time = model.start_time();
   for (std::size_t c = 0; c < model.cloths.size(); ++c) {
     const model::Cloth& cloth = model.cloths[c];
@@ -65,7 +76,8 @@ Pins::Pins(const model::Model& model, const std::vector<Index>& first_particle)
       std::vector<std::size_t> places;  // index of each particle of the group in `all`
       for (std::size_t k = 0; k < all.size(); ++k) {
         const Index particle = first_particle[c] + all[k].particle;
-        if (pin_of(particle) != groups_.size() - 1) continue;
+        const std::vector<Owner>& owners = owners_of_[static_cast<std::size_t>(particle)];
+        if (std::ranges::find(owners, groups_.size() - 1, &Owner::pin) == owners.end()) continue;
         group.particles.push_back(particle);
         places.push_back(k);
       }
@@ -126,9 +138,12 @@ bool Pins::release_between(double t0, double t1) const {
 
 void Pins::held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const {
   held.clear();
-  for (const Group& group : groups_) {
+  for (std::size_t number = 0; number < groups_.size(); ++number) {
+    const Group& group = groups_[number];
     if (group.particles.empty() || (group.release >= 0 && t > group.release)) continue;
+    const auto has = [&](std::size_t p) { return pin_of(group.particles[p], t) == number; };
     for (std::size_t p = 0; p < group.anchors.size(); ++p) {
+      if (!has(p)) continue;
       const Anchor& anchor = group.anchors[p];
       std::array<MovingPoint, 3> corners;
       MovingPoint place{Vec3::Zero(), Vec3::Zero()};
@@ -144,6 +159,7 @@ void Pins::held_at(double t, const model::Model& model, std::vector<integrator::
                       place.v + triangle.rates * anchor.arm});
     }
     for (std::size_t p = 0; p < group.skinned.size(); ++p) {
+      if (!has(p)) continue;
       const auto place = model.vertex(static_cast<std::size_t>(group.follow), group.skinned[p], t);
       held.push_back({{group.particles[p], Mat3::Zero()}, place.position, place.velocity});
     }
@@ -155,6 +171,7 @@ void Pins::held_at(double t, const model::Model& model, std::vector<integrator::
       pose = group.track->at(t);
     }
     for (std::size_t p = 0; p < group.particles.size(); ++p) {
+      if (!has(p)) continue;
       const Vec3 arm = pose.rotation * group.arms[p];
       held.push_back({{group.particles[p], Mat3::Zero()}, pose.position + arm, pose.velocity_at(arm)});
     }

@@ -29,14 +29,14 @@ class Pins {
   };
   std::size_t size() const { return groups_.size(); }
   const Info& info(std::size_t pin) const { return groups_[pin].info; }
-  /// Index of the pin that has this particle. The particle must belong to a pin.
-  std::size_t pin_of(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].pin; }
+  /// Index of the pin that has this particle at time t [s]. The particle must then belong to a pin.
+  std::size_t pin_of(Index particle, double t) const { return owner_at(particle, t).pin; }
   /// Fraction of that pin's strength for this particle, in (0, 1]; 0 for a particle without a pin.
-  double strength_fraction(Index particle) const { return owner_of_[static_cast<std::size_t>(particle)].fraction; }
+  double strength_fraction(Index particle, double t) const { return owner_at(particle, t).fraction; }
 
   /// Particles of all pins with their targets at time t [s], without those of pins released before t. Each particle has
-  /// one entry. If pins overlap, the particle belongs to the first of them in the model; but a pin with the particle in
-  /// its region comes before one with the particle in its fade.
+  /// one entry. If pins overlap, the particle belongs to the first of them in the model that is not released; but a pin
+  /// with the particle in its region comes before one with the particle in its fade.
   void held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const;
   /// Whether a pin is released at a time in [t0, t1) [s].
   bool release_between(double t0, double t1) const;
@@ -48,15 +48,17 @@ class Pins {
     std::array<double, 3> weights;  // barycentric, of the nearest point of the triangle at the start
     Vec3 arm;                       // from that point, in the axes of the triangle [m]
   };
-  /// The pin that has a particle, and the fraction of the pin's strength for this particle.
+  /// A pin that has a particle for some time, and the fraction of the pin's strength for this particle.
   struct Owner {
     std::size_t pin = 0;
     double fraction = 0;  // 0: no pin
+    double release = 0;   // of the pin [s]; infinite: never
   };
-  static std::vector<Owner> owners(const model::Model& model, const std::vector<Index>& first_particle);
+  static std::vector<std::vector<Owner>> owners(const model::Model& model, const std::vector<Index>& first_particle);
+  Owner owner_at(Index particle, double t) const;
   static std::vector<Anchor> anchor(const model::Model& model, std::size_t character, double t,
                                     std::span<const Vec3> places);
-  /// The particles of one pin, which share one motion.
+  /// The particles that one pin has at some time, which share one motion.
   struct Group {
     Info info;
     std::vector<Index> particles;
@@ -70,7 +72,7 @@ class Pins {
   };
 
   std::vector<Group> groups_;
-  std::vector<Owner> owner_of_;  // per particle
+  std::vector<std::vector<Owner>> owners_of_;  // per particle, in the order of their releases
 };
 
 }  // namespace weft::simulation

@@ -45,23 +45,26 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
-// Advice of the first body that has any and touches something at the start; empty if there is none.
+// What to do about these places: the advice of the model, and that of the first body that has any and is in one.
 std::string advice_of(const model::Model& model, const std::vector<IntersectionPlace>& places) {
+  const auto is_in_one = [&](const auto& object) {
+    return std::ranges::any_of(
+        places, [&](const IntersectionPlace& place) { return place.a == object.name || place.b == object.name; });
+  };
+  std::string advice = model.start_advice;
+  if (!model.untangle_advice.empty() && std::ranges::any_of(model.cloths, is_in_one))
+    advice += ", " + model.untangle_advice;
   for (const model::Body& body : model.bodies)
-    if (!body.advice.empty() && std::ranges::any_of(places, [&](const IntersectionPlace& place) {
-          return place.a == body.name || place.b == body.name;
-        }))
-      return "; " + body.advice;
-  return "";
+    if (!body.advice.empty() && is_in_one(body)) return advice + "; " + body.advice;
+  return advice;
 }
 
 // Throws Error(scene_invalid) if surfaces touch or cross at the start.
 void check_start(const model::Model& model, StepLoop& steps) {
   const std::vector<IntersectionPlace> places = steps.find_intersections();
   if (places.empty()) return;
-  throw Error(ExitCode::scene_invalid, "{}: expected surfaces that are apart at the start{}, got {}; {}{}",
-              model.source, model.may_be_untangled() ? ", or can be untangled" : "", describe(places),
-              model.start_advice, advice_of(model, places));
+  throw Error(ExitCode::scene_invalid, "{}: expected surfaces that are apart at the start{}, got {}; {}", model.source,
+              model.may_be_untangled() ? ", or can be untangled" : "", describe(places), advice_of(model, places));
 }
 
 }  // namespace

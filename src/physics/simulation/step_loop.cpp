@@ -130,10 +130,9 @@ bool StepLoop::may_rest(double t, double h, int steps) {
     return false;
   for (int s = 1; s <= steps; ++s) {
     const double end = t + s * h;
-    if (!weather_.is_constant_between(t, end) || !cloth_.inflation().is_constant_between(t, end) ||
+    if (!weather_.is_constant_between(t, end) || !cloth_.is_constant_between(t, end) ||
         !attachments_.are_constant_between(t, end))
       return false;
-    if (!cloth_.lengths_are_constant(t, end)) return false;
     if (!pins_.are_constant_between(t, end) || !frames_are_constant(model_, t, end) ||
         (collisions_ && !collisions_->bodies_are_constant(t, end, progress_.now, next_)))
       return false;

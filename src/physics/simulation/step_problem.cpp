@@ -36,9 +36,9 @@ void StepProblem::begin_step(double t, std::span<const Vec3> x, std::span<const 
                              std::span<const PinSpring> pulls) {
   pulls_ = pulls;
   reset_memory();
-  cloth_.sew(t);
+  const bool lengths_change = cloth_.sew(t);
   cloth_.inflate(t, x);
-  if (cloth_.hold(pinned)) memory_.rate = 0;  // the constant part of the matrix has changed
+  if (cloth_.hold(pinned) || lengths_change) memory_.rate = 0;  // the constant part of the matrix has changed
   memory_.contacts = {};
   cloth_.begin_locks(x, memory_.locks);
 }

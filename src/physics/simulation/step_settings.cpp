@@ -38,13 +38,12 @@ bool is_released(const model::Body& body, double t, double h) {
   return body.dynamics && is_held_until(*body.dynamics, t) && !is_held_until(*body.dynamics, t + h);
 }
 
-// Velocities of the frame particles of a body as its keys move it at t; if the body is free, plus its own velocity and
-// spin.
-std::array<Vec3, mesh::RigidFrame::kParticles> velocities_of_frame(const model::Model& model, std::size_t number,
-                                                                   double t, bool is_free) {
-  const model::Dynamics& body = *model.bodies[number].dynamics;
-  const motion::PoseSample pose = model.pose(number, t);
-  std::array<Vec3, mesh::RigidFrame::kParticles> velocities;
+using FrameVelocities = std::array<Vec3, mesh::RigidFrame::kParticles>;
+
+// Velocities of the frame particles of a body in this pose, with the velocity of the pose; if the body is free, plus
+// its own velocity and spin.
+FrameVelocities velocities_of_frame(const model::Dynamics& body, const motion::PoseSample& pose, bool is_free) {
+  FrameVelocities velocities;
   for (std::size_t k = 0; k < velocities.size(); ++k) {
     const Vec3& particle = body.frame.particles()[k];
     velocities[k] = pose.velocity_at(pose.rotation * particle);
@@ -52,6 +51,18 @@ std::array<Vec3, mesh::RigidFrame::kParticles> velocities_of_frame(const model::
       velocities[k] += body.velocity + body.angular_velocity.cross(pose.rotation * (particle - body.frame.centre()));
   }
   return velocities;
+}
+
+// Pose of a body that keys move. Where they end, its track rests; if the body is released there, it keeps the velocity
+// with which they have moved it.
+motion::PoseSample pose_of_frame(const model::Model& model, std::size_t body, double t) {
+  motion::PoseSample pose = model.pose(body, t);
+  const bool rests = pose.velocity == Vec3::Zero() && pose.angular_velocity == Vec3::Zero();
+  if (!rests || std::abs(t - model.bodies[body].dynamics->release) > kSameTime) return pose;
+  const motion::PoseSample before = model.pose(body, t - kSameTime);
+  pose.velocity = before.velocity;
+  pose.angular_velocity = before.angular_velocity;
+  return pose;
 }
 
 }  // namespace
@@ -81,7 +92,7 @@ SystemState start_of(const model::Model& model, const ClothSystem& cloth, double
     for (const Vec3& particle : model.bodies[b].dynamics->frame.particles())
       start.x.push_back(pose.position + pose.rotation * particle);
     const bool is_free = t >= model.bodies[b].dynamics->release;
-    for (const Vec3& v : velocities_of_frame(model, b, t, is_free)) start.v.push_back(v);
+    for (const Vec3& v : velocities_of_frame(*model.bodies[b].dynamics, pose, is_free)) start.v.push_back(v);
   }
   return start;
 }
@@ -92,7 +103,7 @@ void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const model::Dynamics* body = model.bodies[b].dynamics.get();
     if (body == nullptr || !is_held_until(*body, t)) continue;
-    const motion::PoseSample pose = model.pose(b, t);
+    const motion::PoseSample pose = pose_of_frame(model, b, t);
     for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k) {
       const Vec3 arm = pose.rotation * body->frame.particles()[k];
       held.push_back({{first_of_frames[b] + static_cast<Index>(k)}, pose.position + arm, pose.velocity_at(arm)});
@@ -108,7 +119,8 @@ void release_frames(const model::Model& model, const ClothSystem& cloth, double 
   const std::vector<Index> first_of_frames = cloth.first_of_frames(model);
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     if (is_released(model.bodies[b], t, h))
-      std::ranges::copy(velocities_of_frame(model, b, t, true), v.begin() + first_of_frames[b]);
+      std::ranges::copy(velocities_of_frame(*model.bodies[b].dynamics, pose_of_frame(model, b, t), true),
+                        v.begin() + first_of_frames[b]);
 }
 
 bool frames_are_constant(const model::Model& model, double t0, double t1) {

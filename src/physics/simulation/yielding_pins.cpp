@@ -63,12 +63,12 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   for (const integrator::HeldParticle& target : targets_) {
     const auto i = static_cast<std::size_t>(target.constraint.particle);
     lags_[i] |= released_[i];
-    lagging_particles_[pins_.pin_of(target.constraint.particle)] += lags_[i];
+    lagging_particles_[pin_of(target.constraint.particle)] += lags_[i];
   }
   any_lags_ = std::ranges::any_of(lagging_particles_, [](std::size_t count) { return count > 0; });
   for (const integrator::HeldParticle& target : targets_) {
     const auto i = static_cast<std::size_t>(target.constraint.particle);
-    if (lags_[i] != 0 || pins_.info(pins_.pin_of(target.constraint.particle)).strength)
+    if (lags_[i] != 0 || pins_.info(pin_of(target.constraint.particle)).strength)
       pull(target, h, x);
     else
       held_.push_back(target);
@@ -89,9 +89,9 @@ bool YieldingPins::are_constant_between(double t0, double t1) {
 void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x) {
   const Index particle = target.constraint.particle;
   const auto i = static_cast<std::size_t>(particle);
-  const std::size_t pin = pins_.pin_of(particle);
+  const std::size_t pin = pin_of(particle);
   if (const auto& pin_strength = pins_.info(pin).strength) {
-    const double strength = *pin_strength * pins_.strength_fraction(particle);
+    const double strength = *pin_strength * strength_fraction(particle);
     pulls_.push_back({particle, target.x_end, target.v_end, strength, 2 * std::sqrt(strength * masses_[i])});
     return;
   }
@@ -109,7 +109,7 @@ void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::s
 
 void YieldingPins::release_particle(Index particle, const std::string& obstruction) {
   released_[static_cast<std::size_t>(particle)] = 1;
-  obstructions_.emplace(pins_.pin_of(particle), obstruction);
+  obstructions_.emplace(pin_of(particle), obstruction);
 }
 
 void YieldingPins::accept() {
@@ -118,7 +118,7 @@ void YieldingPins::accept() {
     const Index particle = target.constraint.particle;
     if (lags_[static_cast<std::size_t>(particle)] == 0) continue;
     ++count;
-    const std::size_t pin = pins_.pin_of(particle);
+    const std::size_t pin = pin_of(particle);
     if (!lagging_.insert(pin).second || lagging_before_.contains(pin)) continue;
     const Pins::Info& info = pins_.info(pin);
     seen_.turns.push_back(
@@ -145,8 +145,8 @@ void YieldingPins::copy_state_from(const YieldingPins& there, Index first_there,
   std::copy_n(there.lagged_.begin() + first_there, count, lagged_.begin() + first);
   if (there.lagging_before_.empty()) return;
   for (Index i = 0; i < count; ++i)
-    if (pins_.strength_fraction(first + i) > 0 && there.lagging_before_.contains(there.pins_.pin_of(first_there + i)))
-      lagging_before_.insert(pins_.pin_of(first + i));
+    if (strength_fraction(first + i) > 0 && there.lagging_before_.contains(there.pin_of(first_there + i)))
+      lagging_before_.insert(pin_of(first + i));
 }
 
 template <class Archive>

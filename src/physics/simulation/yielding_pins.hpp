@@ -58,6 +58,9 @@ class YieldingPins {
 
  private:
   void pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x);
+  // As in Pins, at the end of the step.
+  std::size_t pin_of(Index particle) const { return pins_.pin_of(particle, forced_t_ + forced_h_); }
+  double strength_fraction(Index particle) const { return pins_.strength_fraction(particle, forced_t_ + forced_h_); }
 
   Pins pins_;
   const model::Model& model_;
@@ -69,7 +72,7 @@ class YieldingPins {
   std::vector<std::uint8_t> released_;          // per particle: whether release_particle() was called for this step
   std::vector<std::size_t> lagging_particles_;  // number of particles that lag in this step, per pin
   std::map<std::size_t, std::string> obstructions_;  // per pin: text of its first obstruction in this step
-  double forced_t_ = 0, forced_h_ = 0;               // start and length of the step to which released_ belongs [s]
+  double forced_t_ = 0, forced_h_ = 0;               // start and length of the last step that began [s]
   bool any_lags_ = false;
   std::set<std::size_t> lagging_, lagging_before_;  // pins, in this frame and in the previous one
   Lags seen_;
