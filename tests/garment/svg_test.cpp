@@ -13,6 +13,11 @@
 namespace weft::garment {
 namespace {
 
+// Distance of the ends of a curve [m].
+double span_of(const Curve& curve) {
+  return (curve.end() - curve.start()).norm();
+}
+
 class Drawings : public support::TestFolder {
  protected:
   Outline load(const std::string& svg, const std::string& id = "p") {
@@ -151,6 +156,25 @@ TEST_F(Drawings, WithoutIdsGiveTheirPathsByNumber) {
     support::expect_error(ExitCode::asset_unreadable,
                           "got none; none of its 2 paths has one: \"path:1\" is the first of them",
                           [&] { load_svg_panel(folder_ / "d.svg", id); });
+}
+
+TEST_F(Drawings, CountOnlyWhatIsDrawn) {
+  support::write_bytes(folder_ / "d.svg",
+                       "<svg width='10mm' viewBox='0 0 10 10'><defs><marker><path d='M0 0L1 0L0 1Z'/></marker></defs>"
+                       "<clipPath><path d='M0 0L2 0L0 1Z'/></clipPath><g><path d='M0 0L5 0L0 1Z'/></g></svg>");
+  EXPECT_NEAR(span_of(load_svg_panel(folder_ / "d.svg", "path:1").outline[0]), 0.005, 1e-12);
+  support::expect_error(ExitCode::asset_unreadable, "none of its 1 paths",
+                        [&] { load_svg_panel(folder_ / "d.svg", "path:2"); });
+}
+
+TEST_F(Drawings, OfOldVersionsOfInkscapeHaveNinetyUnitsPerInch) {
+  const auto width = [&](const std::string& attributes) {
+    return span_of(load("<svg " + attributes + "><rect id='p' width='90' height='90'/></svg>")[0]);
+  };
+  EXPECT_NEAR(width("width='744.09' inkscape:version='0.48.4 r9939'"), 0.0254, 1e-12);
+  for (const char* other : {"width='744.09'", "inkscape:version='0.92.3'", "inkscape:version='1.2'",
+                            "inkscape:version='0.48.4' viewBox='0 0 96 96' width='1in'"})
+    EXPECT_NEAR(width(other), 0.0254 * 90 / 96, 1e-12) << other;
 }
 
 TEST_F(Drawings, DamagedFilesAreRefusedOrRead) {

@@ -304,6 +304,7 @@ TEST(EnergyBound, FrictionOfManyTimesTheLoadBringsNone) {
 // An error of friction can be as large as the velocity of the sheet at most. A velocity residual counts for 0.15 s.
 TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
   constexpr double kCounts = 0.15;  // [s]
+  int iterations = 0, number = 0;
   for (const scene::Shape& shape :
        {scene::Shape(scene::BoxShape{{0.3, 0.3, 0.3}}), scene::Shape(scene::Cone{0.3, 0.3})}) {
     production::SceneSimulation simulation(falls_on(shape, 10, 0.01));
@@ -315,10 +316,14 @@ TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
       EXPECT_LT(report.solver_error, kCounts * (report.steps * fastest + 9.81 * 0.04)) << "frame " << frame;
       solver += report.solver_error;
       steps += report.error_estimate;
+      iterations += report.newton_iterations;
+      number += report.steps;
     }
     // If the solver accepted sliding of any size after ten iterations, `solver` would be 2.6 and 2.7 times as large.
     EXPECT_LT(solver, steps);
   }
+  // Measured: 14.5 a step; 18.9 if a solve that friction leads astray did not start anew with fixed normal forces.
+  EXPECT_LT(iterations, 17 * number);
 }
 
 /// A sheet falls on the edge of a plate of 1 mm and folds over it faster than its contact normals turn.

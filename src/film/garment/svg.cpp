@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -80,6 +81,14 @@ class Drawing {
     return name == "path" || name == "polygon" || name == "rect" || name == "g";
   }
 
+  /// Whether the element is drawn where it stands; others are drawn where something refers to them, or not at all.
+  static bool is_drawn(const pugi::xml_node& node) {
+    constexpr std::array<std::string_view, 6> kNotDrawn{"defs", "marker", "clipPath", "mask", "symbol", "pattern"};
+    for (pugi::xml_node above = node.parent(); above; above = above.parent())
+      if (std::ranges::find(kNotDrawn, above.name()) != kNotDrawn.end()) return false;
+    return true;
+  }
+
   /// Finds "path:2", the second path in the order of the drawing: programs such as Valentina write no ids.
   pugi::xml_node find_numbered(const std::string& id) const {
     const std::size_t colon = id.find(':');
@@ -88,7 +97,7 @@ class Drawing {
     const auto [end, error] = std::from_chars(id.data() + colon + 1, id.data() + id.size(), number);
     if (error != std::errc() || end != id.data() + id.size()) return {};
     return document_.find_node([&](const pugi::xml_node& node) {
-      return is_shape(node) && id.compare(0, colon, node.name()) == 0 && ++seen == number;
+      return is_shape(node) && id.compare(0, colon, node.name()) == 0 && is_drawn(node) && ++seen == number;
     });
   }
 
@@ -97,7 +106,7 @@ class Drawing {
     std::vector<std::string> known;
     std::size_t paths = 0;
     document_.find_node([&](const pugi::xml_node& node) {
-      paths += std::string_view(node.name()) == "path" ? 1 : 0;
+      paths += std::string_view(node.name()) == "path" && is_drawn(node) ? 1 : 0;
       for (const char* key : {"id", "inkscape:label"})
         if (const std::string text = node.attribute(key).value(); is_shape(node) && !text.empty())
           known.push_back(text);
@@ -159,7 +168,12 @@ double metres_per_unit(const Drawing& drawing) {
   const pugi::xml_node root = drawing.root();
   const auto width = parse_length(root.attribute("width").value());
   const auto box = parse_numbers(root.attribute("viewBox").value());
-  if (!root.attribute("viewBox")) return kMetresPerPixel;
+  if (!root.attribute("viewBox")) {
+    // Before version 0.92, Inkscape drew 90 units per inch.
+    double version = 0;
+    const bool known = parse_number(root.attribute("inkscape:version").value(), version).ec == std::errc();
+    return known && version < 0.92 ? 0.0254 / 90 : kMetresPerPixel;
+  }
   if (!box || box->size() != 4 || !((*box)[2] > 0) || !((*box)[3] > 0))
     drawing.refuse(root, "viewBox: expected x, y, width > 0 and height > 0, got something else");
   if (!width) return kMetresPerPixel;
