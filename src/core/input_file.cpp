@@ -39,12 +39,12 @@ class InputFile {
 
   std::uintmax_t size() const { return size_; }
 
-  /// Reads `count` bytes, or fewer at the end of the file.
-  std::string read(std::size_t count) const {
+  /// Reads `count` bytes from `begin`, or fewer at the end of the file.
+  std::string read(std::size_t count, std::uintmax_t begin = 0) const {
     std::string bytes(count, '\0');
     std::size_t done = 0;
     while (done < count) {
-      const ssize_t got = ::read(descriptor_, bytes.data() + done, count - done);
+      const ssize_t got = ::pread(descriptor_, bytes.data() + done, count - done, static_cast<off_t>(begin + done));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) refuse(std::strerror(errno));
       if (got == 0) break;
@@ -92,6 +92,16 @@ std::string read_start(const std::filesystem::path& file, std::size_t count) {
   try {
     const InputFile input(file);
     return input.read(std::min<std::uintmax_t>(count, input.size()));
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
+std::string read_end(const std::filesystem::path& file, std::size_t count) {
+  try {
+    const InputFile input(file);
+    const std::uintmax_t size = std::min<std::uintmax_t>(count, input.size());
+    return input.read(size, input.size() - size);
   } catch (const std::runtime_error&) {
     return {};
   }

@@ -28,6 +28,8 @@ void check_is_file(const std::filesystem::path& file);
 
 /// Returns the first bytes of a regular file, at most `count`; empty if it cannot be read.
 std::string read_start(const std::filesystem::path& file, std::size_t count);
+/// Likewise the last bytes.
+std::string read_end(const std::filesystem::path& file, std::size_t count);
 
 /// Returns what `read` returns. An exception of `read` that is no Error becomes Error(asset_unreadable) with the name
 /// of the file: whatever a file contains, a failure to read it is never an internal error.

@@ -31,19 +31,6 @@ void write(std::string_view text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
-// Escapes what a terminal would interpret as commands, for example in the name of a file.
-std::string without_controls(std::string_view text) {
-  std::string plain;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F)
-      plain += fmt::format("\\x{:02x}", byte);
-    else
-      plain += c;
-  }
-  return plain;
-}
-
 void print(State& s, std::string_view text) {
   const std::string line = without_controls(text);
   if (s.status.empty()) {
@@ -67,6 +54,18 @@ void keep(std::string_view text, const char* kind, std::vector<std::string> Stat
 }
 
 }  // namespace
+
+std::string without_controls(std::string_view text) {
+  std::string plain;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F)
+      plain += fmt::format("\\x{:02x}", byte);
+    else
+      plain += c;
+  }
+  return plain;
+}
 
 void info(std::string_view line) {
   State& s = state();

@@ -8,6 +8,9 @@
 
 namespace weft::log {
 
+/// `text` with escapes for what a terminal would interpret as commands, for example in the name of a file.
+std::string without_controls(std::string_view text);
+
 void info(std::string_view line);
 
 /// Prints `warning: text` and keeps the text for the summary at the end; the same text again is ignored.

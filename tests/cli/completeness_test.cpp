@@ -6,6 +6,7 @@
 
 #include "cli/cached_run.hpp"
 #include "cli/video_probe.hpp"
+#include "film/image/png.hpp"
 #include "tools/cli/frame_range.hpp"
 
 namespace weft::cli {
@@ -188,6 +189,18 @@ TEST_F(Joining, OfFoldersIsByteForByteTheVideoOfRender) {
   EXPECT_TRUE(support::read_bytes(folder_ / "third.mp4") == support::read_bytes(folder_ / "every_third.mp4"));
   draw("a/film.mkv", ":3");
   expect_joined({"a", "b", "-o", "beside_a_video.mp4"});
+}
+
+TEST_F(Joining, OfPicturesWhoseMetadataNoSceneCanHaveIsRefused) {
+  draw("p/{frame:05}.png", ":1");
+  image::Metadata metadata;
+  const image::Image picture = image::read_png(folder_ / "p/00000.png", &metadata);
+  for (const auto& [key, value] : {std::pair{"scene_frames", "100002"}, {"scene_frames", "0"}, {"fps", "0"}}) {
+    image::Metadata changed = metadata;
+    changed[key] = value;
+    image::write_png(folder_ / "p/00000.png", picture, changed);
+    expect_refused({"p", "-o", "joined.mp4"}, 2, fmt::format("its {} is '{}'", key, value));
+  }
 }
 
 TEST_F(Joining, OfPicturesIsInTheCodecThatIsAskedFor) {

@@ -40,6 +40,18 @@ class Farms : public CachedRun {
     }
     return codes;
   }
+  /// Calls `weft farm` where the programs of Slurm are scripts that end with exit code 1.
+  Outcome with_failing_slurm(const std::string& arguments) const {
+    for (const char* program : {"sbatch", "squeue", "scancel"}) {
+      support::write_bytes(folder_ / program, "#!/bin/sh\nexit 1\n");
+      fs::permissions(folder_ / program, fs::perms::owner_all);
+    }
+    const int status =
+        std::system(fmt::format("cd '{0}' && trap '' CHLD && PATH='{0}':\"$PATH\" exec '{1}' farm {2} >out 2>err",
+                                folder_.string(), WEFT_PROGRAM, arguments)
+                        .c_str());
+    return {WEXITSTATUS(status), support::read_bytes(folder_ / "out"), support::read_bytes(folder_ / "err")};
+  }
   std::string log(const std::string& task) const {
     return support::read_bytes(folder_ / "a b/farm/log" / (task + ".log"));
   }
@@ -102,6 +114,38 @@ TEST_F(Farms, TasksThatAreToStopBeginNoOtherTry) {
   const std::string said = log("simulate_0"), pause = said.substr(std::min(said.find("try 1 of 3"), said.size()));
   EXPECT_NE(pause.find("the time limit is near"), std::string::npos) << said;
   EXPECT_EQ(pause.find("\nsimulate\n"), std::string::npos) << "the program was called again: " << said;
+}
+
+TEST_F(Farms, StatusCountsTheFramesThatAreRequested) {
+  ASSERT_EQ(submit().exit_code, 0);
+  const std::string task = "sh '" + (folder_ / "a b/farm/task.sh").string() + "'";
+  EXPECT_NE(farm({"status", "a b"}).out.find("radius=0.1   not begun"), std::string::npos);
+  ASSERT_EQ(std::system((task + " simulate 0 && " + task + " draw 0 0").c_str()), 0) << log("simulate_0");
+  const Outcome status = farm({"status", "a b"});
+  EXPECT_NE(status.out.find("radius=0.1   4 of 10 frames drawn"), std::string::npos) << status.out;
+}
+
+TEST_F(Farms, StatusEscapesControlCharactersOfLogs) {
+  ASSERT_EQ(submit().exit_code, 0);
+  support::write_bytes(folder_ / "a b/farm/log/t.code", "3");
+  support::write_bytes(folder_ / "a b/farm/log/t.log", "weft: \x1b[31mred\n");
+  const Outcome status = farm({"status", "a b"});
+  EXPECT_NE(status.out.find("\n  \\x1b[31mred\n"), std::string::npos) << status.out;
+}
+
+// Some callers ignore SIGCHLD, which programs inherit; the exit codes of their child processes are lost then.
+TEST_F(Farms, FailuresOfSlurmAreNoSuccessesAndNoEmptyQueue) {
+  EXPECT_EQ(with_failing_slurm("submit s.toml -o one --memory 100 --time 10").exit_code, 6);
+  support::write_bytes(folder_ / "one/farm/jobs", "7\tsimulate\n");
+  for (const char* command : {"cancel one", "submit s.toml -o one --memory 100 --time 10"}) {
+    const Outcome outcome = with_failing_slurm(command);
+    EXPECT_EQ(outcome.exit_code, 6) << command << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "squeue ended with 1")) << outcome.err;
+  }
+  const Outcome status = with_failing_slurm("status one");
+  EXPECT_EQ(status.exit_code, 9) << status.err;
+  EXPECT_TRUE(contains(status.out, "0 of 1 runs are done")) << status.out;
+  EXPECT_TRUE(contains(status.err, "warning: squeue ended with 1")) << status.err;
 }
 
 TEST_F(Farms, RefuseWhatTheyCannotDo) {

@@ -119,6 +119,19 @@ TEST_F(NothingLost, AFolderThatIsRemovedWhileARunWorksEndsTheRun) {
   }
 }
 
+// The lock file of the cache would get the number of the closed stream.
+TEST_F(NothingLost, MessagesForAClosedStreamAreWrittenIntoNoFile) {
+  const auto simulate = [&](const std::string& cache, const std::string& more) {
+    return WEXITSTATUS(std::system(fmt::format("cd '{}' && '{}' simulate s.toml --frames :2 --cache {} {}",
+                                               folder_.string(), WEFT_PROGRAM, cache, more)
+                                       .c_str()));
+  };
+  EXPECT_EQ(simulate("c", "--progress none 2>&-"), 0);
+  EXPECT_EQ(fs::file_size(folder_ / "c/lock"), 0u) << support::read_bytes(folder_ / "c/lock");
+  EXPECT_EQ(simulate("d", "--log-json - >&- 2>err"), 6);
+  EXPECT_EQ(fs::file_size(folder_ / "d/lock"), 0u) << support::read_bytes(folder_ / "d/lock");
+}
+
 /// Inputs of every kind.
 class AnyInput : public NothingLost {
  protected:
@@ -209,12 +222,12 @@ TEST_F(AnyInput, JsonWithValuesOfOtherTypesIsNoFaultOfOurs) {
       text.replace(at, 1, value);
     return text;
   };
-  const std::string run = R"({"folder": "a", "scene": "s", "frames": @, "set": @})";
+  const std::string run = R"({"folder": "a", "scene": "s", "simulated_frames": @, "set": @})";
   for (const char* value : {"null", "true", "-1", "1e308", "18446744073709551615", "\"x\"", "[]", "{}", "[[1]]"}) {
-    for (const std::string& index :
-         std::vector<std::string>{R"({"options": @, "runs": [{"folder": @, "scene": @, "frames": @, "set": @}, @]})",
-                                  R"({"options": [], "runs": @})", R"({"options": @, "runs": []})",
-                                  R"({"options": [@], "runs": [)" + run + "]}"}) {
+    for (const std::string& index : std::vector<std::string>{
+             R"({"options": @, "runs": [{"folder": @, "scene": @, "drawn_frames": @, "set": @}, @]})",
+             R"({"options": [], "runs": @})", R"({"options": @, "runs": []})",
+             R"({"options": [@], "runs": [)" + run + "]}"}) {
       write("w/sweep.json", filled(index, value));
       write("w/a/s.json", filled(R"({"scene": @, "exit_code": @, "scene_hash": @, "frames": @, "totals": @})", value));
       write("w/a/s.mp4");

@@ -22,6 +22,8 @@ TEST_F(InputFileTest, GivesAllBytesOfARegularFileAndOfALinkToOne) {
   EXPECT_EQ(read_file(folder_ / "a", 5), bytes);
   EXPECT_EQ(read_start(folder_ / "a", 2), bytes.substr(0, 2));
   EXPECT_EQ(read_start(folder_ / "a", 100), bytes);
+  EXPECT_EQ(read_end(folder_ / "a", 2), bytes.substr(3));
+  EXPECT_EQ(read_end(folder_ / "a", 100), bytes);
   EXPECT_NO_THROW(check_is_file(folder_ / "link"));
 }
 
@@ -33,6 +35,7 @@ TEST_F(InputFileTest, WhatIsNoRegularFileIsRefusedAtOnceByName) {
     expect_error(ExitCode::asset_unreadable, file.string() + ": cannot be read: expected a file, got a device or pipe",
                  [&] { read_file(file); });
     EXPECT_EQ(read_start(file, 10), "") << file;
+    EXPECT_EQ(read_end(file, 10), "") << file;
     EXPECT_THROW(check_is_file(file), std::runtime_error) << file;
   }
   expect_error(ExitCode::asset_unreadable, "expected a file, got a folder", [&] { read_file(folder_); });

@@ -21,7 +21,6 @@ namespace weft::scene {
 
 namespace {
 
-constexpr double kMaxFrames = 100000;
 constexpr long kMaxParticles = 4'000'000;  // of all rectangles; the solver's data then fit into a large workstation
 
 template <class Entries>

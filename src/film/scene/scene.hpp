@@ -51,6 +51,8 @@ using motion::Pose;
 using motion::PoseKey;
 using motion::PoseTrack;
 
+inline constexpr int kMaxFrames = 100'000;  ///< maximum of duration * fps
+
 enum class UpAxis { y, z };
 
 enum class HeatQuantity { none, strain, speed };

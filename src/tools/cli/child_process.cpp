@@ -76,7 +76,8 @@ std::filesystem::path own_program() {
 pid_t start_process(const std::vector<std::string>& words, const std::filesystem::path& log) {
   Outputs outputs;
   if (!log.empty()) {
-    outputs.out = outputs.err = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    // Without O_NONBLOCK, opening a pipe would wait for a reader.
+    outputs.out = outputs.err = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
     if (outputs.out < 0)
       throw Error(ExitCode::output_failed, "{}: cannot be written: {}", log.string(), std::strerror(errno));
   }

@@ -196,7 +196,7 @@ ExitCode diff(const DiffOptions& options) {
     if (!results[i].good()) annotations += annotation(results[i], lines[i]) + "\n";
   if (options.json) {
     if (!annotations.empty()) log::info(annotations.substr(0, annotations.size() - 1));
-    print("{}\n", json_text(json, 2));
+    write_standard_output(json_text(json, 2) + "\n");
   } else {
     print("{}{}", text, annotations);
   }

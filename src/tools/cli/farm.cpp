@@ -49,14 +49,17 @@ std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folde
   return jobs;
 }
 
-/// Numbers of the waiting or running jobs of this folder. Also counts their tasks by state, in `states`.
+/// Numbers of the waiting or running jobs of this folder. Also counts their tasks by state, in `states`. Throws
+/// Error(output_failed) if jobs were submitted and Slurm does not answer.
 std::vector<std::string> active_jobs(const fs::path& folder, std::map<std::string, int>& states) {
   std::vector<std::string> numbers;
   for (const auto& [number, name] : read_jobs(folder)) numbers.push_back(number);
   std::vector<std::string> active;
   if (numbers.empty()) return active;
   const ProcessResult queue = run_process({"squeue", "--noheader", "--array", "--format=%A %F %T"});
-  if (queue.exit_code == 127) return active;
+  check_slurm_found("squeue", queue);
+  if (queue.exit_code != 0)
+    throw Error(ExitCode::output_failed, "squeue ended with {}; its output is above", queue.exit_code);
   std::istringstream lines(queue.output);
   for (std::string own, array, state; lines >> own >> array >> state;) {
     if (std::ranges::find(numbers, array) == numbers.end()) continue;
@@ -72,8 +75,8 @@ struct State {
   bool done = false;
 };
 
-int count_files(const fs::path& folder, const char* ending) {
-  int count = 0;
+std::size_t count_files(const fs::path& folder, const char* ending) {
+  std::size_t count = 0;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) count += entry.path().extension() == ending ? 1 : 0;
   return count;
@@ -84,10 +87,12 @@ State state_of(const fs::path& folder, const nlohmann::ordered_json& run) {
   const nlohmann::ordered_json stats = read_json_or_null(folder / (scene + ".json"));
   const bool simulated = value_or(stats, "exit_code", -1) == 0;
   if (simulated && fs::exists(folder / (scene + ".mp4"))) return {"done", true};
-  const int frames = value_or(run, "frames", 0);
-  if (simulated) return {fmt::format("{} of {} frames drawn", count_files(folder / "frames", ".png"), frames), false};
+  const auto progress = [&](std::size_t count, const char* all, const char* done) {
+    return State{fmt::format("{} of {} frames {}", count, value_or(run, all, 0), done), false};
+  };
+  if (simulated) return progress(count_files(folder / "frames", ".png"), "drawn_frames", "drawn");
   try {
-    return {fmt::format("{} of {} frames simulated", cache::Reader(folder / "cache").frames().size(), frames), false};
+    return progress(cache::Reader(folder / "cache").frames().size(), "simulated_frames", "simulated");
   } catch (const Error&) {
     return {"not begun", false};
   }
@@ -108,12 +113,13 @@ class Farm {
     if (!options_.dry_run && !active_jobs(folder_, states).empty())
       throw Error(ExitCode::output_failed, "{}: has jobs that wait or run; weft farm cancel {} ends them",
                   folder_.string(), folder_.string());
-    for (std::size_t i = 0; i < plan_.jobs.size(); ++i) {
-      plan_.frames.push_back(resolve_frames(options_.frames, plan_.jobs[i].frame_count));
-      if (!plan_.jobs[i].twin && !plan_.jobs[i].is_done()) plan_.submitted.push_back(i);
-    }
     plan_.part = options_.part;
-    for (const FrameRange& frames : plan_.frames) plan_.part = std::max(plan_.part, (frames.count() + 999) / 1000);
+    for (std::size_t i = 0; i < plan_.jobs.size(); ++i) {
+      SweepJob& job = plan_.jobs[i];
+      job.drawn = resolve_frames(options_.frames, job.frame_count);
+      plan_.part = std::max(plan_.part, (job.drawn.count() + 999) / 1000);
+      if (!job.twin && !job.is_done()) plan_.submitted.push_back(i);
+    }
     if (plan_.submitted.empty()) {
       log::info(fmt::format("{}: all runs are done", folder_.string()));
       return ExitCode::ok;
@@ -144,7 +150,11 @@ class Farm {
     print("{}", format_table(rows, "ll", 2));
     for (const std::string& line : failures()) print("{}\n", line);
     std::map<std::string, int> states;
-    active_jobs(folder_, states);
+    try {
+      active_jobs(folder_, states);
+    } catch (const Error& error) {
+      log::warn(error.what());  // the files show the progress without Slurm, too
+    }
     std::string queue;
     for (const auto& [state, count] : states) queue += fmt::format(", {} {}", count, state);
     print("{} of {} runs are done{}\n", done, rows.size(), queue);
@@ -182,7 +192,7 @@ class Farm {
   /// The last message of the program, preceded by a line feed; empty if there is none.
   static std::string last_error(const fs::path& log) {
     std::string last;
-    std::istringstream in(read_start(log, kMaxTextBytes));
+    std::istringstream in(read_end(log, kMaxTextBytes));
     for (std::string line; std::getline(in, line);)
       if (line.starts_with("weft: ")) last = "\n  " + line.substr(6);
     return last;

@@ -121,10 +121,10 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
     const SweepJob& job = plan.jobs[i];
     std::vector<std::string> words;
     for (const std::string& set : job.overrides()) words.insert(words.end(), {"--set", set});
-    fmt::format_to(
-        std::back_inserter(text), "  {}) name={} scene={} begin={} end={} step={} simulated={}\n     set --{} ;;\n", i,
-        quoted("./" + job.run.name), quoted(job.scene), plan.frames[i].begin, plan.frames[i].end, plan.frames[i].step,
-        job.may_find_camera ? job.frame_count : plan.frames[i].last() + 1, quoted(words));
+    fmt::format_to(std::back_inserter(text),
+                   "  {}) name={} scene={} begin={} end={} step={} simulated={}\n     set --{} ;;\n", i,
+                   quoted("./" + job.run.name), quoted(job.scene), job.drawn.begin, job.drawn.end, job.drawn.step,
+                   job.simulated_count(), quoted(words));
   }
   text += "esac\n\n";
   return text.append(embedded("task.sh"));

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "tools/cli/frame_range.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/sweep_jobs.hpp"
 
@@ -20,13 +19,12 @@ struct Needs {
 
 struct FarmPlan {
   std::vector<SweepJob> jobs;          ///< all runs
-  std::vector<FrameRange> frames;      ///< frames drawn, per job
   std::vector<std::size_t> submitted;  ///< indices of the jobs to do, ascending
   int part = 50;                       ///< number of frames per drawing task
   std::string archive;  ///< fingerprint of the program archive that tasks unpack; empty: tasks run this program
   Needs needs;
 
-  int parts(std::size_t job) const { return (frames[job].count() + part - 1) / part; }
+  int parts(std::size_t job) const { return (jobs[job].drawn.count() + part - 1) / part; }
 };
 
 /// Path of the program archive, relative to the folder of the runs. The same path without the extension is the folder

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
 #include "core/log.hpp"
 #include "film/image/png.hpp"
+#include "film/scene/scene.hpp"
 #include "film/video/decoder.hpp"
 #include "film/video/encoder.hpp"
 #include "tools/cli/commands.hpp"
@@ -47,13 +49,22 @@ const std::string& entry(const fs::path& file, const Metadata& metadata, const s
 }
 
 template <class Number>
-Number number(const fs::path& file, const Metadata& metadata, const std::string& key) {
+Number number(const fs::path& file, const Metadata& metadata, const std::string& key, Number least = 0,
+              Number most = std::numeric_limits<Number>::max()) {
   const std::string& text = entry(file, metadata, key);
   Number value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0))
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= least && value <= most))
     throw Error(ExitCode::usage, "{}: expected a file drawn by Weft; its {} is '{}'", file.string(), key, text);
   return value;
+}
+
+double fps_of(const fs::path& file, const Metadata& metadata) {
+  return number<double>(file, metadata, "fps", std::numeric_limits<double>::min());
+}
+
+int scene_frames_of(const fs::path& file, const Metadata& metadata) {
+  return number<int>(file, metadata, "scene_frames", 1, scene::kMaxFrames + 1);
 }
 
 // Checks a time or a rate. The tolerance covers broadcast rates such as 30000/1001, which differ from their decimals
@@ -69,7 +80,7 @@ Piece read_picture(const fs::path& file) {
   piece.width = image.width;
   piece.height = image.height;
   const int frame = number<int>(file, piece.film, "frame");
-  const auto fps = number<double>(file, piece.film, "fps");
+  const double fps = fps_of(file, piece.film);
   piece.frames = {frame};
   check_time(file, number<double>(file, piece.film, "time_s"), frame / fps, "the time of its frame [s]");
   return piece;
@@ -79,9 +90,9 @@ Piece read_picture(const fs::path& file) {
 Piece read_video(const fs::path& file) {
   video::Decoder decoder(file);
   Piece piece{.file = file, .width = decoder.width(), .height = decoder.height(), .film = decoder.metadata()};
-  const auto fps = number<double>(file, piece.film, "fps");
+  const double fps = fps_of(file, piece.film);
   const FrameRange range =
-      resolve_frames(parse_frames(entry(file, piece.film, "frames")), number<int>(file, piece.film, "scene_frames"));
+      resolve_frames(parse_frames(entry(file, piece.film, "frames")), scene_frames_of(file, piece.film));
   piece.step = range.step;
   check_time(file, decoder.fps(), fps / range.step, "frames a second");
   for (int frame = range.begin; frame < range.end && decoder.next(); frame += range.step) piece.frames.push_back(frame);
@@ -169,7 +180,7 @@ class Film {
 FrameRange Film::frames(const JoinOptions& options) const {
   FrameSelection selection = options.frames;
   if (of_videos() && selection.step == 1) selection.step = first().step;
-  const FrameRange wanted = resolve_frames(selection, number<int>(first().file, first().film, "scene_frames"));
+  const FrameRange wanted = resolve_frames(selection, scene_frames_of(first().file, first().film));
   FrameRange before{wanted.begin, wanted.begin, wanted.step};  // frames before the first missing one
   std::vector<int> missing;
   for (int frame = wanted.begin; frame < wanted.end; frame += wanted.step) {
@@ -241,7 +252,7 @@ ExitCode join(const JoinOptions& options) {
   paths.writes("-o", options.output);
   paths.check_absent(options.overwrite);
   paths.check_writable();
-  const double fps = number<double>(film.first().file, film.first().film, "fps") / frames.step;
+  const double fps = fps_of(film.first().file, film.first().film) / frames.step;
   const Metadata metadata = describe(film, frames);
   if (film.of_videos()) {
     video::join_videos(files, options.output, fps, frames.count(), metadata);

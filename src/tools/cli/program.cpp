@@ -1,5 +1,6 @@
 #include "tools/cli/program.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -54,6 +55,20 @@ struct Dispatch {
   ExitCode (*run_other)(const Command&, char**);
 };
 
+// A process inherits closed streams and ignored signals from its caller.
+void restore_inherited_state() {
+  // The next opened file would get the number of a closed stream, and messages would be written into this file. Every
+  // machine has "/"; opened for reading, each write to it fails.
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/", O_RDONLY) < 0) break;
+  // If SIGCHLD is ignored, the exit codes of child processes are lost, and failures would count as successes.
+  ::signal(SIGCHLD, SIG_DFL);
+  // If a pipe is closed or a file exceeds its size limit, the write must return an error. By default, a signal would
+  // kill the process and leave half a file.
+  ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);
+}
+
 // Throws if the working folder is gone, since relative paths start there.
 void check_working_folder() {
   std::error_code error;
@@ -74,10 +89,7 @@ ExitCode become_tools(const Command& /*command*/, char** argv) {
 
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {
   try {
-    // If a pipe is closed or a file exceeds its size limit, the write must return an error. By default, a signal would
-    // kill the process and leave half a file.
-    ::signal(SIGPIPE, SIG_IGN);
-    ::signal(SIGXFSZ, SIG_IGN);
+    restore_inherited_state();
     // A program from an archive is started by the dynamic loader. Without this call, the process would have the name of
     // the loader.
     if (const Installation own = own_installation(); !own.libraries.empty())

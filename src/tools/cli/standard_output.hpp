@@ -5,15 +5,18 @@
 
 #include <string_view>
 
+#include "core/log.hpp"
+
 namespace weft::cli {
 
 /// Writes the text at once. Returns silently if the reader has closed the pipe, as in `weft man | head`. Throws
 /// Error(output_failed) for any other failure.
 void write_standard_output(std::string_view text);
 
+/// Likewise, with control characters escaped.
 template <class... Args>
 void print(fmt::format_string<Args...> format, Args&&... args) {
-  write_standard_output(fmt::format(format, std::forward<Args>(args)...));
+  write_standard_output(log::without_controls(fmt::format(format, std::forward<Args>(args)...)));
 }
 
 }  // namespace weft::cli

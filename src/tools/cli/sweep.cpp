@@ -49,7 +49,7 @@ struct Job : SweepJob {
 
   std::string last_words() const {
     std::string last;
-    std::istringstream in(read_start(log(), kMaxTextBytes));
+    std::istringstream in(read_end(log(), kMaxTextBytes));
     for (std::string line; std::getline(in, line);)
       if (!line.empty()) last = line;
     return last;

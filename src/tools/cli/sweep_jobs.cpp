@@ -46,6 +46,7 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
     job.scene_hash = loaded.scene.hash;
     job.scene = loaded.scene.name;
     job.frame_count = loaded.scene.frame_count();
+    job.drawn.end = job.frame_count;
     const auto& cameras = loaded.scene.cameras;
     job.may_find_camera = cameras.empty() || std::ranges::any_of(cameras, scene::is_computed, &scene::Camera::kind);
     job.folder = options.output / job.run.name;
@@ -85,7 +86,8 @@ void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>&
     for (const auto& [key, value] : job.run.changes) set[key] = value;
     runs.push_back({{"folder", (job.twin ? jobs[*job.twin] : job).run.name},
                     {"scene", job.scene},
-                    {"frames", job.frame_count},
+                    {"simulated_frames", job.simulated_count()},
+                    {"drawn_frames", job.drawn.count()},
                     {"set", std::move(set)}});
   }
   const Json index{{"scene", options.scene.string()}, {"options", options.passed_on}, {"runs", std::move(runs)}};

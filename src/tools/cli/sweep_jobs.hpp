@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/cli/frame_range.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/path_ledger.hpp"
 #include "tools/cli/sweep_plan.hpp"
@@ -23,11 +24,14 @@ struct SweepJob {
   std::string scene = {};       ///< its name
   int frame_count = 1;          ///< of the scene
   bool may_find_camera = true;  ///< the scene has no camera or a computed one, so that drawing may need all frames
+  FrameRange drawn = {};        ///< all frames; in a farm the requested ones
 
   std::filesystem::path video() const { return folder / (scene + ".mp4"); }
   std::filesystem::path stats() const { return folder / (scene + ".json"); }
   /// `key=value` for each --set.
   std::vector<std::string> overrides() const;
+  /// Number of frames to simulate.
+  int simulated_count() const { return may_find_camera ? frame_count : drawn.last() + 1; }
   /// Whether its video and statistics exist, belong to this scene, and are complete.
   bool is_done() const;
 };
