@@ -12,7 +12,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 backdrop;           // linear colour at the horizon; w: fraction by which it is darker far from the subjects
   vec4 backdrop_top;       // linear colour straight above
   vec4 viewport;           // width, height [pixels], and their reciprocals
-  vec4 frustum;            // tangents of half the field of view, near, far [m]
+  vec4 frustum;            // tangents of half the field of view, near [m], 0
   vec4 floor_plane_world;  // unit normal, upward; w: height of the eye above it [m]
   vec4 floor_look;         // linear colour; w: exposure, a factor on all light
   vec4 box_axes[3];        // unit; w: sharpness (surroundings.hpp)

@@ -43,7 +43,7 @@ void main() {
       dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w + 1e-3;
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);
   if (nearer > 0.0 && gl_Position.w > frame.frustum.z) {
-    float n = frame.frustum.z, f = frame.frustum.w, distance_view = max(gl_Position.w - nearer, n);
-    gl_Position.z = gl_Position.w * (f + n - 2.0 * f * n / distance_view) / (f - n);
+    float near = frame.frustum.z;
+    gl_Position.z = near * gl_Position.w / max(gl_Position.w - nearer, near);
   }
 }

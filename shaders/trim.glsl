@@ -65,7 +65,7 @@ Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front
   float area = u_right.x * u_up.y - u_right.y * u_up.x, sense = area < 0.0 ? -1.0 : 1.0;
   // On the seam itself, neighbouring pixels on both sides have equal distances. Their derivative, the pixel's width
   // across the seam, would be zero.
-  width.xy = max(width.xy, 0.7 * min(sqrt(abs(area)), 1.0));
+  width.xy = max(width.xy, max(pixel_width, 0.7 * min(sqrt(abs(area)), 1.0)));
   if (woven.at_outline) width = vec3(pixel_width);
   float hem = look.x, thickness = max(look.y, 1e-5), shown = on_top(at.z, width.z);
   vec2 du = (right.xy * u_up.y - up.xy * u_right.y) * sense, dv = (up.xy * u_right.x - right.xy * u_up.x) * sense;
@@ -84,7 +84,11 @@ Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front
     thread = sewn.thread;
   }
   float valley = band(at.y, width.y, 0.0, kValley);
-  float fall = 0.7 * valley * step(width.y, kValley);
+  // Slopes of a valley only a few pixels wide, within which derivatives across the seam are invalid, darken it instead.
+  const float kSlope = 0.7;
+  float sloped = woven.at_outline ? 0.0 : 1.0 - smoothstep(0.3, 0.6, width.y / kValley);
+  float fall = kSlope * sloped * valley;
+  tone *= 1.0 - valley * (1.0 - sloped) * (1.0 - inversesqrt(1.0 + kSlope * kSlope));
   tone *= 1.0 - 0.22 * valley - band(at.y, width.y, 0.0, 0.0004) * mix(0.5, 0.1, shown);
   if (look.z > 0.0) {
     Rows sewn = rows(at.y, width.y, look.z, kTwin, shown, threads);

@@ -43,22 +43,22 @@ TEST(DepthRaster, WhatReachesOutOfTheMapIsCutOff) {
   for (const float depth : fill({70, 3, 0}, {90, 3, 0}, {80, 30, 0})) EXPECT_EQ(depth, 9);
 }
 
-// The near plane z = -w cuts a triangle with one corner behind into a quad of 3/4 of its area, one with two corners
+// The near plane z = w cuts a triangle with one corner behind into a quad of 3/4 of its area, one with two corners
 // behind into a triangle of 1/4.
 TEST(DepthRaster, ClippingLeavesWhatLiesInFrontOfTheNearPlane) {
   const auto area_left = [](double z_a, double z_b, double z_c) {
     double area = 0;
     clip_near({Eigen::Vector4d(0, 0, z_a, 1), Eigen::Vector4d(2, 0, z_b, 1), Eigen::Vector4d(0, 2, z_c, 1)},
               [&](const auto& p, const auto& q, const auto& r) {
-                EXPECT_GE(std::min({p.z(), q.z(), r.z()}), -1 - 1e-12);
+                EXPECT_LE(std::max({p.z(), q.z(), r.z()}), 1 + 1e-12);
                 area += 0.5 * ((q.x() - p.x()) * (r.y() - p.y()) - (r.x() - p.x()) * (q.y() - p.y()));
               });
     return area;
   };
   EXPECT_NEAR(area_left(0, 0, 0), 2, 1e-12);
-  EXPECT_NEAR(area_left(-2, 0, 0), 1.5, 1e-12);
-  EXPECT_NEAR(area_left(-2, -2, 0), 0.5, 1e-12);
-  EXPECT_EQ(area_left(-2, -2, -2), 0);
+  EXPECT_NEAR(area_left(2, 0, 0), 1.5, 1e-12);
+  EXPECT_NEAR(area_left(2, 2, 0), 0.5, 1e-12);
+  EXPECT_EQ(area_left(2, 2, 2), 0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "film/render/camera_path.hpp"
 #include "film/render/view.hpp"
+#include "render/scaled_pictures.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
@@ -87,6 +88,30 @@ TEST(Framing, InvisibleSurfacesDoNotCount) {
   add_sphere(snapshot, Vec3::Zero(), 1, 8);
   add_sphere(snapshot, Vec3(50, 0, 0), 1, 8).visible = false;
   EXPECT_LT(subject_bounds(snapshot).max().x(), 1.001);
+}
+
+// Two squares 300 m away, 10 cm behind each other and as large in the picture as a square 20 cm away beside them.
+TEST(Framing, CloseClothIsInViewBeforeDistantThingsThatHideEachOther) {
+  for (const bool red_first : {true, false}) {
+    frame::FrameSnapshot snapshot;
+    snapshot.stage = stage_with_up(Vec3::UnitZ());
+    const auto add = [&](double away, double aside, const Vec3& color) {
+      add_square(snapshot, frame::ObjectKind::cloth, Vec3(aside * away, away, 0), -Vec3::UnitY(), Vec3::UnitX(),
+                 0.1 * away)
+          .appearance.color = color;
+    };
+    const Vec3 red(0.8, 0.1, 0.1), blue(0.1, 0.1, 0.8);
+    add(300 + (red_first ? 0 : 0.1), 0.2, red_first ? red : blue);
+    add(300 + (red_first ? 0.1 : 0), 0.2, red_first ? blue : red);
+    add(0.2, -0.2, red);
+    snapshot.cameras = {camera_at(Vec3::Zero(), Vec3::UnitY(), 40)};
+    const image::Image image = drawn(snapshot, 1);
+    for (const double aside : {-0.2, 0.2}) {
+      const int middle = kWidth / 2 + static_cast<int>(aside / std::tan(radians(20)) * kHeight / 2);
+      for (int x = middle - 10; x < middle + 10; ++x)
+        EXPECT_GT(image.pixel(x, kHeight / 2)[0], image.pixel(x, kHeight / 2)[2] + 50) << aside << ' ' << x;
+    }
+  }
 }
 
 TEST(Framing, CameraIsFoundByNameAndAWrongNameListsThoseThereAre) {

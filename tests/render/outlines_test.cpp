@@ -19,7 +19,7 @@ View test_view() {
   view.tan_half_height = static_cast<double>(kOutlinedHeight) / kOutlinedWidth;
   view.near = 0.1;
   view.view_from_world = look_along(view.eye, view.axes);
-  view.clip_from_world = perspective(1, view.tan_half_height, view.near, view.far) * view.view_from_world;
+  view.clip_from_world = perspective(1, view.tan_half_height, view.near) * view.view_from_world;
   return view;
 }
 

@@ -183,6 +183,18 @@ TEST(ReflectedLight, SurfacesAreShadedByOthers) {
   EXPECT_EQ(mean_arriving(light, 8000).light.at(0), Vector3f::Zero());
 }
 
+TEST(ReflectedLight, HolesOfPicturesDoNotDarkenTheirColor) {
+  frame::Texture lace{2, 1, {255, 0, 0, 255, 0, 0, 0, 0}};
+  frame::Appearance look;
+  look.color = Vec3::Ones();
+  look.paint.texture = std::make_shared<const frame::Texture>(lace);
+  MeanColors colors;
+  look.paint.alpha = frame::Paint::Alpha::ignored;
+  EXPECT_EQ(colors.of(look, false), Vector3f(0.5f, 0, 0));
+  look.paint.alpha = frame::Paint::Alpha::cutout;
+  EXPECT_EQ(colors.of(look, false), Vector3f(1, 0, 0));
+}
+
 /// Points that show a plane in one half of the picture and another, 0.1 m behind it, in the other.
 struct TwoPlanes {
   static constexpr int kWidth = 40, kHeight = 24;

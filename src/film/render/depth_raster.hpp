@@ -44,7 +44,7 @@ void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eig
 /// remain (Sutherland and Hodgman 1974).
 template <class Visit>
 void clip_near(const std::array<Eigen::Vector4d, 3>& corners, const Visit& visit) {
-  const auto before = [](const Eigen::Vector4d& corner) { return corner.z() + corner.w(); };
+  const auto before = [](const Eigen::Vector4d& corner) { return corner.w() - corner.z(); };
   std::array<Eigen::Vector4d, 4> left;
   std::size_t count = 0;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -54,7 +54,7 @@ GeometryBuffer::Painting::Painting(const Gl& gl, int width, int height)
 GeometryBuffer::Layers::Layers(const Gl& gl, int width, int height)
     : peeled(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
       seen(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
-      depth_stencil(make_texture(gl, GL_DEPTH24_STENCIL8, width, height, GL_NEAREST)) {}
+      depth_stencil(make_texture(gl, GL_DEPTH32F_STENCIL8, width, height, GL_NEAREST)) {}
 
 GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
     : gl_(&gl),
@@ -63,7 +63,7 @@ GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
       normal_heat_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
       uv_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
       seen_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
-      depth_stencil_(make_texture(gl, GL_DEPTH24_STENCIL8, width, height, GL_NEAREST)),
+      depth_stencil_(make_texture(gl, GL_DEPTH32F_STENCIL8, width, height, GL_NEAREST)),
       target_(gl) {
   gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, normal_heat_.name(), 0);
   gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT1, uv_.name(), 0);
@@ -87,6 +87,8 @@ void GeometryBuffer::begin(std::span<const SurfaceBuffers> surfaces) {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
   gl_->Viewport(0, 0, width_, height_);
   gl_->Enable(GL_DEPTH_TEST);
+  gl_->ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  gl_->DepthFunc(GL_GREATER);
   gl_->Enable(GL_STENCIL_TEST);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   const bool painted = std::ranges::any_of(surfaces, [](const SurfaceBuffers& each) { return each.painted(); });
@@ -110,7 +112,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, std::span<co
   begin(surfaces);
   const float nothing[] = {static_cast<float>(far), kNothing, 0, 0};
   gl_->ClearBufferfv(GL_COLOR, 2, nothing);
-  gl_->ClearBufferfi(GL_DEPTH_STENCIL, 0, 1.0f, static_cast<GLint>(PixelClass::backdrop));
+  gl_->ClearBufferfi(GL_DEPTH_STENCIL, 0, 0.0f, static_cast<GLint>(PixelClass::backdrop));
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (!left_out.empty() && left_out[i] != 0) continue;
     set_class(surfaces[i].surface().kind == frame::ObjectKind::cloth ? PixelClass::cloth : PixelClass::solid);

@@ -140,7 +140,8 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
   };
   std::vector<Place> columns;
   for (int x = 0; x < many.width(); ++x) columns.push_back(place(x, few.width()));
-  std::vector<char> alike(static_cast<std::size_t>(few.width()));  // whether 2 x 2 points show a smooth surface
+  // Of the 2 x 2 points around pixels: whether all have the same value; else whether they show a smooth surface.
+  std::vector<char> even(static_cast<std::size_t>(few.width())), alike(even.size());
   int known_row = -1;
   for (int y = begin; y < end; ++y) {
     const Place row = place(y, few.height());
@@ -153,6 +154,9 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       constexpr float kAlike = 0.95f;
       for (int x = 0; x < few.width(); ++x) {
         const int next = std::min(x + 1, few.width() - 1);
+        const Eigen::Vector4f& value = lines[0][x];
+        even[x] = lines[0][next] == value && lines[1][x] == value && lines[1][next] == value;
+        if (even[x] != 0) continue;
         const auto likeness_to = [&](const Rows& at, int k) { return likeness<1>(there[0], x, at, k, kAny).value(); };
         alike[x] =
             std::min({likeness_to(there[0], next), likeness_to(there[1], x), likeness_to(there[1], next)}) > kAlike;
@@ -161,6 +165,10 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
     Eigen::Vector4f* result = results.data() + static_cast<std::size_t>(y) * many.width();
     for (int x = 0; x < many.width(); ++x) {
       const Place& column = columns[x];
+      if (even[column.low] != 0) {
+        result[x] = lines[0][column.low];
+        continue;
+      }
       const float right = column.up, up = row.up;
       const std::array<float, 4> plain{(1 - right) * (1 - up), right * (1 - up), (1 - right) * up, right * up};
       const std::array<const Eigen::Vector4f*, 4> corners{lines[0] + column.low, lines[0] + column.high,

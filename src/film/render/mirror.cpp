@@ -24,8 +24,7 @@ View mirrored(const View& view, const Floor& floor) {
   // A reflection makes the axes left-handed. Negating `up` makes them right-handed, but turns the picture upside down.
   mirror.axes = {turned(view.axes.right), -turned(view.axes.up), turned(view.axes.forward)};
   mirror.view_from_world = look_along(mirror.eye, mirror.axes);
-  mirror.clip_from_world =
-      perspective(view.tan_half_width, view.tan_half_height, view.near, view.far) * mirror.view_from_world;
+  mirror.clip_from_world = perspective(view.tan_half_width, view.tan_half_height, view.near) * mirror.view_from_world;
   return mirror;
 }
 
@@ -53,7 +52,8 @@ void Mirror::draw(const View& view, const FrameUniform& block, const Subjects& s
   gl_->Enable(GL_CLIP_DISTANCE0);
   geometry_.draw(subjects.surfaces, {}, nullptr, view.eye, view.far);
   gl_->Disable(GL_CLIP_DISTANCE0);
-  traced_light_.draw(subjects.light, geometry_, subjects.traced, view, std::nullopt);
+  geometry_.read_seen(seen_);
+  traced_light_.draw(subjects.light, geometry_, seen_, subjects.traced, view, std::nullopt);
   const Shading::Features features{
       .lights = lights, .painted = subjects.painted && geometry_.painted(), .trimmed = geometry_.trimmed()};
   shading_.draw(subjects.materials, subjects.heat_scale, features, {0, 0, width_, height_}, {});

@@ -41,6 +41,7 @@ class Mirror {
   Shading shading_;
   Buffer frame_block_;
   Texture picture_;  // with mip levels, for blurred reflections
+  std::vector<Seen> seen_;
 };
 
 }  // namespace weft::render

@@ -27,17 +27,20 @@ Vector3f MeanColors::of(const frame::Appearance& look, bool back) {
   const frame::Paint& paint = look.paint;
   if (!paint.texture || (back && !look.back_painted) || paint.alpha == frame::Paint::Alpha::over_color)
     return own.cast<float>();
-  const auto [known, added] = means_.try_emplace(paint.texture, Vector3f::Zero());
+  const bool cuts = paint.alpha == frame::Paint::Alpha::cutout;
+  const auto [known, added] = means_.try_emplace({paint.texture, cuts}, Vector3f::Zero());
   if (added) {
     // The mean of about 500 pixels is accurate enough.
     const std::size_t pixels = paint.texture->rgba.size() / 4, step = std::max<std::size_t>(1, pixels / 499);
     Vec3 sum = Vec3::Zero();
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < pixels; i += step, ++count) {
+    double covered = 0;
+    for (std::size_t i = 0; i < pixels; i += step) {
       const std::uint8_t* rgba = paint.texture->rgba.data() + 4 * i;
-      sum += image::linear_from_srgb(Vec3(rgba[0], rgba[1], rgba[2]) / 255);
+      const double opacity = cuts ? rgba[3] / 255.0 : 1;
+      sum += opacity * image::linear_from_srgb(Vec3(rgba[0], rgba[1], rgba[2]) / 255);
+      covered += opacity;
     }
-    known->second = (sum / static_cast<double>(std::max<std::size_t>(count, 1))).cast<float>();
+    if (covered > 0) known->second = (sum / covered).cast<float>();
   }
   return known->second.cwiseProduct(image::linear_from_srgb(look.color).cast<float>());
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "film/frame/frame_snapshot.hpp"
@@ -16,13 +17,13 @@
 
 namespace weft::render {
 
-/// Mean linear colours of appearances. Each picture on a surface is averaged only once.
+/// Mean linear colours of appearances, without the holes that pictures cut. Each picture is averaged only once.
 class MeanColors {
  public:
   Eigen::Vector3f of(const frame::Appearance& look, bool back);
 
  private:
-  std::map<std::shared_ptr<const frame::Texture>, Eigen::Vector3f> means_;
+  std::map<std::pair<std::shared_ptr<const frame::Texture>, bool>, Eigen::Vector3f> means_;  // bool: cuts holes
 };
 
 /// Albedo of both sides of a surface, by ranges of its drawn triangles.

@@ -292,14 +292,14 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   }
   upload_frame(plan);
   passes->geometry.draw(passes->surfaces, sheer, floor, plan.view.eye, plan.view.far);
-  passes->traced.draw(light, passes->geometry, traced, plan.view, plan.floor);
+  passes->geometry.read_seen(seen);
+  passes->traced.draw(light, passes->geometry, seen, traced, plan.view, plan.floor);
   std::vector<Vec3> drawn;
   for (const DrawnMesh& mesh : meshes) drawn.insert(drawn.end(), mesh.positions.begin(), mesh.positions.end());
   const PixelArea area = visible_area(plan.view, drawn, settings.width, settings.height);
   shade(plan, area, heat);
   passes->shading.read(rgba);
   if (!outlines && !plan.lighting.style.edges) return;
-  passes->geometry.read_seen(seen);
   if (!sheer.empty()) blend_translucent_cloth(plan, sheer, light, opaque, area);
   if (data) {
     unsmoothed = rgba;
@@ -334,7 +334,7 @@ void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const c
     Layer layer;
     passes->geometry.read_seen(layer.seen);
     if (std::ranges::none_of(layer.seen, of_sheer)) break;
-    passes->traced.draw(light, passes->geometry, traced, plan.view, plan.floor);
+    passes->traced.draw(light, passes->geometry, layer.seen, traced, plan.view, plan.floor);
     passes->shading.draw_layer(features(plan), area);
     passes->shading.read(layer.rgba);
     peeled.push_back(std::move(layer));

@@ -22,11 +22,11 @@ class CoverageGrid {
   CoverageGrid(const View& view, double aspect)
       : view_(view),
         columns_(std::max(1, static_cast<int>(std::lround(kRows * aspect)))),
-        depth_(static_cast<std::size_t>(columns_ * kRows), std::numeric_limits<double>::max()),
-        cloth_(depth_.size(), 0) {}
+        nearness_(static_cast<std::size_t>(columns_ * kRows), 0),
+        cloth_(nearness_.size(), 0) {}
 
   void add(const frame::Surface& surface, const std::vector<Vec3>& positions) {
-    std::vector<Vec3> cells;  // column, row, depth; NaN in front of the near plane
+    std::vector<Vec3> cells;  // column, row, near / distance; NaN in front of the near plane
     for (const Vec3& position : positions) {
       const Eigen::Vector4d clip = view_.clip_from_world * position.homogeneous();
       const Vec3 ndc = clip.head<3>() / clip.w();
@@ -61,10 +61,10 @@ class CoverageGrid {
         const Vec3 at(x + 0.5, y + 0.5, 0);
         const Vec3 weights = Vec3(area(at, b, c), area(at, c, a), area(at, a, b)) / whole;
         if (weights.minCoeff() < 0) continue;
-        const double depth = weights.dot(Vec3(a.z(), b.z(), c.z()));
+        const double nearness = weights.dot(Vec3(a.z(), b.z(), c.z()));
         const auto cell = static_cast<std::size_t>(y * columns_ + x);
-        if (depth >= depth_[cell]) continue;
-        depth_[cell] = depth;
+        if (nearness <= nearness_[cell]) continue;
+        nearness_[cell] = nearness;
         cloth_[cell] = cloth ? 1 : 0;
       }
     }
@@ -72,7 +72,7 @@ class CoverageGrid {
 
   const View& view_;
   int columns_;
-  std::vector<double> depth_;
+  std::vector<double> nearness_;
   std::vector<char> cloth_;
 };
 

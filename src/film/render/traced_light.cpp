@@ -193,15 +193,14 @@ TracedLight::TracedLight(const Gl& gl, const QualitySettings& quality, int width
   scratch_.fill(plane);
 }
 
-void TracedLight::draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Surface> surfaces,
-                       const View& view, const std::optional<Floor>& floor) {
-  geometry.read_seen(seen_);
+void TracedLight::draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Seen> seen,
+                       std::span<const Surface> surfaces, const View& view, const std::optional<Floor>& floor) {
   geometry.read_normals(normals_);
   std::vector<Kind> kinds;
   for (const Surface& surface : surfaces) kinds.push_back(surface.kind);
-  pixels_.read(seen_, normals_, kinds, view, floor);
-  if (lit_points_) lit_points_->read(seen_, normals_, kinds, view, floor);
-  open_points_.read(seen_, normals_, kinds, view, floor);
+  pixels_.read(seen, normals_, kinds, view, floor);
+  if (lit_points_) lit_points_->read(seen, normals_, kinds, view, floor);
+  open_points_.read(seen, normals_, kinds, view, floor);
   shaded_.assign(
       static_cast<std::size_t>((width_ + kFloorTile - 1) / kFloorTile) * ((height_ + kFloorTile - 1) / kFloorTile), 0);
   trace_shadows(light);
@@ -379,7 +378,7 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
 /// Interpolates four planes at all pixels, and marks the tiles in which floor has other values than `on_open_floor`.
 void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& points, const Texture& texture, GLuint unit,
                          const Eigen::Vector4f& on_open_floor) {
-  texels_.resize(seen_.size());
+  texels_.resize(static_cast<std::size_t>(width_) * height_);
   if (points.divisor() > 1) {
     values_.resize(static_cast<std::size_t>(points.width()) * points.height());
     for (int y = 0; y < points.height(); ++y)

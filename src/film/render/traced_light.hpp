@@ -32,8 +32,9 @@ class TracedLight {
   /// - unit 1: light from other surfaces, as the radiance that a matte white surface would reflect (irradiance / π); w:
   /// open fraction of the surroundings
   /// - unit 2, if a surface mirrors: light of mirrored surfaces; w: fraction of the mirror image that they cover
-  void draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Surface> surfaces,
-            const View& view, const std::optional<Floor>& floor);
+  /// `seen`: what read_seen() of the geometry buffer returns.
+  void draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Seen> seen,
+            std::span<const Surface> surfaces, const View& view, const std::optional<Floor>& floor);
 
   /// Areas of the picture that contain all floor on which some light is missing or added. Call after draw().
   std::vector<PixelArea> shaded_floor() const;
@@ -58,7 +59,6 @@ class TracedLight {
   std::array<Plane, 5> scratch_;                       // scratch planes, as large as those of lit_
   Texture lit_texture_, open_texture_;
   std::optional<Texture> mirrored_texture_;
-  std::vector<Seen> seen_;
   std::vector<Eigen::Vector4f> normals_, values_, texels_;
   std::vector<char> shaded_;  // flag of each tile of the picture
 };

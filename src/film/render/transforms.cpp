@@ -23,12 +23,11 @@ Mat4 look_along(const Vec3& eye, const ViewAxes& axes) {
   return view;
 }
 
-Mat4 perspective(double tan_half_width, double tan_half_height, double near, double far) {
+Mat4 perspective(double tan_half_width, double tan_half_height, double near) {
   Mat4 clip = Mat4::Zero();
   clip(0, 0) = 1 / tan_half_width;
   clip(1, 1) = 1 / tan_half_height;
-  clip(2, 2) = -(far + near) / (far - near);
-  clip(2, 3) = -2 * far * near / (far - near);
+  clip(2, 3) = near;
   clip(3, 2) = -1;
   return clip;
 }

@@ -25,7 +25,9 @@ ViewAxes view_axes(const Vec3& forward, const Vec3& up);
 /// view_from_world for a viewer at `eye`.
 Mat4 look_along(const Vec3& eye, const ViewAxes& axes);
 
-/// clip_from_view of a perspective picture; the tangents are those of half the field of view; distances in metres.
-Mat4 perspective(double tan_half_width, double tan_half_height, double near, double far);
+/// clip_from_view of a perspective picture; the tangents are those of half the field of view; `near` in metres. Depth
+/// is near / distance, from 1 to 0: in floating point, its relative error is the same at all distances (Reed, "Depth
+/// Precision Visualized", 2015).
+Mat4 perspective(double tan_half_width, double tan_half_height, double near);
 
 }  // namespace weft::render

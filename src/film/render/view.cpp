@@ -72,12 +72,12 @@ View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const
     const double widest = std::hypot(1.0, view.tan_half_width, view.tan_half_height);
     if (height > 0) nearest = std::min(nearest, height / widest);
   }
-  // Depth resolution is distance² / (near · 2^24) [m]. If near is reach / 1000, this is about 1e-4 of `reach`.
-  view.near = std::max(0.8 * nearest, 1e-3 * reach);
+  // Something far away must not move the near plane beyond close cloth.
+  constexpr double kClosest = 0.01;  // no lens focuses at a shorter distance [m]
+  view.near = std::max(0.8 * nearest, std::min(1e-3 * reach, kClosest));
   view.far = 200 * reach;
   view.view_from_world = look_along(view.eye, view.axes);
-  view.clip_from_world =
-      perspective(view.tan_half_width, view.tan_half_height, view.near, view.far) * view.view_from_world;
+  view.clip_from_world = perspective(view.tan_half_width, view.tan_half_height, view.near) * view.view_from_world;
   return view;
 }
 
@@ -170,7 +170,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
                     1.0f / static_cast<float>(height)};
   frame.frustum = {static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height),
-                   static_cast<float>(view.near), static_cast<float>(view.far)};
+                   static_cast<float>(view.near), 0};
   if (floor) {
     frame.floor_plane_world = four(floor->normal, floor->normal.dot(view.eye - floor->point));
     frame.floor_look = four(style.floor_tint * image::linear_from_srgb(floor->look.color), lighting.gain);
