@@ -32,5 +32,6 @@ while read -r line; do
     *) [ -n "$only" ] || draw $line || exit ;;
   esac
 done <"$here/stills.txt"
+rm -rf "$output/differences" # those of an earlier run would be compared, too
 [ -n "$only" ] && exec "$weft" diff "$here/references" "$output/$only.png" --heatmap "$output/differences" --overwrite
 exec "$weft" diff "$here/references" "$output" --heatmap "$output/differences" --overwrite
