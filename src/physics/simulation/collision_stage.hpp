@@ -102,8 +102,8 @@ class CollisionStage {
                                         SystemState& next);
   /// Restarts the trajectory of the step from `next`, as push_apart() has corrected it, and finds contacts there.
   void continue_from(const SystemState& next);
-  /// Whether the trajectory was last restarted here, up to motion that is small beside the gap that push_apart()
-  /// restores and beside the detection distance.
+  /// Whether each particle is where the trajectory was last restarted, within the gap that push_apart() restores, and
+  /// within the margin of the search for near features.
   bool restarts_at(const SystemState& next) const;
   /// Whether pins hold particles of cloth triangles between which is_separated() found no plane. obstructed_pins() then
   /// lists those particles.
